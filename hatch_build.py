@@ -2,10 +2,10 @@
 
 The binding, `src/rvmon/core/native/python`, and all other C of the core as one unit, which makes
 them faster, are compiled and linked to one extension, `rvmon.native._core`; the files of
-`src/rvmon/timed/native`, each by itself, to another, `rvmon.native._zones`, and likewise those of
-`src/rvmon/readers/native` to `rvmon.native._csv`. The compiler is `$CC`, Python's own, `cc`, `gcc`
-or `clang`; where none works, the build asks for the package `ziglang`, which brings one. Where
-Python's headers are missing, the C takes its own declarations (`python_abi.h`). `$CFLAGS` and
+`src/rvmon/models/native`, each by itself, to another, `rvmon.native._zones`, and likewise those of
+`src/rvmon/recordings/native` to `rvmon.native._csv`. The compiler is `$CC`, Python's own, `cc`,
+`gcc` or `clang`; where none works, the build asks for the package `ziglang`, which brings one.
+Where Python's headers are missing, the C takes its own declarations (`python_abi.h`). `$CFLAGS` and
 `$LDFLAGS` are added.
 """
 
@@ -36,8 +36,8 @@ PACKAGE = Path(__file__).resolve().parent / "src" / "rvmon"
 CORE = PACKAGE / "core" / "native"
 AMALGAMATE = PACKAGE / "core" / "amalgamate.py"
 BESIDE = {
-    "_zones": PACKAGE / "timed" / "native",
-    "_csv": PACKAGE / "readers" / "native",
+    "_zones": PACKAGE / "models" / "native",
+    "_csv": PACKAGE / "recordings" / "native",
 }
 """The other extensions and the folders of their sources."""
 NATIVE = PACKAGE / "native"

@@ -30,17 +30,17 @@ DOORS = {
     "": "rvmon rvmon.core rvmon.cli rvmon.live rvmon.testing.oracle",
     "cdv": "rvmon.cdv coverage",
     "handover": "handover.cli handover.driver pymunk",
-    "arrow": "rvmon.readers.parquet pyarrow.parquet",
-    "ros": "rvmon.readers.messages.ros rosbags.highlevel",
-    "mcap": "rvmon.readers.messages.mcap mcap.reader",
+    "arrow": "rvmon.recordings.parquet pyarrow.parquet",
+    "ros": "rvmon.recordings.messages.ros rosbags.highlevel",
+    "mcap": "rvmon.recordings.messages.mcap mcap.reader",
     "dds": "rvmon.adapters.dds cyclonedds",
     "gym": "rvmon.adapters.gym gymnasium",
     "lsp": "rvmon.cli.lsp.server pygls",
     "dask": "rvmon.execute.on_dask distributed",
     "mqtt": "rvmon.adapters paho.mqtt.client",
-    "zstd": "rvmon.readers.places",
-    "remote": "rvmon.readers.places fsspec",
-    "s3": "rvmon.readers.places s3fs",
+    "zstd": "rvmon.recordings.places",
+    "remote": "rvmon.recordings.places fsspec",
+    "s3": "rvmon.recordings.places s3fs",
 }
 """What has to import where only this extra is installed; the core alone has no name."""
 

@@ -40,7 +40,7 @@ import rvmon
 from rvmon import cli
 from rvmon.errors import TraceError
 from rvmon.trace.time import TIME_LIMIT
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 SPEC = """
 spec soak

@@ -29,11 +29,11 @@ from typing import Any
 import numpy as np
 from benchmarks.output import show
 
-from rvmon.readers.messages.columns import path_of
-from rvmon.readers.messages.file import MessageFile
-from rvmon.readers.messages.forms import databases_beside
-from rvmon.readers.recording import format_of
-from rvmon.readers.values import shorten
+from rvmon.recordings.messages.columns import path_of
+from rvmon.recordings.messages.file import MessageFile
+from rvmon.recordings.messages.forms import databases_beside
+from rvmon.recordings.recording import format_of
+from rvmon.recordings.values import shorten
 from rvmon.trace.schema import Schema
 
 Record = tuple[str, Any, Any]

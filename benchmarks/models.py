@@ -37,13 +37,13 @@ from benchmarks.tchecker import asked, translated
 
 from handover.model import handover_network
 from rvmon.errors import ModelError
-from rvmon.timed.language.elaborate import asked_on
-from rvmon.timed.language.load import load_network, loads_network
-from rvmon.timed.model.network import Chance, Extremes, Mean, Network, Query, Simulation
-from rvmon.timed.runs.statistics import sample, trajectories
-from rvmon.timed.search.extremes import extremes
-from rvmon.timed.search.meter import Budget, Meter
-from rvmon.timed.search.verify import verify
+from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.load import load_network, loads_network
+from rvmon.models.network.network import Chance, Extremes, Mean, Network, Query, Simulation
+from rvmon.models.runs.statistics import sample, trajectories
+from rvmon.models.search.extremes import extremes
+from rvmon.models.search.meter import Budget, Meter
+from rvmon.models.search.verify import verify
 
 HERE = Path(__file__).parent
 MODELS = HERE.parent / "examples" / "models"

@@ -31,8 +31,8 @@ from handover.model import handover_network
 from handover.robot.mutants import MUTATIONS
 from rvmon.cdv.plan import Played, plan
 from rvmon.cdv.play import execute
-from rvmon.timed.model.network import Network
-from rvmon.verdict import Verdict
+from rvmon.models.network.network import Network
+from rvmon.verdicts import Verdict
 
 STRATEGIES = ("pseudorandom", "constrained", "model-based")
 

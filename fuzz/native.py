@@ -44,7 +44,7 @@ from rvmon.testing.generate.trace import TraceProfile, random_trace
 HARNESS = Path(__file__).with_name("harness.c")
 CORE = Path(amalgamate.FOLDER)
 ZONES_HARNESS = HARNESS.with_name("zones.c")
-ZONES = HARNESS.parents[1] / "src" / "rvmon" / "timed" / "native"
+ZONES = HARNESS.parents[1] / "src" / "rvmon" / "models" / "native"
 COMPILER = "afl-clang-fast"
 FLAGS = (
     *("-std=c99", "-g", "-O1", "-fno-omit-frame-pointer", "-ffp-contract=off"),

@@ -21,8 +21,8 @@ from tests.tools.bags import SHOP
 import rvmon
 from rvmon.diagnostics import render_full
 from rvmon.errors import ModelError, RvmonError, SnapshotError, SpecError
-from rvmon.readers.source import Source
-from rvmon.spec.print.formatter import format_text
+from rvmon.language.print.formatter import format_text
+from rvmon.recordings.source import Source
 from rvmon.trace.sample import Sample
 
 CORPUS = Path(__file__).with_name("corpus")

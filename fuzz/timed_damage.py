@@ -8,10 +8,10 @@ from pathlib import Path
 from random import Random
 
 from rvmon.errors import ModelError
-from rvmon.export.uppaal import network_dot, uppaal_xml
-from rvmon.timed.language.load import load_network, loads_network
-from rvmon.timed.search.meter import Budget
-from rvmon.timed.search.verify import verify
+from rvmon.models.language.load import load_network, loads_network
+from rvmon.models.search.meter import Budget
+from rvmon.models.search.verify import verify
+from rvmon.models.uppaal_xml import network_dot, uppaal_xml
 
 SMALL = Budget(states=300, seconds=5.0)
 """What each query of a damaged model may cost."""

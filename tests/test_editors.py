@@ -6,13 +6,13 @@ from pathlib import Path
 
 import pytest
 
-from rvmon.spec.checked.functions import FUNCTIONS
-from rvmon.spec.syntax.words import INFIX_WORDS, RESERVED
+from rvmon.language.checked.functions import FUNCTIONS
+from rvmon.language.syntax.words import INFIX_WORDS, RESERVED
 
 ROOT = Path(__file__).parents[1]
 VSCODE = ROOT / "editors" / "vscode"
 GRAMMAR = json.loads((VSCODE / "syntaxes" / "rv.tmLanguage.json").read_text(encoding="utf-8"))
-SPECS = sorted([*ROOT.glob("specs/*.rv"), *ROOT.glob("src/rvmon/spec/patterns/*.rv")])
+SPECS = sorted([*ROOT.glob("specs/*.rv"), *ROOT.glob("src/rvmon/language/patterns/*.rv")])
 
 
 def rules():
@@ -80,7 +80,7 @@ def test_functions_and_numbers_with_units():
 def findings():
     """The findings about a file with an error."""
     from rvmon.errors import SpecError
-    from rvmon.spec.compile import compile_text
+    from rvmon.language.compile import compile_text
 
     with pytest.raises(SpecError) as caught:
         compile_text('requirement R "a \\"quote\\"" always a', name="a.rv")

@@ -23,21 +23,28 @@ from tests.tools.forms import FORMS, Compiler, Maker
 from tests.tools.generate_ltl import random_mtl
 from tests.tools.stepped import settle
 
+from rvmon.language.checked.formula import Bound, BoundAtom, Constant, SignalAtom
+from rvmon.language.checked.specification import (
+    CheckedSpec,
+    Mode,
+    Requirement,
+    Signal,
+    TimeModel,
+    Type,
+)
+from rvmon.language.print import format_formula
 from rvmon.logic.automaton import PASSED, Token
 from rvmon.logic.formula import Factory
 from rvmon.logic.letters import Alphabet, alphabet_of
 from rvmon.logic.lower import lower
 from rvmon.logic.state_formula import FALSE, TRUE, Elapsed, State, StateOp
-from rvmon.spec.checked.formula import Bound, BoundAtom, Constant, SignalAtom
-from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
-from rvmon.spec.print import format_formula
 from rvmon.testing.generate import BOOLS
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Decision
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Decision
+from rvmon.verdicts.report import Report
 
 TRIGGER = SignalAtom("p")
 LENGTHS = (1, 7, 40)

@@ -19,16 +19,16 @@ from tests.tools.timed_regions import Steps, TooManyRegionsError
 from tests.tools.timed_runs import shows
 
 from rvmon.errors import ModelError
-from rvmon.export.uppaal import uppaal_xml
-from rvmon.timed.language.elaborate import asked_on
-from rvmon.timed.language.load import loads_network
-from rvmon.timed.model.expressions import UnaryOp, UnaryOperation
-from rvmon.timed.model.guards import compares_of, is_linear
-from rvmon.timed.model.network import Asked, LeadsToFormula, Network
-from rvmon.timed.runs.concrete import Rules
-from rvmon.timed.runs.run import Ending
-from rvmon.timed.search.meter import Policy
-from rvmon.timed.search.verify import verify
+from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.load import loads_network
+from rvmon.models.network.expressions import UnaryOp, UnaryOperation
+from rvmon.models.network.guards import compares_of, is_linear
+from rvmon.models.network.network import Asked, LeadsToFormula, Network
+from rvmon.models.runs.concrete import Rules
+from rvmon.models.runs.run import Ending
+from rvmon.models.search.meter import Policy
+from rvmon.models.search.verify import verify
+from rvmon.models.uppaal_xml import uppaal_xml
 
 ROOT = Path(__file__).parents[2]
 MOST_REGIONS = 1_500

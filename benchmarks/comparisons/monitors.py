@@ -29,19 +29,26 @@ from tests.tools.shrink import shrink
 from tests.tools.sound import is_spoken_of, narrowed, overturned
 
 from rvmon.errors import RvmonError
+from rvmon.language.checked.formula import Bound, BoundAtom, Formula
+from rvmon.language.checked.specification import (
+    CheckedSpec,
+    Mode,
+    Requirement,
+    Signal,
+    TimeModel,
+    Type,
+)
+from rvmon.language.print import format_formula
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.robustness import Measured, Robustness, RobustnessMonitor
 from rvmon.session import Spec
-from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
-from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, TimeModel, Type
-from rvmon.spec.print import format_formula
 from rvmon.testing.generate import BOOLS, Rng, chance
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, show_case, show_spec
 from rvmon.testing.law.margins import margins
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 Figures = Mapping[Key, tuple[float, float, float]]
 """Of each attempt the least and the greatest that robustness can be, and what is kept up."""

@@ -15,8 +15,7 @@ from benchmarks.peers.ways import WAYS, Judge, Question, Way, answers, ask_monit
 from tests.tools.common_fragment import UntranslatableError, names_in
 
 from rvmon.errors import RvmonError
-from rvmon.session import Spec
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Binary,
     Bound,
     BoundAtom,
@@ -29,8 +28,9 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     Unary,
 )
-from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, Signal, Type
-from rvmon.spec.print import format_formula
+from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, Signal, Type
+from rvmon.language.print import format_formula
+from rvmon.session import Spec
 from rvmon.testing.generate import NUMBERS, chance, pick
 from rvmon.testing.generate.formula import formula
 from rvmon.trace.sample import Sample, Trace

@@ -16,7 +16,7 @@ from random import Random
 import networkx as nx
 from tests.tools.timed_regions import JOINED, Region, RegionGraph, TooManyRegionsError, truth_of
 
-from rvmon.timed.model.expressions import (
+from rvmon.models.network.expressions import (
     BinaryOperation,
     Expression,
     PathFormula,
@@ -24,10 +24,10 @@ from rvmon.timed.model.expressions import (
     UnaryOp,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import is_linear, parts_of
-from rvmon.timed.model.network import Network
-from rvmon.timed.runs.concrete import Rules, initial_configuration
-from rvmon.timed.runs.run import Run
+from rvmon.models.network.guards import is_linear, parts_of
+from rvmon.models.network.network import Network
+from rvmon.models.runs.concrete import Rules, initial_configuration
+from rvmon.models.runs.run import Run
 
 _Node = tuple[Region, frozenset[PathFormula]]
 

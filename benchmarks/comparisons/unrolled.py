@@ -6,15 +6,15 @@ from collections.abc import Callable
 
 from tests.tools.common_fragment import both, either, to_core
 
-from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary
-from rvmon.spec.checked.formula import UnaryOp as Op
+from rvmon.language.checked.formula import Binary, BinaryOp, Formula, Interval, Unary
+from rvmon.language.checked.formula import UnaryOp as Op
 
 
 def unrolled(formula: Formula) -> Formula:
     """The same formula without bounds, where every tick is a position: windows as nests of `X`.
 
     >>> from tests.tools.build import eventually, p
-    >>> from rvmon.spec.print import format_formula
+    >>> from rvmon.language.print import format_formula
     >>> format_formula(unrolled(eventually(p, 1, 2)))
     'next (p or next p)'
     """

@@ -18,6 +18,9 @@ from collections.abc import Iterator, Sequence
 
 from tests.tools.build import p, requirement, start
 
+from rvmon.language.checked.formula import Binary, Formula, Unary
+from rvmon.language.checked.specification import Requirement
+from rvmon.language.print import format_formula
 from rvmon.logic.automaton import PASSED, Automaton
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
 from rvmon.logic.forecast import Forecaster
@@ -26,9 +29,6 @@ from rvmon.logic.letters import alphabet_of
 from rvmon.logic.lower import lower
 from rvmon.logic.reduce import reduce
 from rvmon.monitor.obligation_words import Words
-from rvmon.spec.checked.formula import Binary, Formula, Unary
-from rvmon.spec.checked.specification import Requirement
-from rvmon.spec.print import format_formula
 from rvmon.testing.generate.formula import Shape, formula
 
 SHAPE = Shape(mixed=False, past=False)

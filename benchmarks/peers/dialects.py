@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 from tests.tools.common_fragment import EVER, UntranslatableError, both, either, to_core
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Binary,
     BinaryOp,
     BoundAtom,

@@ -24,7 +24,7 @@ from rvmon.adapters.json_objects import JsonObjects
 from rvmon.errors import TraceError
 from rvmon.live import Driver, SimulatedClock
 from rvmon.trace.time import TICKS_PER_SECOND
-from rvmon.verdict.report import Report
+from rvmon.verdicts.report import Report
 
 PEERS = {
     "rtamt, discrete online": ("rtamt", "Rtamt", "discrete online", "once[0:1](NAME > 0.5)"),

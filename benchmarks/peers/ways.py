@@ -9,9 +9,8 @@ from benchmarks.peers import dialects
 from benchmarks.peers.client import Peer
 from benchmarks.peers.dialects import ALWAYS_ONE, Dialect, spelling, translate
 
-from rvmon.session import Spec
-from rvmon.spec.checked.formula import EventAtom, Formula
-from rvmon.spec.checked.specification import (
+from rvmon.language.checked.formula import EventAtom, Formula
+from rvmon.language.checked.specification import (
     CheckedSpec,
     Event,
     Mode,
@@ -20,13 +19,14 @@ from rvmon.spec.checked.specification import (
     TimeModel,
     Type,
 )
+from rvmon.session import Spec
 from rvmon.testing.generate.formula import Shape
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Decision
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Decision
+from rvmon.verdicts.report import Report
 
 Cell = bool | float | None
 """A value at a tick; `None`: not known."""

@@ -27,7 +27,7 @@ from rvmon import loads
 from rvmon.errors import RvmonError
 from rvmon.monitor.robustness import Measured
 from rvmon.testing.law.syntax import intervals
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 WAYS_OF = {entry.label: entry.way for entry in PEERS}
 """Who is asked for the verdicts of which contender; the native reelay is the same program."""

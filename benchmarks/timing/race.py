@@ -21,7 +21,7 @@ from benchmarks.timing.workload import Workload, always_text, specification
 from tests.tools.build import scaled
 from tests.tools.common_fragment import UntranslatableError
 
-from rvmon.spec.print import format_formula
+from rvmon.language.print import format_formula
 
 FEWEST_ROWS = 50
 """Of a pass, however slow the contender; as many tell how slow it is."""

@@ -10,9 +10,9 @@ from benchmarks.timing import timescales
 from tests.tools.common_fragment import names_in
 
 from rvmon import loads
-from rvmon.spec.checked.formula import Formula
-from rvmon.spec.checked.rewrite import without_spans
-from rvmon.spec.print import format_formula
+from rvmon.language.checked.formula import Formula
+from rvmon.language.checked.rewrite import without_spans
+from rvmon.language.print import format_formula
 
 Column = Sequence[bool | float]
 FORMS = ("past", "future")

@@ -16,7 +16,7 @@ _RUN = re.compile(r"\b(P|F|NT|I) (everywhere|before r|after q until r|after q|be
 
 def patterns() -> str:
     """All patterns, in the order of their files."""
-    files = resources.files("rvmon.spec") / "patterns"
+    files = resources.files("rvmon.language") / "patterns"
     texts = [(files / f"{name}.rv").read_text("utf-8") for name in _FILES]
     count = sum(text.count("\ndefine ") for text in texts)
     shown = [line for text in texts for line in _family(text)]

@@ -10,10 +10,10 @@ from grammar import productions
 from pygments.lexer import RegexLexer, words
 from pygments.token import Comment, Keyword, Name, Number, Operator, String, Whitespace
 
-from rvmon.spec.checked.arithmetic import NumericOp
-from rvmon.spec.checked.formula import Measured
-from rvmon.spec.checked.functions import FUNCTIONS
-from rvmon.spec.syntax.words import CLAUSE_WORDS, INFIX_WORDS, OPERATOR_TERMINALS, RESERVED
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.formula import Measured
+from rvmon.language.checked.functions import FUNCTIONS
+from rvmon.language.syntax.words import CLAUSE_WORDS, INFIX_WORDS, OPERATOR_TERMINALS, RESERVED
 
 _READ_AS = {
     "NAME": "plain-name",
@@ -25,7 +25,7 @@ _READ_AS = {
 
 def grammar() -> str:
     """The EBNF of specifications as Markdown."""
-    text = resources.files("rvmon.spec.syntax").joinpath("rv.lark").read_text(encoding="utf-8")
+    text = resources.files("rvmon.language.syntax").joinpath("rv.lark").read_text(encoding="utf-8")
     text = text.replace("/@NAME@\\(/", 'NAME "("')
     for terminal, spellings in OPERATOR_TERMINALS.items():
         written = " | ".join(f'"{one}"' for one in spellings)
@@ -37,7 +37,7 @@ def grammar() -> str:
 
 def model_grammar() -> str:
     """The EBNF of models (`.ta`) as Markdown."""
-    path = resources.files("rvmon.timed.language").joinpath("ta.lark")
+    path = resources.files("rvmon.models.language").joinpath("ta.lark")
     return ebnf(path.read_text(encoding="utf-8"))
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import duckdb
 
 import rvmon
-from rvmon.verdict.table_file import write_results
+from rvmon.verdicts.table_file import write_results
 
 WORST = """
     SELECT requirement, recording,

@@ -21,18 +21,18 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from rvmon.version import __version__
+
 if TYPE_CHECKING:
     from rvmon.diagnostics import Diagnostic
     from rvmon.errors import RvmonError, SpecError, TraceError
+    from rvmon.language.checked.specification import Requirement
     from rvmon.monitor.monitor import Monitor
     from rvmon.session import Spec, load, loads
-    from rvmon.spec.checked.specification import Requirement
     from rvmon.trace.sample import Sample
-    from rvmon.verdict import Verdict
-    from rvmon.verdict.attempt import Attempt
-    from rvmon.verdict.report import Report
-
-__version__ = "0.1.0"
+    from rvmon.verdicts import Verdict
+    from rvmon.verdicts.attempt import Attempt
+    from rvmon.verdicts.report import Report
 
 __all__ = [
     "Attempt",
@@ -57,10 +57,10 @@ _HOMES = {
     "Diagnostic": "rvmon.diagnostics",
     "Monitor": "rvmon.monitor.monitor",
     "Report": "rvmon.session",
-    "Requirement": "rvmon.spec.checked.specification",
+    "Requirement": "rvmon.language.checked.specification",
     "Sample": "rvmon.trace.sample",
     "Spec": "rvmon.session",
-    "Verdict": "rvmon.verdict",
+    "Verdict": "rvmon.verdicts",
     "load": "rvmon.session",
     "loads": "rvmon.session",
     **{name: "rvmon.errors" for name in __all__ if name.endswith("Error")},

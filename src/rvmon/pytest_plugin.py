@@ -15,8 +15,8 @@ import pytest
 if TYPE_CHECKING:
     from rvmon.monitor.monitor import Monitor
     from rvmon.session import Spec
-    from rvmon.verdict import Verdict
-    from rvmon.verdict.report import Report
+    from rvmon.verdicts import Verdict
+    from rvmon.verdicts.report import Report
 
 _PROPERTY = "rv:"
 """Begins the properties of tests that are verdicts; they stand in JUnit XML as well."""

@@ -9,23 +9,23 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Unpack
 
 from rvmon.errors import SpecError
-from rvmon.spec.checked.names_read import requirements_asked, sources_asked
+from rvmon.language.checked.names_read import requirements_asked, sources_asked
 from rvmon.texts import cannot_read, text_of_file
 from rvmon.trace.time import ticks_of_seconds
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 if TYPE_CHECKING:
     from rvmon.analysis.subformulas import Looking
     from rvmon.coverage import Hits
     from rvmon.coverage.monitor import SpecCoverage
     from rvmon.diagnostics import Diagnostic
+    from rvmon.language.checked.specification import CheckedSpec, Requirement
     from rvmon.monitor.compiled_spec import CompiledSpec
     from rvmon.monitor.monitor import Monitor
     from rvmon.monitor.planned import PlannedCore
     from rvmon.monitor.robustness import Margins, RobustnessMonitor
-    from rvmon.readers.source import Reading, ReadingArguments, SchemaArguments, Source
-    from rvmon.spec.checked.specification import CheckedSpec, Requirement
+    from rvmon.recordings.source import Reading, ReadingArguments, SchemaArguments, Source
     from rvmon.trace.sample import Recording
 
 
@@ -84,7 +84,7 @@ class Spec:
         >>> spec.evaluate({"stamp": [0, 20], "Is P": [True, True]}).end
         20000000
         """
-        from rvmon.binding import reading_schema
+        from rvmon.recordings.binding import reading_schema
 
         other = copy(self)
         other.schema = reading_schema(self.checked, self.schema, **options)
@@ -214,7 +214,7 @@ class Spec:
         allow_missing: bool | Iterable[str] = False,
         **schema: Unpack[SchemaArguments],
     ) -> Reading:
-        from rvmon.readers.source import Reading
+        from rvmon.recordings.source import Reading
 
         allowed = allow_missing if isinstance(allow_missing, bool) else tuple(allow_missing)
         read_as = (self.reading(**schema) if schema else self).schema
@@ -347,7 +347,7 @@ def load(
     """
     path = Path(path)
     if path.suffix != ".rv":
-        from rvmon.readers.messages.forms import FORMATS
+        from rvmon.recordings.messages.forms import FORMATS
 
         if path.suffix.lower() in FORMATS:
             expected = "a recording by its name; a specification (.rv) is expected here"
@@ -376,7 +376,7 @@ def loads(text: str, *, name: str = "<string>", const: Mapping[str, str] | None 
 
 
 def _compile(text: str, name: str, const: Mapping[str, str] | None, directory: Path | None) -> Spec:
-    from rvmon.spec.compiled_cache import compile_cached
+    from rvmon.language.compiled_cache import compile_cached
 
     checked, warnings = compile_cached(text, name=name, constants=const, directory=directory)
     return Spec(checked, warnings)

@@ -121,6 +121,16 @@ def _shown(char: str) -> str:
     return ascii(char)[1:-1]
 
 
+def quoted(text: str) -> str:
+    r"""A string of DOT or HOA.
+
+    >>> print(quoted('say "\\x1b"'))
+    "say \"\\x1b\""
+    """
+    plain = shown(text).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
+    return f'"{plain}"'
+
+
 def shown_path(path: str | os.PathLike[str]) -> str:
     """A path as text; names of files need not be.
 

@@ -33,8 +33,8 @@ from tests.tools.build import (
 )
 from tests.tools.common_fragment import UntranslatableError, to_core
 
-from rvmon.spec.checked.formula import Formula
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.language.checked.formula import Formula
+from rvmon.language.checked.specification import TimeModel
 
 
 @pytest.mark.parametrize(

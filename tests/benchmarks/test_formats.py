@@ -11,7 +11,7 @@ import pytest
 from benchmarks.formats import TOOLS, Compared, main
 from tests.tools import logs
 
-from rvmon.readers.messages.file import MessageFile
+from rvmon.recordings.messages.file import MessageFile
 from rvmon.trace.schema import Schema
 
 ROWS = [(1_000_000 + 20_000 * k, 0.25 * k, k % 3) for k in range(40)]

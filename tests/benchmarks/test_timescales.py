@@ -7,7 +7,7 @@ from benchmarks.peers.ways import Question, answers, ask_oracle
 from benchmarks.timing.timescales import FAMILIES, Family, trace
 from benchmarks.timing.workload import formula
 
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.language.checked.specification import TimeModel
 
 HIGH = 6
 

@@ -26,8 +26,8 @@ from tests import WITHOUT
 from handover.cli import main as handover
 from rvmon.cli import main as rvmon
 from rvmon.errors import ModelError, SpecError
-from rvmon.spec.compile import compile_text
-from rvmon.timed.language.load import loads_network
+from rvmon.language.compile import compile_text
+from rvmon.models.language.load import loads_network
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted(
@@ -38,7 +38,7 @@ PAGES = sorted(
 """The pages of the documentation, the README and the rules for contributors."""
 
 OWN_TESTS = {
-    "docs/reference/what-changed-in-the-law.md": "tests/rvmon/verdict/test_law_page.py",
+    "docs/reference/what-changed-in-the-law.md": "tests/rvmon/verdicts/test_law_page.py",
 }
 """Pages whose blocks stand in a form of their own, with the test that runs them."""
 

@@ -73,7 +73,7 @@ def test_links_lead_somewhere():
 
 
 NEWCOMERS = [page for page in PAGES if page.startswith("docs/how-to/add-a")]
-NEW = {"src/rvmon/readers/tsv_rows.py"}
+NEW = {"src/rvmon/recordings/tsv_rows.py"}
 """Files that the examples of these pages would add."""
 
 

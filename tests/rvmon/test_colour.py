@@ -7,7 +7,7 @@ import pytest
 
 from rvmon.diagnostics import SEVERITIES, coloured, render_full, wants_colour
 from rvmon.errors import SpecError
-from rvmon.spec.compile import compile_text
+from rvmon.language.compile import compile_text
 
 
 class Terminal(io.StringIO):

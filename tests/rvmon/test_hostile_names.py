@@ -22,7 +22,6 @@ import pytest
 from tests.tools.hostile import STEERING, hostile_names
 
 import rvmon
-from rvmon.analysis.graph import quoted
 from rvmon.cli import main as command
 from rvmon.diagnostics import (
     Diagnostic,
@@ -35,17 +34,17 @@ from rvmon.diagnostics import (
     render_json,
 )
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.export.uppaal import uppaal_xml
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.models.language.load import loads_network
+from rvmon.models.uppaal_xml import uppaal_xml
 from rvmon.report.junit import junit_xml
 from rvmon.report.pages import component, data, e, table_html
 from rvmon.report.run_text import print_reports
 from rvmon.report.table import RunGroup, VerdictTable, table_latex, tables_csv
-from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.texts import shown, shown_json, shown_line
-from rvmon.timed.language.load import loads_network
+from rvmon.texts import quoted, shown, shown_json, shown_line
 from rvmon.trace.sample import Health, HealthKind
-from rvmon.verdict import Verdict
-from rvmon.verdict.report import Report, report_of
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.report import Report, report_of
 
 NAMES = int(os.environ.get("HOSTILE_NAMES", "40"))
 BATCH = 1000

@@ -12,7 +12,7 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
@@ -33,8 +33,8 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.checked.operators import Window
-from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+from rvmon.language.checked.operators import Window
+from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.testing.generate import (
     BOOLS,
     CARRIER,

@@ -10,11 +10,11 @@ from rvmon.analysis.codes import every_page
 from rvmon.analysis.examples import analyse
 from rvmon.diagnostics import Diagnostic, render_full
 from rvmon.errors import ModelError, SpecError
+from rvmon.language.compile import compile_text
+from rvmon.models.conform import conform
+from rvmon.models.language.load import load_network, loads_network
+from rvmon.models.search.verify import verify
 from rvmon.monitor.compiled_spec import compile_spec
-from rvmon.spec.compile import compile_text
-from rvmon.timed.conformance.conform import conform
-from rvmon.timed.language.load import load_network, loads_network
-from rvmon.timed.search.verify import verify
 
 _FORM = re.compile(
     r"# (?P<code>\w+) (?P<name>[\w-]+)\n\n\*(?P<severity>\w+)\* · (?P<what>[^\n]+(?:\n[^\n]+)*)\n\n"

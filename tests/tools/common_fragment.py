@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Amount,
     Binary,
     BinaryOp,
@@ -21,7 +21,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.checked.rewrite import Formulas, read
+from rvmon.language.checked.rewrite import Formulas, read
 from rvmon.testing.law.syntax import numerics, subformulas
 
 EVER = Interval(0, None)
@@ -58,7 +58,7 @@ def names_in(formula: Formula) -> set[str]:
 def to_core(formula: Formula) -> Formula:
     """An equal formula in `not and or X F G U Y O H S` over propositions (SEMANTICS 2).
 
-    >>> from rvmon.spec.checked.formula import SignalAtom
+    >>> from rvmon.language.checked.formula import SignalAtom
     >>> p = SignalAtom("p")
     >>> before = Unary(UnaryOp.PREVIOUS, p)
     >>> to_core(Unary(UnaryOp.RISE, p)) == both(p, Unary(UnaryOp.NOT, before))

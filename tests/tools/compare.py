@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import format_ticks
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt, Decision
+from rvmon.verdicts.report import Report
 
 
 @dataclass(frozen=True, slots=True)

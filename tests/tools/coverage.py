@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rvmon.spec.checked.formula import Bound, BoundAtom, Formula
-from rvmon.spec.checked.goals import Bin, BinKind, Coverpoint, Cross
-from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+from rvmon.language.checked.formula import Bound, BoundAtom, Formula
+from rvmon.language.checked.goals import Bin, BinKind, Coverpoint, Cross
+from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.testing.generate import Rng, chance, pick
 from rvmon.testing.generate.formula import Shape, formula
 from rvmon.testing.generate.spec import Profile, random_spec

@@ -21,8 +21,8 @@ from rvmon.coverage import (
     model_of,
 )
 from rvmon.coverage.database import Database
-from rvmon.spec.checked.goals import BinKind
-from rvmon.verdict import Verdict
+from rvmon.language.checked.goals import BinKind
+from rvmon.verdicts import Verdict
 
 SECOND = 1_000_000_000
 

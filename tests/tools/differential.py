@@ -9,11 +9,11 @@ from dataclasses import dataclass, field
 from functools import partial
 
 from rvmon.errors import RvmonError
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace, show_case
 from rvmon.testing.law.syntax import intervals
-from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdicts.attempt import Attempt, Decision
 from tests.tools.compare import differences, frame_differences
 from tests.tools.drive import Monitored, drive
 from tests.tools.forms import HeldBack

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.readers import parquet, places
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.recordings import parquet, places
 from rvmon.testing.generate import Rng, chance
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Value

@@ -9,8 +9,8 @@ from typing import Protocol, cast
 
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample, Value
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 
 class Monitored(Protocol):

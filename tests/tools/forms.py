@@ -10,16 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rvmon.errors import RvmonError, TimeOrderError
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
 from rvmon.monitor.monitor import Monitor, build_monitor, restore
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.records import report_of_run
-from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Health, HealthKind, Sample, Value
 from rvmon.trace.schema import Kind
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 from tests.tools.drive import Monitored
 from tests.tools.health import readers_of
 

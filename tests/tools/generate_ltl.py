@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rvmon.spec.checked.formula import Binary, BoundAtom, Formula, Interval, SignalAtom, Unary
+from rvmon.language.checked.formula import Binary, BoundAtom, Formula, Interval, SignalAtom, Unary
 from rvmon.testing.generate import BOOLS, Rng, pick
 from rvmon.testing.generate.formula import Shape, formula
 

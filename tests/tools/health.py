@@ -6,8 +6,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
 
-from rvmon.spec.checked.formula import BoundAtom, Constant, Literal, Passed
-from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
+from rvmon.language.checked.formula import BoundAtom, Constant, Literal, Passed
+from rvmon.language.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.sample_words import heard
 from rvmon.testing.law.syntax import subformulas

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 
-from rvmon.spec.checked.specification import Requirement
+from rvmon.language.checked.specification import Requirement
 from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.decisions import Followed, Followings
 from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.law.word import Truth
 from rvmon.testing.oracle import judge_views, report_on
 from rvmon.trace.sample import Health
-from rvmon.verdict.report import Report
+from rvmon.verdicts.report import Report
 from tests.tools.compare import Key, Outcome, outcomes
 from tests.tools.health import expected_health, may_be_simplified
 from tests.tools.law import word

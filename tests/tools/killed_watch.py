@@ -17,9 +17,9 @@ from rvmon.adapters.json_objects import decoded_object
 from rvmon.cli import main
 from rvmon.errors import TraceError
 from rvmon.live import DurableMonitor, Judgement
-from rvmon.readers.jsonl_rows import read_object
+from rvmon.recordings.jsonl_rows import read_object
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdicts.attempt import Attempt
 from tests.tools.forked import Forked
 
 SPEC = """

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Compare,
     EventAtom,
     FieldValue,
@@ -15,15 +15,15 @@ from rvmon.spec.checked.formula import (
     SignalValue,
     UpdateValue,
 )
-from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
+from rvmon.language.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.testing.law.word import Word
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
-from rvmon.verdict import Verdict
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.report import Report
 
 
 def judge(case: Case) -> Report:

@@ -18,7 +18,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 PACKAGE = Path(__file__).parents[2] / "src" / "rvmon"
-FOLDERS = PACKAGE / "core" / "native", PACKAGE / "timed" / "native", PACKAGE / "readers" / "native"
+FOLDERS = [PACKAGE / room / "native" for room in ("core", "models", "recordings")]
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off")  # some warnings come with optimising alone
 TRIAL = "#include <stdint.h>\n#include <stdlib.h>\nint main(void) { return 0; }\n"
 COMPILERS = {"gcc": "gcc", "clang": "clang", "gcc -m32 -msse2 -mfpmath=sse": "gcc-multilib"}

@@ -13,8 +13,8 @@ from typing import Any
 
 from rvmon.adapters.json_objects import JsonObjects, feed_lines
 from rvmon.errors import TraceError
+from rvmon.language.checked.specification import TimeModel
 from rvmon.live import Driver, DurableMonitor, Live, SimulatedClock
-from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.trace.sample import Sample
 from tests.tools.doors import arrow_of, content_of

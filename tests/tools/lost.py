@@ -15,7 +15,7 @@ from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.trace.sample import Sample
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 from tests.tools.differential import cases_of
 from tests.tools.law import judge, word
 from tests.tools.sound import is_spoken_of, narrowed

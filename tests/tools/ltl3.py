@@ -12,7 +12,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Binary,
     BinaryOp,
     Constant,
@@ -21,7 +21,7 @@ from rvmon.spec.checked.formula import (
     SignalAtom,
     Unary,
 )
-from rvmon.spec.checked.formula import UnaryOp as Op
+from rvmon.language.checked.formula import UnaryOp as Op
 from rvmon.testing.law.syntax import subformulas
 from tests.tools.common_fragment import to_core
 

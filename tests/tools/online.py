@@ -8,9 +8,9 @@ from typing import Any, TypeGuard
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 from tests.tools.compare import Key, Outcome, key_of
 from tests.tools.drive import Monitored, OnlineMonitor, feed
 from tests.tools.forms import HeldBack

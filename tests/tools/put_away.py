@@ -14,7 +14,7 @@ from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.records import report_of_run
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdicts.attempt import Attempt
 from tests.tools.drive import Found, Lost, told
 
 HEAD = 32

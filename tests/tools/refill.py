@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
-from rvmon.spec.checked.specification import CheckedSpec, Event, Type
+from rvmon.language.checked.specification import CheckedSpec, Event, Type
 from rvmon.testing.generate import Rng, chance, pick
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Payload, Sample, Scalar, Value

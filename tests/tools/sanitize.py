@@ -56,7 +56,7 @@ def main() -> int:
         "pytest",
         *options,
         "tests/rvmon/core",
-        "tests/rvmon/timed/search",
+        "tests/rvmon/models/search",
         *sys.argv[1:],
     ]
     return subprocess.run(tests, cwd=ROOT, env=environment, check=False).returncode

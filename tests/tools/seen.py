@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Arithmetic,
     BoundAtom,
     Captured,
@@ -17,15 +17,15 @@ from rvmon.spec.checked.formula import (
     ProbeAtom,
     SignalAtom,
 )
-from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.spec.print import format_formula, format_numeric
+from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.language.print import format_formula, format_numeric
 from rvmon.testing.law.attempts import Start
 from rvmon.testing.law.syntax import constant_value, parts_of, subformulas
 from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.word import Truth
 from rvmon.trace.sample import Scalar
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 from tests.tools.compare import Key, key_of
 from tests.tools.health import may_be_simplified
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
@@ -16,7 +16,7 @@ from rvmon.spec.checked.formula import (
     Interval,
     Unary,
 )
-from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
+from rvmon.language.checked.specification import EndPolicy, Mode, Requirement
 from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.law.syntax import numerics

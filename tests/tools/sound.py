@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
-from rvmon.spec.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.language.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.testing.generate import Rng
 from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.trace.sample import Sample
-from rvmon.verdict import Verdict
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.report import Report
 from tests.tools.law import judge as oracle
 from tests.tools.law import names_read
 from tests.tools.refill import refilled

@@ -5,7 +5,7 @@ from __future__ import annotations
 import random
 
 import rvmon
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.language.checked.specification import CheckedSpec
 
 _SIGNALS = """signal p, q, r : bool
 signal x : real

@@ -9,16 +9,16 @@ from typing import Any, ClassVar
 import pytest
 
 from rvmon.errors import TimeOrderError, TraceError
+from rvmon.language.checked.formula import UnaryOp
 from rvmon.monitor.monitor import Monitor
 from rvmon.session import Spec
-from rvmon.spec.checked.formula import UnaryOp
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, show_case
 from rvmon.testing.law.syntax import subformulas
 from rvmon.trace.sample import Sample, Value
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report, report_of
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt, Decision
+from rvmon.verdicts.report import Report, report_of
 from tests.tools.build import (
     always,
     e,

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import networkx as nx
 
-from rvmon.timed.model.expressions import (
+from rvmon.models.network.expressions import (
     BinaryOp,
     BinaryOperation,
     Deadlock,
@@ -20,8 +20,8 @@ from rvmon.timed.model.expressions import (
     UnaryOp,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import is_plain, parts_of
-from rvmon.timed.model.network import Asked, LeadsToFormula, Network, Query
+from rvmon.models.network.guards import is_plain, parts_of
+from rvmon.models.network.network import Asked, LeadsToFormula, Network, Query
 from tests.tools.timed_regions import Region, RegionGraph, Steps, truth_of
 
 Regions = frozenset[Region]

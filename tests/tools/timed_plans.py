@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from rvmon.timed.language.elaborate import asked_on
-from rvmon.timed.language.load import loads_network
-from rvmon.timed.model.expressions import (
+from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.load import loads_network
+from rvmon.models.network.expressions import (
     FALSE,
     TRUE,
     ClockCompare,
@@ -15,12 +15,12 @@ from rvmon.timed.model.expressions import (
     Expression,
     PathFormula,
 )
-from rvmon.timed.model.guards import normal_form
-from rvmon.timed.model.network import Asked, LeadsToFormula, Network
-from rvmon.timed.search.linear import ways_of
-from rvmon.timed.search.lowered import Plan, Seek, Sought
-from rvmon.timed.search.meter import Policy
-from rvmon.timed.search.watcher import Watcher
+from rvmon.models.network.guards import normal_form
+from rvmon.models.network.network import Asked, LeadsToFormula, Network
+from rvmon.models.search.linear import ways_of
+from rvmon.models.search.lowered import Plan, Seek, Sought
+from rvmon.models.search.meter import Policy
+from rvmon.models.search.watcher import Watcher
 from tests.tools.timed_generate import random_model
 
 _LINEAR = "G F (P0.l0 or x > 1)", "(F G P0.l1 and not (b U x < 2))"

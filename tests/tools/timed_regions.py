@@ -1,8 +1,8 @@
 """A slow and obvious decision procedure for small networks of timed automata: the region graph.
 
 Every question is decided by walking through all regions, one representative valuation each, with
-the plain rules of `rvmon.timed.runs.concrete`. It shares no zone, no search and no abstraction with
-the model checker, and so can say whether that is right.
+the plain rules of `rvmon.models.runs.concrete`. It shares no zone, no search and no abstraction
+with the model checker, and so can say whether that is right.
 
 Source: Alur and Dill, A Theory of Timed Automata, 1994, section 4.3.
 """
@@ -16,8 +16,8 @@ from math import floor
 from operator import ge, gt, le, lt
 from typing import Any
 
-from rvmon.timed.model.evaluate import evaluator
-from rvmon.timed.model.expressions import (
+from rvmon.models.network.evaluate import evaluator
+from rvmon.models.network.expressions import (
     BinaryOp,
     BinaryOperation,
     Choice,
@@ -28,12 +28,12 @@ from rvmon.timed.model.expressions import (
     UnaryOp,
     UnaryOperation,
 )
-from rvmon.timed.model.guards import (
+from rvmon.models.network.guards import (
     compares_of,
     is_discrete,
 )
-from rvmon.timed.model.network import Network
-from rvmon.timed.runs.concrete import (
+from rvmon.models.network.network import Network
+from rvmon.models.runs.concrete import (
     Configuration,
     InvalidRunError,
     Rules,

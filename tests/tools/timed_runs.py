@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from rvmon.timed.model.expressions import Expression, PathFormula, PathOp
-from rvmon.timed.model.guards import has_paths, normal_form, speaks_of_deadlock, with_deadlock
-from rvmon.timed.model.network import LeadsToFormula, Network
-from rvmon.timed.runs.concrete import (
+from rvmon.models.network.expressions import Expression, PathFormula, PathOp
+from rvmon.models.network.guards import has_paths, normal_form, speaks_of_deadlock, with_deadlock
+from rvmon.models.network.network import LeadsToFormula, Network
+from rvmon.models.runs.concrete import (
     Configuration,
     Rules,
     initial_configuration,
 )
-from rvmon.timed.runs.run import Run
-from rvmon.timed.search.meter import Outcome
+from rvmon.models.runs.run import Run
+from rvmon.models.search.meter import Outcome
 from tests.tools.timed_regions import RegionGraph, truth_of
 
 Instants = list[tuple[Fraction, Configuration]]

@@ -6,9 +6,9 @@ import re
 from collections.abc import Iterator
 from dataclasses import replace
 
-from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
-from rvmon.spec.checked.specification import Mode
-from rvmon.spec.print import format_formula
+from rvmon.language.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
+from rvmon.language.checked.specification import Mode
+from rvmon.language.print import format_formula
 from rvmon.testing.law.attempts import Readings, Start, counts_in_favour, obligation
 from rvmon.testing.law.syntax import intervals, subformulas
 from rvmon.testing.law.word import Rest, Truth

@@ -27,7 +27,7 @@ from rvmon.report.pages import component
 from rvmon.report.table import checked_text
 
 if TYPE_CHECKING:
-    from rvmon.timed.conformance.conform import Conformance
+    from rvmon.models.conform import Conformance
 
 SUFFIX = "_all"
 """Ends the names of queries that say of all runs what a requirement demands."""
@@ -101,10 +101,10 @@ def claims() -> list[str]:
 
 
 def _verifier() -> Callable[[str], Row]:
-    from rvmon.timed.model.expressions import PathFormula, PathOp
-    from rvmon.timed.model.network import Chance
-    from rvmon.timed.runs.statistics import sample
-    from rvmon.timed.search.verify import verify
+    from rvmon.models.network.expressions import PathFormula, PathOp
+    from rvmon.models.network.network import Chance
+    from rvmon.models.runs.statistics import sample
+    from rvmon.models.search.verify import verify
 
     network = handover_network()
     queries = {query.id: query for query in network.queries}

@@ -19,7 +19,7 @@ from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
 from rvmon.files import write_whole
 from rvmon.report.table import RunGroup, VerdictTable
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 SOURCE = "Araiza-Illan et al., Coverage-Driven Verification, HVC 2015, Table 1"
 
@@ -143,7 +143,7 @@ def check_model(requirements: tuple[str, ...]) -> dict[str, bool | None]:
         requirements: ids; one that the model has no query for cannot be expressed: `None`.
     """
     from handover.model import handover_network
-    from rvmon.timed.search.verify import verify
+    from rvmon.models.search.verify import verify
 
     network = handover_network()
     queries = {query.id: query for query in network.queries}

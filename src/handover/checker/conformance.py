@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from handover.driver.play import Run
-    from rvmon.timed.conformance.conform import Conformance, Recorded
-    from rvmon.timed.model.network import Network
+    from rvmon.models.conform import Conformance, Recorded
+    from rvmon.models.network.network import Network
 
 OBSERVED = (
     "grip_closed",
@@ -40,7 +40,7 @@ def actions_of(run: Run) -> tuple[list[Recorded], frozenset[str]]:
     that the robot has to go by. One at an instant at which the model's human has none, such as
     before, is not observed: whether the robot heard it is left open.
     """
-    from rvmon.timed.conformance.conform import Recorded
+    from rvmon.models.conform import Recorded
 
     found = {
         name: [t for t, values in run.samples if name in values] for name in (*OBSERVED, READY)
@@ -60,7 +60,7 @@ def actions_of(run: Run) -> tuple[list[Recorded], frozenset[str]]:
 
 def check_run(network: Network, run: Run) -> Conformance:
     """Compare a simulated run with the handover network."""
-    from rvmon.timed.conformance.conform import conform
+    from rvmon.models.conform import conform
 
     actions, observed = actions_of(run)
     return conform(

@@ -7,7 +7,7 @@ from importlib import resources
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rvmon.timed.model.network import Network
+    from rvmon.models.network.network import Network
 
 
 __all__ = ["handover_network"]
@@ -19,7 +19,7 @@ MODEL_FILE = "handover.ta"
 @cache
 def handover_network() -> Network:
     """Read the network of robot, workflow, gaze, location, pressure and sensors."""
-    from rvmon.timed.language.load import loads_network
+    from rvmon.models.language.load import loads_network
 
     text = resources.files("handover.model").joinpath(MODEL_FILE).read_text(encoding="utf-8")
     return loads_network(text, name=MODEL_FILE)

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 from rvmon.adapters.messages import CLOCK, MessageFeed
 from rvmon.errors import RvmonError, needed
 from rvmon.live.robot import Judgement
-from rvmon.readers.messages.ros import ros_topic, ros_types
+from rvmon.recordings.messages.ros import ros_topic, ros_types
 
 if TYPE_CHECKING:
-    from rvmon.readers.messages.topic import Topic
+    from rvmon.recordings.messages.topic import Topic
 
 _DEPTH = 10_000
 """The most messages of a topic queued in DDS; further ones are rejected, and reported as lost."""

@@ -13,7 +13,7 @@ with needed("an environment", "gymnasium"):
 if TYPE_CHECKING:
     from rvmon.monitor.robustness import Measured
     from rvmon.session import Spec
-    from rvmon.verdict.attempt import Attempt
+    from rvmon.verdicts.attempt import Attempt
 
 _Observation = TypeVar("_Observation")
 _Action = TypeVar("_Action")

@@ -16,9 +16,9 @@ import msgspec
 from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import SimulatedClock
 from rvmon.live.driver import Driver
-from rvmon.readers.jsonl_rows import TOO_DEEP, decoded, read_object
-from rvmon.readers.naming import DEFAULT_COLUMNS
-from rvmon.readers.places import LONGEST_LINE
+from rvmon.recordings.jsonl_rows import TOO_DEEP, decoded, read_object
+from rvmon.recordings.naming import DEFAULT_COLUMNS
+from rvmon.recordings.places import LONGEST_LINE
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Schema
 from rvmon.trace.time import TICKS_PER_SECOND

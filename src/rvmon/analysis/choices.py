@@ -12,11 +12,7 @@ from enum import Enum
 from itertools import combinations, islice, pairwise, product
 from typing import TypeVar, assert_never
 
-from rvmon.logic.formula import Factory, Sense
-from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Leaf, operands
-from rvmon.logic.state_graph import captured_names, names_of
-from rvmon.monitor.watching import Known, known_truths
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Arithmetic,
     Captured,
     Compare,
@@ -36,8 +32,12 @@ from rvmon.spec.checked.formula import (
     itself,
     windows_in,
 )
-from rvmon.spec.checked.names_read import names_read
-from rvmon.spec.checked.specification import CheckedSpec, Type
+from rvmon.language.checked.names_read import names_read
+from rvmon.language.checked.specification import CheckedSpec, Type
+from rvmon.logic.formula import Factory, Sense
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Leaf, operands
+from rvmon.logic.state_graph import captured_names, names_of
+from rvmon.monitor.watching import Known, known_truths
 from rvmon.trace.sample import Payload, Sample, Scalar, Value, calculated
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
@@ -58,7 +58,7 @@ def turning_values(
         comparisons: the comparisons that may read it.
         whole: whether its values are integers.
 
-    >>> from rvmon.spec.checked.formula import CompareOp
+    >>> from rvmon.language.checked.formula import CompareOp
     >>> limit = Compare(CompareOp.LT, SignalValue("x"), Literal(0.5, "m"))
     >>> turning_values(SignalValue("x"), [limit], whole=False)
     [0.6, 0.5, 0.4]
@@ -173,7 +173,7 @@ def truths_tried(
     Cost: one pass in C.
 
     >>> from rvmon import loads
-    >>> from rvmon.spec.checked.formula import SignalAtom
+    >>> from rvmon.language.checked.formula import SignalAtom
     >>> spec = loads("signal p : bool\nrequirement R\n always p").checked
     >>> truths_tried(spec, [SignalAtom("p")], [{"p": True}, {"p": None}, {"p": False}])
     [(2,), (1,), (0,)]

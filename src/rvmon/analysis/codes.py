@@ -11,8 +11,8 @@ from importlib import resources
 from rvmon.analysis import findings
 from rvmon.diagnostics import Severity
 from rvmon.errors import UnknownNameError
-from rvmon.spec.rules import Rule, names, properties, requirements, syntax, time, types
-from rvmon.timed.model.rules import RULES as MODELS
+from rvmon.language.rules import Rule, names, properties, requirements, syntax, time, types
+from rvmon.models.network.rules import RULES as MODELS
 
 _FAMILIES = (syntax, names, types, time, requirements, properties, findings)
 _WARNINGS = ("TA010",)

@@ -20,10 +20,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rvmon.analysis.choices import Silence, is_solved, truths_tried, values_of
+from rvmon.language.checked.formula import Compare, Constant, EventAtom, SignalAtom
+from rvmon.language.checked.specification import CheckedSpec, TimeModel
 from rvmon.logic.state_formula import TRUE, Elapsed, Lapsed, Leaf, State, StateOp
 from rvmon.logic.state_graph import captured_names, names_of
-from rvmon.spec.checked.formula import Compare, Constant, EventAtom, SignalAtom
-from rvmon.spec.checked.specification import CheckedSpec, TimeModel
 
 MOST_COMBINATIONS = 1 << 12
 """The most combinations of one group of formulas, or of all; beyond it nothing is decided."""

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.spec.checked.classify import subformulas
-from rvmon.spec.checked.formula import Binary, Formula, Interval, Unary
-from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
+from rvmon.language.checked.classify import subformulas
+from rvmon.language.checked.formula import Binary, Formula, Interval, Unary
+from rvmon.language.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import TICKS_PER_SECOND
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,17 +17,17 @@ from rvmon.analysis.findings import Examination, examine, findings_of
 from rvmon.analysis.requirement import Conflict, Subject
 from rvmon.core.plan import pack
 from rvmon.diagnostics import Diagnostic
+from rvmon.language.checked.classify import subformulas
+from rvmon.language.checked.formula import Amount, Compare, CompareOp, windows_in
+from rvmon.language.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec, Kept
 from rvmon.monitor.planned import planned_as
 from rvmon.monitor.plans import plan_alone
 from rvmon.monitor.records import report_of_run
-from rvmon.spec.checked.classify import subformulas
-from rvmon.spec.checked.formula import Amount, Compare, CompareOp, windows_in
-from rvmon.spec.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 NEVER = (1 << 63) - 1
 """Later than any instant."""

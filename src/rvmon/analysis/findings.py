@@ -11,11 +11,11 @@ from rvmon.analysis.product import Together
 from rvmon.analysis.requirement import Conflict, Implication, Subject
 from rvmon.analysis.vacuity import Possible, possible
 from rvmon.diagnostics import Diagnostic, Label, Severity, Span
-from rvmon.spec.checked.classify import FUTURE, subformulas
-from rvmon.spec.checked.formula import Binary, BoundAtom, Constant, Formula, Unary
-from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement
-from rvmon.spec.print import format_duration
-from rvmon.spec.rules import Rule, finding
+from rvmon.language.checked.classify import FUTURE, subformulas
+from rvmon.language.checked.formula import Binary, BoundAtom, Constant, Formula, Unary
+from rvmon.language.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement
+from rvmon.language.print import format_duration
+from rvmon.language.rules import Rule, finding
 from rvmon.texts import listed
 
 

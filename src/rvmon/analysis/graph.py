@@ -8,15 +8,15 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.combinations import combinations_of
+from rvmon.language.checked.formula import Binary, BinaryOp, Constant
+from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
+from rvmon.language.print import format_duration, format_formula
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
 from rvmon.logic.formula import Core, Literal, Sense
 from rvmon.logic.letters import Alphabet
 from rvmon.logic.state_formula import FALSE, TRUE, Shown, State
 from rvmon.monitor.compile import CompiledRequirement
-from rvmon.spec.checked.formula import Binary, BinaryOp, Constant
-from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
-from rvmon.spec.print import format_duration, format_formula
-from rvmon.texts import shown
+from rvmon.texts import quoted
 
 Cube = tuple[int, ...]
 """A partial valuation: per proposition 1, 0 or `ANY`."""
@@ -374,13 +374,3 @@ def graph_dot(graph: Graph, title: str) -> str:
         text = "\n".join(filter(None, (label_of(edge), edge.sets)))
         lines.append(f"  {quoted(edge.source)} -> {quoted(edge.target)} [label={quoted(text)}];")
     return "\n".join([*lines, "}"]) + "\n"
-
-
-def quoted(text: str) -> str:
-    r"""A string of DOT or HOA.
-
-    >>> print(quoted('say "\\x1b"'))
-    "say \"\\x1b\""
-    """
-    plain = shown(text).replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n")
-    return f'"{plain}"'

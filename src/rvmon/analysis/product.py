@@ -16,8 +16,8 @@ from itertools import product
 from rvmon.analysis.combinations import Letters, Table, Truths
 from rvmon.analysis.requirement import Regions, Subject, after_edge
 from rvmon.analysis.vacuity import automaton_letter
+from rvmon.language.checked.specification import CheckedSpec, EndPolicy, TimeModel
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
-from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
 
 MOST_STATES = 4000
 FOREVER = 1 << 63

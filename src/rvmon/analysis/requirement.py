@@ -5,11 +5,11 @@ from __future__ import annotations
 from bisect import bisect_right
 from dataclasses import dataclass
 
+from rvmon.language.checked.formula import BoundAtom, Constant
+from rvmon.language.checked.specification import Mode, Requirement
 from rvmon.logic.automaton import NOW, Automaton
 from rvmon.logic.clock_regions import region_bounds
 from rvmon.logic.state_formula import State
-from rvmon.spec.checked.formula import BoundAtom, Constant
-from rvmon.spec.checked.specification import Mode, Requirement
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -21,8 +21,8 @@ from rvmon.analysis.truths import (
     subformulas,
     truths_of_parts,
 )
-from rvmon.spec.checked.classify import has_future, is_end
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.classify import has_future, is_end
+from rvmon.language.checked.formula import (
     Binary,
     BinaryOp,
     BoundAtom,
@@ -33,13 +33,13 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.checked.names_read import names_read
-from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.spec.print import format_formula
+from rvmon.language.checked.names_read import names_read
+from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.language.print import format_formula
 from rvmon.texts import listed
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import format_instant
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdicts.attempt import Attempt
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

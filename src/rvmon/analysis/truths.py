@@ -10,12 +10,8 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 
 from rvmon.analysis.spans import FOREVER, distinct, joined, outside, within
-from rvmon.logic.formula import Core, Factory
-from rvmon.logic.normal_form import Lowering
-from rvmon.monitor.watching import TruthsPlan, TruthsRun
-from rvmon.readers.held import HeldRecording
-from rvmon.spec.checked.classify import is_end
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.classify import is_end
+from rvmon.language.checked.formula import (
     Amount,
     Binary,
     Formula,
@@ -23,8 +19,12 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
     WindowValue,
 )
-from rvmon.spec.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
-from rvmon.spec.print import format_formula
+from rvmon.language.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
+from rvmon.language.print import format_formula
+from rvmon.logic.formula import Core, Factory
+from rvmon.logic.normal_form import Lowering
+from rvmon.monitor.watching import TruthsPlan, TruthsRun
+from rvmon.recordings.held import HeldRecording
 from rvmon.trace.sample import (
     Outage,
     Payload,
@@ -35,12 +35,12 @@ from rvmon.trace.sample import (
     payloads_of,
 )
 from rvmon.trace.schema import is_unknown
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdicts.attempt import Attempt
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rvmon.readers.batch import Batch
+    from rvmon.recordings.batch import Batch
 
     Positions = range | NDArray[np.int64] | None
     """Instants of positions, ascending; `None` where every tick is one."""

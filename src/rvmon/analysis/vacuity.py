@@ -9,10 +9,10 @@ from itertools import product
 
 from rvmon.analysis.combinations import combinations_of
 from rvmon.analysis.requirement import Regions
+from rvmon.language.checked.specification import CheckedSpec, EndPolicy
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
 from rvmon.logic.clock_regions import region_bounds, regions_between
 from rvmon.logic.state_formula import FALSE, TRUE, State
-from rvmon.spec.checked.specification import CheckedSpec, EndPolicy
 
 _STARTED = -1
 """The pseudo-region of a clock that was started at this position."""

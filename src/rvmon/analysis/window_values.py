@@ -6,11 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from rvmon.monitor.compiled_spec import compile_spec
-from rvmon.monitor.planned import planned_core
-from rvmon.readers.source import Source
-from rvmon.spec.checked.classify import subformulas
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.classify import subformulas
+from rvmon.language.checked.formula import (
     Amount,
     Compare,
     Constant,
@@ -21,21 +18,24 @@ from rvmon.spec.checked.formula import (
     WindowValue,
     windows_in,
 )
-from rvmon.spec.checked.measured import Dimension
-from rvmon.spec.checked.specification import (
+from rvmon.language.checked.measured import Dimension
+from rvmon.language.checked.specification import (
     Capture,
     CheckedSpec,
     Mode,
     Requirement,
     TimeModel,
 )
-from rvmon.spec.print import format_formula
+from rvmon.language.print import format_formula
+from rvmon.monitor.compiled_spec import compile_spec
+from rvmon.monitor.planned import planned_core
+from rvmon.recordings.source import Source
 from rvmon.trace.sample import Scalar, Trace
 
 if TYPE_CHECKING:
-    from rvmon.readers.batch import Batch
+    from rvmon.recordings.batch import Batch
     from rvmon.trace.sample import Sample
-    from rvmon.verdict.attempt import Blame
+    from rvmon.verdicts.attempt import Blame
 
 Asked = tuple[int, WindowValue]
 """An instant in ticks, and the window to be evaluated there."""

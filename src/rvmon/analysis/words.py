@@ -5,14 +5,8 @@ from __future__ import annotations
 from typing import assert_never
 
 from rvmon.core.judges import machine_of
-from rvmon.logic.automaton import Automaton
-from rvmon.logic.formula import horizon
-from rvmon.logic.state_formula import StateOp
-from rvmon.logic.state_graph import graph_of
-from rvmon.monitor.compile import CompiledRequirement
-from rvmon.monitor.plans import planned_rule
-from rvmon.spec.checked.classify import has_future
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.classify import has_future
+from rvmon.language.checked.formula import (
     TRIGGERED,
     Amount,
     Binary,
@@ -33,11 +27,17 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.checked.formula import Literal as NumericLiteral
-from rvmon.spec.checked.operators import Tense
-from rvmon.spec.checked.rewrite import chain
-from rvmon.spec.checked.specification import EndPolicy, Mode, Requirement
-from rvmon.spec.print import format_duration, format_numeric
+from rvmon.language.checked.formula import Literal as NumericLiteral
+from rvmon.language.checked.operators import Tense
+from rvmon.language.checked.rewrite import chain
+from rvmon.language.checked.specification import EndPolicy, Mode, Requirement
+from rvmon.language.print import format_duration, format_numeric
+from rvmon.logic.automaton import Automaton
+from rvmon.logic.formula import horizon
+from rvmon.logic.state_formula import StateOp
+from rvmon.logic.state_graph import graph_of
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.monitor.plans import planned_rule
 from rvmon.texts import counted, listed
 
 _PROBED = {

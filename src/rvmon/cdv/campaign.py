@@ -20,8 +20,8 @@ from rvmon.texts import did_you_mean
 
 if TYPE_CHECKING:
     from rvmon.coverage.monitor import SpecCoverage
+    from rvmon.models.network.network import Network
     from rvmon.session import Spec
-    from rvmon.timed.model.network import Network
 
 
 STRATEGY = "closed"

@@ -16,7 +16,7 @@ from rvmon.cdv.tables import INTERVALS, Presentation, RobotTables
 from rvmon.coverage import Ending
 from rvmon.report.pages import render, table_html
 from rvmon.report.table import VerdictTable
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 Cell = tuple[str, str, str, Verdict]
 """Robot, strategy, requirement and verdict: a count in a table."""

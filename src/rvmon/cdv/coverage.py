@@ -14,9 +14,9 @@ from rvmon.coverage import Group, Item, Model, TestRecord, merged, model_of, sha
 from rvmon.coverage.database import Database, read
 from rvmon.errors import RvmonError
 from rvmon.files import write_whole
+from rvmon.language.checked.goals import BinKind
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
-from rvmon.spec.checked.goals import BinKind
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign, Robot

@@ -16,7 +16,7 @@ from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.report.junit import add_suite, as_text
 from rvmon.texts import shown
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 RobotRequirement = tuple[str, str]
 """Names of a robot and of one of its requirements."""

@@ -26,7 +26,7 @@ from rvmon.cdv.test import save
 from rvmon.files import write_whole
 from rvmon.report.table import table_latex, table_text, tables_csv
 from rvmon.texts import percent_text
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -27,7 +27,7 @@ from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 
 @dataclass(frozen=True, slots=True)

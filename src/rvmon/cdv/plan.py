@@ -11,7 +11,7 @@ from rvmon.cdv.campaign import Campaign, ExpectedFailure
 from rvmon.cdv.test import Test, TestError, blamed, from_json, load, to_json
 from rvmon.coverage import Ending, Group, Hits
 from rvmon.errors import UnknownNameError
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 _FILE_NAME = re.compile(r"[^\W_][\w.+-]*", re.ASCII)
 

@@ -24,11 +24,11 @@ from rvmon.coverage import Ending, Hits
 from rvmon.errors import RvmonError
 from rvmon.execute import Ended, parallel
 from rvmon.texts import shown_line
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 if TYPE_CHECKING:
     from rvmon.cdv.test import Test
-    from rvmon.verdict.report import Report
+    from rvmon.verdicts.report import Report
 
 
 def player(

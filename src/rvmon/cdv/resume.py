@@ -20,8 +20,8 @@ from rvmon.errors import RvmonError
 from rvmon.execute import journal
 from rvmon.execute.shards import Shard, shards_beside
 from rvmon.files import contents
+from rvmon.language.checked.plain_data import to_plain
 from rvmon.session import Spec
-from rvmon.spec.checked.plain_data import to_plain
 
 NAME = "unfinished.journal"
 """The file in a campaign's folder."""

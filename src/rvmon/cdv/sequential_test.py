@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import ceil, log
 
-from rvmon.spec.checked.specification import RunShare
-from rvmon.verdict import Verdict
+from rvmon.language.checked.specification import RunShare
+from rvmon.verdicts import Verdict
 
 ALPHA = 0.05
 """How probable it is at most that what holds is rejected."""

@@ -21,7 +21,7 @@ from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.execute import parallel
 from rvmon.files import write_whole
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 MOST = 2_000
 """Tests that are played at most, to shrink one."""

@@ -24,11 +24,11 @@ from rvmon.cdv.summary import (
     missed,
 )
 from rvmon.coverage import STATES, TRANSITIONS, Ending, Group, model_of, without
+from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.specification import RunShare
 from rvmon.report.table import Counts
 from rvmon.session import Spec
-from rvmon.spec.checked.goals import BinKind
-from rvmon.spec.checked.specification import RunShare
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 
 def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:

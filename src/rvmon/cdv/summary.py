@@ -10,7 +10,7 @@ from rvmon.cdv.test import Test
 from rvmon.coverage import Ending, Hits
 from rvmon.report.table import Counts
 from rvmon.texts import percent
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 Transition = tuple[str, str]
 """From one state of the robot to another."""

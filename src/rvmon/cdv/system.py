@@ -11,13 +11,13 @@ from rvmon.cdv.test import Test
 from rvmon.coverage import Hit, Hits, illegal
 from rvmon.report.scene import Scene
 from rvmon.trace.sample import Value
-from rvmon.verdict.covered import IllegalHit
-from rvmon.verdict.report import Report, report_of
+from rvmon.verdicts.covered import IllegalHit
+from rvmon.verdicts.report import Report, report_of
 
 if TYPE_CHECKING:
     from rvmon.coverage.monitor import SpecCoverage
+    from rvmon.language.checked.specification import CheckedSpec
     from rvmon.session import Spec
-    from rvmon.spec.checked.specification import CheckedSpec
 
 
 Values = Mapping[str, Value]

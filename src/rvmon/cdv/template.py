@@ -14,9 +14,9 @@ from rvmon.cdv.test import TestError
 from rvmon.files import write_whole
 
 if TYPE_CHECKING:
-    from rvmon.timed.model.network import Edge as NetworkEdge
-    from rvmon.timed.model.network import Network
-    from rvmon.timed.runs.run import Run
+    from rvmon.models.network.network import Edge as NetworkEdge
+    from rvmon.models.network.network import Network
+    from rvmon.models.runs.run import Run
 
 
 Action = TypeVar("Action")
@@ -166,8 +166,8 @@ def templates_of(
     Raises:
         TestError: a query has no witness.
     """
-    from rvmon.timed.search.meter import Policy
-    from rvmon.timed.search.verify import verify
+    from rvmon.models.search.meter import Policy
+    from rvmon.models.search.verify import verify
 
     found = []
     for query in network.queries:

@@ -152,7 +152,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     import argparse
 
     from rvmon.cli.parser import Parser
-    from rvmon.verdict import LAW
+    from rvmon.verdicts import LAW
 
     listed = [
         line

@@ -17,7 +17,7 @@ from rvmon.cdv.tables import to_json as document_json
 from rvmon.cdv.test import from_json, to_json
 from rvmon.coverage import Ending
 from rvmon.errors import RvmonError
-from rvmon.evidence.keep import (
+from rvmon.evidence import (
     COVERAGE,
     About,
     Kept,
@@ -30,7 +30,7 @@ from rvmon.evidence.keep import (
 )
 from rvmon.report.folder import refuse_no_file
 from rvmon.session import Spec
-from rvmon.verdict.rows import VerdictRow
+from rvmon.verdicts.rows import VerdictRow
 
 
 def begun(campaign: Campaign, path: str) -> tuple[dict[str, bytes], list[str]]:

@@ -19,13 +19,13 @@ from rvmon.cdv.test import Test, to_json
 from rvmon.cdv.test import load as load_test
 from rvmon.cli.output import busy, say_json, warn
 from rvmon.errors import UnknownNameError
-from rvmon.export.verdicts_mcap import refuse_mcap, write_verdicts
 from rvmon.files import write_whole
 from rvmon.report.folder import output_folder, refuse_no_file
 from rvmon.report.run_text import print_report
 from rvmon.report.terminal import Terminal
+from rvmon.report.verdicts_mcap import refuse_mcap, write_verdicts
 from rvmon.session import Spec
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 
 def replay(campaign: Campaign, arguments: Namespace) -> int:

@@ -12,9 +12,9 @@ from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.cli.parser import duration
 from rvmon.diagnostics import Diagnostic, coloured, render_concise, render_json, wants_colour
 from rvmon.errors import SpecError
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.language.compiled_cache import compile_cached
 from rvmon.report.memory_text import memory_lines
-from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.spec.compiled_cache import compile_cached
 from rvmon.texts import cannot_read, counted, text_of_file, text_of_input
 
 
@@ -115,7 +115,7 @@ def _bound(path: str, checked: CheckedSpec) -> list[str]:
     Raises:
         RvmonError: it does not fit the specification.
     """
-    from rvmon.binding import load_binding
+    from rvmon.recordings.binding import load_binding
 
     bounds = load_binding(path, checked).bounds
     free = [name for name in (*checked.signals, *checked.events) if name not in bounds]

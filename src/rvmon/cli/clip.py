@@ -21,17 +21,17 @@ from rvmon.cli.reading import (
     reading_spec,
 )
 from rvmon.cli.reproduced import ENDING
-from rvmon.clipping.clip import clip, refuse_place
-from rvmon.clipping.piece import Copied, Piece, values_before
 from rvmon.errors import RvmonError
-from rvmon.readers.places import name_of
+from rvmon.language.checked.specification import Mode
+from rvmon.recordings.clipping.clip import clip, refuse_place
+from rvmon.recordings.clipping.piece import Copied, Piece, values_before
+from rvmon.recordings.places import name_of
 from rvmon.report.folder import refuse_no_file
 from rvmon.session import Spec, load
-from rvmon.spec.checked.specification import Mode
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT, format_stamp, format_stamped
-from rvmon.verdict import LAW
-from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report, report_of
+from rvmon.verdicts import LAW
+from rvmon.verdicts.attempt import Attempt, Decision
+from rvmon.verdicts.report import Report, report_of
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

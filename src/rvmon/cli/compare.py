@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.cli.options import declare
 from rvmon.cli.output import busy, say_json
-from rvmon.verdict.compare import Change, Comparison, Difference, compare
-from rvmon.verdict.table_file import read_results
+from rvmon.verdicts.compare import Change, Comparison, Difference, compare
+from rvmon.verdicts.table_file import read_results
 
 if TYPE_CHECKING:
     from rich.console import Console

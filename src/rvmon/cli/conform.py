@@ -10,12 +10,12 @@ from rvmon.cli.options import add_budget, budget_of, declare
 from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.cli.parser import duration
 from rvmon.errors import TraceError, UnknownNameError
-from rvmon.readers.found import found_recordings
-from rvmon.readers.recording import FileRecording
+from rvmon.models.conform import Allowed, Conformance, actions_in, conform, labels_of
+from rvmon.models.language.load import load_network
+from rvmon.models.network.network import Network
+from rvmon.recordings.found import found_recordings
+from rvmon.recordings.recording import FileRecording
 from rvmon.texts import counted
-from rvmon.timed.conformance.conform import Allowed, Conformance, actions_in, conform, labels_of
-from rvmon.timed.language.load import load_network
-from rvmon.timed.model.network import Network
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 from rvmon.trace.time import ticks_of_seconds

@@ -16,7 +16,7 @@ from rvmon.cli.options import constants_of
 from rvmon.cli.output import bar, say
 from rvmon.cli.parser import positive
 from rvmon.cli.run_evidence import is_recording, rows_of_judged
-from rvmon.evidence.keep import (
+from rvmon.evidence import (
     Kept,
     TamperedError,
     derived_entries,
@@ -24,12 +24,12 @@ from rvmon.evidence.keep import (
     own_program,
     sha256_of,
 )
-from rvmon.evidence.matrix import Row, rows_by_item
-from rvmon.readers.found import files_of
+from rvmon.recordings.found import files_of
+from rvmon.report.trace_matrix import Row, rows_by_item
 from rvmon.session import load
-from rvmon.verdict import LAW
-from rvmon.verdict.rows import VerdictRow
-from rvmon.verdict.table_file import csv_bytes
+from rvmon.verdicts import LAW
+from rvmon.verdicts.rows import VerdictRow
+from rvmon.verdicts.table_file import csv_bytes
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign

@@ -58,7 +58,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _ids(named: list[str], spec: Spec) -> list[str]:
-    from rvmon.spec.checked.names_read import requirements_asked
+    from rvmon.language.checked.names_read import requirements_asked
 
     requirements_asked(spec.checked, named)
     if len(named) > 2 or (len(named) == 2 and named[0] == named[1]):

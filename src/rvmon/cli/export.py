@@ -14,9 +14,9 @@ from rvmon.report.folder import write_file
 from rvmon.texts import shown_json
 
 if TYPE_CHECKING:
+    from rvmon.language.checked.specification import CheckedSpec
     from rvmon.monitor.compile import CompiledRequirement
     from rvmon.session import Spec
-    from rvmon.spec.checked.specification import CheckedSpec
 
 _OF_MODELS = ("dot", "uppaal")
 
@@ -66,8 +66,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _model_text(arguments: argparse.Namespace) -> str:
     """A network of timed automata; of the queries that UPPAAL cannot express it is told."""
-    from rvmon.export.uppaal import left_out, network_dot, uppaal_xml
-    from rvmon.timed.language.load import load_network
+    from rvmon.models.language.load import load_network
+    from rvmon.models.uppaal_xml import left_out, network_dot, uppaal_xml
 
     if arguments.to not in _OF_MODELS:
         raise RvmonError(
@@ -89,7 +89,7 @@ def _model_text(arguments: argparse.Namespace) -> str:
 
 
 def _write_c(spec: Spec, ids: Sequence[str] | None, output: str | None) -> None:
-    from rvmon.export.c_files import c_files
+    from rvmon.core.c_files import c_files
     from rvmon.monitor.compiled_spec import compile_spec
     from rvmon.monitor.plans import plan_alone
 
@@ -117,7 +117,7 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
     if form == "json":
         import msgspec
 
-        from rvmon.export.hoa import automaton_json
+        from rvmon.analysis.hoa import automaton_json
 
         found = [automaton_json(compiled, spec.checked) for compiled in chosen]
         return shown_json(msgspec.json.format(msgspec.json.encode(found), indent=1).decode()) + "\n"
@@ -140,7 +140,7 @@ def _hoa_texts(chosen: Sequence[CompiledRequirement], spec: CheckedSpec) -> str:
     Raises:
         RvmonError: there is none; the message says why of the first.
     """
-    from rvmon.export.hoa import hoa
+    from rvmon.analysis.hoa import hoa
 
     texts, faults = [], []
     for compiled in chosen:

@@ -16,7 +16,7 @@ from rvmon.files import write_whole
 from rvmon.texts import counted
 
 if TYPE_CHECKING:
-    from rvmon.starter.column import Profile
+    from rvmon.recordings.starter.column import Profile
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -55,8 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
         return _write_campaign(Path(arguments.campaign), force=arguments.force)
     if arguments.spec is not None:
         return _print_binding(arguments)
-    from rvmon.starter.profile import profile_of
-    from rvmon.starter.skeletons import starter_text
+    from rvmon.recordings.starter.profile import profile_of
+    from rvmon.recordings.starter.skeletons import starter_text
 
     output = arguments.output or Path(arguments.data).with_suffix(".rv").name
     if output != "-" and Path(output).exists() and not arguments.force:
@@ -81,8 +81,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _print_binding(arguments: argparse.Namespace) -> int:
     """Propose which topics feed a specification; 1 if something is left open."""
-    from rvmon.binding.propose import propose
-    from rvmon.readers.recording import messages_of
+    from rvmon.recordings.binding.propose import propose
+    from rvmon.recordings.recording import messages_of
     from rvmon.session import load
 
     spec = load(arguments.spec, const=constants_of(arguments.const))
@@ -105,7 +105,7 @@ def _print_binding(arguments: argparse.Namespace) -> int:
 
 
 def _write_campaign(folder: Path, *, force: bool) -> int:
-    from rvmon.starter import campaign_files
+    from rvmon.recordings.starter import campaign_files
 
     files = campaign_files()
     there = [name for name in files if (folder / name).exists()]

@@ -16,22 +16,22 @@ from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.missing import expect_names
 from rvmon.monitor.records import with_plan
-from rvmon.readers.places import JOINT, without_copies
-from rvmon.readers.recording import FileRecording, can_be_read_again
-from rvmon.readers.source import Source
+from rvmon.recordings.places import JOINT, without_copies
+from rvmon.recordings.recording import FileRecording, can_be_read_again
+from rvmon.recordings.source import Source
 from rvmon.session import Spec, load
 from rvmon.texts import shown_path
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
-from rvmon.verdict.covered import IllegalHit
+from rvmon.verdicts.covered import IllegalHit
 
 if TYPE_CHECKING:
     import argparse
 
     from rvmon.coverage import Hits
     from rvmon.coverage.monitor import CoverageMonitor
-    from rvmon.verdict.attempt import Attempt
-    from rvmon.verdict.report import Report
+    from rvmon.verdicts.attempt import Attempt
+    from rvmon.verdicts.report import Report
 
 
 @dataclass(frozen=True, slots=True)

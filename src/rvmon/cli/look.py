@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING
 from rvmon.cli.options import READING, constants_of, declare
 from rvmon.cli.output import busy, say
 from rvmon.cli.reading import reading_spec
+from rvmon.recordings.starter.column import Profile
+from rvmon.recordings.starter.profile import bound_profile, profile_of
 from rvmon.report.folder import write_file
 from rvmon.report.look_page import look_page, look_tables
 from rvmon.report.terminal import Terminal
-from rvmon.starter.column import Profile
-from rvmon.starter.profile import bound_profile, profile_of
 
 if TYPE_CHECKING:
     from rvmon.session import Spec

@@ -13,8 +13,8 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.trace.schema import READINGS_OF_NAN
 
 if TYPE_CHECKING:
+    from rvmon.models.search.meter import Budget
     from rvmon.session import Spec
-    from rvmon.timed.search.meter import Budget
 
 
 _LEAST = 512
@@ -119,7 +119,7 @@ def asked_ids(arguments: argparse.Namespace, spec: Spec) -> tuple[str, ...] | No
     Raises:
         UnknownNameError: there is no such requirement, severity or tag, or none that fits all.
     """
-    from rvmon.spec.checked.names_read import labelled
+    from rvmon.language.checked.names_read import labelled
 
     ids = ids_of(arguments.only, spec)
     severities = [] if arguments.severity is None else [_listed(arguments.severity)]
@@ -137,7 +137,7 @@ def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
     Raises:
         UnknownNameError: the list is empty, or there is no such requirement.
     """
-    from rvmon.spec.checked.names_read import requirements_asked
+    from rvmon.language.checked.names_read import requirements_asked
 
     if listed is None:
         return None
@@ -164,7 +164,7 @@ def add_budget(parser: argparse.ArgumentParser) -> None:
 
 def budget_of(arguments: argparse.Namespace) -> Budget:
     """When a search gives up."""
-    from rvmon.timed.search.meter import Budget
+    from rvmon.models.search.meter import Budget
 
     return Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)
 

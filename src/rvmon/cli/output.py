@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rich.progress import Progress
 
     from rvmon.diagnostics import Diagnostic
-    from rvmon.readers.recording import FileRecording
+    from rvmon.recordings.recording import FileRecording
 
 _SPELLED = str.maketrans(
     dict(zip("✓✗–−─·→▶▼●○◆◇■█▇▁░│├└╱╲×", "+x---.>>v*o*o###_.||`/\\x", strict=True))

@@ -7,26 +7,26 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rvmon.cli.reading import opened
-from rvmon.readers.source import Source, pieces_up_to
+from rvmon.language.checked.classify import subformulas
+from rvmon.language.checked.formula import Amount, Compare, windows_in
+from rvmon.language.checked.names_read import names_in, names_read
+from rvmon.language.checked.specification import TimeModel
+from rvmon.language.print import format_window
+from rvmon.recordings.source import Source, pieces_up_to
 from rvmon.report.wording import SHOWN_PER_REQUIREMENT, value_text
 from rvmon.session import Spec
-from rvmon.spec.checked.classify import subformulas
-from rvmon.spec.checked.formula import Amount, Compare, windows_in
-from rvmon.spec.checked.names_read import names_in, names_read
-from rvmon.spec.checked.specification import TimeModel
-from rvmon.spec.print import format_window
 from rvmon.trace.sample import Sample, Scalar, Trace
 from rvmon.trace.schema import Kind
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 if TYPE_CHECKING:
     from rvmon.analysis.truths import Question, RecordedTruths
     from rvmon.analysis.window_values import Asked
-    from rvmon.readers.batch import Batch
-    from rvmon.readers.recording import FileRecording
+    from rvmon.recordings.batch import Batch
+    from rvmon.recordings.recording import FileRecording
     from rvmon.report.changes import RunChanges
-    from rvmon.verdict.attempt import Attempt
-    from rvmon.verdict.report import Report
+    from rvmon.verdicts.attempt import Attempt
+    from rvmon.verdicts.report import Report
 
 MOST_HELD = 65_536
 """Of a recording with more rows nothing is remembered: it is read once more."""

@@ -12,11 +12,11 @@ from rvmon.errors import RvmonError, UnknownNameError
 if TYPE_CHECKING:
     import argparse
 
-    from rvmon.readers.recording import FileRecording
-    from rvmon.readers.source import SchemaArguments
+    from rvmon.recordings.recording import FileRecording
+    from rvmon.recordings.source import SchemaArguments
     from rvmon.session import Spec
-    from rvmon.verdict.attempt import Attempt
-    from rvmon.verdict.report import Report
+    from rvmon.verdicts.attempt import Attempt
+    from rvmon.verdicts.report import Report
 
 OPTIONAL_VALUES = ("--allow-missing", "--require-triggered")
 """Options whose value can be left out, and otherwise follows a `=`."""
@@ -136,7 +136,7 @@ def opened(spec: Spec, trace: str, *, only: Collection[str] | None = None) -> Fi
     Raises:
         TraceError: it cannot be opened, or its header is wrong.
     """
-    from rvmon.readers.recording import FileRecording
+    from rvmon.recordings.recording import FileRecording
 
     schema = spec.schema
     if only is not None:
@@ -169,7 +169,7 @@ def named_attempt(text: str, spec: Spec) -> tuple[str, str | None]:
             "first failed"
         )
     name, mark, number = found["name"], found["mark"], found["number"]
-    from rvmon.spec.checked.names_read import requirements_asked
+    from rvmon.language.checked.names_read import requirements_asked
 
     requirements_asked(spec.checked, [name])
     return name, f"{name}{mark}{int(number)}" if number else None

@@ -46,7 +46,7 @@ def unpacked(arguments: argparse.Namespace) -> Iterator[Case | None]:
         yield None
         return
     from rvmon.reproducer import opened_case
-    from rvmon.verdict import LAW
+    from rvmon.verdicts import LAW
 
     if arguments.const or reading_words(arguments):
         raise RvmonError(f"{arguments.spec} defines how it is read: leave out these options")

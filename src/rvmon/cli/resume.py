@@ -14,10 +14,10 @@ from rvmon.cli.judging import Judged, Options
 from rvmon.coverage import Hit
 from rvmon.errors import RvmonError, writing
 from rvmon.execute import journal
-from rvmon.readers.messages.forms import databases_beside, form_of_folder
+from rvmon.language.checked.plain_data import to_plain
+from rvmon.recordings.messages.forms import databases_beside, form_of_folder
 from rvmon.session import Spec
-from rvmon.spec.checked.plain_data import to_plain
-from rvmon.verdict.report import Report
+from rvmon.verdicts.report import Report
 
 
 def path_of(out: str) -> Path:

@@ -18,15 +18,15 @@ from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacke
 from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
 from rvmon.execute.shards import shards_beside
-from rvmon.readers.found import found_recordings
-from rvmon.readers.places import JOINT
+from rvmon.recordings.found import found_recordings
+from rvmon.recordings.places import JOINT
 from rvmon.report.folder import refuse_no_file
 from rvmon.session import Spec
 from rvmon.trace.time import format_stamped
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures, read_known
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.known_failures import NONE_KNOWN, KnownFailures, read_known
+from rvmon.verdicts.report import Report
 
 if TYPE_CHECKING:
     from rvmon.reproducer import Case
@@ -250,14 +250,14 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
     if arguments.resume and arguments.out is None:
         raise RvmonError("--resume goes on with a run that writes to a file: name it by --out")
     if arguments.out is not None:
-        from rvmon.verdict.table_file import refuse_format
+        from rvmon.verdicts.table_file import refuse_format
 
         refuse_format(arguments.out)
         refuse_no_file(arguments.out)
     names = ("out", "junit", "coverage", "mcap", "evidence")
     files = [getattr(arguments, name) for name in names]
     if arguments.mcap is not None:
-        from rvmon.export.verdicts_mcap import layout_path, refuse_mcap
+        from rvmon.report.verdicts_mcap import layout_path, refuse_mcap
 
         refuse_mcap(arguments.mcap)
         refuse_no_file(arguments.mcap)
@@ -328,7 +328,7 @@ def _show_doubts(judged: Sequence[Judged]) -> None:
 def _json(judged: Judged, spec: Spec) -> str:
     if judged.report is not None:
         return judged.text or judged.report.to_json(spec.requirements)
-    from rvmon.verdict.report_json import encode_broken
+    from rvmon.verdicts.report_json import encode_broken
 
     return encode_broken(judged.trace, judged.error, judged.before)
 

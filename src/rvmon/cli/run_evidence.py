@@ -11,7 +11,7 @@ import msgspec
 from rvmon.cli.judging import Judged
 from rvmon.cli.run_output import rows_of
 from rvmon.errors import RvmonError, TraceError
-from rvmon.evidence.keep import (
+from rvmon.evidence import (
     COVERAGE,
     About,
     Judging,
@@ -22,11 +22,11 @@ from rvmon.evidence.keep import (
     texts_of,
     write_evidence,
 )
-from rvmon.readers.found import files_of
-from rvmon.readers.messages.forms import form_of_folder
+from rvmon.recordings.found import files_of
+from rvmon.recordings.messages.forms import form_of_folder
 from rvmon.session import Spec
 from rvmon.texts import shown_path
-from rvmon.verdict.rows import VerdictRow
+from rvmon.verdicts.rows import VerdictRow
 
 
 def is_recording(path: str) -> bool:

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING
 from rvmon.cli.judging import Judged
 from rvmon.cli.output import say
 from rvmon.cli.reading import reading_words
-from rvmon.readers.held import HeldRecording
-from rvmon.readers.source import Source
+from rvmon.recordings.held import HeldRecording
+from rvmon.recordings.source import Source
 from rvmon.report.folder import write_file
 from rvmon.session import Spec
-from rvmon.verdict.rows import VerdictRow, broken_rows
+from rvmon.verdicts.rows import VerdictRow, broken_rows
 
 if TYPE_CHECKING:
     from rvmon.trace.sample import Sample
-    from rvmon.verdict.known_failures import KnownFailures
+    from rvmon.verdicts.known_failures import KnownFailures
 
 
 def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
@@ -29,8 +29,8 @@ def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
         RvmonError: it cannot be written.
     """
     import rvmon
-    from rvmon.verdict import LAW
-    from rvmon.verdict.table_file import write_results as write
+    from rvmon.verdicts import LAW
+    from rvmon.verdicts.table_file import write_results as write
 
     about = {"spec": spec.checked.name, "law": str(LAW), "rvmon": rvmon.__version__}
     write(path, rows_of(judged), about)
@@ -75,7 +75,7 @@ def write_files(
         return HeldRecording(source.pieces(), source.outages)
 
     if arguments.mcap:
-        from rvmon.export.verdicts_mcap import write_verdicts
+        from rvmon.report.verdicts_mcap import write_verdicts
 
         for report in reports:
             end = report.end or 0

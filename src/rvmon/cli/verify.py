@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon.cli.options import add_budget, budget_of, declare
 from rvmon.cli.output import rendered, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.timed.describe import (
+from rvmon.models.describe import (
     extreme_data,
     extreme_text,
     observation_data,
@@ -23,18 +23,18 @@ from rvmon.timed.describe import (
     suite_data,
     trajectory_lines,
 )
-from rvmon.timed.language.elaborate import chosen_queries
-from rvmon.timed.language.load import load_network
-from rvmon.timed.model.network import Chance, Extremes, Mean, Network, Query, Simulation
-from rvmon.timed.runs.run import Run
-from rvmon.timed.runs.statistics import ERROR, Sampled, sample, trajectories
-from rvmon.timed.search.extremes import Extreme, extremes
-from rvmon.timed.search.meter import Budget, Meter, Outcome, Policy, Watch
-from rvmon.timed.search.verify import verify
+from rvmon.models.language.elaborate import chosen_queries
+from rvmon.models.language.load import load_network
+from rvmon.models.network.network import Chance, Extremes, Mean, Network, Query, Simulation
+from rvmon.models.runs.run import Run
+from rvmon.models.runs.statistics import ERROR, Sampled, sample, trajectories
+from rvmon.models.search.extremes import Extreme, extremes
+from rvmon.models.search.meter import Budget, Meter, Outcome, Policy, Watch
+from rvmon.models.search.verify import verify
 
 if TYPE_CHECKING:
+    from rvmon.models.requirements.observe import Observation
     from rvmon.session import Spec
-    from rvmon.timed.observation.observe import Observation
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -213,7 +213,7 @@ def _print_sampled(sampled: Sampled) -> None:
 
 
 def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget) -> int:
-    from rvmon.timed.search.suite import Criterion, build_suite, item_text
+    from rvmon.models.search.suite import Criterion, build_suite, item_text
 
     criterion = Criterion(arguments.suite)
     with _shown() as watch:
@@ -252,8 +252,8 @@ def check_spec(
     network: Network, arguments: argparse.Namespace, budget: Budget, watch: Watch | None
 ) -> int:
     """Decide, show, and return the exit code."""
+    from rvmon.models.requirements.observe import observe
     from rvmon.session import load
-    from rvmon.timed.observation.observe import observe
 
     spec = load(arguments.spec)
     bindings = dict(_binding(text) for text in arguments.bind)
@@ -282,7 +282,7 @@ def _binding(text: str) -> tuple[str, str]:
 
 
 def _print_observation(observation: Observation, spec: Spec) -> None:
-    from rvmon.timed.observation.observe import UNDECIDED_IN_THE_END
+    from rvmon.models.requirements.observe import UNDECIDED_IN_THE_END
 
     word = {True: "holds on all runs", False: "fails on some run", None: ""}[observation.holds]
     if observation.remark == UNDECIDED_IN_THE_END:
@@ -311,10 +311,10 @@ def _print_observation(observation: Observation, spec: Spec) -> None:
 def _timeline(observation: Observation, shown: Run, spec: Spec) -> list[str]:
     """What the requirement reads along a run, judged by the monitor that judges recordings."""
     from rvmon.analysis.example import Example
+    from rvmon.models.conform import recording_of
+    from rvmon.models.requirements.observe import signals_of
     from rvmon.report.explain_text import picture_of
     from rvmon.report.tracks import concerned_names
-    from rvmon.timed.conformance.conform import recording_of
-    from rvmon.timed.observation.observe import signals_of
     from rvmon.trace.sample import Sample
     from rvmon.trace.schema import Kind
 

@@ -21,7 +21,7 @@ from rvmon.cli.watch_output import Output, output_named, refuse_others, watch_ke
 from rvmon.errors import RvmonError, SpecError
 from rvmon.live import Clock, Judgement, Live, SimulatedClock, WallClock
 from rvmon.session import Spec, load
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 if TYPE_CHECKING:
     from rvmon.adapters.dds import DdsSource

@@ -21,7 +21,7 @@ from rvmon.cli.output import say, say_json, warn
 from rvmon.errors import RvmonError, TraceError
 from rvmon.live import Driver, Judgement, Status
 from rvmon.live.durable import DurableMonitor
-from rvmon.readers.jsonl_rows import read_object
+from rvmon.recordings.jsonl_rows import read_object
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import Terminal
 from rvmon.report.wording import health_facts
@@ -29,8 +29,8 @@ from rvmon.session import Spec
 from rvmon.texts import counted
 from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_stamped
-from rvmon.verdict import Verdict, fold
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdicts import Verdict, fold
+from rvmon.verdicts.attempt import Attempt
 
 _LOSSES = (HealthKind.DROPPED, HealthKind.LATE)
 _TOLD = 5

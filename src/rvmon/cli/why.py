@@ -20,20 +20,20 @@ from rvmon.cli.reading import (
 )
 from rvmon.cli.reproduced import shown_name, unpacked
 from rvmon.errors import RvmonError
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.language.print import format_window
 from rvmon.monitor.missing import expect_names
-from rvmon.readers.batch import Batch
-from rvmon.readers.held import HeldRecording
-from rvmon.readers.source import Source, pieces_up_to
+from rvmon.recordings.batch import Batch
+from rvmon.recordings.held import HeldRecording
+from rvmon.recordings.source import Source, pieces_up_to
 from rvmon.report.changes import changes_of
 from rvmon.report.tracks import tracks_of
 from rvmon.report.wording import value_text
 from rvmon.session import load
-from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.spec.print import format_window
 from rvmon.trace.sample import Sample, Trace
 from rvmon.trace.time import ticks_of_seconds
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -13,11 +13,8 @@ from typing import assert_never
 
 from rvmon.core.sections import Numbering, Section, Sections, numbered
 from rvmon.errors import RvmonError
-from rvmon.logic.plan import Plan
-from rvmon.logic.state_formula import Leaf, events_of, inputs_of, operands
-from rvmon.logic.state_graph import captured_names
-from rvmon.spec.checked.arithmetic import NumericOp
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.formula import (
     Arithmetic,
     Bound,
     BoundAtom,
@@ -37,7 +34,10 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
     WindowValue,
 )
-from rvmon.spec.checked.rewrite import without_spans
+from rvmon.language.checked.rewrite import without_spans
+from rvmon.logic.plan import Plan
+from rvmon.logic.state_formula import Leaf, events_of, inputs_of, operands
+from rvmon.logic.state_graph import captured_names
 from rvmon.trace.schema import Kind
 
 DEPTH = 32

@@ -7,12 +7,8 @@ from enum import IntEnum, auto
 from typing import assert_never
 
 from rvmon.core.sections import Listed, Section, Sections
-from rvmon.logic.chain import Chain, reach_of
-from rvmon.logic.formula import Constant, Literal, Sense
-from rvmon.logic.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
-from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, State, events_of
-from rvmon.spec.checked.arithmetic import UnitRule
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.arithmetic import UnitRule
+from rvmon.language.checked.formula import (
     Arithmetic,
     Captured,
     Compare,
@@ -23,9 +19,13 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
     WindowValue,
 )
-from rvmon.spec.checked.formula import Literal as Number
-from rvmon.spec.checked.measured import Dimension
-from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.language.checked.formula import Literal as Number
+from rvmon.language.checked.measured import Dimension
+from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.logic.chain import Chain, reach_of
+from rvmon.logic.formula import Constant, Literal, Sense
+from rvmon.logic.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, State, events_of
 from rvmon.trace.schema import Kind
 from rvmon.units import parse_unit
 

@@ -8,6 +8,16 @@ from enum import IntEnum, auto
 
 from rvmon.core.atoms import Atoms, Names
 from rvmon.core.forms import is_followed
+from rvmon.language.checked.formula import (
+    Amount,
+    Captured,
+    Compare,
+    Constant,
+    Measured,
+    Passed,
+    SignalAtom,
+)
+from rvmon.language.checked.formula import Literal as Number
 from rvmon.logic.formula import Literal, literals
 from rvmon.logic.network_plan import plan_of
 from rvmon.logic.plan import Plan, PlannedRule
@@ -24,16 +34,6 @@ from rvmon.logic.state_formula import (
     signals_of,
 )
 from rvmon.logic.state_graph import begun_by, lasting
-from rvmon.spec.checked.formula import (
-    Amount,
-    Captured,
-    Compare,
-    Constant,
-    Measured,
-    Passed,
-    SignalAtom,
-)
-from rvmon.spec.checked.formula import Literal as Number
 
 NEVER = (1 << 63) - 1
 """No instant, or no bound."""

@@ -15,11 +15,11 @@ from rvmon.core.judges import SHARED, Judges, Unit
 from rvmon.core.nodes import Nodes
 from rvmon.core.sections import Listed, Numbering, Packed, Section, Sections, packed
 from rvmon.errors import RvmonError
+from rvmon.language.checked.formula import Compare, Numeric
 from rvmon.logic.network_plan import plan_of_all
 from rvmon.logic.plan import Plan, Uses
 from rvmon.logic.state_formula import events_of, inputs_of
 from rvmon.logic.state_graph import keys_of
-from rvmon.spec.checked.formula import Compare, Numeric
 
 _IGNORES_NAN, _MARKS, _HISTORY, _CAPTURED = 1, 2, 4, 8
 _EVENT_MARKS, _EVENT_FIELDS, _EVENT_KEY = 1, 2, 4

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from itertools import accumulate
 
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.trace.schema import Kind
 
 

@@ -11,9 +11,9 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
 
-from rvmon.spec.checked.goals import BinKind
-from rvmon.verdict import Verdict
-from rvmon.verdict.covered import CoveredBin, CoveredGroup
+from rvmon.language.checked.goals import BinKind
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.covered import CoveredBin, CoveredGroup
 
 if TYPE_CHECKING:
     import numpy as np

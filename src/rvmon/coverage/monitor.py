@@ -15,6 +15,11 @@ from rvmon import native
 from rvmon.core.plan import pack
 from rvmon.coverage import Group, Hit, Hits, Item, Model, Subject, combination, model_of
 from rvmon.coverage.requirements import WatchedRequirements
+from rvmon.language.checked.classify import is_pulse
+from rvmon.language.checked.formula import Formula
+from rvmon.language.checked.goals import BinKind, Coverpoint, Cross
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.language.print import format_formula
 from rvmon.logic.formula import Factory
 from rvmon.logic.plan import Plan, Watch, WatchGroup, plan_of_watches
 from rvmon.logic.state_formula import FALSE
@@ -25,15 +30,10 @@ from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.planned import PlannedCore, planned_as
 from rvmon.monitor.recording import RecordingRun
 from rvmon.monitor.snapshot import Options
-from rvmon.readers.source import Source
-from rvmon.spec.checked.classify import is_pulse
-from rvmon.spec.checked.formula import Formula
-from rvmon.spec.checked.goals import BinKind, Coverpoint, Cross
-from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.spec.print import format_formula
+from rvmon.recordings.source import Source
 from rvmon.trace.sample import Recording
 from rvmon.trace.time import ticks_of_seconds
-from rvmon.verdict.report import Report, report_of
+from rvmon.verdicts.report import Report, report_of
 
 
 class Bins:

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rvmon.coverage import UNKNOWN, Coverage, Score, TestRecord, weighted
-from rvmon.spec.checked.goals import BinKind
-from rvmon.verdict import Verdict
+from rvmon.language.checked.goals import BinKind
+from rvmon.verdicts import Verdict
 
 if TYPE_CHECKING:
     import numpy as np

@@ -14,16 +14,24 @@ from rvmon import native
 from rvmon.analysis.graph import Graph, graph_of
 from rvmon.coverage import Group, Hit, Item, Subject, group_of
 from rvmon.coverage.variants import Variant, variants_of
+from rvmon.language.checked.formula import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Formula,
+    Unary,
+    UnaryOp,
+)
+from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.planned import DECISIONS, VERDICTS, PlannedCore, planned_core
 from rvmon.monitor.records import RECORD
-from rvmon.spec.checked.formula import Binary, BinaryOp, Bound, BoundAtom, Formula, Unary, UnaryOp
-from rvmon.spec.checked.goals import BinKind
-from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Decision
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Decision
+from rvmon.verdicts.report import Report
 
 Passages = Mapping[tuple[int, int], Hit]
 """By source and target location of an automaton, the passages of attempts; the initial location to

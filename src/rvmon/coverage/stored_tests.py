@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from rvmon.coverage import UNKNOWN, Ending, Entry, Hits, Row, TestRecord
 from rvmon.coverage.schema import damaged
 from rvmon.errors import CoverageError
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 _BYTES = 20
 """Bytes per item hit: four for its id, eight for the count, eight for the first instant."""

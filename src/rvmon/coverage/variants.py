@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from enum import Enum, auto
 
-from rvmon.spec.checked.classify import has_future, is_pulse, is_timeless
-from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
-from rvmon.spec.checked.specification import Requirement
-from rvmon.spec.print import format_formula
+from rvmon.language.checked.classify import has_future, is_pulse, is_timeless
+from rvmon.language.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
+from rvmon.language.checked.specification import Requirement
+from rvmon.language.print import format_formula
 
 _CONNECTIVES = (BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLIES)
 

@@ -15,7 +15,7 @@ from rvmon.trace.time import whole_ticks
 if TYPE_CHECKING:
     from rvmon.monitor.monitor import Monitor
     from rvmon.session import Spec
-    from rvmon.verdict.attempt import Attempt
+    from rvmon.verdicts.attempt import Attempt
 
 Report = Callable[[int, "Attempt"], object]
 

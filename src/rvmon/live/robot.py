@@ -10,17 +10,17 @@ from typing import TYPE_CHECKING, Any
 import msgspec
 
 from rvmon.errors import TimeOrderError, TraceError
+from rvmon.language.checked.names_read import requirements_asked
 from rvmon.live.waiting import Dropped, Gap, OutageReport, Values
-from rvmon.spec.checked.names_read import requirements_asked
 from rvmon.trace.sample import Health, HealthKind
-from rvmon.verdict import Verdict, fold
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report_json import seconds
+from rvmon.verdicts import Verdict, fold
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report_json import seconds
 
 if TYPE_CHECKING:
     from rvmon.monitor.monitor import Monitor
     from rvmon.session import Spec
-    from rvmon.verdict.report import Report
+    from rvmon.verdicts.report import Report
 
 
 @dataclass(frozen=True, slots=True)

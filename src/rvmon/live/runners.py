@@ -10,7 +10,7 @@ from rvmon.live.driver import Driver
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
-    from rvmon.verdict.report import Report
+    from rvmon.verdicts.report import Report
 
 
 class Live(Driver):

@@ -15,11 +15,11 @@ from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, assert_never, cast
 
+from rvmon.language.checked.formula import Amount, Compare, Passed, WindowValue
+from rvmon.language.checked.formula import Constant as ConstantLeaf
+from rvmon.language.checked.formula import Literal as Zero
+from rvmon.language.checked.rewrite import without_spans
 from rvmon.logic.state_formula import UNKNOWN, Leaf, Lost, State, StateOp
-from rvmon.spec.checked.formula import Amount, Compare, Passed, WindowValue
-from rvmon.spec.checked.formula import Constant as ConstantLeaf
-from rvmon.spec.checked.formula import Literal as Zero
-from rvmon.spec.checked.rewrite import without_spans
 
 
 class Sense(Enum):

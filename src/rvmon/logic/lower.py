@@ -8,6 +8,17 @@ from functools import partial
 from typing import assert_never
 
 from rvmon.errors import RvmonError
+from rvmon.language.checked.classify import has_future, looks_back_at_future, subformulas
+from rvmon.language.checked.formula import (
+    Bound,
+    BoundAtom,
+    Compare,
+    Formula,
+    SignalAtom,
+    itself,
+    windows_in,
+)
+from rvmon.language.checked.specification import Mode, Requirement
 from rvmon.logic.formula import (
     And,
     Core,
@@ -25,17 +36,6 @@ from rvmon.logic.formula import Constant as CoreConstant
 from rvmon.logic.four_valued import Four
 from rvmon.logic.normal_form import Lowering, Origin, flattened
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Lapsed, State, Unborn, signals_of
-from rvmon.spec.checked.classify import has_future, looks_back_at_future, subformulas
-from rvmon.spec.checked.formula import (
-    Bound,
-    BoundAtom,
-    Compare,
-    Formula,
-    SignalAtom,
-    itself,
-    windows_in,
-)
-from rvmon.spec.checked.specification import Mode, Requirement
 
 
 class UnmonitorableError(RvmonError):

@@ -9,6 +9,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import assert_never
 
+from rvmon.language.checked.classify import has_future
+from rvmon.language.checked.formula import (
+    Binary,
+    BinaryOp,
+    Compare,
+    Constant,
+    Formula,
+    Interval,
+    Unary,
+    UnaryOp,
+)
+from rvmon.language.checked.formula import Constant as ConstantLeaf
+from rvmon.language.checked.rewrite import rewritten
+from rvmon.language.checked.specification import Requirement
 from rvmon.logic.formula import (
     And,
     Core,
@@ -25,20 +39,6 @@ from rvmon.logic.formula import (
 from rvmon.logic.formula import Constant as CoreConstant
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Elapsed, State, StateOp, reads_fields
 from rvmon.logic.three_valued import Reader
-from rvmon.spec.checked.classify import has_future
-from rvmon.spec.checked.formula import (
-    Binary,
-    BinaryOp,
-    Compare,
-    Constant,
-    Formula,
-    Interval,
-    Unary,
-    UnaryOp,
-)
-from rvmon.spec.checked.formula import Constant as ConstantLeaf
-from rvmon.spec.checked.rewrite import rewritten
-from rvmon.spec.checked.specification import Requirement
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,12 +7,7 @@ from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import NamedTuple
 
-from rvmon.logic.automaton import Automaton
-from rvmon.logic.formula import Core, literals
-from rvmon.logic.letters import Alphabet
-from rvmon.logic.state_formula import State, Unborn, inputs_of, operands
-from rvmon.logic.state_graph import Graph, graph_of
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Compare,
     Numeric,
     Probe,
@@ -20,7 +15,12 @@ from rvmon.spec.checked.formula import (
     UpdateValue,
     WindowValue,
 )
-from rvmon.spec.checked.specification import CheckedSpec, Requirement
+from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.logic.automaton import Automaton
+from rvmon.logic.formula import Core, literals
+from rvmon.logic.letters import Alphabet
+from rvmon.logic.state_formula import State, Unborn, inputs_of, operands
+from rvmon.logic.state_graph import Graph, graph_of
 from rvmon.trace.sample import Scalar
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from enum import Enum
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Amount,
     Arithmetic,
     BoundAtom,

@@ -10,6 +10,22 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import assert_never
 
+from rvmon.language.checked.formula import (
+    Amount,
+    BoundAtom,
+    Captured,
+    Compare,
+    CompareOp,
+    Constant,
+    EventAtom,
+    FieldValue,
+    ProbeAtom,
+    SignalAtom,
+    itself,
+    windows_in,
+)
+from rvmon.language.checked.specification import ForEach
+from rvmon.language.print import format_formula, format_numeric
 from rvmon.logic.state_formula import (
     FALSE,
     TRUE,
@@ -26,22 +42,6 @@ from rvmon.logic.state_formula import (
     events_of,
     inputs_of,
 )
-from rvmon.spec.checked.formula import (
-    Amount,
-    BoundAtom,
-    Captured,
-    Compare,
-    CompareOp,
-    Constant,
-    EventAtom,
-    FieldValue,
-    ProbeAtom,
-    SignalAtom,
-    itself,
-    windows_in,
-)
-from rvmon.spec.checked.specification import ForEach
-from rvmon.spec.print import format_formula, format_numeric
 
 
 def names_of(leaf: Leaf) -> frozenset[str]:

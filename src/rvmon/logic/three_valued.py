@@ -8,20 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rvmon.logic.formula import Factory
-from rvmon.logic.four_valued import Four, always_read_as
-from rvmon.logic.state_formula import (
-    FALSE,
-    TRUE,
-    UNKNOWN,
-    Elapsed,
-    State,
-    Unborn,
-    operands,
-    reads_fields,
-    signals_of,
-)
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Amount,
     Atom,
     Binary,
@@ -39,8 +26,21 @@ from rvmon.spec.checked.formula import (
     itself,
     windows_in,
 )
-from rvmon.spec.checked.operators import Reading, Tense
-from rvmon.spec.checked.rewrite import read, rewritten, without_spans
+from rvmon.language.checked.operators import Reading, Tense
+from rvmon.language.checked.rewrite import read, rewritten, without_spans
+from rvmon.logic.formula import Factory
+from rvmon.logic.four_valued import Four, always_read_as
+from rvmon.logic.state_formula import (
+    FALSE,
+    TRUE,
+    UNKNOWN,
+    Elapsed,
+    State,
+    Unborn,
+    operands,
+    reads_fields,
+    signals_of,
+)
 
 
 class Reader(Reading[Four]):

@@ -21,7 +21,7 @@ from rvmon.monitor.explanation import (
     unborn,
 )
 from rvmon.monitor.obligation_words import deadline, settled_alone
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
 
 from rvmon.errors import RvmonError
+from rvmon.language.checked.formula import Compare
+from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.logic.automaton import Automaton, moves_in_runs
 from rvmon.logic.chain import reach_of
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
@@ -21,8 +23,6 @@ from rvmon.logic.shapes import Shapes
 from rvmon.logic.state_formula import State, events_of, inputs_of
 from rvmon.logic.state_graph import graph_of, leaf_count, leaf_texts
 from rvmon.monitor.obligation_words import Words
-from rvmon.spec.checked.formula import Compare
-from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
 
 MOST_SEEN = 19
 """The most truth values at the trigger that the core packs into 32 bits."""

@@ -15,21 +15,21 @@ from rvmon.monitor.planned import planned_core
 from rvmon.monitor.recording import RecordingRun, judge_recording
 from rvmon.monitor.records import with_plan
 from rvmon.monitor.robustness import FIGURES, Key, Margins, Robustness, Stream
-from rvmon.readers.columns import TableRecording
-from rvmon.readers.joined import Joined
-from rvmon.readers.recording import FileRecording
-from rvmon.readers.rows import Rows
-from rvmon.readers.source import Reading, Source, recording_of
+from rvmon.recordings.columns import TableRecording
+from rvmon.recordings.joined import Joined
+from rvmon.recordings.recording import FileRecording
+from rvmon.recordings.rows import Rows
+from rvmon.recordings.source import Reading, Source, recording_of
 from rvmon.texts import shown_path
 from rvmon.trace.sample import Recording, Sample
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rvmon.readers.batch import Batch
-    from rvmon.spec.checked.specification import CheckedSpec
+    from rvmon.language.checked.specification import CheckedSpec
+    from rvmon.recordings.batch import Batch
 
 Decided = Callable[[Sequence[Attempt]], object]
 

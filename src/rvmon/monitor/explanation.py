@@ -7,16 +7,16 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import NamedTuple, Protocol
 
+from rvmon.language.checked.specification import EndPolicy
+from rvmon.language.print import format_duration
 from rvmon.logic.automaton import FAILED, Token
 from rvmon.logic.formula import Core, horizon
 from rvmon.logic.state_formula import TRUE, UNKNOWN
 from rvmon.monitor.compile import CompiledRequirement
-from rvmon.spec.checked.specification import EndPolicy
-from rvmon.spec.print import format_duration
 from rvmon.trace.sample import HealthKind, Scalar
 from rvmon.trace.time import format_instant, format_ticks
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Blame, Decision
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Blame, Decision
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,7 +93,7 @@ def outage_in_words(outage: Outage, origin: int) -> str:
 
 
 class Explanation(NamedTuple):
-    """The explanatory fields of a record; see `rvmon.verdict.attempt.Attempt`."""
+    """The explanatory fields of a record; see `rvmon.verdicts.attempt.Attempt`."""
 
     reason: str = ""
     required: str = ""

@@ -8,10 +8,10 @@ from typing import Any, Generic, TypeVar
 
 from rvmon import native
 from rvmon.errors import SnapshotError, TraceError, UnknownNameError
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.monitor.health import Losses, of_intake
 from rvmon.monitor.intake import Intake, Turn, Validator, refuse_earlier
 from rvmon.monitor.planned import PlannedCore
-from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Health, Sample, Value
 from rvmon.trace.time import ticks_of_seconds
 

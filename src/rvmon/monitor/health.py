@@ -9,17 +9,17 @@ from struct import iter_unpack
 from typing import TYPE_CHECKING, Any
 
 from rvmon import native
+from rvmon.language.checked.names_read import sources_asked
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.monitor.intake import MOST_HELD, Intake, Turn
 from rvmon.monitor.planned import PlannedCore
-from rvmon.spec.checked.names_read import sources_asked
-from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Health, HealthKind, Value, payloads_of
 from rvmon.trace.time import TIME_LIMIT, format_instant, whole_ticks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rvmon.readers.batch import Batch
+    from rvmon.recordings.batch import Batch
 
 
 class HealthLog:
@@ -132,7 +132,7 @@ class Findings:
 
     def note_batch(self, batch: Batch) -> None:
         """Take account of rows."""
-        from rvmon.readers.batch import unknown_rows
+        from rvmon.recordings.batch import unknown_rows
 
         times = batch.times
         if self._log.began is None:

@@ -8,8 +8,8 @@ from heapq import heappop, heappush
 from typing import Any
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.readers.coalesce import Conflicts, coalesce, updates_in
-from rvmon.spec.checked.specification import CheckedSpec, Type
+from rvmon.language.checked.specification import CheckedSpec, Type
+from rvmon.recordings.coalesce import Conflicts, coalesce, updates_in
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks

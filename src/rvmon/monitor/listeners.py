@@ -11,9 +11,9 @@ from rvmon import native
 from rvmon.errors import OverlapError, RvmonError
 from rvmon.trace.sample import Health, HealthKind
 from rvmon.trace.time import TIME_LIMIT
-from rvmon.verdict import Verdict, fold
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict, fold
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 Callback = Callable[[Attempt], object]
 

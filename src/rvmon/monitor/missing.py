@@ -9,15 +9,15 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from rvmon.errors import MissingNameError
-from rvmon.readers.recording import FileRecording
-from rvmon.readers.values import shorten
-from rvmon.spec.checked.names_read import names_of_coverage, names_of_requirement, sources_asked
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.language.checked.names_read import names_of_coverage, names_of_requirement, sources_asked
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.recordings.recording import FileRecording
+from rvmon.recordings.values import shorten
 from rvmon.texts import MOST_NAMES, nearest
 
 if TYPE_CHECKING:
-    from rvmon.readers.columns import TableRecording
-    from rvmon.readers.joined import Joined
+    from rvmon.recordings.columns import TableRecording
+    from rvmon.recordings.joined import Joined
 
 _SHOWN = 8
 """The most unread columns listed where none resembles a name."""

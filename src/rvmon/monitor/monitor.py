@@ -10,17 +10,17 @@ from typing import Any, NoReturn
 
 from rvmon import native
 from rvmon.errors import RvmonError, SnapshotError, TraceError
+from rvmon.language.checked.names_read import requirements_asked
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.feed import FedMonitor, Feed
 from rvmon.monitor.health import health_of_run
 from rvmon.monitor.listeners import Callback, Listeners, OneCall, capped, not_passed
 from rvmon.monitor.planned import VERDICTS, PlannedCore, planned_core
 from rvmon.monitor.snapshot import Options, document_of, restored_state, snapshot_of
-from rvmon.spec.checked.names_read import requirements_asked
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
-from rvmon.verdict import Verdict, fold
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict, fold
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 
 class Monitor(FedMonitor[Attempt]):

@@ -34,8 +34,8 @@ from rvmon.monitor.network.piecewise import FAR
 from rvmon.monitor.network.remaining import Remaining
 from rvmon.monitor.obligation_words import Words, all_of
 from rvmon.trace.time import format_instant
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Blame
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Blame
 
 
 def required_at(network: Network, core: Core, position: int, words: Words, origin: int) -> str:

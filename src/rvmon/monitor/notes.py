@@ -31,8 +31,8 @@ from rvmon.monitor.explanation import (
 from rvmon.monitor.network_reasons import explained_by_network
 from rvmon.monitor.replayed import Letters, at_decision, at_moment
 from rvmon.trace.sample import HealthKind
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt, Decision
 
 _DECIDED, _OPEN, _NOTHING = 0, 1, 2
 _NETWORK, _CUT, _PARTED, _HOLLOW, _SURE = 1, 2, 4, 8, 16

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+from rvmon.language.checked.classify import has_future, is_pulse
+from rvmon.language.checked.formula import Amount, EventAtom, Formula, Unary, UnaryOp
+from rvmon.language.print import format_formula
 from rvmon.logic.formula import Constant, Core, Literal, Release, Sense, Until
 from rvmon.logic.normal_form import Origin
 from rvmon.logic.progress import after, value
@@ -20,11 +23,8 @@ from rvmon.monitor.cause import (
     TruthValues,
     Turned,
 )
-from rvmon.spec.checked.classify import has_future, is_pulse
-from rvmon.spec.checked.formula import Amount, EventAtom, Formula, Unary, UnaryOp
-from rvmon.spec.print import format_formula
 from rvmon.trace.time import format_instant
-from rvmon.verdict.attempt import Blame
+from rvmon.verdicts.attempt import Blame
 
 _APART = 50
 """Shift that keeps the anchors of different clocks, and so their deadlines, distinct in labels."""

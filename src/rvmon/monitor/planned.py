@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, Any, cast
 from rvmon import native
 from rvmon.core.sections import packed
 from rvmon.errors import TraceError
-from rvmon.monitor.compiled_spec import Kept, Place
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Captured,
     FieldValue,
     Literal,
@@ -19,12 +18,13 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
 )
-from rvmon.spec.checked.specification import CheckedSpec, Requirement, Type
+from rvmon.language.checked.specification import CheckedSpec, Requirement, Type
+from rvmon.monitor.compiled_spec import Kept, Place
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import format_ticks
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt, Decision
 
 if TYPE_CHECKING:
     from rvmon.core.sections import Packed

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterable
 from dataclasses import replace
 from functools import cache
 
+from rvmon.language.checked.names_read import requirements_asked
 from rvmon.logic.automaton import Automaton
 from rvmon.logic.construct import Budget, construct
 from rvmon.logic.formula import Core, Factory, Literal
@@ -15,7 +16,6 @@ from rvmon.logic.plan import Plan, PlannedRule, plan_in_units
 from rvmon.logic.state_formula import State
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.spec.checked.names_read import requirements_asked
 
 
 def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> PlannedRule:

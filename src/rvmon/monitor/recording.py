@@ -9,23 +9,23 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.errors import TimeOrderError, TraceError
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.monitor.health import Findings, Losses
 from rvmon.monitor.intake import Turn, Validator
 from rvmon.monitor.planned import PlannedCore
 from rvmon.monitor.records import report_of_run
-from rvmon.readers.batch import NO_UPDATE, YES
-from rvmon.readers.source import Source
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.recordings.batch import NO_UPDATE, YES
+from rvmon.recordings.source import Source
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rvmon.readers.batch import Batch, Cells, Occurrences
+    from rvmon.recordings.batch import Batch, Cells, Occurrences
 
 _LAYOUTS: Mapping[Kind, int] = {Kind.REAL: 0, Kind.INT: 1, Kind.BOOL: 2, Kind.LABEL: 1}
 """The numbers of layouts of values in `core.h`."""

@@ -12,9 +12,9 @@ import numpy as np
 from rvmon import native
 from rvmon.monitor.planned import DECISIONS, VERDICTS, PlannedCore
 from rvmon.trace.sample import Health
-from rvmon.verdict import Verdict, fold
-from rvmon.verdict.attempt import Attempt, Decision, LazyAttempts
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict, fold
+from rvmon.verdicts.attempt import Attempt, Decision, LazyAttempts
+from rvmon.verdicts.report import Report
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -195,7 +195,7 @@ def report_of_run(
     end: int | None,
     health: tuple[Health, ...] = (),
 ) -> Report:
-    """Sort and fold the records of a run, as `rvmon.verdict.report.report_of` does attempts.
+    """Sort and fold the records of a run, as `rvmon.verdicts.report.report_of` does attempts.
 
     Args:
         planned: the plan of the run.

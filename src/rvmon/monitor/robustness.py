@@ -13,8 +13,8 @@ from rvmon.monitor.listeners import OneCall
 from rvmon.monitor.planned import planned_core
 from rvmon.native import Bounds, Figure
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt, Decision, measured_attempt
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt, Decision, measured_attempt
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,13 +16,13 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon import native
 from rvmon.errors import SnapshotError
+from rvmon.language.checked.plain_data import identity_text
 from rvmon.monitor.planned import PlannedCore
-from rvmon.spec.checked.plain_data import identity_text
-from rvmon.verdict import LAW
+from rvmon.verdicts import LAW
 
 if TYPE_CHECKING:
+    from rvmon.language.checked.specification import CheckedSpec
     from rvmon.monitor.compiled_spec import CompiledSpec
-    from rvmon.spec.checked.specification import CheckedSpec
 
 _KIND = b"rvmon snapshot 3"
 

@@ -7,20 +7,20 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from rvmon.core.plan import pack
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.logic.formula import Core
 from rvmon.logic.network_plan import plan_of_all
 from rvmon.logic.plan import plan_of_truths
 from rvmon.monitor.compiled_spec import Kept
 from rvmon.monitor.planned import planned_as
-from rvmon.readers.source import Source
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.recordings.source import Source
 from rvmon.trace.sample import Sample, Scalar, Trace
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from rvmon.readers.batch import Batch
+    from rvmon.recordings.batch import Batch
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from rvmon.monitor.robustness import Measured, Robustness
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdicts.attempt import Attempt
 
 source_hash: str
 

@@ -10,8 +10,8 @@ import zlib
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 FOLDER = os.path.join(_PACKAGE, "core", "native")
-ZONES_FOLDER = os.path.join(_PACKAGE, "timed", "native")
-CSV_FOLDER = os.path.join(_PACKAGE, "readers", "native")
+ZONES_FOLDER = os.path.join(_PACKAGE, "models", "native")
+CSV_FOLDER = os.path.join(_PACKAGE, "recordings", "native")
 BLOCK = 1 << 17
 """Bytes that are read at once: more than any source has."""
 

@@ -6,15 +6,15 @@ from collections.abc import Iterable, Mapping, Sequence, Set
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, overload
 
-from rvmon.readers.coalesce import updates_in
-from rvmon.readers.held import HeldRecording
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.recordings.coalesce import updates_in
+from rvmon.recordings.held import HeldRecording
 from rvmon.trace.sample import Sample, Scalar, Value
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from rvmon.readers.batch import Batch, Cells
+    from rvmon.recordings.batch import Batch, Cells
 
 _DENSE = 8
 """With more changes per place than this, only extremes are drawn."""
@@ -205,7 +205,7 @@ class Changes:
         """Add the updates of a signal in rows."""
         import numpy as np
 
-        from rvmon.readers.batch import last_said, unknown_in
+        from rvmon.recordings.batch import last_said, unknown_in
 
         rows = last_said(batch, cells)
         if not len(rows):
@@ -236,7 +236,7 @@ class Changes:
 
     def add_occurrences(self, times: NDArray[Any], says: NDArray[Any]) -> None:
         """Add the occurrences of an event in rows; a sure one wins over a possible one."""
-        from rvmon.readers.batch import UNKNOWN, YES
+        from rvmon.recordings.batch import UNKNOWN, YES
 
         may = (says == UNKNOWN) | (says == YES)
         found: dict[int, Scalar] = {}

@@ -13,12 +13,12 @@ from markupsafe import Markup
 
 from rvmon.coverage import Group, Item, TestRecord, combination
 from rvmon.coverage.questions import Step
+from rvmon.language.checked.goals import BinKind
 from rvmon.report.coverage_summary import LISTED, Summary, cell_look, is_grid, strategy_name
 from rvmon.report.pages import Child, e, render, table_html
 from rvmon.report.table import VerdictTable
-from rvmon.spec.checked.goals import BinKind
 from rvmon.texts import counted, share_text
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 WIDTH, HEIGHT = 1000, 100
 """The size of the drawing in SVG units; it is stretched to the width of the page."""

@@ -15,12 +15,12 @@ from rvmon.coverage import UNKNOWN, Coverage, Ending, Group, Hit, Hits, Item, Te
 from rvmon.coverage.holes import Hole, hole_of, nearest_tests
 from rvmon.coverage.questions import Answers, Comparison, Step, compare
 from rvmon.coverage.ranking import Smallest, fewest, ranking
+from rvmon.language.checked.goals import BinKind
+from rvmon.language.rules.properties import MOST_COMBINATIONS
 from rvmon.report.table import RunGroup, VerdictTable
-from rvmon.spec.checked.goals import BinKind
-from rvmon.spec.rules.properties import MOST_COMBINATIONS
 from rvmon.texts import counted
 from rvmon.trace.time import format_stamped
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 LISTED = 5
 """The most tests named of those that hit an item."""

@@ -12,13 +12,13 @@ from rich.text import Text
 
 from rvmon.coverage import Group, combination
 from rvmon.coverage.questions import Comparison
+from rvmon.language.checked.goals import BinKind
 from rvmon.report.coverage_summary import Summary, cell_look, is_grid, name_of, not_fine
 from rvmon.report.table import table_text
 from rvmon.report.terminal import wrapped
 from rvmon.report.wording import first_of
-from rvmon.spec.checked.goals import BinKind
 from rvmon.texts import counted, percent_text, share_text
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 _FEW = 3
 SHOWN = 10

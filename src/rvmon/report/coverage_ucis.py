@@ -11,8 +11,8 @@ from datetime import UTC, datetime
 
 from rvmon.coverage import Group, Item, Subject, TestRecord
 from rvmon.coverage.holes import cross_parts
+from rvmon.language.checked.goals import BinKind
 from rvmon.report.coverage_summary import Summary, not_fine
-from rvmon.spec.checked.goals import BinKind
 from rvmon.texts import shown
 
 _CODE = (Subject.STATEMENTS, Subject.BRANCHES)

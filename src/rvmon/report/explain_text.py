@@ -13,15 +13,15 @@ from rvmon.analysis.examples import Analysis, difference_of, shortest_examples, 
 from rvmon.analysis.graph import graph_lines, graph_of
 from rvmon.analysis.vacuity import Possible, possible
 from rvmon.analysis.words import facts_of, requirement_in_words
+from rvmon.language.checked.formula import BoundAtom, Constant
+from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
+from rvmon.language.print import format_duration
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.report.style import MARKS
-from rvmon.spec.checked.formula import BoundAtom, Constant
-from rvmon.spec.checked.specification import CheckedSpec, Mode, Requirement
-from rvmon.spec.print import format_duration
 from rvmon.trace.sample import Scalar, Value
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt
 
 HIGH, LOW, NOBODY_KNOWS, OCCURS = "▇", "▁", "?", "●"
 NARROWEST = 9

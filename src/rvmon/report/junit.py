@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 from rvmon.report.wording import full_reason, without_attempts
 from rvmon.texts import shown
 from rvmon.trace.time import format_stamped
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.known_failures import NONE_KNOWN, KnownFailures
+from rvmon.verdicts.report import Report
 
 if TYPE_CHECKING:
-    from rvmon.spec.checked.specification import CheckedSpec, Requirement
+    from rvmon.language.checked.specification import CheckedSpec, Requirement
 
 
 def junit_xml(

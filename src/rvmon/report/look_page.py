@@ -9,11 +9,11 @@ from itertools import pairwise
 from rich.table import Table
 from rich.text import Text
 
+from rvmon.language.checked.specification import Requirement
+from rvmon.recordings.starter.column import Column, Profile, Stretch
 from rvmon.report.pages import e, render
 from rvmon.report.time_axis import View, moment, round_instants
 from rvmon.report.wording import duration_text, first_of
-from rvmon.spec.checked.specification import Requirement
-from rvmon.starter.column import Column, Profile, Stretch
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND, format_stamp, format_stamped

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rvmon.spec.checked.classify import windows_of
-from rvmon.spec.checked.formula import WindowValue
-from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.spec.print import format_duration, format_window
+from rvmon.language.checked.classify import windows_of
+from rvmon.language.checked.formula import WindowValue
+from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.language.print import format_duration, format_window
 
 
 def memory_lines(spec: CheckedSpec) -> list[str]:

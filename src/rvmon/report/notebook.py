@@ -10,6 +10,7 @@ from xml.etree.ElementTree import Element
 
 from markupsafe import Markup
 
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.report.pages import asset, render
 from rvmon.report.panel_html import spec_lines
 from rvmon.report.panels import shown_attempts
@@ -17,10 +18,9 @@ from rvmon.report.style import MARKS, verdict_colours
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import axis_row, place_of, timeline
 from rvmon.report.wording import full_reason, without_attempts
-from rvmon.spec.checked.specification import CheckedSpec
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report, report_of
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report, report_of
 
 DRAWN = 200
 """The most attempts drawn per requirement and verdict; the rest is counted."""

@@ -20,7 +20,7 @@ from rvmon.confidence import interval_text
 from rvmon.report.style import MARKS, verdict_colours
 from rvmon.report.table import Counts, VerdictTable, checked_text
 from rvmon.texts import counted, percent_text, share_text, shown
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 if TYPE_CHECKING:
     from jinja2 import Environment

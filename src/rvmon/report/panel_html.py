@@ -8,6 +8,7 @@ from itertools import groupby
 from typing import NamedTuple
 
 from rvmon.analysis.subformulas import PartTruth
+from rvmon.language.checked.specification import Requirement
 from rvmon.report.changes import Course
 from rvmon.report.pages import Child, e
 from rvmon.report.panels import Panel
@@ -16,10 +17,9 @@ from rvmon.report.time_axis import moment, with_moments
 from rvmon.report.timeline import axis_row, guides_of, timeline, truth_row
 from rvmon.report.tracks import Track, TrackKind, blamed_names
 from rvmon.report.wording import reason_text, without_attempts
-from rvmon.spec.checked.specification import Requirement
 from rvmon.trace.sample import Scalar
-from rvmon.verdict.attempt import Blame
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Blame
+from rvmon.verdicts.report import Report
 
 DEEPEST = 8
 """The greatest depth of a subformula that is indented further."""
@@ -149,8 +149,8 @@ def headline(run: str, panel: Panel, origin: int) -> str:
         origin: the instant from which people count seconds, ticks.
 
     >>> from rvmon.report.time_axis import View
-    >>> from rvmon.verdict.attempt import Attempt
-    >>> from rvmon.verdict import Verdict
+    >>> from rvmon.verdicts.attempt import Attempt
+    >>> from rvmon.verdicts import Verdict
     >>> failed = Attempt("R2", 1, 0, 14_250_000_000, Verdict.FAIL, reason="`released` too soon")
     >>> view = View(0, 20_000_000_000)
     >>> panel = Panel("R2-1", "R2", failed, failed.verdict, view, (), None)

@@ -16,17 +16,17 @@ from rvmon.analysis.subformulas import (
 )
 from rvmon.analysis.truths import Question, RecordedTruths, look_through, parts_of
 from rvmon.errors import RvmonError
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.report.changes import Changes, changes_of
 from rvmon.report.pages import Child
 from rvmon.report.scene import Scene
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt
 from rvmon.report.tracks import Track, TrackKind, tracks_of
-from rvmon.spec.checked.specification import CheckedSpec
 from rvmon.trace.sample import Sample, Scalar
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 
 @dataclass(frozen=True, slots=True)

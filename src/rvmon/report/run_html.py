@@ -25,8 +25,8 @@ from rvmon.report.tracks import PLACES, Track, TrackKind
 from rvmon.report.wording import forecast_sentence, health_facts, instants_of, value_text
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND, format_stamped
-from rvmon.verdict import Verdict
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.report import Report
 
 UNITS = 1000
 """SVG units per metre; and integer steps per radian."""

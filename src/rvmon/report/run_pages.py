@@ -11,16 +11,16 @@ from pathlib import Path
 from typing import NamedTuple
 
 from rvmon.files import write_whole
+from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.report.folder import output_folder
 from rvmon.report.pages import render
 from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
 from rvmon.report.terminal import in_short
-from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.trace.sample import Sample
-from rvmon.verdict import Verdict
-from rvmon.verdict.known_failures import NONE_KNOWN, KnownFailures
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.known_failures import NONE_KNOWN, KnownFailures
+from rvmon.verdicts.report import Report
 
 _BROKEN = "cannot be evaluated"
 _KNOWN = "fail as is known"

@@ -12,6 +12,8 @@ from rich.table import Table
 from rich.text import Text
 
 from rvmon.diagnostics import snippet
+from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import Terminal, wrapped
 from rvmon.report.wording import (
@@ -24,14 +26,12 @@ from rvmon.report.wording import (
     instants_of,
     without_attempts,
 )
-from rvmon.spec.checked.goals import BinKind
-from rvmon.spec.checked.specification import CheckedSpec, Requirement
 from rvmon.texts import counted
 from rvmon.trace.time import format_stamped
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt, LazyAttempts
-from rvmon.verdict.covered import CoveredBin, CoveredGroup
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt, LazyAttempts
+from rvmon.verdicts.covered import CoveredBin, CoveredGroup
+from rvmon.verdicts.report import Report
 
 
 def together(several: Sequence[Sequence[CoveredGroup]]) -> list[CoveredGroup]:

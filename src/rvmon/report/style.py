@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from rich.text import Text
 
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,7 +15,7 @@ from rich.text import Text
 from rvmon.confidence import interval, interval_text
 from rvmon.report.style import MARKS
 from rvmon.texts import shown_line
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 Counts = Mapping[Verdict, int]
 """By verdict, the number of runs."""

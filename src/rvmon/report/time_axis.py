@@ -7,8 +7,8 @@ import re
 from dataclasses import dataclass
 
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks, ticks_of_text
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 MARGIN = 0.2
 """The margin on either side, relative to the attempt's length."""

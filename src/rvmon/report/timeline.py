@@ -20,7 +20,7 @@ from rvmon.report.tracks import (
     stretches,
 )
 from rvmon.report.wording import duration_text
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdicts.attempt import Attempt
 
 WIDTH, HEIGHT = 1000, 100
 """The size of a number's drawing in SVG units; it is stretched to the width of the page."""

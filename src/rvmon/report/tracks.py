@@ -8,16 +8,16 @@ from enum import StrEnum
 from itertools import groupby, pairwise
 from typing import TYPE_CHECKING
 
+from rvmon.language.checked.classify import subformulas
+from rvmon.language.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
+from rvmon.language.checked.names_read import names_read
+from rvmon.language.checked.specification import CheckedSpec, Requirement, Signal
 from rvmon.report.changes import Changes, Course
 from rvmon.report.time_axis import View
 from rvmon.report.wording import value_text
-from rvmon.spec.checked.classify import subformulas
-from rvmon.spec.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
-from rvmon.spec.checked.names_read import names_read
-from rvmon.spec.checked.specification import CheckedSpec, Requirement, Signal
 from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
-from rvmon.verdict.attempt import Blame
+from rvmon.verdicts.attempt import Blame
 
 if TYPE_CHECKING:
     pass

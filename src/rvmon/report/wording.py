@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from types import MappingProxyType
 
-from rvmon.spec.print import format_duration
+from rvmon.language.print import format_duration
 from rvmon.trace.sample import Health, HealthKind, Scalar
 from rvmon.trace.time import TICKS_PER_SECOND, format_instant, format_stamped, format_ticks
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 NO_VALUES: Mapping[str, str] = MappingProxyType({})
 
@@ -59,8 +59,8 @@ def reason_text(attempt: Attempt, came: int | None, values: Mapping[str, str] = 
         came: the instant of a late response, ticks; `None` if none is known.
         values: by signal, its value at the decision, with its unit.
 
-    >>> from rvmon.verdict.attempt import Blame
-    >>> from rvmon.verdict import Verdict
+    >>> from rvmon.verdicts.attempt import Blame
+    >>> from rvmon.verdicts import Verdict
     >>> second = 10**9
     >>> blame = Blame("within 3 s a", 0, 12, (0, 3 * second))
     >>> failed = Attempt("R1", 1, 0, 3 * second + 1, Verdict.FAIL, reason="no `a`", blame=blame)

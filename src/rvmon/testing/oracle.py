@@ -11,16 +11,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Protocol
 
 from rvmon.errors import TraceError
-from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Requirement
+from rvmon.language.checked.specification import CheckedSpec, EndPolicy, Requirement
 from rvmon.testing.law.attempts import Start, obligation
 from rvmon.testing.law.decisions import Followed, Followings, follow
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.law.word import Outage, Rest, Truth, Word
 from rvmon.trace.sample import Sample, Trace, Value
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt, Decision
-from rvmon.verdict.report import Report, report_of
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt, Decision
+from rvmon.verdicts.report import Report, report_of
 
 
 class HasChecked(Protocol):

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from hypothesis import note
 from hypothesis import strategies as st
 
-from rvmon.spec.checked.formula import Formula
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.language.checked.formula import Formula
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.testing.generate.formula import Shape, formula
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace, show_case

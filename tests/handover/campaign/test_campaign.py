@@ -14,7 +14,7 @@ from rvmon.cdv.play import execute
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import to_json
 from rvmon.session import load
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 pytestmark = pytest.mark.campaign
 

@@ -11,8 +11,8 @@ from handover.campaign.closing import UNREACHABLE, query_of
 from handover.cli import main
 from handover.model import handover_network
 from rvmon.cli import main as rvmon
+from rvmon.models.language.elaborate import chosen_queries
 from rvmon.texts import share_text
-from rvmon.timed.language.elaborate import chosen_queries
 
 pytestmark = pytest.mark.campaign
 

@@ -19,8 +19,8 @@ from handover.generator.model_based import (
 from handover.model import handover_network
 from rvmon.cdv import TestError
 from rvmon.cdv.template import Wait, choose_times, load_template, project, save_template
-from rvmon.timed.search.meter import Policy
-from rvmon.timed.search.verify import verify
+from rvmon.models.search.meter import Policy
+from rvmon.models.search.verify import verify
 
 
 def signals(test):

@@ -5,7 +5,7 @@ from tests.tools.timed_runs import shows
 
 from handover.model import handover_network
 from rvmon.errors import ModelError
-from rvmon.timed.search.verify import verify
+from rvmon.models.search.verify import verify
 
 
 @pytest.fixture(scope="module")

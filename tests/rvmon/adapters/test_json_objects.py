@@ -15,7 +15,7 @@ from rvmon.adapters.json_objects import (
 )
 from rvmon.errors import TraceError
 from rvmon.live import Driver, SimulatedClock
-from rvmon.readers.jsonl_rows import MORE, MOST_NAMES
+from rvmon.recordings.jsonl_rows import MORE, MOST_NAMES
 
 SPEC = """
 spec s

@@ -11,8 +11,8 @@ from rvmon.analysis.example import Budget
 from rvmon.analysis.examples import analyse, shortest_examples
 from rvmon.analysis.vacuity import possible
 from rvmon.cli import main
+from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import compile_spec
-from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace, show_spec
 from rvmon.testing.oracle import evaluate

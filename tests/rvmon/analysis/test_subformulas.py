@@ -8,17 +8,17 @@ import pytest
 from rvmon.analysis.spans import hold, joined, outside, within
 from rvmon.analysis.subformulas import dissect
 from rvmon.analysis.truths import look_through, parts_of, subformulas, truths_of_parts
+from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.monitor import build_monitor
-from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace, show_case
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.word import Truth
 from rvmon.trace.sample import Sample
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt
 
 PROFILE = Profile(requirements=1, depth=3, captures=False, for_each=False)
 

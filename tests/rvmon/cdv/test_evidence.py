@@ -7,7 +7,7 @@ import pytest
 from rvmon import cdv
 from rvmon.cli import campaign as cli
 from rvmon.cli import main
-from rvmon.evidence.keep import pack, unpack
+from rvmon.evidence import pack, unpack
 
 pytestmark = pytest.mark.process
 

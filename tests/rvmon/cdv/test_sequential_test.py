@@ -7,8 +7,8 @@ import pytest
 
 from rvmon.cdv.sequential_test import ALPHA, BETA, decide, errors_text
 from rvmon.cli.campaign import main
-from rvmon.spec.checked.specification import RunShare
-from rvmon.verdict import Verdict
+from rvmon.language.checked.specification import RunShare
+from rvmon.verdicts import Verdict
 
 P, F, NT, I = Verdict  # noqa: E741 - the letters of the tables
 MOST = RunShare(at_least=False, percent=5.0)

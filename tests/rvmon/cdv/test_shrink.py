@@ -17,7 +17,7 @@ from rvmon.cdv.test import TestError, load, save, to_json
 from rvmon.cli.campaign import main
 from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 
 class Steps(cdv.Test):

@@ -10,8 +10,8 @@ from tests.tools.hostile import STEERING, hostile_names
 from rvmon.cli import main
 from rvmon.coverage import Group, Hit, Item, Subject, TestRecord, combination, group_of, model_of
 from rvmon.coverage.database import Database, read
-from rvmon.spec.checked.goals import BinKind
-from rvmon.verdict import Verdict
+from rvmon.language.checked.goals import BinKind
+from rvmon.verdicts import Verdict
 
 
 @pytest.fixture

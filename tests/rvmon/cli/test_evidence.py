@@ -11,8 +11,8 @@ import pytest
 
 import rvmon
 from rvmon.cli import main
-from rvmon.evidence.keep import About, derived_entries, pack, unpack
-from rvmon.evidence.matrix import rows_by_item
+from rvmon.evidence import About, derived_entries, pack, unpack
+from rvmon.report.trace_matrix import rows_by_item
 
 COMMON = "signal speed : real\nevent go\n"
 SPEC = """

@@ -12,7 +12,7 @@ from fsspec.registry import _registry
 import handover.cli
 from rvmon.cli import main
 from rvmon.errors import EXTRAS
-from rvmon.readers.messages.ros import bag_readers
+from rvmon.recordings.messages.ros import bag_readers
 
 ROOT = Path(__file__).parents[3]
 LACKING = [

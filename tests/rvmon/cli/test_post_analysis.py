@@ -9,8 +9,8 @@ import rvmon
 from rvmon.analysis.subformulas import why_not_triggered
 from rvmon.cli import post_analysis
 from rvmon.cli.judging import Options, judge
-from rvmon.readers import recording
-from rvmon.verdict.report import Report
+from rvmon.recordings import recording
+from rvmon.verdicts.report import Report
 
 HEAD = """
 spec cell

@@ -11,7 +11,7 @@ import pytest
 
 from rvmon.cli import main
 from rvmon.coverage.database import read
-from rvmon.verdict.report import Report
+from rvmon.verdicts.report import Report
 
 SPEC = """
 spec arm "An arm"

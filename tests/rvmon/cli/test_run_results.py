@@ -11,8 +11,8 @@ from tests.tools.logs import write_can
 import rvmon
 from rvmon.cli import main
 from rvmon.execute import journal
-from rvmon.verdict.attempt import LazyAttempts
-from rvmon.verdict.table_file import read_results
+from rvmon.verdicts.attempt import LazyAttempts
+from rvmon.verdicts.table_file import read_results
 
 SPEC = """signal p : bool
 requirement R1
@@ -40,7 +40,7 @@ def interrupted(monkeypatch, words):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patched:
-        patched.setattr("rvmon.verdict.table_file.write_whole", full)
+        patched.setattr("rvmon.verdicts.table_file.write_whole", full)
         assert main(words) == 130
 
 

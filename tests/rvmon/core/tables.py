@@ -13,13 +13,13 @@ import numpy as np
 from tests.tools.forms import Compiler, column_of
 
 from rvmon import native
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.monitor.planned import DECISIONS, PlannedCore, planned_core
 from rvmon.monitor.records import NUMBER, RECORD
-from rvmon.readers.coalesce import Conflicts, coalesce, updates_in
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.recordings.coalesce import Conflicts, coalesce, updates_in
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.trace.sample import Sample, Value
-from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdicts.attempt import Attempt, Decision
 
 TRACES = 4
 """So many random traces of a specification say which values and steps of time matter to it."""

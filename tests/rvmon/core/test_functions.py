@@ -5,8 +5,8 @@ import random
 import pytest
 
 import rvmon
-from rvmon.spec.checked.arithmetic import NumericOp, UnitRule
-from rvmon.spec.checked.formula import Arithmetic, Literal
+from rvmon.language.checked.arithmetic import NumericOp, UnitRule
+from rvmon.language.checked.formula import Arithmetic, Literal
 from rvmon.testing.law.numbers import number
 
 ANGLES = (UnitRule.OF_ANGLE, UnitRule.TURN, UnitRule.PLACES)

@@ -7,13 +7,13 @@ from dataclasses import fields
 import pytest
 from tests.tools.drive import feed
 
+from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.monitor import build_monitor
-from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 
 def told(attempt):

@@ -6,7 +6,7 @@ import pytest
 from tests.tools.differential import campaign
 from tests.tools.forms import Compiler, Maker
 
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.language.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 

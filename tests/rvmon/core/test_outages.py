@@ -12,13 +12,13 @@ from tests.tools.law import after_late, judge
 
 import rvmon
 from rvmon import native
+from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
 from rvmon.monitor.planned import PlannedCore, planned_core
 from rvmon.monitor.records import report_of_run
-from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
-from rvmon.verdict.report import Report
+from rvmon.verdicts.report import Report
 
 NAMES = """
 signal p, q : bool

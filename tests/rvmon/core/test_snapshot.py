@@ -15,10 +15,10 @@ from tests.tools.forms import Compiler
 from tests.tools.put_away import Twins, forged, put_away
 from tests.tools.special_specs import random_chain
 
+from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.planned import PlannedCore
 from rvmon.monitor.records import report_of_run
-from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.trace.sample import Sample

@@ -3,8 +3,8 @@
 import pytest
 
 import rvmon
-from rvmon.spec.checked.measured import Measured
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.language.checked.measured import Measured
+from rvmon.language.checked.specification import TimeModel
 
 HEIGHTS = "signal x, y : real [m]\nevent a, b"
 EXPRESSIONS = {

@@ -10,8 +10,8 @@ from rvmon.coverage import Ending, Group, Hit, Item, Subject, TestRecord, group_
 from rvmon.coverage.database import Database, read
 from rvmon.coverage.questions import Answers
 from rvmon.errors import CoverageError
-from rvmon.spec.checked.goals import BinKind
-from rvmon.verdict import Verdict
+from rvmon.language.checked.goals import BinKind
+from rvmon.verdicts import Verdict
 
 
 @pytest.fixture

@@ -7,16 +7,16 @@ from tests.tools.forms import Compiler, Maker
 from tests.tools.judgement import Judgement
 
 import rvmon
-from rvmon.spec.checked.formula import Formula, Unary, UnaryOp
-from rvmon.spec.print import format_formula
+from rvmon.language.checked.formula import Formula, Unary, UnaryOp
+from rvmon.language.print import format_formula
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.attempts import Start
 from rvmon.testing.law.syntax import subformulas
 from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.word import Truth
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt, Blame, Decision
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt, Blame, Decision
 
 PROFILE = Profile(depth=3, requirements=1, captures=False, for_each=False)
 

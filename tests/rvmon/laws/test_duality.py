@@ -35,9 +35,9 @@ from tests.tools.build import (
     two,
 )
 
-from rvmon.spec.checked.formula import Formula, Interval, UnaryOp
-from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, TimeModel
-from rvmon.spec.print import format_formula
+from rvmon.language.checked.formula import Formula, Interval, UnaryOp
+from rvmon.language.checked.specification import CheckedSpec, EndPolicy, TimeModel
+from rvmon.language.print import format_formula
 from rvmon.testing.generate.formula import Shape, interval
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.strategies import formulas, specs, traces

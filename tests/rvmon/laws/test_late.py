@@ -12,12 +12,12 @@ from tests.tools.build import always, p, probe, q, requirement, spec_of, timelin
 from tests.tools.compare import outcomes
 from tests.tools.law import after_late, is_touched, judge
 
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.language.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 
 @st.composite

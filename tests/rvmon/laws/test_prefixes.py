@@ -11,15 +11,15 @@ from tests.rvmon.laws.tried import TRIED, judge, judged_otherwise
 from tests.tools.compare import differences, outcomes
 from tests.tools.law import names_read
 
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.language.checked.specification import TimeModel
 from rvmon.testing.generate import BOOLS
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
-from rvmon.verdict.attempt import Decision
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Decision
+from rvmon.verdicts.report import Report
 
 pytestmark = pytest.mark.law
 

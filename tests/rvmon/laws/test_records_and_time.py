@@ -8,9 +8,9 @@ import pytest
 from tests.tools.build import requirement, spec_of
 from tests.tools.generate_ltl import random_mtl
 
+from rvmon.language.checked.formula import EventAtom
+from rvmon.language.checked.specification import TimeModel
 from rvmon.session import Spec
-from rvmon.spec.checked.formula import EventAtom
-from rvmon.spec.checked.specification import TimeModel
 
 
 @pytest.mark.law

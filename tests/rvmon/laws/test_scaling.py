@@ -9,13 +9,13 @@ from hypothesis import assume, given
 from tests.rvmon.laws.tried import TRIED, judge
 from tests.tools.build import scaled
 
-from rvmon.spec.checked.formula import Formula, UpdateFunction, UpdateValue
+from rvmon.language.checked.formula import Formula, UpdateFunction, UpdateValue
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.syntax import numerics, parts_of
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
-from rvmon.verdict.report import Report
+from rvmon.verdicts.report import Report
 
 SPARSE = 1_000
 """So many ticks between any two instants that differ: one tick more never meets another."""

@@ -14,9 +14,9 @@ from tests.tools.compare import outcomes
 from tests.tools.refill import refilled
 from tests.tools.sound import is_spoken_of
 
-from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Mode
+from rvmon.language.checked.specification import CheckedSpec, EndPolicy, Mode
 from rvmon.testing.strategies import specs, traces
-from rvmon.verdict.attempt import Decision
+from rvmon.verdicts.attempt import Decision
 
 
 @pytest.mark.law

@@ -11,16 +11,16 @@ from tests.rvmon.laws.tried import ONE, TRIED, judge, known_from_the_first
 from tests.tools.build import always, end, no, p, requirement, two
 from tests.tools.compare import Outcome, outcomes
 
+from rvmon.language.checked.classify import subformulas
+from rvmon.language.checked.formula import Compare, Formula, SignalAtom
+from rvmon.language.checked.specification import CheckedSpec, Mode
 from rvmon.logic.state_formula import signals_of
-from rvmon.spec.checked.classify import subformulas
-from rvmon.spec.checked.formula import Compare, Formula, SignalAtom
-from rvmon.spec.checked.specification import CheckedSpec, Mode
 from rvmon.testing.generate import signals
 from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.strategies import specs, traces
-from rvmon.verdict import Verdict
-from rvmon.verdict.report import Report
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.report import Report
 
 pytestmark = pytest.mark.law
 

@@ -12,7 +12,7 @@ from tests.tools.forms import Maker
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample, Value
-from rvmon.verdict.report import Report
+from rvmon.verdicts.report import Report
 
 TRIED = settings(
     max_examples=20,

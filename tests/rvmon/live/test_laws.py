@@ -10,7 +10,7 @@ from rvmon.live import Driver, SimulatedClock
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 pytestmark = pytest.mark.law
 PART, PARTS = 25, 4

@@ -9,8 +9,8 @@ from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Decision
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Decision
 
 pytestmark = pytest.mark.law
 

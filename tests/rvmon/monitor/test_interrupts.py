@@ -13,8 +13,8 @@ from rvmon.monitor.monitor import Monitor
 from rvmon.report.junit import junit_xml
 from rvmon.report.wording import health_facts
 from rvmon.trace.sample import HealthKind
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import Report
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
 
 pytestmark = pytest.mark.law
 

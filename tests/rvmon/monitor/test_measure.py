@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import rvmon
-from rvmon.readers.source import Source
+from rvmon.recordings.source import Source
 
 PAIRS = 40
 COMPARED = ("<", "<=", "==", "!=", ">=", ">")

@@ -6,7 +6,7 @@ import pytest
 
 import rvmon
 from rvmon.errors import TraceError, UnknownNameError
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 SPEC = """spec handover "Handover"
 time held

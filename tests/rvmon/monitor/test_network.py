@@ -8,9 +8,9 @@ from tests.tools.drive import drive
 
 import rvmon
 from rvmon.analysis.words import facts_of
+from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.session import Spec
-from rvmon.spec.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 

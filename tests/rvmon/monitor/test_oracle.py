@@ -7,15 +7,15 @@ from tests.tools.drive import feed
 from tests.tools.judgement import Judgement
 
 from rvmon import loads
+from rvmon.language.checked.specification import Mode, TimeModel
 from rvmon.monitor.robustness import RobustnessMonitor
 from rvmon.session import Spec
-from rvmon.spec.checked.specification import Mode, TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, show_case
 from rvmon.testing.law.margins import margins
 from rvmon.trace.sample import Sample
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Decision
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Decision
 
 pytestmark = pytest.mark.law
 

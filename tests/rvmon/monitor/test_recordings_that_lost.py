@@ -10,9 +10,9 @@ from tests.tools.doors import content_of, whole
 from tests.tools.judgement import Judgement
 
 import rvmon
-from rvmon.readers.batch import Batch
-from rvmon.readers.columns import TableRecording
-from rvmon.readers.source import Source
+from rvmon.recordings.batch import Batch
+from rvmon.recordings.columns import TableRecording
+from rvmon.recordings.source import Source
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace, show_case

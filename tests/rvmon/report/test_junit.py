@@ -4,9 +4,9 @@ import xml.etree.ElementTree as ET
 
 import rvmon
 from rvmon.report.junit import junit_xml
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt
-from rvmon.verdict.report import report_of
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import report_of
 
 SPEC = rvmon.loads(
     "spec door\nsignal a : bool input\n"

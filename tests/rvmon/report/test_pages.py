@@ -7,12 +7,12 @@ from tests.tools.covered import fill
 from tests.tools.looked_at import faults
 
 from rvmon.coverage.database import Database
-from rvmon.evidence.matrix import Traced, matrix_page
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
 from rvmon.report.run_html import run_page
 from rvmon.report.run_pages import Listed, run_index
-from rvmon.verdict.known_failures import NONE_KNOWN
+from rvmon.report.trace_matrix import Traced, matrix_page
+from rvmon.verdicts.known_failures import NONE_KNOWN
 
 
 def test_pages_are_fit_for_everybody(chromium, tmp_path):

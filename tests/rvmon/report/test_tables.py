@@ -9,7 +9,7 @@ from rich.console import Console
 from rvmon.report.pages import table_html
 from rvmon.report.style import MARKS
 from rvmon.report.table import RunGroup, VerdictTable, escape, table_latex, table_text, tables_csv
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 
 def counts(*figures):

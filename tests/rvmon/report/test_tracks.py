@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rvmon
-from rvmon.readers import places
-from rvmon.readers.held import HeldRecording
+from rvmon.recordings import places
+from rvmon.recordings.held import HeldRecording
 from rvmon.report.changes import Course, changes_of
 from rvmon.report.time_axis import View, round_instants, view_of
 from rvmon.report.tracks import (
@@ -27,9 +27,9 @@ from rvmon.report.tracks import (
     tracks_of,
 )
 from rvmon.trace.sample import Outage, Sample
-from rvmon.verdict import Verdict
-from rvmon.verdict.attempt import Attempt, Blame
-from rvmon.verdict.report import report_of
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt, Blame
+from rvmon.verdicts.report import report_of
 
 SECOND = 1_000_000_000
 SPEC_TEXT = """

@@ -10,13 +10,13 @@ from tests.tools.compare import differences
 from tests.tools.drive import drive
 from tests.tools.forms import Maker
 
-from rvmon.spec.checked.formula import Formula
-from rvmon.spec.checked.specification import Requirement, TimeModel
+from rvmon.language.checked.formula import Formula
+from rvmon.language.checked.specification import Requirement, TimeModel
 from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.word import Outage
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
-from rvmon.verdict.attempt import Attempt, Decision
+from rvmon.verdicts.attempt import Attempt, Decision
 
 Judge = Callable[..., list[str]]
 

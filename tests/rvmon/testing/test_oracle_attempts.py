@@ -32,13 +32,13 @@ from tests.tools.build import (
 )
 
 from rvmon.errors import RvmonError
-from rvmon.spec.checked import classify
-from rvmon.spec.checked.formula import Captured, Formula
-from rvmon.spec.checked.specification import Capture, ForEach, TimeModel
+from rvmon.language.checked import classify
+from rvmon.language.checked.formula import Captured, Formula
+from rvmon.language.checked.specification import Capture, ForEach, TimeModel
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 
 def starts(judge: Any, trigger: Formula, **told: Any) -> list[int]:

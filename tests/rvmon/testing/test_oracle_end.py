@@ -17,8 +17,8 @@ from tests.tools.build import (
     two,
 )
 
-from rvmon.spec.checked.formula import Formula
-from rvmon.spec.checked.specification import EndPolicy, TimeModel
+from rvmon.language.checked.formula import Formula
+from rvmon.language.checked.specification import EndPolicy, TimeModel
 
 SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 from tests.tools.build import always, eventually, following, no, p, q, two
 
-from rvmon.spec.checked.formula import Formula
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.language.checked.formula import Formula
+from rvmon.language.checked.specification import TimeModel
 
 SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}

@@ -24,8 +24,8 @@ from tests.tools.build import (
 )
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.spec.checked.arithmetic import NumericOp
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.formula import (
     Arithmetic,
     Formula,
     Literal,
@@ -34,7 +34,7 @@ from rvmon.spec.checked.formula import (
     UpdateFunction,
     UpdateValue,
 )
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.language.checked.specification import TimeModel
 from rvmon.testing.law.sample_words import MOST_TICKS
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample, Trace

@@ -26,8 +26,8 @@ from tests.tools.build import (
     x,
 )
 
-from rvmon.spec.checked.formula import Captured, Formula, UpdateFunction, UpdateValue
-from rvmon.spec.checked.specification import Capture, EndPolicy, ForEach, TimeModel
+from rvmon.language.checked.formula import Captured, Formula, UpdateFunction, UpdateValue
+from rvmon.language.checked.specification import Capture, EndPolicy, ForEach, TimeModel
 
 SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_4 = {"time": TimeModel.CLOCKED, "period": 4}

@@ -25,8 +25,8 @@ from tests.tools.build import (
     two,
 )
 
-from rvmon.spec.checked.formula import Formula
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.language.checked.formula import Formula
+from rvmon.language.checked.specification import TimeModel
 
 
 @pytest.mark.parametrize(

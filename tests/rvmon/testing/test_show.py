@@ -9,7 +9,7 @@ from tests.tools.differential import case_of
 from tests.tools.law import judge
 
 import rvmon
-from rvmon.spec.checked.specification import Requirement
+from rvmon.language.checked.specification import Requirement
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, show_case, show_spec
 from rvmon.testing.oracle import evaluate

@@ -16,7 +16,7 @@ from rvmon.cdv.plan import Job, Played
 from rvmon.cdv.play import INTERRUPTED, Waiting, outcomes
 from rvmon.coverage import Ending, model_of
 from rvmon.coverage.ranking import Smallest, smallest
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 BATCH = 4
 """Tests that are played before anything is learned from them, whatever the number of processes."""

@@ -25,13 +25,13 @@ from rvmon.coverage import (
     without,
 )
 from rvmon.coverage.holes import Goal, Hole, hole_of, nearest_tests
-from rvmon.spec.checked.goals import BinKind
+from rvmon.language.checked.goals import BinKind
 
 if TYPE_CHECKING:
     from rvmon.cdv.test import Test
-    from rvmon.timed.model.network import Edge, Network
-    from rvmon.timed.runs.run import Run
-    from rvmon.timed.search.suite import Suite
+    from rvmon.models.network.network import Edge, Network
+    from rvmon.models.runs.run import Run
+    from rvmon.models.search.suite import Suite
 
 
 class Goals:
@@ -160,8 +160,8 @@ class Witnesses:
 
     @cached_property
     def _suite(self) -> Suite:
-        from rvmon.timed.search.meter import Budget
-        from rvmon.timed.search.suite import Criterion, build_suite
+        from rvmon.models.search.meter import Budget
+        from rvmon.models.search.suite import Criterion, build_suite
 
         return build_suite(self._network, Criterion.EDGES, budget=Budget(states=MOST_STATES))
 
@@ -258,8 +258,8 @@ class Witnesses:
         return None if suite.stopped else Proof(f"the edge {name}")
 
     def _asked(self, query: str) -> Witness | Proof | None:
-        from rvmon.timed.search.meter import Budget
-        from rvmon.timed.search.verify import verify
+        from rvmon.models.search.meter import Budget
+        from rvmon.models.search.verify import verify
 
         outcome = verify(self._network, query, budget=Budget(states=MOST_STATES))
         if outcome.run is not None:

@@ -20,7 +20,7 @@ from rvmon.coverage import Subject
 from rvmon.errors import RvmonError
 from rvmon.execute import Ended, parallel
 from rvmon.session import Spec
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,7 @@ from rvmon.cdv.play import Bench
 from rvmon.errors import RvmonError
 from rvmon.execute import Ended, parallel
 from rvmon.texts import text_of_file
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 
 def plant(mutant: Mutant, source: str) -> None:

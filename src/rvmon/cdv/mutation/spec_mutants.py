@@ -20,11 +20,8 @@ from rvmon.cdv.mutation.baseline import Recorded
 from rvmon.cdv.mutation.python_mutants import third_of
 from rvmon.cdv.mutation.tried import Score
 from rvmon.cdv.system import Checker
-from rvmon.logic.formula import horizon
-from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.session import Spec
-from rvmon.spec.checked.classify import is_pulse
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.classify import is_pulse
+from rvmon.language.checked.formula import (
     Amount,
     Binary,
     BinaryOp,
@@ -42,10 +39,13 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
     WindowValue,
 )
-from rvmon.spec.checked.specification import CheckedSpec, Requirement
-from rvmon.spec.print import format_duration, format_formula
+from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.language.print import format_duration, format_formula
+from rvmon.logic.formula import horizon
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.session import Spec
 from rvmon.trace.time import TICKS_PER_UNIT
-from rvmon.verdict import Verdict
+from rvmon.verdicts import Verdict
 
 _CONNECTIVES = {
     BinaryOp.AND: BinaryOp.OR,
@@ -176,7 +176,7 @@ SPEC_OPERATORS: Mapping[str, Callable[[Formula], Iterator[Formula]]] = {
 def changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
     """All changes of a formula: the operator's name, and the whole formula with it.
 
-    >>> from rvmon.spec.print import format_formula
+    >>> from rvmon.language.print import format_formula
     >>> within = Unary(UnaryOp.EVENTUALLY, EventAtom("released"), Interval(0, 3 * 10**9))
     >>> [format_formula(changed) for name, changed in changes(within) if name == "bound"]
     ['within 4 s released', 'within 2 s released']

@@ -15,8 +15,8 @@ from pathlib import Path
 from rvmon.cdv.mutation.baseline import Difference, Recorded
 from rvmon.cdv.mutation.python_mutants import HELD_OUT, Mutant
 from rvmon.errors import RvmonError
-from rvmon.spec.checked.names_read import names_of_requirement
-from rvmon.spec.checked.specification import CheckedSpec
+from rvmon.language.checked.names_read import names_of_requirement
+from rvmon.language.checked.specification import CheckedSpec
 from rvmon.texts import text_of_file
 
 

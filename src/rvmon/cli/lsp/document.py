@@ -26,10 +26,10 @@ from rvmon.analysis.codes import page_of
 from rvmon.cli.lsp.names import Names
 from rvmon.diagnostics import Diagnostic, Severity, Source, Span
 from rvmon.files import cache_folder, write_whole
-from rvmon.spec.compile import Compilation, compilation
-from rvmon.spec.syntax.expressions import Ident
-from rvmon.spec.syntax.items import EventItem, ImportItem, Item, SignalItem
-from rvmon.spec.syntax.words import split_items
+from rvmon.language.compile import Compilation, compilation
+from rvmon.language.syntax.expressions import Ident
+from rvmon.language.syntax.items import EventItem, ImportItem, Item, SignalItem
+from rvmon.language.syntax.words import split_items
 from rvmon.texts import proposed, shown
 
 _WIDTHS = {
@@ -278,7 +278,7 @@ def _address(source: Source) -> str:
     """The address of an imported file; those of libraries have no path as name."""
     if os.path.isabs(source.name):
         return str(from_fs_path(os.path.normpath(source.name)))
-    return str(from_fs_path(str(resources.files("rvmon.spec") / source.name)))
+    return str(from_fs_path(str(resources.files("rvmon.language") / source.name)))
 
 
 def _declared(item: Item) -> list[Ident]:

@@ -8,10 +8,10 @@ from dataclasses import fields, is_dataclass
 from functools import cache
 
 from rvmon.diagnostics import Span
-from rvmon.spec.checked.functions import FUNCTIONS
-from rvmon.spec.checked.operators import OPERATORS
-from rvmon.spec.syntax.expressions import Call, Comparison, Group, Ident, Name
-from rvmon.spec.syntax.items import (
+from rvmon.language.checked.functions import FUNCTIONS
+from rvmon.language.checked.operators import OPERATORS
+from rvmon.language.syntax.expressions import Call, Comparison, Group, Ident, Name
+from rvmon.language.syntax.items import (
     ConstItem,
     CoverItem,
     CoverpointItem,

@@ -20,10 +20,10 @@ from rvmon.cli.lsp.document import Document, Text
 from rvmon.cli.lsp.names import meanings
 from rvmon.diagnostics import Source, Span
 from rvmon.errors import SpecError
-from rvmon.spec.print.formatter import format_text
-from rvmon.spec.syntax.expressions import Name
-from rvmon.spec.syntax.parse import parse_expression
-from rvmon.starter.skeletons import name_text
+from rvmon.language.print.formatter import format_text
+from rvmon.language.syntax.expressions import Name
+from rvmon.language.syntax.parse import parse_expression
+from rvmon.recordings.starter.skeletons import name_text
 from rvmon.texts import text_of_file
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Container, Mapping, Sequence
 from typing import Protocol, TypeVar
 
-from rvmon.spec.checked.specification import Event, Signal, Type
+from rvmon.language.checked.specification import Event, Signal, Type
 from rvmon.trace.schema import Kind
 
 T = TypeVar("T")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
@@ -18,7 +18,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.checked.operators import Tense, Window
+from rvmon.language.checked.operators import Tense, Window
 from rvmon.testing.generate import (
     BOOLS,
     CARRIER,

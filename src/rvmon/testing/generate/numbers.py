@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from rvmon.spec.checked.arithmetic import NumericOp, UnitRule
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.arithmetic import NumericOp, UnitRule
+from rvmon.language.checked.formula import (
     Arithmetic,
     Captured,
     Compare,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 
-from rvmon.spec.checked.classify import is_end, windows_of
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.classify import is_end, windows_of
+from rvmon.language.checked.formula import (
     Binary,
     BinaryOp,
     Bound,
@@ -24,7 +24,7 @@ from rvmon.spec.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.spec.checked.specification import (
+from rvmon.language.checked.specification import (
     Capture,
     CheckedSpec,
     EndPolicy,

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.spec.checked.formula import Interval, Literal
-from rvmon.spec.checked.specification import (
+from rvmon.language.checked.formula import Interval, Literal
+from rvmon.language.checked.specification import (
     CheckedSpec,
     EndPolicy,
     Requirement,
@@ -14,7 +14,7 @@ from rvmon.spec.checked.specification import (
     TimeModel,
     Type,
 )
-from rvmon.spec.print import format_formula, format_numeric
+from rvmon.language.print import format_formula, format_numeric
 from rvmon.testing.generate import Rng, chance, pick
 from rvmon.testing.law.syntax import intervals, numerics
 from rvmon.testing.law.word import Outage

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
-from rvmon.spec.checked.arithmetic import NumericOp
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.formula import (
     Amount,
     Arithmetic,
     Binary,
@@ -27,8 +27,8 @@ from rvmon.spec.checked.formula import (
     passed,
     windows_in,
 )
-from rvmon.spec.checked.measured import Members
-from rvmon.spec.checked.names_read import names_in
+from rvmon.language.checked.measured import Members
+from rvmon.language.checked.names_read import names_in
 from rvmon.testing.generate import (
     CARRIER,
     FIELD,

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from rvmon.spec.checked.arithmetic import NumericOp
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.formula import (
     Amount,
     Arithmetic,
     Compare,

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import assert_never
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Amount,
     Binary,
     BinaryOp,
@@ -25,7 +25,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
     windows_in,
 )
-from rvmon.spec.checked.specification import Mode, Requirement
+from rvmon.language.checked.specification import Mode, Requirement
 from rvmon.testing.law.numbers import events_of, is_born, known_scalar, number
 from rvmon.testing.law.syntax import is_upon_end, subformulas
 from rvmon.testing.law.truths import Truths

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 from rvmon.errors import RvmonError
-from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
-from rvmon.spec.checked.specification import Mode, Requirement
+from rvmon.language.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
+from rvmon.language.checked.specification import Mode, Requirement
 from rvmon.testing.law.attempts import (
     Start,
     View,

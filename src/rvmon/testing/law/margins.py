@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Mapping
 from typing import assert_never
 
-from rvmon.spec.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
-from rvmon.spec.checked.specification import Mode, TimeModel
+from rvmon.language.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
+from rvmon.language.checked.specification import Mode, TimeModel
 from rvmon.testing.law.attempts import Start, counts_in_favour
 from rvmon.testing.law.decisions import Followings
 from rvmon.testing.law.past import is_within, lasted

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from rvmon.spec.checked.formula import Formula, Interval
+from rvmon.language.checked.formula import Formula, Interval
 from rvmon.testing.law.syntax import constant_value
 from rvmon.testing.law.word import (
     Letter,

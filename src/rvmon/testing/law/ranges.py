@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Amount,
     Binary,
     BinaryOp,

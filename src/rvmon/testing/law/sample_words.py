@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import dropwhile, pairwise
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.spec.checked.specification import CheckedSpec, Event, Signal, TimeModel
+from rvmon.language.checked.specification import CheckedSpec, Event, Signal, TimeModel
 from rvmon.testing.law.numbers import at_edge, known_scalar
 from rvmon.testing.law.word import (
     EventState,

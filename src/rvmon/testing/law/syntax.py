@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Amount,
     Arithmetic,
     Binary,
@@ -21,7 +21,7 @@ from rvmon.spec.checked.formula import (
     UnaryOp,
     windows_in,
 )
-from rvmon.spec.checked.specification import Requirement
+from rvmon.language.checked.specification import Requirement
 from rvmon.testing.law.word import Truth, conjunction, disjunction, negation, truth_of
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Protocol, assert_never
 
-from rvmon.spec.checked.formula import (
+from rvmon.language.checked.formula import (
     Amount,
     Binary,
     BinaryOp,

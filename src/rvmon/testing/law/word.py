@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import Enum, IntEnum, auto
 
-from rvmon.spec.checked.formula import Probe
+from rvmon.language.checked.formula import Probe
 from rvmon.trace.sample import Payload, Scalar
 
 

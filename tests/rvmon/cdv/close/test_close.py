@@ -16,8 +16,8 @@ from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.test import TestError
 from rvmon.coverage import Ending
 from rvmon.errors import ModelError, UnknownNameError
+from rvmon.models.language.load import loads_network
 from rvmon.report.terminal import Terminal
-from rvmon.timed.language.load import loads_network
 
 SPEC = """
 spec dials "Two dials"

@@ -6,7 +6,7 @@ from rvmon import load, loads
 from rvmon.cdv.mutation.baseline import Recorded
 from rvmon.cdv.mutation.spec_mutants import SPEC_OPERATORS, spec_mutants, try_spec_mutants
 from rvmon.cdv.system import Run
-from rvmon.spec.print import format_formula
+from rvmon.language.print import format_formula
 
 DECLARED = "signal x : real [m]\nsignal p, q : bool\nevent go, stop, beep\n"
 

@@ -6,8 +6,22 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.spec.checked.formula import Binary, BinaryOp, Bound, BoundAtom, Interval, Unary, UnaryOp
-from rvmon.spec.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement, TimeModel
+from rvmon.language.checked.formula import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Interval,
+    Unary,
+    UnaryOp,
+)
+from rvmon.language.checked.specification import (
+    CheckedSpec,
+    EndPolicy,
+    Mode,
+    Requirement,
+    TimeModel,
+)
 from rvmon.testing.law.syntax import subformulas
 
 WINDOWS = ("[0,0]", "[0,b]", "[0,∞)", "[a,a]", "[a,b]", "[a,∞)")

@@ -16,8 +16,8 @@ from tests.tools.differential import Campaign, case_of
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge
 
-from rvmon.spec.checked.formula import Binary, BinaryOp, Compare, Unary, UnaryOp
-from rvmon.spec.checked.specification import EndPolicy, TimeModel
+from rvmon.language.checked.formula import Binary, BinaryOp, Compare, Unary, UnaryOp
+from rvmon.language.checked.specification import EndPolicy, TimeModel
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.testing.law.attempts import is_pulse

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from tests.tools.build import compared, spec_of, x, y
 
-from rvmon.spec.checked.arithmetic import NumericOp
-from rvmon.spec.checked.formula import Arithmetic, Literal, Numeric, UpdateFunction, UpdateValue
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.formula import Arithmetic, Literal, Numeric, UpdateFunction, UpdateValue
 from rvmon.testing.law.numbers import compare, number
 from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.word import Truth

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from tests.tools.differential import case_of
 
-from rvmon.spec.checked.specification import TimeModel
+from rvmon.language.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.law.attempts import Readings, obligation

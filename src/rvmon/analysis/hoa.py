@@ -1,0 +1,247 @@
+"""Untimed requirements as automata in the Hanoi Omega-Automata format.
+
+Source: Babiak et al., The Hanoi Omega-Automata Format, CAV 2015; version 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
+
+from rvmon.analysis.graph import (
+    ANY,
+    Cube,
+    graph_of,
+    inputs_of,
+    letters_of,
+    proposition_texts,
+)
+from rvmon.errors import RvmonError
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.logic.automaton import FAILED, PASSED, Automaton
+from rvmon.monitor.compile import CompiledRequirement
+from rvmon.texts import quoted
+from rvmon.verdicts import Verdict
+from rvmon.version import __version__
+
+MOST_PROPOSITIONS = 12
+
+START = -1
+"""The state at the trigger, as long as it is none of the others."""
+
+Edges = Mapping[Cube, int]
+"""Where each letter that there can be leads."""
+
+
+def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
+    """The least LTL3 monitor of a requirement.
+
+    A word begins at the position of the trigger. State `P` is entered when every continuation
+    fulfils what is required, `F` when none does; the automaton accepts the words that come to `P`.
+    Letters that inputs cannot bring about lead anywhere: no label speaks of them, nor is a
+    proposition listed that none of the others needs.
+
+    Raises:
+        RvmonError: it has windows, no automaton, or too many propositions.
+    """
+    name, automaton = compiled.requirement.id, compiled.automaton
+    if automaton is None:
+        raise RvmonError(f"error: {name} has no automaton: {compiled.refusal}")
+    if automaton.clocks:
+        raise RvmonError(
+            f"error: {name} has windows of time, which HOA cannot express: write `--to dot` or "
+            "`--to json`"
+        )
+    letters = letters_of(automaton.alphabet, MOST_PROPOSITIONS)
+    if not letters:
+        raise RvmonError(
+            f"error: {name} reads more than {MOST_PROPOSITIONS} propositions: its labels would "
+            "fill pages; write `--to json`"
+        )
+    first, later = inputs_of(compiled, spec, letters)
+    # Where the trigger cannot be, a word begins with any letter.
+    states = _Machine(compiled, automaton, letters, later).least(first or later)
+    propositions = automaton.alphabet.propositions
+    shown = [(word, [*_disjoint(edges, range(len(propositions)))]) for word, edges in states]
+    read = [
+        place
+        for place in range(len(propositions))
+        if any(cube[place] != ANY for _, edges in shown for cube, _ in edges)
+    ]
+    texts = proposition_texts(compiled)
+    names = [quoted(texts[propositions[place]]) for place in read]
+    requirement = compiled.requirement
+    lines = [
+        "HOA: v1",
+        f"name: {quoted(': '.join(filter(None, (requirement.id, requirement.text))))}",
+        f'tool: "rvmon" {quoted(__version__)}',
+        f"States: {len(states)}",
+        "Start: 0",
+        " ".join(["AP:", str(len(names)), *names]),
+        "acc-name: Buchi",
+        "Acceptance: 1 Inf(0)",
+        "properties: trans-labels explicit-labels state-acc complete deterministic",
+        "--BODY--",
+    ]
+    for number, (word, edges) in enumerate(shown):
+        lines.append(f"State: {number} {quoted(word)}{' {0}' if word == 'P' else ''}")
+        grouped: dict[int, list[str]] = {}
+        for cube, target in edges:
+            grouped.setdefault(target, []).append(_label([cube[place] for place in read]))
+        lines += [f"[{' | '.join(labels)}] {target}" for target, labels in grouped.items()]
+    return "\n".join([*lines, "--END--", ""])
+
+
+class _Machine:
+    """A requirement's automaton that says `P` or `F` as soon as every continuation agrees.
+
+    Source: Bauer, Leucker and Schallhart, Runtime verification for LTL and TLTL, ACM TOSEM 20(4),
+    2011, section 3.
+    """
+
+    def __init__(
+        self,
+        compiled: CompiledRequirement,
+        automaton: Automaton,
+        letters: Mapping[Cube, int],
+        can_be: Set[Cube],
+    ) -> None:
+        self.automaton, self.letters = automaton, letters
+        self.edges = [self._edges(index, can_be) for index in range(len(automaton.locations))]
+        found = (
+            compiled.forecaster.of(location.residual, (), None) for location in automaton.locations
+        )
+        self.words = [{True: "P", False: "F", None: "?"}[end] for end in found]
+        while ahead := {at: w for at, e in enumerate(self.edges) if (w := self._ahead(at, e))}:
+            for index, word in ahead.items():
+                self.words[index] = word
+        for index, word in enumerate(self.words):
+            if word != "?":
+                self.edges[index] = dict.fromkeys(can_be, index)
+
+    def _edges(self, index: int, can_be: Set[Cube]) -> Edges:
+        if index <= PASSED:
+            return dict.fromkeys(can_be, index)
+        automaton = self.automaton
+        row = automaton.bases[index] * automaton.classes
+        return {
+            cube: automaton.targets[automaton.edges[row + automaton.class_of[letter]]]
+            for cube, letter in self.letters.items()
+            if cube in can_be
+        }
+
+    def _ahead(self, index: int, edges: Edges) -> str:
+        """`P` or `F` if every letter leads there and nobody has said so yet; else nothing."""
+        words = {self.words[target] for target in edges.values()}
+        return words.pop() if self.words[index] == "?" and words in ({"P"}, {"F"}) else ""
+
+    def least(self, first: Set[Cube]) -> list[tuple[str, Edges]]:
+        """The states that are reached, that at the trigger first: what is said there, its edges.
+
+        Args:
+            first: the letters that there can be at the trigger.
+
+        Source: partition refinement, Moore 1956; of letters that cannot be nothing is asked.
+        """
+        blocks = self._blocks()
+        initial = self.automaton.initial
+        is_open = self.words[initial] == "?"
+        begun = self._edges(initial, first) if is_open else self.edges[initial]
+        word, edges = self._ahead(initial, begun) or self.words[initial], _renamed(begun, blocks)
+        states = {
+            block: (own, _renamed(its, blocks))
+            for block, own, its in zip(blocks, self.words, self.edges, strict=True)
+        }
+        states[START] = word, edges
+        order = [*dict.fromkeys(edges.values())]
+        for block in order:  # it grows on the way
+            order += [to for to in dict.fromkeys(states[block][1].values()) if to not in order]
+        alike = (
+            block
+            for block in order
+            if states[block][0] == word and edges.items() <= states[block][1].items()
+        )
+        begin = next(alike, START)  # at the trigger it may be as it is later
+        number = {block: n for n, block in enumerate(dict.fromkeys((begin, *order)))}
+        return [(states[block][0], _renamed(states[block][1], number)) for block in number]
+
+    def _blocks(self) -> list[int]:
+        """The block of each location: those of one are alike."""
+        blocks = _numbered(self.words)
+        while True:
+            looks = zip(blocks, self.edges, strict=True)
+            finer = _numbered([(own, *(blocks[to] for to in e.values())) for own, e in looks])
+            if max(finer) == max(blocks):
+                return blocks
+            blocks = finer
+
+
+def _renamed(edges: Edges, names: Sequence[int] | Mapping[int, int]) -> Edges:
+    return {cube: names[target] for cube, target in edges.items()}
+
+
+def _numbered(looks: Sequence[Hashable]) -> list[int]:
+    numbers: dict[Hashable, int] = {}
+    return [numbers.setdefault(look, len(numbers)) for look in looks]
+
+
+def _disjoint(edges: Edges, places: Sequence[int]) -> Iterator[tuple[Cube, int]]:
+    """Targets with conditions of which one always holds; each proposition once, if it matters.
+
+    Source: don't-cares of diagrams after Coudert and Madre 1990; here the first that serves.
+    """
+    if len({*edges.values()}) == 1:
+        yield (ANY,) * len(next(iter(edges))), next(iter(edges.values()))
+        return
+    place, *rest = places
+    halves = [{cube: to for cube, to in edges.items() if cube[place] == one} for one in (0, 1)]
+    without = [{_with(cube, place, ANY): to for cube, to in half.items()} for half in halves]
+    if all(without[1].get(cube, to) == to for cube, to in without[0].items()):
+        yield from _disjoint({**without[0], **without[1]}, rest)
+        return
+    for truth, half in enumerate(without):
+        yield from ((_with(cube, place, truth), to) for cube, to in _disjoint(half, rest))
+
+
+def _with(cube: Cube, place: int, truth: int) -> Cube:
+    return (*cube[:place], truth, *cube[place + 1 :])
+
+
+def _label(cube: Sequence[int]) -> str:
+    parts = [f"{'' if truth else '!'}{at}" for at, truth in enumerate(cube) if truth != ANY]
+    return "&".join(parts) or "t"
+
+
+def automaton_json(compiled: CompiledRequirement, spec: CheckedSpec) -> dict[str, object]:
+    """Locations with what is required there, edges with their conditions; ages in ticks.
+
+    Raises:
+        RvmonError: it has no automaton.
+    """
+    requirement, automaton = compiled.requirement, compiled.automaton
+    if automaton is None:
+        raise RvmonError(f"error: {requirement.id} has no automaton: {compiled.refusal}")
+    graph = graph_of(compiled, automaton, spec)
+    locations = [
+        {
+            "name": place.name,
+            "required": place.required,
+            "clock_cuts_ns": automaton.locations[place.location].cuts,
+            "verdict": {FAILED: Verdict.FAIL, PASSED: Verdict.PASS}.get(place.location),
+        }
+        for place in graph.places
+    ]
+    return {
+        "requirement": requirement.id,
+        "text": requirement.text,
+        "locations": locations,
+        "edges": [
+            {
+                "source": edge.source,
+                "target": edge.target,
+                "condition": edge.condition,
+                "ages": edge.when,
+                "sets": edge.sets,
+            }
+            for edge in graph.edges
+        ],
+    }

@@ -1,0 +1,182 @@
+"""From resolved names to the checked specification: types, units, durations, requirements."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rvmon.diagnostics import Span
+from rvmon.language.check.coverage import checked_cover, checked_coverpoint, checked_cross
+from rvmon.language.check.ctl import checked_goal, checked_property
+from rvmon.language.check.expressions import Checker
+from rvmon.language.check.requirements import check_clauses, checked_requirement
+from rvmon.language.check.scope import EVERYWHERE, Table, close_name, close_unit
+from rvmon.language.checked.goals import Cover
+from rvmon.language.checked.specification import (
+    CheckedSpec,
+    Event,
+    Requirement,
+    Signal,
+    TimeModel,
+    Type,
+)
+from rvmon.language.names import DeclaredEvent, DeclaredSignal, ResolvedSpec, find_cycles
+from rvmon.language.rules import Findings
+from rvmon.language.rules import names as name_rules
+from rvmon.language.rules import time as time_rules
+from rvmon.language.rules import types as type_rules
+from rvmon.language.syntax.expressions import Expression, Name, expressions_in
+from rvmon.language.syntax.items import ConstItem, CoverMonitor, DefineItem, TypeSyntax
+from rvmon.trace.schema import Kind
+from rvmon.units import Unit, UnknownUnitError, parse_unit
+
+
+def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
+    """Check everything that a specification says.
+
+    Returns:
+        What could be checked; it is fit for use if no finding is an error.
+    """
+    recursive = find_cycles(spec.declared, findings)
+    table = _table(spec, recursive, findings)
+    checker = Checker(table, findings, sum(len(source.text) for source in spec.sources))
+    signals = dict(table.signals)
+    for declared in spec.declared.values():
+        if isinstance(declared, DeclaredSignal) and declared.stale_after is not None:
+            name = declared.name.text
+            if name in signals:
+                what = "the age at which a signal is stale"
+                ticks = _positive(checker, declared.stale_after, what)
+                signals[name] = replace(signals[name], stale_after=ticks)
+    period = delay = None
+    if spec.time is not None and spec.time.period is not None:
+        period = _positive(checker, spec.time.period, "the period")
+    if spec.delay is not None:
+        delay = checker.collected(checker.duration, spec.delay.delay, EVERYWHERE)
+    requirements: dict[str, Requirement] = {}
+    goals: dict[str, Cover] = {}
+    for name, item in spec.requirements.items():
+        check_clauses(checker, item)
+        if isinstance(item.body, CoverMonitor):
+            goal = checker.collected(checked_goal, checker, item, item.body.span)
+            goals.update({} if goal is None else {name: goal})
+            continue
+        requirement = checker.collected(checked_requirement, checker, item)
+        if requirement is not None:
+            requirements[name] = requirement
+    check_unused(checker, spec)
+    stated: list[Requirement | Cover] = [*requirements.values(), *goals.values()]
+    properties = {one.id: one.ctl for one in stated if one.ctl is not None}
+    for name, alone in spec.properties.items():
+        if found := checked_property(checker, name, alone.formula):
+            properties[name] = found
+    covers = {
+        name: cover
+        for name, syntax in spec.covers.items()
+        if (cover := checked_cover(checker, syntax))
+    } | goals
+    coverpoints = {
+        name: point
+        for name, syntax in spec.coverpoints.items()
+        if (point := checked_coverpoint(checker, syntax))
+    }
+    written = spec.coverpoints
+    crosses = {
+        name: cross
+        for name, syntax in spec.crosses.items()
+        if (cross := checker.collected(checked_cross, checker, syntax, coverpoints, written))
+    }
+    return CheckedSpec(
+        spec.header.name.text if spec.header else "spec",
+        spec.header.title if spec.header else "",
+        table.time,
+        signals,
+        table.events,
+        requirements,
+        period,
+        delay,
+        spec.sources[0],
+        properties,
+        covers,
+        coverpoints,
+        crosses,
+    )
+
+
+def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) -> Table:
+    signals: dict[str, Signal] = {}
+    events: dict[str, Event] = {}
+    units: dict[str, Unit] = {}
+    for name, declared in spec.declared.items():
+        match declared:
+            case DeclaredSignal():
+                found = _type(declared.type, findings)
+                if found is not None:
+                    type_, units[name] = found
+                    if declared.ignored is not None and type_.kind is not Kind.REAL:
+                        findings.add(type_rules.ignored_nan(declared.ignored, str(type_.kind)))
+                    signals[name] = Signal(
+                        name,
+                        type_,
+                        declared.role,
+                        ignores_nan=declared.ignored is not None,
+                        span=declared.name.span,
+                    )
+            case DeclaredEvent():
+                fields = {}
+                for field in declared.event.fields:
+                    taken = spec.declared.get(f"{name}.{field.name.text}")
+                    first = declared if field.name.text in fields else taken
+                    if first is not None:
+                        places = field.name.span, first.name.span
+                        findings.add(name_rules.double(field.name.text, "field", *places))
+                    found = _type(field.type, findings)
+                    if found is not None:
+                        fields[field.name.text], units[f"{name}.{field.name.text}"] = found
+                events[name] = Event(name, fields, declared.role, declared.name.span)
+    time = spec.time.model if spec.time is not None else TimeModel.HELD
+    return Table(time, signals, events, units, spec.declared, recursive, spec.doubtful)
+
+
+def _type(syntax: TypeSyntax, findings: Findings) -> tuple[Type, Unit] | None:
+    """A type with its unit; `None` if there is no such unit, and then that is recorded."""
+    labels = tuple(label.text for label in syntax.labels)
+    firsts: dict[str, Span] = {}
+    for label in syntax.labels:
+        first = firsts.setdefault(label.text, label.span)
+        if first is not label.span:
+            findings.add(name_rules.double(label.text, "label", label.span, first))
+    try:
+        unit = parse_unit(syntax.unit)
+    except UnknownUnitError as error:
+        findings.add(type_rules.unknown_unit(syntax.span, str(error), close_unit(str(error))))
+        return None
+    return Type(Kind(syntax.name), syntax.unit, labels), unit
+
+
+def _positive(checker: Checker, expression: Expression, what: str) -> int | None:
+    ticks = checker.collected(checker.duration, expression, EVERYWHERE)
+    if ticks == 0:
+        checker.report(time_rules.not_positive(expression.span, what))
+    return ticks
+
+
+def check_unused(checker: Checker, spec: ResolvedSpec) -> None:
+    """Report what is wrong in macros; those with parameters have their names looked up only."""
+    for item in spec.declared.values():
+        match item:
+            case DefineItem(parameters=None, name=name) | ConstItem(name=name):
+                checker.value(Name(name.text, name.span), EVERYWHERE)
+            case DefineItem():
+                _look_up(checker, item)
+
+
+def _look_up(checker: Checker, item: DefineItem) -> None:
+    own = {parameter.text for parameter in item.parameters or ()}
+    table = checker.table
+    for part in expressions_in(item.body):
+        if not isinstance(part, Name) or part.text in own | table.doubtful:
+            continue
+        labels = {label for signal in table.signals.values() for label in signal.type.labels}
+        if part.text not in labels and not checker.known(part.text, EVERYWHERE):
+            close = close_name(table, part.text, tuple(own))
+            checker.report(name_rules.unknown(part.span, part.text, close))

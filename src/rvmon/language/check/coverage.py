@@ -1,0 +1,372 @@
+"""From the syntax of cover goals, coverpoints and crosses to their checked form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise, product
+from math import ceil, floor, inf, prod
+
+from rvmon.diagnostics import Span
+from rvmon.language.check.comparisons import compared
+from rvmon.language.check.expressions import Checker
+from rvmon.language.check.scope import EVERYWHERE, Quantity, Scope, Value
+from rvmon.language.checked.classify import end_part, future_part
+from rvmon.language.checked.formula import (
+    Binary,
+    BinaryOp,
+    Compare,
+    CompareOp,
+    Constant,
+    Formula,
+    Interval,
+    Literal,
+    SignalValue,
+    Unary,
+    UnaryOp,
+    UpdateFunction,
+)
+from rvmon.language.checked.goals import Bin, BinKind, Cover, Coverpoint, Cross
+from rvmon.language.checked.operators import Connectives, Tense
+from rvmon.language.checked.rewrite import read
+from rvmon.language.print import format_formula
+from rvmon.language.rules import Refusal, Reported
+from rvmon.language.rules import names as name_rules
+from rvmon.language.rules import properties as rules
+from rvmon.language.rules import requirements as trigger_rules
+from rvmon.language.syntax import expressions, items
+
+_MOST = 10**9
+"""The largest goal and weight: what a test will never do is a slip of the pen."""
+
+
+def checked_cover(checker: Checker, item: items.CoverItem) -> Cover | None:
+    """Check a cover goal; `None` if it is wrong, and then that is reported."""
+    formula = checker.top(item.formula, EVERYWHERE)
+    if formula is None:
+        return None
+    if end := end_part(formula):
+        checker.report(trigger_rules.end_not_alone(end.span or item.span))
+        return None
+    shown = Unary(UnaryOp.EVENTUALLY, formula, Interval(), item.formula.span)
+    return Cover(item.name.text, shown, item.span)
+
+
+def checked_coverpoint(checker: Checker, item: items.CoverpointItem) -> Coverpoint | None:
+    """Check a coverpoint; `None` if it is wrong, and then that is reported."""
+    value: Value | None = None
+    if item.expression is not None:
+        value = checker.value(item.expression, EVERYWHERE)
+        if value is None:
+            return None
+    point = _Point(checker, item.expression, isinstance(value, Quantity) and bool(value.labels))
+    first: dict[str, items.BinSyntax] = {}
+
+    def bin_of(syntax: items.BinSyntax) -> Bin:
+        earlier = first.setdefault(syntax.name.text, syntax)
+        if earlier is not syntax:
+            places = syntax.name.span, earlier.name.span
+            raise Refusal(name_rules.double(syntax.name.text, "bin", *places))
+        formula = present(point.formula(syntax))
+        if _is_empty(formula, value):
+            checker.report(rules.empty_bin(syntax.span))
+        return Bin(syntax.name.text, formula, syntax.kind, syntax.span)
+
+    bins = [one for syntax in item.bins if (one := checker.collected(bin_of, syntax)) is not None]
+    wrong = len(bins) < len(item.bins)
+    found = _clauses(checker, item.clauses)
+    for clause in item.clauses:
+        if isinstance(clause, items.UnwantedClause):
+            checker.report(rules.unwanted_in_point(clause.span))
+            wrong = True
+    if wrong or found is None:
+        return None
+    return Coverpoint(item.name.text, tuple(bins), *found, item.span)
+
+
+def checked_cross(
+    checker: Checker,
+    item: items.CrossItem,
+    points: Mapping[str, Coverpoint],
+    declared: Mapping[str, items.CoverpointItem],
+) -> Cross:
+    """Check a cross.
+
+    Raises:
+        Refusal: it is wrong.
+        Reported: it is wrong, and that is recorded.
+    """
+    names = [point.text for point in item.points]
+    for number, point in enumerate(item.points):
+        if point.text in names[:number]:
+            raise Refusal(rules.same_point(point.span, point.text))
+        if point.text not in declared:
+            raise Refusal(rules.no_coverpoint(point.span, point.text, list(declared)))
+        if point.text not in points:
+            raise Reported
+    bins = [[bin_.name for bin_ in points[name].bins] for name in names]
+    combinations = prod(map(len, bins))
+    if combinations > rules.MOST_COMBINATIONS:
+        raise Refusal(rules.too_many_combinations(item.span, combinations))
+    checker.effort.spend(combinations * len(item.clauses), item.span)
+    unwanted = {
+        kind: _combinations(checker, item, dict(zip(names, bins, strict=True)), kind)
+        for kind in (BinKind.IGNORE, BinKind.ILLEGAL)
+    }
+    found = _clauses(checker, item.clauses)
+    if found is None:
+        raise Reported
+    upon, goal, weight = found
+    if upon is None:
+        sampled = [one for name in names if (one := points[name].upon) is not None]
+        if not all(_alike(one, sampled[0]) for one in sampled):
+            raise Refusal(rules.sampled_apart(item.span))
+        upon = sampled[0] if sampled else None
+    ignored, illegal = unwanted[BinKind.IGNORE], unwanted[BinKind.ILLEGAL]
+    return Cross(item.name.text, tuple(names), ignored, illegal, upon, goal, weight, item.span)
+
+
+def present(formula: Formula) -> Formula:
+    """The formula itself, which must not look ahead.
+
+    Raises:
+        Refusal: it does.
+    """
+    ahead = future_part(formula)
+    if ahead is not None and ahead.span is not None:
+        raise Refusal(rules.looks_ahead(ahead.span))
+    end = end_part(formula)
+    if end is not None and end.span is not None:
+        raise Refusal(trigger_rules.end_not_alone(end.span))
+    return formula
+
+
+def _is_empty(formula: Formula, value: Value | None) -> bool:
+    """Whether comparisons of the value with constants, of which a bin consists, exclude all."""
+    parts: tuple[Formula, ...] = (formula,)
+    if isinstance(formula, Binary) and formula.op is BinaryOp.AND:
+        parts = formula.left, formula.right
+    if not isinstance(value, Quantity):
+        return False
+    least: float = -inf
+    most: float = inf
+    open_ = False
+    for part in parts:
+        match part:
+            case Compare(op=op, left=left, right=Literal(value=int() | float() as bound)):
+                if left != value.node:
+                    return False
+                low, high = _ends(op, bound, whole=value.integral)
+                strict = op in (CompareOp.GT, CompareOp.LT) and not value.integral
+                open_, least, most = open_ or strict, max(least, low), min(most, high)
+            case _:
+                return False
+    return least > most or (open_ and least == most)
+
+
+def _ends(op: CompareOp, bound: float, *, whole: bool) -> tuple[float, float]:
+    """Between which values a comparison with a constant is true, bounds that are open included."""
+    match op:
+        case CompareOp.GT | CompareOp.GE:
+            first = floor(bound) + 1 if op is CompareOp.GT else ceil(bound)
+            return first if whole else bound, inf
+        case CompareOp.LT | CompareOp.LE:
+            last = ceil(bound) - 1 if op is CompareOp.LT else floor(bound)
+            return -inf, last if whole else bound
+        case CompareOp.EQ:
+            return (ceil(bound), floor(bound)) if whole else (bound, bound)
+        case CompareOp.NE:
+            return -inf, inf
+
+
+@dataclass(frozen=True, slots=True)
+class _Point:
+    """A coverpoint, whose bins are formulas.
+
+    Attributes:
+        checker: of the file.
+        expression: what bins are values of; `None`: each is a formula by itself.
+        labelled: whether its values are labels.
+    """
+
+    checker: Checker
+    expression: expressions.Expression | None
+    labelled: bool
+
+    def formula(self, bin_: items.BinSyntax) -> Formula:
+        """Where a bin is hit."""
+        match bin_.values:
+            case None if self.labelled:
+                return self._valued(expressions.Name(bin_.name.text, bin_.name.span))
+            case None:
+                raise Refusal(rules.bin_without_values(bin_.span))
+            case expressions.Window() as window:
+                return self._in_window(window)
+            case items.StepsSyntax() as steps:
+                return self._stepped(steps)
+            case wanted:
+                return self._valued(wanted)
+
+    def _valued(self, wanted: expressions.Expression) -> Formula:
+        """That the expression has a value; without one, what is written is the formula."""
+        expression = self.expression
+        if self.labelled and isinstance(wanted, expressions.Name):
+            return self._compared(CompareOp.EQ, wanted, wanted.span)
+        (found,) = self.checker.values((wanted,), EVERYWHERE)
+        if isinstance(found, Quantity) and found.constant is not None:
+            return self._compared(CompareOp.EQ, wanted, wanted.span)
+        formula = self.checker.formula(wanted, EVERYWHERE)
+        if isinstance(formula, Constant) and expression is not None:
+            holds = self.checker.formula(expression, EVERYWHERE)
+            return holds if formula.value else Unary(UnaryOp.NOT, holds, None, wanted.span)
+        return formula
+
+    def _stepped(self, steps: items.StepsSyntax) -> Formula:
+        """That the last update took the expression to the last value, those before to others.
+
+        From each value it came to the next without a third in between.
+        """
+        span, expression = steps.span, self.expression
+        if expression is None:
+            raise Refusal(rules.bin_needs_expression(span))
+        prev = expressions.Ident(UpdateFunction.PREV.value, expression.span)
+        call = expressions.Call(prev, (expression,), expression.span)
+        before = replace(self, expression=call)
+        made: Formula | None = None
+        entered: Formula | None = None
+        for start, end in pairwise(steps.values):
+            now, was = self._valued(end), before._valued(start)
+            if _alike(now, self._valued(start)):
+                raise Refusal(rules.same_value(end.span))
+            rise = Unary(UnaryOp.RISE, now, None, span)
+            came = Binary(BinaryOp.AND, rise, was, None, span)
+            if made is not None and entered is not None:
+                stayed = Unary(UnaryOp.NOT, entered, None, span)
+                latest = Binary(BinaryOp.SINCE, stayed, made, Interval(), span)
+                came = Binary(BinaryOp.AND, came, latest, None, span)
+            made, entered = came, rise
+        assert made is not None, "there are two values at least"
+        return made
+
+    def _in_window(self, window: expressions.Window) -> Formula:
+        """The bounds of a range as comparisons; `inf` bounds nothing."""
+        if self.expression is None or window.low is None:
+            raise Refusal(rules.bin_needs_expression(window.span))
+        above = CompareOp.GT if window.low_open else CompareOp.GE
+        low = self._compared(above, window.low, window.span)
+        if window.high is None:
+            return low
+        below = CompareOp.LT if window.high_open else CompareOp.LE
+        high = self._compared(below, window.high, window.span)
+        return Binary(BinaryOp.AND, low, high, None, window.span)
+
+    def _compared(self, op: CompareOp, other: expressions.Expression, span: Span) -> Formula:
+        if self.expression is None:
+            raise Refusal(rules.bin_needs_expression(other.span))
+        side = expressions.Comparison(op, self.expression, other, span, span)
+        return compared(self.checker, side, EVERYWHERE)
+
+
+def _alike(formula: Formula, other: Formula) -> bool:
+    """Whether two formulas say the same in the same words, wherever they stand."""
+    return format_formula(formula) == format_formula(other)
+
+
+def _clauses(
+    checker: Checker, clauses: Sequence[items.GoalClauses]
+) -> tuple[Formula | None, int, int] | None:
+    """Where it is sampled, the goal and the weight; `None` if one is wrong."""
+    upon: Formula | None = None
+    counts = {"goal": 1, "weight": 1}
+    for clause in clauses:
+        match clause:
+            case items.SampledClause(trigger=trigger):
+                upon = checker.top(trigger, EVERYWHERE)
+                upon = None if upon is None else checker.collected(present, upon)
+                if upon is None:
+                    return None
+            case items.CountClause(word=word, count=count):
+                if not _is_count(count, least=int(word == "goal")):
+                    wrong = rules.bad_goal if word == "goal" else rules.bad_weight
+                    checker.report(wrong(count.span))
+                    return None
+                counts[word] = int(count.value or 0)
+    return upon, counts["goal"], counts["weight"]
+
+
+def _is_count(number: expressions.Number, least: int) -> bool:
+    value = number.value
+    return (
+        value is not None and not number.unit and value.denominator == 1 and least <= value <= _MOST
+    )
+
+
+def _combinations(
+    checker: Checker, item: items.CrossItem, bins: Mapping[str, Sequence[str]], kind: BinKind
+) -> frozenset[tuple[str, ...]]:
+    """The combinations for which a clause of that kind holds."""
+    scope = Scope(
+        {name: Quantity(SignalValue(name), labels=tuple(names)) for name, names in bins.items()}
+    )
+    tests = [
+        (checker.formula(clause.condition, scope), clause)
+        for clause in item.clauses
+        if isinstance(clause, items.UnwantedClause) and clause.kind is kind
+    ]
+    for formula, clause in tests:
+        if not _about_bins(formula, bins):
+            raise Refusal(rules.bad_condition(clause.condition.span))
+    return frozenset(
+        combination
+        for combination in product(*bins.values())
+        if any(_holds(f, dict(zip(bins, combination, strict=True))) for f, _ in tests)
+    )
+
+
+class _Booleans(Connectives[bool]):
+    """Connectives of what is known."""
+
+    def constant(self, value: bool) -> bool:
+        return value
+
+    def no(self, operand: bool) -> bool:
+        return not operand
+
+    def both(self, left: bool, right: bool) -> bool:
+        return left and right
+
+
+def _about_bins(formula: Formula, bins: Mapping[str, Sequence[str]]) -> bool:
+    """Whether it is made of comparisons of coverpoints with bins, and connectives."""
+    match formula:
+        case Constant():
+            return True
+        case Compare(left=left, right=right):
+            return all(
+                isinstance(side, Literal) or (isinstance(side, SignalValue) and side.name in bins)
+                for side in (left, right)
+            )
+        case Unary(op=UnaryOp.NOT, operand=operand):
+            return _about_bins(operand, bins)
+        case Binary(op=op, left=left, right=right):
+            present = op.entry.tense is Tense.PRESENT
+            return present and _about_bins(left, bins) and _about_bins(right, bins)
+        case _:
+            return False
+
+
+def _holds(formula: Formula, combination: Mapping[str, str]) -> bool:
+    match formula:
+        case Constant(value=value):
+            return value
+        case Compare(op=op, left=left, right=right):
+            names = [
+                combination[side.name] if isinstance(side, SignalValue) else side
+                for side in (left, right)
+            ]
+            first, second = (n.value if isinstance(n, Literal) else n for n in names)
+            return (first == second) is (op is CompareOp.EQ)
+        case Unary() | Binary():
+            return read(formula, lambda part: _holds(part, combination), _Booleans())
+        case _:
+            return False

@@ -1,0 +1,393 @@
+"""From expressions to checked formulas and quantities: names, macros, operators, windows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import ParamSpec, TypeVar, assert_never
+
+from rvmon.diagnostics import Diagnostic, Span
+from rvmon.language.check.bounds import bound_of, bounded
+from rvmon.language.check.comparisons import compared, formula_of, moved, number_of
+from rvmon.language.check.functions import applied
+from rvmon.language.check.quantities import arithmetic, closed_interval, spread, ticks_of
+from rvmon.language.check.scope import (
+    EVERYWHERE,
+    Chosen,
+    Closure,
+    Moment,
+    Now,
+    Quantity,
+    Scope,
+    Table,
+    Value,
+    close_name,
+    close_unit,
+)
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.formula import (
+    Binary,
+    BoundAtom,
+    Constant,
+    EventAtom,
+    FieldValue,
+    Formula,
+    Interval,
+    SignalValue,
+    Unary,
+    UnaryOp,
+)
+from rvmon.language.checked.operators import Tense, Window
+from rvmon.language.checked.specification import TimeModel
+from rvmon.language.rules import Findings, Refusal, Reported
+from rvmon.language.rules import names as name_rules
+from rvmon.language.rules import properties as property_rules
+from rvmon.language.rules import time as time_rules
+from rvmon.language.rules import types as rules
+from rvmon.language.syntax.expressions import (
+    Call,
+    Choice,
+    Comparison,
+    Edge,
+    Expression,
+    Group,
+    Immediately,
+    Infix,
+    LeadsTo,
+    Name,
+    Number,
+    Operation,
+    Path,
+    Prefix,
+    Quantified,
+    Truth,
+)
+from rvmon.language.syntax.expressions import Window as WindowSyntax
+from rvmon.language.syntax.items import ConstItem, DefineItem
+from rvmon.language.syntax.size_limits import Cost, Effort
+from rvmon.trace.schema import Kind
+from rvmon.units import PLAIN, UnknownUnitError, parse_unit
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+NOW = "now"
+"""What is said of the time since the first instant; a name that is declared goes before."""
+
+
+class Checker:
+    """Evaluates expressions to what they stand for; findings gather in a list.
+
+    A method that takes an expression reports what is wrong in *all* its operands before it raises.
+
+    Args:
+        table: the names of the file.
+        findings: takes what is wrong.
+        characters: of the whole specification: a long file may do more.
+    """
+
+    def __init__(self, table: Table, findings: Findings, characters: int) -> None:
+        self.table = table
+        self._findings = findings
+        self.effort = Effort(characters)
+        self._defined: dict[str, tuple[Value | None, Cost]] = {}
+
+    def report(self, finding: Diagnostic) -> None:
+        """Record a finding.
+
+        Raises:
+            Enough: there are too many.
+        """
+        self._findings.add(finding)
+
+    def top(self, expression: Expression, scope: Scope) -> Formula | None:
+        """A whole formula, or `None` if it is wrong."""
+        self.effort.begin()
+        return self.collected(self.formula, expression, scope)
+
+    def collected(self, make: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:
+        """What is made of something, or `None` if that is refused, and then it is recorded."""
+        try:
+            return make(*args, **kwargs)
+        except Refusal as refusal:
+            self.report(refusal.finding)
+        except Reported:
+            pass
+        return None
+
+    def formula(self, expression: Expression, scope: Scope) -> Formula:
+        """What the expression stands for, which has to be a formula.
+
+        Raises:
+            Refusal: it is a number or label.
+            Reported: it is wrong.
+        """
+        return self.formulas((expression,), scope)[0]
+
+    def formulas(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Formula]:
+        """As `formula`, for several operands."""
+        values = self.values(expressions, scope)
+        return [formula_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
+
+    def quantities(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Quantity]:
+        """What the expressions stand for, which have to be numbers."""
+        values = self.values(expressions, scope)
+        return [number_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
+
+    def calculated(
+        self, op: NumericOp, args: tuple[Expression, ...], scope: Scope, span: Span
+    ) -> Value:
+        """An operation on numbers, or on choices between them."""
+
+        def calculate(values: Sequence[Value]) -> Value:
+            if (instant := moved(op, values)) is not None:
+                return instant
+            pairs = zip(values, args, strict=True)
+            return arithmetic(op, [(number_of(v, e.span), e.span) for v, e in pairs], span)
+
+        return spread(self.values(args, scope), span, calculate)
+
+    def values(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Value]:
+        """What the expressions stand for.
+
+        Raises:
+            Reported: one is wrong; the findings of all are recorded.
+        """
+        found = [self.value(expression, scope) for expression in expressions]
+        values = [value for value in found if value is not None]
+        if len(values) < len(found):
+            raise Reported
+        return values
+
+    def duration(self, expression: Expression, scope: Scope) -> int:
+        """A constant duration in ticks.
+
+        Raises:
+            Refusal: it is none.
+            Reported: it is wrong.
+        """
+        return ticks_of(self.values((expression,), scope)[0], expression.span)
+
+    def value(self, expression: Expression, scope: Scope) -> Value | None:
+        """What the expression stands for; `None` if it is wrong, and then that is recorded."""
+        try:
+            self.effort.enter(expression.span)
+            return self._value(expression, scope)
+        except Refusal as refusal:
+            self.report(refusal.finding)
+        except Reported:
+            pass
+        finally:
+            self.effort.leave()
+        return None
+
+    def _value(self, expression: Expression, scope: Scope) -> Value:
+        match expression:
+            case Group(inner=inner):
+                return self._value(inner, scope)
+            case Number():
+                return self._number(expression)
+            case Name():
+                return self._name(expression, scope)
+            case Truth(value=value, span=span):
+                return Constant(value, span)
+            case Edge(bound=bound, span=span):
+                return BoundAtom(bound, span)
+            case Call():
+                return self._call(expression, scope)
+            case Prefix():
+                return self._prefix(expression, scope)
+            case Immediately(operand=operand):
+                return self.formula(operand, scope)
+            case Infix():
+                return self._infix(expression, scope)
+            case Comparison():
+                return compared(self, expression, scope)
+            case Choice(condition=condition, chosen=chosen, otherwise=otherwise):
+                sides = self.values((chosen, otherwise), scope)
+                return Chosen(self.formula(condition, scope), *sides)
+            case Operation(op=op, args=args, span=span):
+                return self.calculated(op, args, scope, span)
+            case Path() | Quantified() | LeadsTo():
+                raise Refusal(property_rules.path_outside(expression.span))
+            case _:
+                assert_never(expression)
+
+    def _number(self, number: Number) -> Quantity:
+        if number.value is None:
+            raise Refusal(rules.out_of_range(number.span))
+        try:
+            unit = parse_unit(number.unit) if number.unit else PLAIN
+        except UnknownUnitError as error:
+            part = str(error)
+            raise Refusal(rules.unknown_unit(number.span, part, close_unit(part))) from None
+        return Quantity(constant=number.value, unit=unit)
+
+    # Names.
+
+    def known(self, name: str, scope: Scope) -> bool:
+        """Whether the name stands for anything but a label."""
+        table = self.table
+        return (
+            name == NOW
+            or name in scope.names
+            or name in table.declared
+            or table.field(name) is not None
+        )
+
+    def _name(self, name: Name, scope: Scope) -> Value:
+        local = scope.names.get(name.text)
+        match local:
+            case Quantity() | Moment():
+                return local
+            case Closure(expression=expression, scope=outer):
+                return self.values((expression,), outer)[0]
+        declared = self.table.declared.get(name.text)
+        if isinstance(declared, DefineItem | ConstItem):
+            return self._defined_value(name, declared)
+        return self._atom(name, scope)
+
+    def _atom(self, name: Name, scope: Scope) -> Value:
+        table = self.table
+        if signal := table.signals.get(name.text):
+            return self._typed(SignalValue(signal.name), signal.type.kind, signal.type.labels, name)
+        if name.text in table.events:
+            return EventAtom(name.text, name.span)
+        if field := table.field(name.text):
+            value = FieldValue(field.event, field.field)
+            return self._typed(value, field.type.kind, field.type.labels, name)
+        if name.text in table.declared or name.text in table.doubtful:
+            raise Reported  # its declaration is wrong, and that is recorded
+        if name.text == NOW:
+            return Now()
+        close = close_name(table, name.text, tuple(scope.names))
+        raise Refusal(name_rules.unknown(name.span, name.text, close))
+
+    def _typed(
+        self, node: SignalValue | FieldValue, kind: Kind, labels: tuple[str, ...], name: Name
+    ) -> Quantity:
+        return Quantity(
+            node,
+            unit=self.table.units.get(name.text, PLAIN),
+            integral=kind is Kind.INT,
+            labels=labels,
+            truth=kind is Kind.BOOL,
+        )
+
+    def _defined_value(self, name: Name, declared: DefineItem | ConstItem) -> Value:
+        """A macro without parameters or a constant: evaluated once, shared by all its uses."""
+        if isinstance(declared, DefineItem) and declared.parameters is not None:
+            count = len(declared.parameters)
+            raise Refusal(rules.argument_count(name.span, name.text, f"{count} argument(s)", 0))
+        if name.text in self.table.recursive:
+            raise Reported
+        if name.text not in self._defined:
+            mark = self.effort.mark()
+            value = self._body_value(declared)
+            self._defined[name.text] = value, self.effort.since(mark)
+        found, cost = self._defined[name.text]
+        if found is None:
+            raise Reported
+        self.effort.add(cost, name.span)
+        return found
+
+    def _body_value(self, declared: DefineItem | ConstItem) -> Value | None:
+        if isinstance(declared, DefineItem):
+            return self.value(declared.body, EVERYWHERE)
+        value = self.value(declared.value, EVERYWHERE)
+        if value is None or (isinstance(value, Quantity) and value.constant is not None):
+            return value
+        self.report(rules.not_constant(declared.value.span))
+        return None
+
+    def _call(self, call: Call, scope: Scope) -> Value:
+        declared = self.table.declared.get(call.function.text)
+        if not isinstance(declared, DefineItem) or declared.parameters is None:
+            return applied(self, call, scope)
+        parameters = [parameter.text for parameter in declared.parameters]
+        if len(parameters) != len(call.args):
+            takes = f"{len(parameters)} argument(s)"
+            given = len(call.args)
+            raise Refusal(rules.argument_count(call.span, call.function.text, takes, given))
+        if call.function.text in self.table.recursive:
+            raise Reported
+        closures = (Closure(arg, scope) for arg in call.args)
+        inner = scope.inside(dict(zip(parameters, closures, strict=True)))
+        return self.values((declared.body,), inner)[0]
+
+    def peeled(self, expression: Expression, scope: Scope) -> tuple[Expression, Scope]:
+        """The expression itself, without brackets and macro parameters around it."""
+        while True:
+            match expression:
+                case Group(inner=inner):
+                    expression = inner
+                case Name(text=text) if isinstance(found := scope.names.get(text), Closure):
+                    expression, scope = found.expression, found.scope
+                case _:
+                    return expression, scope
+
+    # Operators.
+
+    def _prefix(self, prefix: Prefix, scope: Scope) -> Formula:
+        present = prefix.op.entry.tense is Tense.PRESENT
+        operand = self.value(prefix.operand, scope if present else scope.later())
+        bound = bound_of(self, prefix.op, prefix.window, scope)
+        if bound is None:
+            interval = self._interval_of(prefix.op, prefix.window, prefix.op_span, scope)
+        if operand is None:
+            raise Reported
+        required = formula_of(operand, prefix.operand.span)
+        if bound is not None:
+            return bounded(prefix.op, (required,), bound, prefix.span)
+        return Unary(prefix.op, required, interval, prefix.span)
+
+    def _interval_of(
+        self, op: UnaryOp, window: WindowSyntax | None, span: Span, scope: Scope
+    ) -> Interval | None:
+        if op.entry.tense is Tense.PRESENT:
+            return None
+        if op.entry.window is Window.NONE:
+            if self.table.time is TimeModel.HELD:
+                if op.entry.tense is Tense.PAST:
+                    raise Refusal(time_rules.step_back_in_held_time(span.text, span))
+                raise Refusal(time_rules.step_in_held_time(span.text, span))
+            if window is not None:
+                raise Refusal(time_rules.no_window(span.text, window.span))
+            return None
+        return self.interval(window, scope)
+
+    def _infix(self, infix: Infix, scope: Scope) -> Formula:
+        present = infix.op.entry.window is Window.NONE
+        inner = scope if present else scope.later()
+        operands = [self.value(side, inner) for side in (infix.left, infix.right)]
+        interval = None
+        bound = bound_of(self, infix.op, infix.window, scope)
+        if bound is None and not present:
+            interval = self.interval(infix.window, scope)
+            from_now = infix.op.entry.window is Window.FROM_NOW
+            if from_now and interval.low > 0 and infix.window is not None:
+                raise Refusal(time_rules.late_weak_window(infix.op_span.text, infix.window.span))
+        left, right = operands
+        if left is None or right is None:
+            raise Reported
+        sides = formula_of(left, infix.left.span), formula_of(right, infix.right.span)
+        if bound is not None:
+            return bounded(infix.op, sides, bound, infix.span)
+        return Binary(infix.op, *sides, interval, infix.span)
+
+    def interval(self, window: WindowSyntax | None, scope: Scope) -> Interval:
+        """The window in ticks; none is from 0 on.
+
+        Raises:
+            Refusal: a bound is no duration, or no tick lies between them.
+            Reported: a bound is wrong.
+        """
+        if window is None:
+            return Interval()
+        low = 0 if window.low is None else self.duration(window.low, scope)
+        high = None if window.high is None else self.duration(window.high, scope)
+        if window.low and window.high and high is not None and high < low:
+            raise Refusal(
+                time_rules.reversed_bounds(window.span, window.low.span, window.high.span)
+            )
+        opens = {"low_open": window.low_open, "high_open": window.high_open}
+        return closed_interval(low, high, **opens, span=window.span)

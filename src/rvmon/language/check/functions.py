@@ -1,0 +1,129 @@
+"""The functions of the language applied to arguments; expressions read as formula or number."""
+
+from __future__ import annotations
+
+from rvmon.diagnostics import Diagnostic, Span
+from rvmon.language.check.scope import Age, Operands, Quantity, Scope, Value
+from rvmon.language.check.windows import amount, is_extreme
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.formula import (
+    Interval,
+    Measured,
+    Probe,
+    ProbeAtom,
+    Unary,
+    UnaryOp,
+    UpdateFunction,
+    UpdateValue,
+)
+from rvmon.language.checked.functions import FUNCTIONS, LAST, Argument, Function
+from rvmon.language.rules import Refusal, Reported
+from rvmon.language.rules import names as name_rules
+from rvmon.language.rules import types as rules
+from rvmon.language.syntax.expressions import Call, Name
+from rvmon.language.syntax.fixes import NEVER
+from rvmon.texts import did_you_mean
+from rvmon.trace.schema import Kind
+from rvmon.units import PLAIN, parse_unit, quotient
+
+_INSTEAD = {
+    **dict.fromkeys(
+        ("median", "percentile"),
+        "bound the share that is off: `share(x > 2, 10 s) <= 10 %`, or all: `max(x, 10 s) <= 2`",
+    ),
+    **dict.fromkeys(("average", "avg"), "write `mean(x, 10 s)`"),
+    **dict.fromkeys(
+        ("derivative", "slope"), "write `rate(x)`, the change a second between updates"
+    ),
+    "rms": "its square is the mean of squares: `mean(x * x, 10 s) <= 0.04`",
+    **dict.fromkeys(("stddev", "std"), "its square is the variance: `variance(e.x, 10 s) <= 0.04`"),
+}
+"""What says nearly the same as functions that there are not."""
+_EXTREMES = {NumericOp.MIN: Measured.MIN, NumericOp.MAX: Measured.MAX}
+_COUNTS = ("no argument", "one argument", "two arguments")
+
+
+def applied(operands: Operands, call: Call, scope: Scope) -> Value:
+    """What a call of a function of the language stands for.
+
+    Raises:
+        Refusal: there is no such function, or the arguments do not fit.
+        Reported: an argument is wrong.
+    """
+    name = call.function.text
+    function = FUNCTIONS.get(name)
+    if function is None:
+        if name in operands.table.doubtful:
+            raise Reported
+        raise Refusal(_unknown(operands, call))
+    _check_count(call, function)
+    match function.means:
+        case UnaryOp() as op:
+            operand = operands.formula(call.args[0], scope)
+            lengths = [operands.duration(arg, scope) for arg in call.args[1:]]
+            return Unary(op, operand, Interval(0, *lengths) if lengths else None, call.span)
+        case Probe() as probe:
+            return ProbeAtom(probe, _named(operands, call, scope, function)[0], call.span)
+        case UpdateFunction.DELTA if len(call.args) > 1:
+            return amount(operands, Measured.DELTA, call, scope)
+        case UpdateFunction() as of_updates:
+            return _of_updates(operands, of_updates, _named(operands, call, scope, function))
+        case NumericOp() as op if op in _EXTREMES and is_extreme(operands, call, scope):
+            return amount(operands, _EXTREMES[op], call, scope)
+        case NumericOp() as op:
+            return operands.calculated(op, call.args, scope, call.span)
+        case Measured() as measured:
+            return amount(operands, measured, call, scope)
+        case None if function.name == LAST:
+            raise Refusal(rules.last_alone(call.span))
+        case None:
+            return Age(_named(operands, call, scope, function)[0])
+
+
+def _check_count(call: Call, function: Function) -> None:
+    wanted, given = len(function.arguments), len(call.args)
+    if given < wanted - function.optional or (given > wanted and not function.more):
+        takes = _COUNTS[wanted] if wanted < len(_COUNTS) else f"{wanted} arguments"
+        takes = f"{takes.removesuffix(' arguments')} or more arguments" if function.more else takes
+        raise Refusal(rules.argument_count(call.span, function.name, takes, given))
+
+
+def _named(operands: Operands, call: Call, scope: Scope, function: Function) -> tuple[str, Span]:
+    """The only argument, which has to be the name of a signal (or of an event)."""
+    events = function.arguments[0] is Argument.SOURCE
+    name, inner = operands.peeled(call.args[0], scope)
+    if isinstance(name, Name) and name.text not in inner.names:
+        table = operands.table
+        if name.text in table.signals or (events and name.text in table.events):
+            return name.text, name.span
+        operands.values((name,), inner)
+    needed = function.arguments[0].value
+    raise Refusal(rules.argument_kind(call.args[0].span, function.name, needed))
+
+
+def _of_updates(operands: Operands, function: UpdateFunction, named: tuple[str, Span]) -> Quantity:
+    name, span = named
+    signal = operands.table.signals[name]
+    if function is not UpdateFunction.PREV and signal.type.kind in (Kind.BOOL, Kind.LABEL):
+        raise Refusal(rules.argument_kind(span, function, "a signal with numbers"))
+    unit = operands.table.units.get(name, PLAIN)
+    rate = function is UpdateFunction.RATE
+    return Quantity(
+        UpdateValue(function, name),
+        unit=quotient(unit, parse_unit("s")) if rate and unit.symbol else unit,
+        integral=signal.type.kind is Kind.INT and not rate,
+        labels=signal.type.labels,
+        truth=signal.type.kind is Kind.BOOL,
+    )
+
+
+def _unknown(operands: Operands, call: Call) -> Diagnostic:
+    name = call.function.text
+    if name in operands.table.declared:
+        rest = call.span.text[len(name) :]
+        return name_rules.unknown_function(
+            call.function.span, name, f"put a space before the bracket: `{name} {rest[:20]}`"
+        )
+    fix = did_you_mean(name, [*FUNCTIONS, *operands.table.declared])
+    fix = NEVER if name == "never" else _INSTEAD.get(name, fix)
+    return name_rules.unknown_function(call.function.span, name, fix)

@@ -1,0 +1,214 @@
+"""Surface forms as trigger and consequent: bare formulas, responses, scopes (SEMANTICS 3)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import reduce
+
+from rvmon.diagnostics import Span
+from rvmon.language.check.scope import Table
+from rvmon.language.checked.classify import future_part, has_future
+from rvmon.language.checked.ctl import PathUnary, Property, StateAtom
+from rvmon.language.checked.formula import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Constant,
+    Formula,
+    Interval,
+    Unary,
+    UnaryOp,
+)
+from rvmon.language.checked.names_read import names_read
+from rvmon.language.checked.operators import Tense
+from rvmon.language.checked.rewrite import chain, rewritten
+from rvmon.language.checked.specification import Event, Mode, Role, Signal
+from rvmon.language.rules import Refusal
+from rvmon.language.rules import properties as rules
+
+_ALL = Interval()
+
+
+def normalised(formula: Formula) -> tuple[Mode, Formula, Formula]:
+    """Mode, trigger and consequent of a requirement that is one formula.
+
+    `G(θ → ψ)` is `whenever θ then ψ`, any other unbounded `G ψ` is `whenever true then ψ`, the
+    rest is `upon start then φ`.
+    """
+    required = _always(formula)
+    if required is None:
+        return Mode.UPON, BoundAtom(Bound.START, formula.span), formula
+    trigger: Formula | None = None
+    while (
+        isinstance(required, Binary)
+        and required.op is BinaryOp.IMPLIES
+        and not future_part(required.left)
+    ):
+        trigger = required.left if trigger is None else _both(trigger, required.left)
+        required = required.right
+    return Mode.WHENEVER, trigger or Constant(True, formula.span), required
+
+
+def _always(formula: Formula) -> Formula | None:
+    """The φ of a formula that is `G φ` once `G G φ` and `G φ and G ψ` are joined."""
+    match formula:
+        case Unary(op=UnaryOp.ALWAYS, interval=interval) if interval == _ALL:
+            return _always(formula.operand) or formula.operand
+        case Binary(op=BinaryOp.AND):
+            left, right = _always(formula.left), _always(formula.right)
+            return None if left is None or right is None else _both(left, right)
+        case _:
+            return None
+
+
+def _both(left: Formula, right: Formula) -> Formula:
+    return Binary(BinaryOp.AND, left, right, None, joined(left.span, right.span))
+
+
+def joined(first: Span | None, second: Span | None) -> Span | None:
+    """The range over two places of one text."""
+    if first is None or second is None or first.source is not second.source:
+        return first or second
+    return first.to(second)
+
+
+def derived_response(
+    table: Table, property_: Property, within: int, place: Span
+) -> tuple[Formula, Formula]:
+    """Trigger and consequent of the monitor that awaits the outputs upon the inputs.
+
+    Raises:
+        Refusal: the property has another form, a conjunct mixes roles, or there is no output.
+
+    Source: SEMANTICS, section 4, third use.
+    """
+    goal = property_.formula
+    span = property_.span or place
+    if not isinstance(goal, PathUnary) or goal.universal or goal.op is not UnaryOp.EVENTUALLY:
+        raise Refusal(rules.no_response(span))
+    if not isinstance(goal.operand, StateAtom) or goal.interval != Interval():
+        raise Refusal(rules.no_response(goal.operand.span or span))
+    by_role: dict[Role, list[Formula]] = {Role.INPUT: [], Role.OUTPUT: []}
+    for conjunct in chain(goal.operand.formula):
+        by_role[_role(table, conjunct, conjunct.span or span)].append(conjunct)
+    if not by_role[Role.OUTPUT]:
+        raise Refusal(rules.no_output(span))
+    inputs = by_role[Role.INPUT]
+    trigger = reduce(_both, inputs) if inputs else BoundAtom(Bound.START, place)
+    return trigger, _required(by_role[Role.OUTPUT], Interval(0, within))
+
+
+def _required(outputs: Sequence[Formula], interval: Interval) -> Formula:
+    """Positive outputs have to come together, each negated one has to stay away."""
+    negated = [part for part in outputs if isinstance(part, Unary) and part.op is UnaryOp.NOT]
+    positive = [part for part in outputs if part not in negated]
+    required: list[Formula] = []
+    if positive:
+        goal = reduce(_both, positive)
+        required.append(Unary(UnaryOp.EVENTUALLY, goal, interval, goal.span))
+    required += [Unary(UnaryOp.ALWAYS, part, interval, part.span) for part in negated]
+    return reduce(_both, required)
+
+
+def _role(table: Table, conjunct: Formula, place: Span) -> Role:
+    declared: Mapping[str, Signal | Event] = {**table.signals, **table.events}
+    roles = {name: declared[name].role for name in names_read(conjunct)}
+    for name, role in roles.items():
+        if role is None:
+            raise Refusal(rules.no_role(place, name))
+    found = set(roles.values())
+    if len(found) != 1:
+        raise Refusal(rules.mixed_roles(place, {name: str(role) for name, role in roles.items()}))
+    return Role(str(found.pop()))
+
+
+def scoped_trigger(trigger: Formula, opening: Formula | None, closing: Formula | None) -> Formula:
+    """The trigger inside the scope; `start` alone is where the scope opens."""
+    inside = _inside(opening, closing)
+    match trigger:
+        case BoundAtom(bound=Bound.START) if opening is None:
+            return _and(trigger, inside)
+        case BoundAtom(bound=Bound.START):
+            return Unary(UnaryOp.RISE, inside, None, trigger.span)
+        case Constant(value=True):
+            return inside
+        case _:
+            return _and(trigger, inside)
+
+
+def scoped_consequent(consequent: Formula, closing: Formula | None, *, must_close: bool) -> Formula:
+    """What is required within the scope."""
+    if closing is None:
+        return consequent
+    required = _until_closed(consequent, closing)
+    if not must_close:
+        return required
+    never = Unary(UnaryOp.ALWAYS, _not(closing), _ALL, closing.span)
+    return Binary(BinaryOp.OR, required, never, None, consequent.span)
+
+
+def _inside(opening: Formula | None, closing: Formula | None) -> Formula:
+    if opening is None and closing is not None:
+        return _not(Unary(UnaryOp.ONCE, closing, _ALL, closing.span))
+    if opening is None or closing is None:
+        held = opening or Constant(True)
+        return Unary(UnaryOp.ONCE, held, _ALL, held.span)
+    opened = _and(opening, _not(closing))
+    return Binary(BinaryOp.SINCE, _not(closing), opened, _ALL, opening.span)
+
+
+def _until_closed(formula: Formula, closing: Formula) -> Formula:
+    """The formula over the run that ends right before `closing` first holds from here on.
+
+    What must come has to come before that (`U` takes `not closing` on both sides); what must hold
+    has to hold until then (the dual).
+    """
+    if not has_future(formula):
+        return formula
+    # People read what comes of it: these have shorter forms than what they are made of.
+    match formula:
+        case Unary(op=op, operand=operand, interval=interval, span=span):
+            inner = _until_closed(operand, closing)
+            match op:
+                case UnaryOp.EVENTUALLY:
+                    reached = _and(inner, _not(closing))
+                    return Binary(BinaryOp.UNTIL, _not(closing), reached, interval, span)
+                case UnaryOp.ALWAYS:
+                    excused = Binary(BinaryOp.OR, inner, closing, None, operand.span)
+                    return Binary(BinaryOp.RELEASE, closing, excused, interval, span)
+                case UnaryOp.NEXT:
+                    return Unary(op, _and(inner, _not(closing)), None, span)
+                case _ if op.entry.tense is Tense.FUTURE:
+                    return _until_closed(rewritten(formula), closing)
+                case _:
+                    return Unary(op, inner, interval, span)
+        case Binary(op=op, interval=interval, span=span):
+            left = _until_closed(formula.left, closing)
+            right = _until_closed(formula.right, closing)
+            match op:
+                case BinaryOp.UNTIL:
+                    left, right = _and(left, _not(closing)), _and(right, _not(closing))
+                case BinaryOp.RELEASE:
+                    left, right = _or(left, closing), _or(right, closing)
+                case BinaryOp.WEAK_UNTIL:
+                    right = _or(right, closing)
+                case BinaryOp.STRONG_RELEASE:
+                    right = _and(right, _not(closing))
+                case _ if op.entry.tense is Tense.FUTURE:
+                    return _until_closed(rewritten(formula), closing)
+            return Binary(op, left, right, interval, span)
+        case _:
+            return formula
+
+
+def _and(left: Formula, right: Formula) -> Formula:
+    return Binary(BinaryOp.AND, left, right, None, left.span)
+
+
+def _or(left: Formula, right: Formula) -> Formula:
+    return Binary(BinaryOp.OR, left, right, None, left.span)
+
+
+def _not(formula: Formula) -> Formula:
+    return Unary(UnaryOp.NOT, formula, None, formula.span)

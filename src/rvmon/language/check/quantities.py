@@ -1,0 +1,362 @@
+"""Arithmetic and comparison of quantities: constants exactly, units converted.
+
+What is made of a choice between numbers is a choice between what is made of both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from functools import reduce
+from typing import assert_never
+
+from rvmon.diagnostics import Span
+from rvmon.language.check.scope import Beside, Chosen, Quantity, Value
+from rvmon.language.checked.arithmetic import NumericOp, UnitRule
+from rvmon.language.checked.formula import (
+    Arithmetic,
+    Binary,
+    BinaryOp,
+    Compare,
+    CompareOp,
+    Constant,
+    Formula,
+    Interval,
+    Literal,
+    Numeric,
+    SignalValue,
+    Unary,
+    UnaryOp,
+)
+from rvmon.language.rules import Refusal, short
+from rvmon.language.rules import time as time_rules
+from rvmon.language.rules import types as rules
+from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
+from rvmon.units import PLAIN, Unit, base_unit, parse_unit, product, quotient, root
+
+Placed = tuple[Quantity, Span]
+"""A quantity with the place of its expression."""
+
+_RADIAN = parse_unit("rad")
+_OF_ANGLES = {UnitRule.OF_ANGLE: PLAIN, UnitRule.PLACES: parse_unit("m")}
+_HIGHEST = 9
+"""Of units, powers up to there have a meaning."""
+_DOING = {NumericOp.ADD: "added to", NumericOp.SUB: "reduced by"}
+
+
+def compare(op: CompareOp, left: Placed, right: Placed, span: Span) -> Compare | Constant:
+    """Compare numbers in the unit of the first side that is no constant.
+
+    Raises:
+        Refusal: the units do not fit, or a constant is out of range.
+    """
+    sides = (left, right)
+    unit = _common_unit(sides, "compared with", span)
+    if left[0].constant is not None and right[0].constant is not None:
+        exact = [_exact(value, unit) for value, _ in sides]
+        return Constant(op.holds(*exact), span)
+    first, second = _nodes(sides, unit)
+    return Compare(op, first, second, span)
+
+
+def arithmetic(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
+    """Apply an operation.
+
+    Raises:
+        Refusal: the units do not fit, or a constant is out of range.
+    """
+    rule = op.entry.unit
+    try:
+        match rule:
+            case UnitRule.PRODUCT | UnitRule.QUOTIENT:
+                return _scale(op, args, span)
+            case UnitRule.ROOT:
+                return _root(op, args[0], span)
+            case UnitRule.POWER if args[0][0].unit.symbol:
+                return _power(op, args, span)
+            case UnitRule.SAME | UnitRule.DIRECTION:
+                unit = _common_unit(args, _DOING.get(op, "beside"), span)
+                return _applied(op, args, unit, unit if rule is UnitRule.SAME else _RADIAN, span)
+            case UnitRule.SIGN:
+                return _applied(op, args, args[0][0].unit, PLAIN, span)
+            case UnitRule.PLAIN | UnitRule.POWER | UnitRule.BITS:
+                _check_dimension(op, args, PLAIN, whole=rule is UnitRule.BITS)
+                return _applied(op, args, PLAIN, PLAIN, span)
+            case UnitRule.TO_ANGLE:
+                _check_dimension(op, args, PLAIN)
+                return _applied(op, args, PLAIN, _RADIAN, span)
+            case UnitRule.OF_ANGLE | UnitRule.PLACES:
+                _check_dimension(op, args, _RADIAN)
+                return _applied(op, args, _RADIAN, _OF_ANGLES[rule], span)
+            case UnitRule.TURN:
+                _check_dimension(op, args, _RADIAN)
+                unit = _common_unit(args, "beside", span)
+                turn = Quantity(constant=parse_unit("rev").factor / unit.factor, unit=unit), span
+                return _applied(op, (*args, turn), unit, unit, span)
+            case _:
+                assert_never(rule)
+    except (ArithmeticError, ValueError):
+        raise Refusal(rules.out_of_range(span)) from None
+
+
+def node_of(placed: Placed) -> Numeric:
+    """What yields the quantity at run time, in its own unit.
+
+    Raises:
+        Refusal: a constant that is out of range.
+    """
+    return _nodes((placed,), placed[0].unit)[0]
+
+
+def _check_dimension(
+    op: NumericOp, args: Sequence[Placed], unit: Unit, *, whole: bool = False
+) -> None:
+    """Refuse an argument of another kind than a function of such values takes."""
+    for value, place in args:
+        if value.unit.dimension != unit.dimension and not _bare_zero(value):
+            raise Refusal(rules.argument_unit(place, op, value.unit.symbol, unit.symbol))
+        if whole and not _is_integral(value):
+            raise Refusal(rules.argument_kind(place, op, "a number of type `int`"))
+
+
+def _applied(
+    op: NumericOp, args: Sequence[Placed], unit: Unit, result: Unit, span: Span
+) -> Quantity:
+    """An operation on values that are brought to `unit`; its result comes in another."""
+    truth = op is NumericOp.BIT
+    constants = [_exact(value, unit) for value, _ in args if value.constant is not None]
+    if len(constants) == len(args) and not truth:
+        return Quantity(constant=_folded(op, constants, span), unit=result)
+    node = Arithmetic(op, _nodes(args, unit))
+    return Quantity(node, unit=result, integral=_is_whole(op, args), truth=truth)
+
+
+def _power(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
+    """A power of what has a unit, which has to be known beforehand."""
+    (base, _), (exponent, place) = args
+    power = exponent.constant
+    if power is None or exponent.unit.symbol or power.denominator != 1 or abs(power) > _HIGHEST:
+        raise Refusal(rules.power_of_unit(place, base.unit.symbol))
+    inverse = quotient(PLAIN, base.unit)
+    factors = [base.unit if power > 0 else inverse] * abs(int(power))
+    unit = reduce(product, factors, PLAIN)
+    if base.constant is not None:
+        return Quantity(constant=_folded(op, [base.constant, power], span), unit=unit)
+    return Quantity(Arithmetic(op, (node_of(args[0]), Literal(int(power)))), unit=unit)
+
+
+def _folded(op: NumericOp, constants: Sequence[Fraction], span: Span) -> Fraction:
+    """The result for constants, which stay within what is written in a few hundred digits."""
+    whole = op.entry.unit is UnitRule.BITS
+    value = Fraction(op.entry.apply(*(map(int, constants) if whole else constants)))
+    if max(value.numerator.bit_length(), value.denominator.bit_length()) > 4096:
+        raise Refusal(rules.out_of_range(span))
+    return value
+
+
+def _scale(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
+    (left, _), (right, _) = args
+    multiply = op.entry.unit is UnitRule.PRODUCT
+    unit = (product if multiply else quotient)(left.unit, right.unit)
+    if left.constant is not None and right.constant is not None:
+        constants = (left.constant, right.constant)
+        return Quantity(constant=_folded(op, constants, span), unit=unit)
+    if not multiply and right.constant == 0:
+        raise Refusal(rules.out_of_range(span))
+    node = Arithmetic(op, tuple(map(node_of, args)))
+    return Quantity(node, unit=unit, integral=_is_whole(op, args))
+
+
+def _root(op: NumericOp, placed: Placed, span: Span) -> Quantity:
+    """The square root, taken in base units, since a factor need not have an exact root."""
+    value, place = placed
+    unit = root(value.unit)
+    if unit is None:
+        raise Refusal(rules.no_root(place, value.unit.symbol))
+    squared = base_unit(dict(value.unit.dimension))
+    if value.constant is not None:
+        exact = _exact(value, squared)
+        if exact < 0:
+            raise Refusal(rules.out_of_range(span))
+        return Quantity(constant=_folded(op, [exact], span), unit=unit)
+    return Quantity(Arithmetic(op, _nodes((placed,), squared)), unit=unit)
+
+
+def _common_unit(args: Sequence[Placed], doing: str, span: Span) -> Unit:
+    """The unit that values are brought to: that of the first that is no constant."""
+    varying = [value.unit for value, _ in args if value.constant is None]
+    named = [value.unit for value, _ in args if value.unit.symbol]
+    unit = (varying or named or [PLAIN])[0]
+    for value, place in args:
+        if value.unit.dimension == unit.dimension or _bare_zero(value):
+            continue
+        if value.constant is not None and not value.unit.symbol:
+            raise Refusal(rules.missing_unit(place, unit.symbol))
+        if not unit.symbol:
+            other = next(p for v, p in args if v.constant is None)
+            raise Refusal(rules.superfluous_unit(place, value.unit.symbol, short(other.text)))
+        shown = [v.unit.symbol or "no unit" for v, _ in args if not _bare_zero(v)]
+        raise Refusal(rules.mismatch(span, shown[0], shown[-1], doing))
+    return unit
+
+
+def _bare_zero(value: Quantity) -> bool:
+    return value.constant == 0 and not value.unit.symbol
+
+
+def _is_whole(op: NumericOp, args: Sequence[Placed]) -> bool:
+    return op.entry.whole and all(_is_integral(value) for value, _ in args)
+
+
+def _is_integral(value: Quantity) -> bool:
+    return value.integral if value.constant is None else value.constant.denominator == 1
+
+
+def _exact(value: Quantity, unit: Unit) -> Fraction:
+    """The value of a constant in another unit of its kind."""
+    return (value.constant or Fraction(0)) * value.unit.factor / unit.factor
+
+
+def _nodes(args: Sequence[Placed], unit: Unit) -> tuple[Numeric, ...]:
+    """All values in `unit`; constants as whole numbers beside whole numbers, else as floats."""
+    whole = all(value.integral for value, _ in args if value.constant is None)
+    return tuple(_node(value, unit, whole, place) for value, place in args)
+
+
+def _node(value: Quantity, unit: Unit, whole: bool, place: Span) -> Numeric:
+    if value.node is not None:
+        factor = value.unit.factor / unit.factor
+        if factor == 1:
+            return value.node
+        return Arithmetic(NumericOp.MUL, (value.node, Literal(float(factor))))
+    exact = _exact(value, unit)
+    if whole and exact.denominator == 1:
+        return Literal(int(exact), unit.symbol)
+    try:
+        return Literal(float(exact), unit.symbol)
+    except OverflowError:
+        raise Refusal(rules.out_of_range(place)) from None
+
+
+MOST_OUTCOMES = 64
+"""Between so many numbers an expression may choose."""
+
+
+def spread(values: Sequence[Value], span: Span, make: Callable[[Sequence[Value]], Value]) -> Value:
+    """What is made of values, some of which may be choices.
+
+    Raises:
+        Refusal: they have too many outcomes, or what `make` says.
+    """
+    outcomes = 1
+    for value in values:
+        outcomes *= _outcomes(value)
+    if outcomes > MOST_OUTCOMES:
+        raise Refusal(rules.many_outcomes(span, MOST_OUTCOMES))
+    return _spread(values, make)
+
+
+def _outcomes(value: Value) -> int:
+    if isinstance(value, Chosen):
+        return _outcomes(value.chosen) + _outcomes(value.otherwise)
+    return 1
+
+
+def _spread(values: Sequence[Value], make: Callable[[Sequence[Value]], Value]) -> Value:
+    for number, value in enumerate(values):
+        if isinstance(value, Chosen):
+            before, behind = values[:number], values[number + 1 :]
+            sides = [
+                _spread((*before, side, *behind), make) for side in (value.chosen, value.otherwise)
+            ]
+            return Chosen(value.condition, *sides)
+    return make(values)
+
+
+def decided(value: Value, span: Span) -> Formula:
+    """A choice between formulas, as one."""
+    if isinstance(value, Chosen):
+        chosen, otherwise = decided(value.chosen, span), decided(value.otherwise, span)
+        return either(value.condition, chosen, otherwise, span)
+    assert not isinstance(value, Quantity | Beside), "it was made of formulas"
+    return value
+
+
+def either(condition: Formula, chosen: Formula, otherwise: Formula, span: Span) -> Formula:
+    """`if φ then ψ else χ`, which is known where both sides are the same, whatever φ is."""
+    denied = Unary(UnaryOp.NOT, condition, None, span)
+    first = Binary(BinaryOp.AND, condition, chosen, None, span)
+    second = Binary(BinaryOp.AND, denied, otherwise, None, span)
+    both = Binary(BinaryOp.AND, chosen, otherwise, None, span)
+    one = Binary(BinaryOp.OR, first, second, None, span)
+    return Binary(BinaryOp.OR, one, both, None, span)
+
+
+_SECOND = (("s", 1),)
+
+
+def ticks_of(value: Value, span: Span) -> int:
+    """A constant with a unit of time, exactly; 0 needs no unit.
+
+    Raises:
+        Refusal: it is no such constant, no whole number of ticks, negative, or too long.
+    """
+    if not isinstance(value, Quantity) or value.constant is None:
+        moves = isinstance(value, Quantity) and is_time(value)
+        raise Refusal((time_rules.moving if moves else time_rules.no_duration)(span))
+    if not is_time(value) and value.constant != 0:
+        raise Refusal(time_rules.no_duration(span, plain=not value.unit.symbol))
+    ticks: Fraction = value.constant * value.unit.factor * TICKS_PER_SECOND
+    if ticks.denominator != 1:
+        raise Refusal(time_rules.part_of_tick(span))
+    if ticks < 0:
+        raise Refusal(time_rules.negative(span))
+    if ticks >= TIME_LIMIT:
+        raise Refusal(time_rules.too_long(span))
+    return int(ticks)
+
+
+def is_time(value: Quantity) -> bool:
+    """Whether it has a unit of time."""
+    return value.unit.dimension == _SECOND
+
+
+def closed_interval(
+    low: int, high: int | None, *, low_open: bool, high_open: bool, span: Span
+) -> Interval:
+    """The closed interval of ticks with these ends.
+
+    Raises:
+        Refusal: no tick lies in it.
+
+    >>> from rvmon.diagnostics import Source
+    >>> closed_interval(2, 5, low_open=True, high_open=False, span=Span(Source("", ""), 0, 0))
+    Interval(low=3, high=5)
+    """
+    first = low + low_open
+    last = None if high is None else high - high_open
+    if last is not None and last < first:
+        raise Refusal(time_rules.empty(span))
+    return Interval(first, last)
+
+
+def seconds_of(duration: Placed) -> Numeric:
+    """A duration of data, in seconds.
+
+    Raises:
+        Refusal: it is none.
+    """
+    if duration[0].constant is not None:
+        ticks_of(*duration)
+    return brought_to(parse_unit("s"), duration, duration[1])
+
+
+def brought_to(unit: Unit, placed: Placed, span: Span) -> Numeric:
+    """A number as it stands beside one of a unit in a comparison.
+
+    Raises:
+        Refusal: the units do not fit, or a constant is out of range.
+    """
+    beside = compare(CompareOp.GE, (Quantity(SignalValue(""), unit=unit), span), placed, span)
+    assert isinstance(beside, Compare), "one side varies"
+    return beside.right

@@ -1,0 +1,317 @@
+"""From a requirement's syntax to the checked requirement."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import TypeVar
+
+from rvmon.diagnostics import Span
+from rvmon.language.check.coverage import present
+from rvmon.language.check.ctl import linear_form, property_of
+from rvmon.language.check.expressions import Checker
+from rvmon.language.check.moving import refuse_moving
+from rvmon.language.check.normalise import (
+    derived_response,
+    normalised,
+    scoped_consequent,
+    scoped_trigger,
+)
+from rvmon.language.check.quantities import node_of
+from rvmon.language.check.scope import EVERYWHERE, AtTrigger, Moment, Now, Quantity, Scope
+from rvmon.language.check.traps import (
+    at_start_by_mistake,
+    capture_traps,
+    on_purpose,
+    traps_at_start,
+    traps_at_trigger,
+)
+from rvmon.language.checked.classify import (
+    end_part,
+    future_part,
+    is_end,
+    is_pulse,
+    is_timeless,
+    mixed_disjunction,
+    subformulas,
+    windows_of,
+)
+from rvmon.language.checked.ctl import Property
+from rvmon.language.checked.formula import (
+    BoundAtom,
+    Captured,
+    Compare,
+    FieldValue,
+    Formula,
+    NowValue,
+    fields_in,
+)
+from rvmon.language.checked.names_read import names_read
+from rvmon.language.checked.specification import (
+    Capture,
+    EndPolicy,
+    ForEach,
+    Mode,
+    Requirement,
+    RunShare,
+)
+from rvmon.language.rules import Refusal, Reported, short
+from rvmon.language.rules import names as name_rules
+from rvmon.language.rules import properties as property_rules
+from rvmon.language.rules import requirements as rules
+from rvmon.language.rules import types as type_rules
+from rvmon.language.syntax.expressions import Ident, ungrouped
+from rvmon.language.syntax.items import (
+    AtEndClause,
+    Bare,
+    Clause,
+    CoverMonitor,
+    ForEachClause,
+    LetClause,
+    RequirementItem,
+    ResponseMonitor,
+    RunShareClause,
+    ScopeClause,
+    TagsClause,
+    TextClause,
+    Triggered,
+    WrittenMonitor,
+)
+from rvmon.trace.schema import Kind
+from rvmon.units import PLAIN
+
+_C = TypeVar("_C", bound=Clause)
+
+Parts = tuple[Mode, Formula, Formula]
+"""Mode, trigger and consequent."""
+
+
+def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement:
+    """Check a requirement.
+
+    Raises:
+        Refusal: it is wrong.
+        Reported: it is wrong, and that is recorded.
+    """
+    policy = _policy(checker, item)
+    share = _run_share(checker, item)
+    for_each, outer = _instances(checker, item)
+    captures, inner = _captures(checker, item, outer)
+    ctl = property_of(checker, item)
+    trigger = AtTrigger()
+    parts = _parts(checker, item, outer, replace(inner, trigger=trigger), ctl)
+    mode, when, consequent = _scoped(checker, item, outer, parts)
+    if for_each is not None:
+        _refuse_fields_in_sums((when, consequent), item.span)
+    _warn_of_traps(checker, item, parts, captures)
+    texts = {clause.word: clause.text for clause in _clauses(item, TextClause)}
+    scopes = [clause.span.text for clause in _clauses(item, ScopeClause)]
+    return Requirement(
+        item.name.text,
+        mode,
+        when,
+        consequent,
+        item.text,
+        at_end=policy,
+        pulse=is_pulse(when),
+        captures=(*captures, *trigger.captures),
+        for_each=for_each,
+        source=texts.get("source", ""),
+        rationale=texts.get("rationale", ""),
+        severity=texts.get("severity", ""),
+        tags=tuple(tag for clause in _clauses(item, TagsClause) for tag in clause.tags),
+        span=item.span,
+        ctl=ctl,
+        scope=scopes[0] if scopes else "",
+        run_share=share,
+    )
+
+
+def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
+    """Of several occurrences at one instant each has to tell by itself whether it counts."""
+    for window in windows_of(*formulas):
+        events = {value.event for value in fields_in(window.value)} if window.value else None
+        if not events:
+            continue
+        for subformula in subformulas(window.operand):
+            read = {*names_read(subformula)} & events if isinstance(subformula, Compare) else set()
+            own = (
+                isinstance(subformula, Compare)
+                and subformula.left == subformula.right == window.value
+            )
+            if len(events) > 1 or (read and not own):
+                raise Refusal(type_rules.sum_of_instances(window.operand.span or place))
+
+
+def check_clauses(checker: Checker, item: RequirementItem) -> None:
+    """Report clauses that stand twice, and names that are taken."""
+    first: dict[str, Span] = {}
+    named: dict[str, Ident] = {}
+    for clause in item.clauses:
+        if isinstance(clause, LetClause | ForEachClause):
+            _check_name(checker, clause.name, named)
+        word = clause.span.text.split(maxsplit=1)[0]
+        if word == "let":
+            continue
+        if word in first:
+            checker.report(rules.double_clause(word, clause.span, first[word]))
+        first.setdefault(word, clause.span)
+
+
+def _check_name(checker: Checker, name: Ident, named: dict[str, Ident]) -> None:
+    """A name of a requirement is neither one of the file nor another of the requirement."""
+    declared = checker.table.declared.get(name.text)
+    taken = named.setdefault(name.text, name) if declared is None else declared.name
+    if taken is not name:
+        checker.report(name_rules.double(name.text, "name", name.span, taken.span))
+
+
+def _parts(
+    checker: Checker,
+    item: RequirementItem,
+    outer: Scope,
+    inner: Scope,
+    ctl: Property | None,
+) -> Parts:
+    match item.body:
+        case Bare(formula=expression):
+            formula = checker.top(expression, replace(inner, trigger=None))
+            if formula is None:
+                raise Reported
+            if end := end_part(formula):
+                raise Refusal(rules.end_not_alone(end.span or expression.span))
+            if at_start_by_mistake(expression, formula):
+                checker.report(rules.bare_instant(ungrouped(expression).span))
+            return normalised(formula)
+        case Triggered():
+            return _triggered(checker, item.body, outer, inner)
+        case ResponseMonitor(within=within, span=span):
+            ticks = checker.duration(within, EVERYWHERE)
+            if ctl is None:
+                raise Refusal(property_rules.no_property(span))
+            return Mode.UPON, *derived_response(checker.table, ctl, ticks, span)
+        case WrittenMonitor(span=span):
+            if ctl is None:
+                raise Refusal(property_rules.nothing_written(span))
+            return normalised(linear_form(ctl, span, checker.table.time))
+        case CoverMonitor():
+            raise AssertionError("a goal is no requirement")
+
+
+def _scoped(checker: Checker, item: RequirementItem, outer: Scope, parts: Parts) -> Parts:
+    """Trigger and consequent with the `scope` clause worked in."""
+    mode, trigger, consequent = parts
+    for clause in _clauses(item, ScopeClause):
+        ends = [
+            None if expression is None else present(checker.formula(expression, outer))
+            for expression in (clause.opening, clause.closing)
+        ]
+        if end_part(trigger):
+            raise Refusal(rules.end_in_scope(clause.span))
+        required = scoped_consequent(consequent, ends[1], must_close=clause.must_close)
+        return mode, scoped_trigger(trigger, *ends), required
+    return parts
+
+
+def _triggered(checker: Checker, body: Triggered, outer: Scope, inner: Scope) -> Parts:
+    trigger = checker.top(body.trigger, outer)
+    at_once = replace(inner, at_once=body.mode is Mode.UPON)
+    consequent = checker.top(body.consequent, at_once)
+    if trigger and (ahead := future_part(trigger)):
+        checker.report(rules.future_trigger(ahead.span or body.trigger.span))
+        raise Reported
+    if trigger is None or consequent is None:
+        raise Reported
+    alone = isinstance(trigger, BoundAtom) and body.mode is Mode.UPON
+    for formula, place in ((trigger, body.trigger), (consequent, body.consequent)):
+        end = end_part(formula)
+        if end and not (alone and formula is trigger):
+            raise Refusal(rules.end_not_alone(end.span or place.span))
+    _warn(checker, body, trigger, consequent)
+    return body.mode, trigger, consequent
+
+
+def _warn(checker: Checker, body: Triggered, trigger: Formula, consequent: Formula) -> None:
+    instant = body.mode is Mode.UPON and not is_end(trigger) and is_timeless(consequent)
+    if instant and not on_purpose(body.consequent):
+        checker.report(rules.one_instant(body.consequent.span))
+    if mixed := mixed_disjunction(trigger):
+        pulse, level = (part.span or body.trigger.span for part in mixed)
+        checker.report(rules.mixed_trigger(pulse, level, short(level.text)))
+
+
+def _warn_of_traps(
+    checker: Checker, item: RequirementItem, parts: Parts, captures: Iterable[Capture]
+) -> None:
+    mode, trigger, consequent = parts
+    time = checker.table.time
+    found = [*traps_at_trigger(trigger, consequent, time, item.span)]
+    if not any(_clauses(item, ScopeClause)):  # else the start is where the scope opens
+        found += traps_at_start(mode, trigger, consequent, item.span)
+    lets = zip(_clauses(item, LetClause), captures, strict=True)
+    found += capture_traps(mode, trigger, lets, time)
+    for diagnostic in found:
+        checker.report(diagnostic)
+
+
+def _policy(checker: Checker, item: RequirementItem) -> EndPolicy:
+    policies = [str(policy) for policy in EndPolicy]
+    for clause in _clauses(item, AtEndClause):
+        if clause.policy.text in policies:
+            return EndPolicy(clause.policy.text)
+        checker.report(rules.unknown_policy(clause.policy.span, policies))
+    return EndPolicy.DEFAULT
+
+
+def _run_share(checker: Checker, item: RequirementItem) -> RunShare | None:
+    for clause in _clauses(item, RunShareClause):
+        number = clause.share
+        if number.value is not None and number.unit == "%" and 0 < number.value < 100:
+            return RunShare(clause.at_least, float(number.value))
+        checker.report(rules.bad_run_share(number.span))
+    return None
+
+
+def _instances(checker: Checker, item: RequirementItem) -> tuple[ForEach | None, Scope]:
+    """The `for each` clause, and the scope of the trigger: what it names."""
+    for clause in _clauses(item, ForEachClause):
+        field = checker.table.field(clause.field.text)
+        if field is None:
+            checker.values((clause.field,), EVERYWHERE)
+            raise Refusal(type_rules.argument_kind(clause.field.span, "for each", "an event.field"))
+        local = Quantity(
+            Captured(clause.name.text),
+            unit=checker.table.units.get(clause.field.text, PLAIN),
+            integral=field.type.kind is Kind.INT,
+            labels=field.type.labels,
+            truth=field.type.kind is Kind.BOOL,
+        )
+        value = FieldValue(field.event, field.field)
+        return ForEach(clause.name.text, value), Scope({clause.name.text: local})
+    return None, EVERYWHERE
+
+
+def _captures(
+    checker: Checker, item: RequirementItem, outer: Scope
+) -> tuple[tuple[Capture, ...], Scope]:
+    """The `let` clauses, and the scope of the consequent: what they and `for each` name."""
+    captures = []
+    values, names = dict(outer.names), dict(outer.names)
+    for clause in _clauses(item, LetClause):
+        (value,) = checker.values((clause.value,), Scope(values))
+        if value == Now():
+            captures.append(Capture(clause.name.text, NowValue()))
+            names[clause.name.text] = Moment(clause.name.text)
+            continue
+        if not isinstance(value, Quantity):
+            raise Refusal(type_rules.needs_number(clause.value.span))
+        node = node_of((value, clause.value.span))
+        refuse_moving(checker.table.time, node, clause.value.span)
+        captures.append(Capture(clause.name.text, node))
+        values[clause.name.text] = value  # both are of the trigger's instant
+        names[clause.name.text] = replace(value, node=Captured(clause.name.text), constant=None)
+    return tuple(captures), Scope(names)
+
+
+def _clauses(item: RequirementItem, kind: type[_C]) -> Iterable[_C]:
+    return (clause for clause in item.clauses if isinstance(clause, kind))

@@ -1,0 +1,303 @@
+"""What an expression stands for while it is checked, and where names are looked up and missed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from typing import Protocol
+
+from rvmon.diagnostics import Span
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.formula import (
+    TRIGGERED,
+    Formula,
+    NowValue,
+    Numeric,
+    Passed,
+    WindowValue,
+    since_trigger,
+)
+from rvmon.language.checked.specification import Capture, Event, Signal, TimeModel, Type
+from rvmon.language.names import Declared, DeclaredEvent, DeclaredSignal
+from rvmon.language.syntax.expressions import Expression
+from rvmon.language.syntax.items import ConstItem, DefineItem
+from rvmon.texts import nearest
+from rvmon.units import PLAIN, Unit, unit_table
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """A number or label with its unit.
+
+    Attributes:
+        node: what yields it at run time; `None` if it is a constant.
+        constant: the exact value in `unit` if it is a constant.
+        unit: of the value.
+        integral: whether all values are whole numbers by type.
+        labels: the labels it may take, if it is one.
+        truth: whether it is a bool, for which 0 and 1 stand.
+        lone: the window that it is, if it is no expression of one.
+    """
+
+    node: Numeric | None = None
+    constant: Fraction | None = None
+    unit: Unit = PLAIN
+    integral: bool = False
+    labels: tuple[str, ...] = ()
+    truth: bool = False
+    lone: Lone | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Age:
+    """`age(x)`: the time since the last update; only compared with durations."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """`if φ then x else y` of numbers; a comparison of it is one of each, beside φ."""
+
+    condition: Formula
+    chosen: Value
+    otherwise: Value
+
+
+@dataclass(frozen=True, slots=True)
+class Now:
+    """`now`, `now - t0`: the time since an instant; only compared, or captured by `let`.
+
+    Attributes:
+        since: the name of a captured instant; `None`: the first one.
+    """
+
+    since: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """An instant that was captured, or some time behind it; `now` is compared with it.
+
+    Attributes:
+        name: that it was captured by.
+        later: so much time behind it; `None`: none.
+    """
+
+    name: str
+    later: Quantity | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Lone:
+    """What a number is that is a window and nothing else: beside a limit it has ways of its own.
+
+    Attributes:
+        of: the window; of a share, its duration.
+        added: its x, if it is of numbers.
+        share: whether it is divided by D.
+        begun: that the trigger has come, if only what is since then counts.
+    """
+
+    of: WindowValue
+    added: Quantity | None = None
+    share: bool = False
+    begun: Formula | None = None
+
+
+Beside = Age | Now | Moment
+"""What only stands beside something else in a comparison."""
+
+Value = Formula | Quantity | Beside | Chosen
+
+
+@dataclass(frozen=True, slots=True)
+class Closure:
+    """A macro's argument: an expression that keeps the names of the place it was written at."""
+
+    expression: Expression
+    scope: Scope
+
+
+@dataclass(frozen=True, slots=True)
+class AtTrigger:
+    """What is captured at the trigger besides `let`, as far as what is required asks for it."""
+
+    captures: list[Capture] = field(default_factory=list)
+
+    def begun(self, span: Span) -> Passed:
+        """That it has come."""
+        if not any(capture.name == TRIGGERED for capture in self.captures):
+            self.captures.append(Capture(TRIGGERED, NowValue()))
+        return since_trigger(span)
+
+    def number(self, word: str, value: Numeric) -> str:
+        """The name of a number of that instant, which begins as a word of the language does."""
+        for capture in self.captures:
+            if capture.value == value and capture.name.startswith(word):
+                return capture.name
+        taken = sum(capture.name.startswith(word) for capture in self.captures)
+        self.captures.append(Capture(f"{word} {taken + 1}" if taken else word, value))
+        return self.captures[-1].name
+
+
+@dataclass(frozen=True, slots=True)
+class Scope:
+    """The names that hold inside a macro or requirement, besides those of the file.
+
+    Attributes:
+        names: what they stand for.
+        trigger: in what is required, what is captured with it.
+        at_once: whether it is required at the trigger, and not at some later instant.
+    """
+
+    names: Mapping[str, Closure | Quantity | Moment] = field(default_factory=dict)
+    trigger: AtTrigger | None = None
+    at_once: bool = False
+
+    def later(self) -> Scope:
+        """The same below an operator of time."""
+        return replace(self, at_once=False) if self.at_once else self
+
+    def inside(self, names: Mapping[str, Closure]) -> Scope:
+        """That of the body of a macro."""
+        return Scope(names, self.trigger, self.at_once)
+
+
+EVERYWHERE = Scope()
+"""Only the names of the file."""
+
+Declaration = Signal | Event | DefineItem | ConstItem
+
+
+@dataclass(frozen=True, slots=True)
+class FieldOf:
+    """A payload field that a dotted name stands for."""
+
+    event: str
+    field: str
+    type: Type
+
+
+_LONG_NAMES = {
+    "metre": "m",
+    "meter": "m",
+    "millimetre": "mm",
+    "millimeter": "mm",
+    "second": "s",
+    "sec": "s",
+    "millisecond": "ms",
+    "msec": "ms",
+    "minute": "min",
+    "hour": "h",
+    "hr": "h",
+    "gram": "g",
+    "kilogram": "kg",
+    "kilo": "kg",
+    "newton": "N",
+    "radian": "rad",
+    "degree": "deg",
+    "°": "deg",
+    "turn": "rev",
+    "celsiu": "degC",
+    "kelvin": "K",
+    "volt": "V",
+    "amp": "ampere",
+    "hertz": "Hz",
+    "percent": "%",
+    "mp": "m/s",
+    "kmh": "km/h",
+    "kph": "km/h",
+    "pixel": "px",
+    "byte": "B",
+}
+"""What people write for a unit, in lower case and without a last `s`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """What the names of a file stand for.
+
+    Attributes:
+        time: the time model.
+        signals: checked, by name.
+        events: checked, by name.
+        units: of real signals, and of payload fields as `event.field`.
+        declared: everything by name, macros and constants too.
+        recursive: macros and constants that are defined by themselves.
+        doubtful: words that an item with a syntax error may have declared.
+    """
+
+    time: TimeModel
+    signals: Mapping[str, Signal] = field(default_factory=dict)
+    events: Mapping[str, Event] = field(default_factory=dict)
+    units: Mapping[str, Unit] = field(default_factory=dict)
+    declared: Mapping[str, Declared] = field(default_factory=dict)
+    recursive: frozenset[str] = frozenset()
+    doubtful: frozenset[str] = frozenset()
+
+    def field(self, name: str) -> FieldOf | None:
+        """The payload field that `event.field` stands for."""
+        event, _, last = name.rpartition(".")
+        if event in self.events and last in self.events[event].fields:
+            return FieldOf(event, last, self.events[event].fields[last])
+        return None
+
+
+def close_name(table: Table, name: str, local: tuple[str, ...] = ()) -> str:
+    """What to try in place of an unknown name, in words; empty if nothing is alike."""
+    fields = [f"{e.name}.{f}" for e in table.events.values() for f in e.fields]
+    close = nearest(name, [*local, *table.declared, *fields])
+    return f"did you mean `{close}`?{_described(table, close)}" if close else ""
+
+
+def _described(table: Table, name: str) -> str:
+    declared = table.declared.get(name)
+    match declared:
+        case DeclaredSignal(role=role) | DeclaredEvent(role=role):
+            kind = "event" if isinstance(declared, DeclaredEvent) else "signal"
+            parts = [kind, *([str(role)] if role else []), f"line {declared.name.span.line}"]
+        case DefineItem() | ConstItem():
+            kind = "define" if isinstance(declared, DefineItem) else "const"
+            parts = [kind, f"line {declared.name.span.line}"]
+        case None:
+            return ""
+    return f"  ({', '.join(parts)})"
+
+
+def close_unit(part: str) -> str:
+    """A unit that is alike, or empty."""
+    singular = part.lower().removesuffix("s")
+    if singular in _LONG_NAMES:
+        return _LONG_NAMES[singular]
+    return nearest(part, unit_table())
+
+
+class Operands(Protocol):
+    """Evaluates operands; each method reports what is wrong in all of them before it raises."""
+
+    table: Table
+
+    def values(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Value]:
+        """What the operands stand for."""
+
+    def calculated(
+        self, op: NumericOp, args: tuple[Expression, ...], scope: Scope, span: Span
+    ) -> Value:
+        """An operation on numbers, or on choices between them."""
+
+    def quantities(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Quantity]:
+        """The same, which have to be numbers."""
+
+    def formula(self, expression: Expression, scope: Scope) -> Formula:
+        """What an operand stands for, which has to be a formula."""
+
+    def duration(self, expression: Expression, scope: Scope) -> int:
+        """What it stands for, which has to be a constant duration, in ticks."""
+
+    def known(self, name: str, scope: Scope) -> bool:
+        """Whether a name stands for anything but a label."""
+
+    def peeled(self, expression: Expression, scope: Scope) -> tuple[Expression, Scope]:
+        """An operand without brackets and macro parameters around it."""

@@ -1,0 +1,182 @@
+"""Requirements that fail, or stay open, by their own wording on every run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from rvmon.diagnostics import Diagnostic, Span
+from rvmon.language.checked.classify import (
+    FIRST,
+    Facts,
+    facts_of,
+    is_pulse,
+    is_timeless,
+    subformulas,
+    truth_at,
+)
+from rvmon.language.checked.formula import (
+    Atom,
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Constant,
+    Formula,
+    Unary,
+    UnaryOp,
+    fields_in,
+)
+from rvmon.language.checked.specification import Capture, Mode, TimeModel
+from rvmon.language.print import format_duration, format_formula
+from rvmon.language.rules import requirements as rules
+from rvmon.language.syntax.expressions import Expression, Immediately, ungrouped
+from rvmon.language.syntax.items import LetClause
+
+_FIRST = "at the first instant"
+
+
+def traps_at_trigger(
+    trigger: Formula, consequent: Formula, time: TimeModel, span: Span
+) -> Iterator[Diagnostic]:
+    """What is required at the trigger, and cannot hold there.
+
+    Args:
+        trigger: without what a scope adds.
+        consequent: the same.
+        time: the time model.
+        span: of the requirement, for what has no place of its own.
+    """
+    facts = {about: truth for about, truth in facts_of(trigger).items() if about is not Bound.START}
+    for part in _required_at_once(consequent):
+        if truth_at(part, {}) is None:
+            yield from _at_trigger(part, facts, time, part.span or span)
+
+
+def traps_at_start(
+    mode: Mode, trigger: Formula, consequent: Formula, span: Span
+) -> Iterator[Diagnostic]:
+    """What is required from the start of the run on, and cannot hold there.
+
+    Args:
+        mode: of the requirement.
+        trigger: the same.
+        consequent: the same.
+        span: of the requirement, for what has no place of its own.
+    """
+    always = mode is Mode.WHENEVER and isinstance(trigger, Constant) and trigger.value
+    if not always and not (isinstance(trigger, BoundAtom) and trigger.bound is Bound.START):
+        return
+    for part in _required_at_once(consequent):
+        place = part.span or span
+        if truth_at(part, {}) is not None:
+            continue
+        if always and isinstance(part, Unary) and part.op.entry.pulse:
+            fix = "an edge is one instant: say what follows it, `upon … then …`"
+            when = "at the second instant at the latest" if part.op is UnaryOp.RISE else _FIRST
+            yield rules.false_at_first(place, when, fix)
+        elif truth_at(part, FIRST) is False:
+            yield rules.false_at_first(place, _FIRST, _later(part))
+
+
+def capture_traps(
+    mode: Mode,
+    trigger: Formula,
+    captures: Iterable[tuple[LetClause, Capture]],
+    time: TimeModel,
+) -> Iterator[Diagnostic]:
+    """Captured values that are not those that a reader takes them for."""
+    occurring = {name for name, truth in facts_of(trigger).items() if truth}
+    for clause, capture in captures:
+        for field in fields_in(capture.value):
+            if field.event not in occurring:
+                yield rules.no_value(clause.span, field.event)
+                break
+        else:
+            if mode is Mode.WHENEVER and not (is_pulse(trigger) and time is TimeModel.HELD):
+                shown = "" if isinstance(trigger, Constant) else format_formula(trigger)
+                yield rules.captured_once(clause.span, shown)
+
+
+def _required_at_once(formula: Formula) -> Iterator[Formula]:
+    """The parts of what is required that have to hold at the instant at which it is required."""
+    match formula:
+        case Binary(op=BinaryOp.AND, left=left, right=right):
+            yield from _required_at_once(left)
+            yield from _required_at_once(right)
+        case Unary(op=UnaryOp.ALWAYS, operand=operand, interval=window) if not (
+            window and window.low
+        ):
+            yield from _required_at_once(operand)
+        case _:
+            yield formula
+
+
+def _at_trigger(part: Formula, facts: Facts, time: TimeModel, place: Span) -> Iterator[Diagnostic]:
+    """A part of what is required that is false by what the trigger says."""
+    if isinstance(part, Binary) and part.op in (BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL):
+        left, right = truth_at(part.left, facts), truth_at(part.right, facts)
+        late = part.interval is not None and part.interval.low > 0
+        if left is False and (late or right is not True) and truth_at(part.left, {}) is None:
+            escape = "" if late or right is False else format_formula(part.right)
+            shown = format_formula(part.left)
+            yield rules.false_at_trigger(place, shown, escape, _from_later_on(part, time))
+    elif truth_at(part, facts) is False:
+        fix = "let the consequent begin a tick later: `always[1 ns, …] …`"
+        if time is not TimeModel.HELD:
+            fix = "let the consequent begin at the next position: `next (…)`"
+        yield rules.false_at_trigger(place, format_formula(part), "", fix)
+
+
+def _from_later_on(part: Binary, time: TimeModel) -> str:
+    """`a until b` and `a unless b` that begin behind the trigger."""
+    if time is not TimeModel.HELD:
+        return f"let it begin at the next position: `next ({format_formula(part)})`"
+    low, high = (part.interval.low, part.interval.high) if part.interval else (0, None)
+    end = "inf)" if high is None else f"{format_duration(high)}]"
+    left, right = _operand(part.left), _operand(part.right)
+    later = f"{right} R[1 ns, {end} {left}"
+    if part.op is BinaryOp.UNTIL:
+        window = "" if not low and high is None else f"[{format_duration(low)}, {end}"
+        later = f"({later}) and eventually{window} {right}"
+    return f"let it begin a tick later: `{later}`"
+
+
+def _later(part: Formula) -> str:
+    """How what looks back is required only where there is something to look at."""
+    due = max(map(_reach, subformulas(part)))
+    if not due:
+        return f"leave out the first instant: `start or {_operand(part)}`"
+    begin = format_duration(due)
+    return f"let it begin when so much has passed: `always[{begin}, inf) {_operand(part)}`"
+
+
+def _reach(part: Formula) -> int:
+    """How long ago the latest instant is that an operator looks at, ticks."""
+    match part:
+        case Unary(op=UnaryOp.HELD, interval=window) if window is not None:
+            return window.high or 0
+        case Unary(op=UnaryOp.ONCE, interval=window) if window is not None:
+            return window.low
+        case Binary(op=BinaryOp.SINCE, interval=window) if window is not None:
+            return window.low
+        case _:
+            return 0
+
+
+def _operand(formula: Formula) -> str:
+    """A formula as it stands beside an operator of time."""
+    text = format_formula(formula)
+    is_call = isinstance(formula, Unary) and formula.op.entry.called
+    return text if is_call or isinstance(formula, Atom) else f"({text})"
+
+
+def at_start_by_mistake(expression: Expression, formula: Formula) -> bool:
+    """Whether a bare formula speaks of no time, and not of the start either."""
+    if on_purpose(expression) or not is_timeless(formula):
+        return False
+    return not any(isinstance(part, BoundAtom) for part in subformulas(formula))
+
+
+def on_purpose(expression: Expression) -> bool:
+    """Whether `immediately` says that one instant is meant."""
+    return isinstance(ungrouped(expression), Immediately)

@@ -1,0 +1,266 @@
+"""Windows of the past as numbers: what is measured of which members, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from typing import TypeGuard
+
+from rvmon.diagnostics import Span
+from rvmon.language.check.comparisons import number_of
+from rvmon.language.check.quantities import arithmetic, node_of
+from rvmon.language.check.scope import Chosen, Lone, Operands, Quantity, Scope, Value
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.classify import future_part, is_pulse
+from rvmon.language.checked.formula import (
+    BinaryOp,
+    Compare,
+    EventAtom,
+    Formula,
+    Measured,
+    Numeric,
+    Probe,
+    ProbeAtom,
+    SignalValue,
+    WindowValue,
+    fields_in,
+    itself,
+    windows_in,
+)
+from rvmon.language.checked.functions import LAST
+from rvmon.language.checked.measured import Dimension, Members
+from rvmon.language.checked.names_read import names_in, names_read
+from rvmon.language.checked.rewrite import Formulas, chain
+from rvmon.language.checked.specification import TimeModel
+from rvmon.language.rules import Refusal
+from rvmon.language.rules import time as time_rules
+from rvmon.language.rules import types as rules
+from rvmon.language.syntax.expressions import Call, Expression, Infix, Name
+from rvmon.trace.time import TICKS_PER_SECOND
+from rvmon.units import PLAIN, Unit, parse_unit, product
+
+TRIGGER = "trigger"
+"""What windows may begin with: `x since trigger`."""
+_SECONDS = parse_unit("s")
+MOST_LAST = 1_000_000
+"""So many updates a window may hold."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Window:
+    """What a call measures, and where.
+
+    Attributes:
+        of: the expression.
+        scope: of that.
+        ticks: D; `None`: no such window.
+        most: how many updates; `None`: any number.
+        since: whether only what is since the trigger counts.
+    """
+
+    of: Expression
+    scope: Scope
+    ticks: int | None = None
+    most: int | None = None
+    since: bool = False
+
+    @property
+    def span(self) -> Span:
+        """The place of the expression."""
+        return self.of.span
+
+
+def _window(operands: Operands, call: Call, scope: Scope) -> _Window:
+    """Of the last D, of `last(n, x)`, since the trigger, or since the first instant."""
+    of, inner = operands.peeled(call.args[0], scope)
+    found = _Window(call.args[0], scope)
+    match of:
+        case Call(function=function, args=(count, x)) if function.text == LAST:
+            found = _Window(x, inner, most=_count(operands, count, inner))
+        case Infix(op=BinaryOp.SINCE, left=left, right=right, window=None):
+            name, place = operands.peeled(right, inner)
+            if (
+                isinstance(name, Name)
+                and name.text == TRIGGER
+                and not operands.known(TRIGGER, place)
+            ):
+                if scope.trigger is None:
+                    raise Refusal(rules.since_no_trigger(of.span))
+                found = _Window(left, inner, since=True)
+    if len(call.args) == 1:
+        return found
+    if found.most is not None or found.since:
+        raise Refusal(rules.two_windows(call.span))
+    ticks = operands.duration(call.args[1], scope)
+    if ticks == 0:
+        raise Refusal(time_rules.no_duration(call.args[1].span))
+    return replace(found, ticks=ticks)
+
+
+def _count(operands: Operands, expression: Expression, scope: Scope) -> int:
+    (count,) = operands.quantities((expression,), scope)
+    number = count.constant
+    if (
+        number is None
+        or count.unit.symbol
+        or not 1 <= number <= MOST_LAST
+        or number.denominator > 1
+    ):
+        raise Refusal(rules.last_count(expression.span, MOST_LAST))
+    return int(number)
+
+
+def amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> Quantity:
+    """What a call measures.
+
+    Raises:
+        Refusal: there is no such window, or that is not measured of such members.
+        Reported: an operand is wrong.
+    """
+    window = _window(operands, call, scope)
+    lone = (_added if measured.of_numbers else _counted)(operands, measured, call, window)
+    of = replace(lone.of, window=window.ticks, most=window.most)
+    if window.since and scope.trigger is not None:
+        begun = scope.trigger.begun(window.span)
+        of = replace(of, operand=Formulas(window.span).both(begun, of.operand))
+        lone = replace(lone, begun=begun)
+    lone = replace(lone, of=of)
+    added = lone.added or Quantity(integral=True)
+    whole = added.integral and measured not in (Measured.MEAN, Measured.VARIANCE)
+    unit = _unit_of(measured, added.unit)
+    found = Quantity(of, unit=unit, integral=whole and not measured.of_time)
+    if lone.share:
+        seconds = Fraction(of.window or 0, TICKS_PER_SECOND)
+        span = Quantity(constant=seconds, unit=_SECONDS)
+        found = arithmetic(NumericOp.DIV, ((found, call.span), (span, call.span)), call.span)
+    return replace(found, lone=lone)
+
+
+def _unit_of(measured: Measured, unit: Unit) -> Unit:
+    """The unit of what is measured of numbers."""
+    match measured.dimension:
+        case Dimension.PLAIN:
+            return PLAIN
+        case Dimension.TIMES_TIME | Dimension.TIME:
+            return product(unit, _SECONDS)
+        case Dimension.SQUARE:
+            return product(unit, unit)
+        case Dimension.SAME:
+            return unit
+
+
+def _counted(operands: Operands, measured: Measured, call: Call, window: _Window) -> Lone:
+    """How much of a formula there was, which has to be known at once."""
+    formula = operands.formula(window.of, window.scope)
+    _refuse_future(formula, call, call.function.text)
+    share = call.function.text == "share"
+    if share and window.ticks is None and window.most is None:
+        raise Refusal(rules.argument_count(call.span, "share", "two arguments", 1))
+    if window.most is not None:
+        if share or measured is not Measured.COUNT:
+            raise Refusal(rules.not_of_last(call.span, call.function.text))
+        updated = _updates(operands, {*names_read(formula)}, window.span)
+        return Lone(WindowValue(measured, updated, None, counted=formula))
+    held = operands.table.time is TimeModel.HELD
+    if measured is Measured.COUNT and held and not is_pulse(formula):
+        raise Refusal(rules.count_of_state(window.span))
+    return Lone(WindowValue(measured, formula, None), share=share)
+
+
+def _refuse_future(formula: Formula, call: Call, name: str) -> None:
+    if (ahead := future_part(formula)) is not None:
+        raise Refusal(rules.amount_of_future(ahead.span or call.span, name))
+
+
+def _updates(operands: Operands, names: set[str], span: Span) -> Formula:
+    """Where the only name of an expression is updated."""
+    if len(names) != 1:
+        raise Refusal(rules.last_of_several(span))
+    (name,) = names
+    if name in operands.table.events:
+        return EventAtom(name, span)
+    return ProbeAtom(Probe.UPDATED, name, span)
+
+
+def _added(operands: Operands, measured: Measured, call: Call, window: _Window) -> Lone:
+    """The numbers of occurrences, of updates, or what is held."""
+    place = window.span
+    (value,) = operands.values((window.of,), window.scope)
+    conditions: list[Formula] = []
+    may_choose = measured in (Measured.SUM, Measured.INTEGRAL) and window.most is None
+    if isinstance(value, Chosen) and may_choose and _is_nothing(value.otherwise):
+        conditions, value = chain(value.condition), value.chosen
+    quantity = number_of(value, place)
+    if quantity.node is None:
+        raise Refusal(rules.not_added(place, measured, measured.of.value))
+    node = node_of((quantity, place))
+    if windows_in(node):
+        raise Refusal(rules.window_in_window(place))
+    events = {value.event for value in fields_in(node)}
+    signals = {*names_in(node)} - events
+    if window.most is not None:
+        if measured.of is Members.HELD:
+            raise Refusal(rules.not_of_last(call.span, measured))
+        updated = _updates(operands, events | signals, place)
+        of = WindowValue(measured, updated, None, node, counted=itself(node, place))
+        return Lone(of, quantity)
+    if not _can_be_added(measured, node, fields=bool(events), signals=bool(signals)):
+        raise Refusal(rules.not_added(place, measured, measured.of.value))
+    if measured is Measured.VARIANCE and signals:
+        _refuse_curve(operands, call, window)
+    if measured is Measured.AGO and operands.table.time is not TimeModel.HELD:
+        raise Refusal(time_rules.ago_of_samples(call.span))
+    if measured.of is Members.EVENTS and isinstance(node, SignalValue):
+        conditions.insert(0, ProbeAtom(Probe.UPDATED, node.name, place))
+    chosen = tuple(condition for condition in conditions if _is_of_occurrence(condition, events))
+    member: Formula = itself(node, place)
+    for condition in reversed([condition for condition in conditions if condition not in chosen]):
+        _refuse_future(condition, call, measured)
+        member = Formulas(place).both(condition, member)
+    return Lone(WindowValue(measured, member, None, node, chosen=chosen), quantity)
+
+
+def _is_nothing(value: Value) -> bool:
+    return isinstance(value, Quantity) and value.constant == 0
+
+
+def _is_of_occurrence(formula: Formula, events: set[str]) -> TypeGuard[Compare]:
+    """Whether it is a comparison that says something of one occurrence of the only event."""
+    if not isinstance(formula, Compare) or len(events) != 1:
+        return False
+    return {value.event for value in fields_in(formula.left, formula.right)} == events
+
+
+def _can_be_added(measured: Measured, node: Numeric, *, fields: bool, signals: bool) -> bool:
+    """Of what occurs, of what is held, or of either."""
+    match measured.of:
+        case Members.EVENTS:
+            return fields or isinstance(node, SignalValue)
+        case Members.HELD:
+            return signals and not fields
+        case _ if measured.recalls:
+            return fields or signals
+        case _:
+            return fields is not signals
+
+
+def _refuse_curve(operands: Operands, call: Call, window: _Window) -> None:
+    """Between samples a variance of what is held is no line; on a clock it is looked at anew."""
+    time = operands.table.time
+    if time is TimeModel.HELD:
+        raise Refusal(rules.variance_moves(call.span))
+    if time is TimeModel.CLOCKED and window.ticks is None:
+        raise Refusal(rules.argument_count(call.span, "variance", "two arguments", 1))
+
+
+def is_extreme(operands: Operands, call: Call, scope: Scope) -> bool:
+    """Of a window, if the second argument is a duration and the first is no time."""
+    if len(call.args) == 1:
+        return True
+    if len(call.args) > 2:
+        return False
+    first, second = operands.values(call.args, scope)
+    if not isinstance(first, Quantity) or not isinstance(second, Quantity):
+        return False
+    is_time = second.constant is not None and second.unit.dimension == _SECONDS.dimension
+    return first.constant is None and is_time and first.unit.dimension != _SECONDS.dimension

@@ -1,0 +1,180 @@
+"""The operations on numbers: one entry for each, which checker, core and oracle read.
+
+The oracle has readings of its own, of which this is to be found right.
+"""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum, StrEnum
+
+from rvmon.language.checked import mathematics
+
+
+class UnitRule(Enum):
+    """What arguments an operation takes, and what becomes of their units."""
+
+    SAME = "of one unit, which the result has"
+    PRODUCT = "of any unit; their product"
+    QUOTIENT = "of any unit; their quotient"
+    ROOT = "of any unit that has a root; that root"
+    POWER = "a plain number, or one of any unit to a whole constant"
+    SIGN = "of any unit; a plain number"
+    PLAIN = "plain numbers"
+    OF_ANGLE = "an angle; a plain number"
+    TO_ANGLE = "a plain number; an angle"
+    DIRECTION = "of one unit; an angle"
+    TURN = "angles"
+    PLACES = "angles; a length"
+    BITS = "of type `int`"
+
+
+class Exactness(StrEnum):
+    """How near the result is to that of the numbers that are there."""
+
+    EXACT = "exact"
+    ROUNDED = "rounded once"
+    LIBRARY = "as the C library rounds it"
+
+
+@dataclass(frozen=True, slots=True)
+class Operation:
+    """What is to be known of an operation.
+
+    Attributes:
+        least: so many arguments at least.
+        most: so many at most; `None`: any number, folded from the left.
+        unit: of the result.
+        apply: yields the result, of exact fractions too; an error of arithmetic is unknown.
+        whole: whether the result of whole numbers is one.
+        doc: its value in a few words.
+        exactness: of the result, of reals.
+    """
+
+    least: int
+    most: int | None
+    unit: UnitRule
+    apply: Callable[..., float]
+    whole: bool
+    doc: str
+    exactness: Exactness = Exactness.ROUNDED
+
+
+def _exact(
+    least: int, most: int | None, unit: UnitRule, apply: Callable[..., float], doc: str
+) -> Operation:
+    """One that picks its result, or whose result is always a number that there is."""
+    return Operation(least, most, unit, apply, True, doc, Exactness.EXACT)
+
+
+def _library(count: int, unit: UnitRule, apply: Callable[..., float], doc: str) -> Operation:
+    return Operation(count, count, unit, apply, False, doc, Exactness.LIBRARY)
+
+
+class NumericOp(StrEnum):
+    """The operations by their signs, or the names of functions.
+
+    >>> NumericOp.of("hypot").entry.apply(3, 4)
+    5.0
+    """
+
+    entry: Operation
+
+    def __new__(cls, sign: str, entry: Operation) -> NumericOp:
+        """A member: the text that it is written as, with its entry."""
+        made = str.__new__(cls, sign)
+        made._value_ = sign
+        made.entry = entry
+        return made
+
+    @classmethod
+    def of(cls, sign: str) -> NumericOp:
+        """The one that is written so."""
+        return next(op for op in cls if op.value == sign)
+
+    ADD = "+", Operation(2, 2, UnitRule.SAME, operator.add, True, "the sum")
+    SUB = "-", Operation(2, 2, UnitRule.SAME, operator.sub, True, "a difference")
+    MUL = "*", Operation(2, 2, UnitRule.PRODUCT, operator.mul, True, "the product")
+    DIV = "/", Operation(2, 2, UnitRule.QUOTIENT, operator.truediv, False, "the quotient")
+    NEG = "neg", _exact(1, 1, UnitRule.SAME, operator.neg, "the opposite")
+    ABS = "abs", _exact(1, 1, UnitRule.SAME, abs, "the magnitude")
+    MIN = "min", _exact(2, None, UnitRule.SAME, min, "the least")
+    MAX = "max", _exact(2, None, UnitRule.SAME, max, "the greatest")
+    SQRT = "sqrt", Operation(1, 1, UnitRule.ROOT, math.sqrt, False, "the square root")
+    HYPOT = (
+        "hypot",
+        Operation(2, 2, UnitRule.SAME, math.hypot, False, "the length of a vector of two sides"),
+    )
+    FLOOR = (
+        "floor",
+        _exact(1, 1, UnitRule.SAME, math.floor, "the whole number not above, in its unit"),
+    )
+    CEIL = "ceil", _exact(1, 1, UnitRule.SAME, math.ceil, "the whole number not below, in its unit")
+    ROUND = (
+        "round",
+        _exact(
+            1,
+            1,
+            UnitRule.SAME,
+            mathematics.nearest_whole,
+            "the nearest whole number, halves away from 0",
+        ),
+    )
+    SIGN = "sign", _exact(1, 1, UnitRule.SIGN, mathematics.sign, "1, 0 or −1")
+    MOD = (
+        "mod",
+        Operation(
+            2, 2, UnitRule.SAME, operator.mod, True, "what is left of x / y, with the sign of y"
+        ),
+    )
+    CLAMP = (
+        "clamp",
+        _exact(3, 3, UnitRule.SAME, mathematics.clamp, "x, at least y, and then at most z"),
+    )
+    SIN = "sin", _library(1, UnitRule.OF_ANGLE, math.sin, "the sine of an angle")
+    COS = "cos", _library(1, UnitRule.OF_ANGLE, math.cos, "the cosine of an angle")
+    TAN = "tan", _library(1, UnitRule.OF_ANGLE, math.tan, "the tangent of an angle")
+    ASIN = "asin", _library(1, UnitRule.TO_ANGLE, math.asin, "the angle of a sine")
+    ACOS = "acos", _library(1, UnitRule.TO_ANGLE, math.acos, "the angle of a cosine")
+    ATAN2 = "atan2", _library(2, UnitRule.DIRECTION, math.atan2, "the direction of (y, x)")
+    EXP = "exp", _library(1, UnitRule.PLAIN, math.exp, "e to the power of x")
+    LOG = "log", _library(1, UnitRule.PLAIN, math.log, "the natural logarithm")
+    LOG10 = "log10", _library(1, UnitRule.PLAIN, math.log10, "the decimal logarithm")
+    POW = "pow", _library(2, UnitRule.POWER, math.pow, "x to the power of y")
+    ANGLE_BETWEEN = (
+        "angle_between",
+        Operation(
+            *(2, 2, UnitRule.TURN, mathematics.angle_between, False),
+            "by how much to turn from x to y, the shorter way: above −180° up to 180°",
+        ),
+    )
+    DISTANCE_ON_EARTH = (
+        "distance_on_earth",
+        _library(
+            *(4, UnitRule.PLACES, mathematics.distance_on_earth),
+            "from (latitude, longitude) to (latitude, longitude), on a sphere",
+        ),
+    )
+    BIT_AND = "bit_and", _exact(2, 2, UnitRule.BITS, operator.and_, "the bits that both have")
+    BIT_OR = "bit_or", _exact(2, 2, UnitRule.BITS, operator.or_, "the bits that one has, or both")
+    BIT_XOR = "bit_xor", _exact(2, 2, UnitRule.BITS, operator.xor, "the bits that one has alone")
+    SHIFT_LEFT = (
+        "shift_left",
+        _exact(2, 2, UnitRule.BITS, mathematics.shifted_left, "x, its bits y places up"),
+    )
+    SHIFT_RIGHT = (
+        "shift_right",
+        _exact(2, 2, UnitRule.BITS, mathematics.shifted_right, "x, its bits y places down"),
+    )
+    BIT = (
+        "bit",
+        _exact(2, 2, UnitRule.BITS, mathematics.bit, "bit y of x is set; the lowest is bit 0"),
+    )
+
+    @property
+    def is_function(self) -> bool:
+        """Whether it is called by its name in a specification."""
+        return self.isidentifier() and self is not NumericOp.NEG

@@ -1,0 +1,387 @@
+"""Formulas and numbers whose names, types and units are settled.
+
+Macros and constants are expanded, durations are ticks, intervals are closed. `age(x) > D` and its
+kin are rewritten with `updated(x)` and past operators. Operators are otherwise as written; their
+meaning is SEMANTICS 2.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import Any
+
+from rvmon.diagnostics import Span
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.measured import Measured as Measured
+from rvmon.language.checked.operators import BinaryOp as BinaryOp
+from rvmon.language.checked.operators import Interval as Interval
+from rvmon.language.checked.operators import UnaryOp as UnaryOp
+from rvmon.trace.time import TICKS_PER_SECOND
+
+# Numeric (and label) expressions, evaluated in Python floats, ints or strings.
+
+
+@dataclass(frozen=True, slots=True)
+class Literal:
+    """A number in the unit that the comparison is made in, or a label.
+
+    Attributes:
+        value: the number or label.
+        unit: that unit's symbol, for people; "" if it has none.
+    """
+
+    value: float | int | str
+    unit: str = field(default="", compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class SignalValue:
+    """The held value of an int, real or label signal (bool: False is 0, True is 1)."""
+
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class FieldValue:
+    """A payload field of an event; only meaningful where the event occurs."""
+
+    event: str
+    field: str
+
+
+@dataclass(frozen=True, slots=True)
+class Captured:
+    """A value captured by `let` at the trigger, or the instance value of `for each`."""
+
+    name: str
+
+
+class UpdateFunction(StrEnum):
+    """Functions of a signal's last two updates (SEMANTICS 2)."""
+
+    PREV = "prev"
+    DELTA = "delta"
+    RATE = "rate"
+
+
+@dataclass(frozen=True, slots=True)
+class UpdateValue:
+    """`prev(x)`, `delta(x)` or `rate(x)` (per second); unknown before the second update."""
+
+    function: UpdateFunction
+    name: str
+
+
+@dataclass(frozen=True, slots=True)
+class Arithmetic:
+    """An operation on numbers; a result that is no number (0/0, sqrt(-1), overflow) is unknown."""
+
+    op: NumericOp
+    args: tuple[Numeric, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class NowValue:
+    """`now`: ticks since the first instant; unknown if an outage hides which that was."""
+
+
+@dataclass(frozen=True, slots=True)
+class WindowValue:
+    """`count(φ, D)`, `sum(x, D)` and their kin: what the members of a window come to.
+
+    A member is a position at which φ is true, with the number x there; where φ is not born there is
+    none. Where x reads fields of one event each occurrence is a member that `chosen` holds of.
+
+    Attributes:
+        measured: what they come to.
+        operand: φ, of the present and past.
+        window: D, ticks; `None`: since the first instant.
+        value: x; `None`: positions or ticks are counted.
+        most: how many of the last members count, at most; `None`: all of the window.
+        counted: with `most`, whether a member counts; of numbers, a comparison of x with itself.
+        chosen: comparisons of fields that are asked of each occurrence.
+    """
+
+    measured: Measured
+    operand: Formula
+    window: int | None
+    value: Numeric | None = None
+    most: int | None = None
+    counted: Formula | None = None
+    chosen: tuple[Compare, ...] = ()
+
+    @property
+    def operands(self) -> tuple[Formula, ...]:
+        """φ, what says whether a member counts, and what is chosen."""
+        asked = (self.operand, self.counted, *self.chosen)
+        return tuple(part for part in asked if part is not None)
+
+    @property
+    def moves(self) -> bool:
+        """Whether it goes on changing between samples, and not by jumps."""
+        held = self.measured in (Measured.MEAN, Measured.VARIANCE) and self.most is None
+        return self.measured.of_time or (
+            held and not (self.value is not None and any(fields_in(self.value)))
+        )
+
+    @property
+    def born_with(self) -> tuple[Compare, ...]:
+        """A comparison that is born first: of x, where of nothing there is no number."""
+        asks = self.value is not None and self.measured.asks_for_one
+        return (itself(self.value),) if asks and self.value is not None else ()
+
+
+Read = NowValue | SignalValue | FieldValue | Captured | UpdateValue
+"""What a number is read off."""
+
+Numeric = Literal | Read | WindowValue | Arithmetic
+
+
+def numbers_in(*numbers: Numeric) -> Iterator[Numeric]:
+    """Numbers and what they are made of, from the left; not what stands inside of windows."""
+    for number in numbers:
+        yield number
+        if isinstance(number, Arithmetic):
+            yield from numbers_in(*number.args)
+
+
+def windows_in(*numbers: Numeric) -> tuple[WindowValue, ...]:
+    """The windows that numbers are made of, each once, from the left."""
+    windows = (one for one in numbers_in(*numbers) if isinstance(one, WindowValue))
+    return tuple(dict.fromkeys(windows))
+
+
+def fields_in(*numbers: Numeric) -> Iterator[FieldValue]:
+    """The payload fields that numbers are made of, from the left."""
+    return (one for one in numbers_in(*numbers) if isinstance(one, FieldValue))
+
+
+class CompareOp(StrEnum):
+    """Comparisons of numbers; labels know only `==` and `!=`.
+
+    Attributes:
+        holds: compares two numbers, or arrays of them.
+        said: it as an English verb.
+
+    >>> CompareOp.LE.holds(2, 3), CompareOp.LE.mirrored, CompareOp.LE.denied
+    (True, <CompareOp.GE: '>='>, <CompareOp.GT: '>'>)
+    """
+
+    LT = "<", operator.lt, "is below"
+    LE = "<=", operator.le, "is at most"
+    EQ = "==", operator.eq, "is"
+    NE = "!=", operator.ne, "is not"
+    GE = ">=", operator.ge, "is at least"
+    GT = ">", operator.gt, "is above"
+
+    holds: Callable[[Any, Any], Any]
+    said: str
+
+    def __new__(
+        cls, sign: str, holds: Callable[[Any, Any], Any] = operator.eq, said: str = ""
+    ) -> CompareOp:
+        """A member: its sign, with the comparison, and how it is said."""
+        made = str.__new__(cls, sign)
+        made._value_ = sign
+        made.holds, made.said = holds, said
+        return made
+
+    @property
+    def mirrored(self) -> CompareOp:
+        """What is true of `b` and `a` where this is of `a` and `b`."""
+        return CompareOp(self.translate(_MIRROR))
+
+    @property
+    def denied(self) -> CompareOp:
+        """What is true where this is not."""
+        return _DENIED.get(self) or next(op for op, other in _DENIED.items() if other is self)
+
+
+_MIRROR = str.maketrans("<>", "><")
+
+_DENIED = {
+    CompareOp.LT: CompareOp.GE,
+    CompareOp.LE: CompareOp.GT,
+    CompareOp.EQ: CompareOp.NE,
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Constant:
+    """`true` or `false`."""
+
+    value: bool
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SignalAtom:
+    """A bool signal as a proposition."""
+
+    name: str
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class EventAtom:
+    """An event: true at the ticks at which it was published."""
+
+    name: str
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Compare:
+    """A comparison; one that reads fields of an event `e` means `e and comparison`."""
+
+    op: CompareOp
+    left: Numeric
+    right: Numeric
+    span: Span | None = None
+
+
+class Probe(StrEnum):
+    """Propositions about the updates of a signal (or event, for `updated`)."""
+
+    KNOWN = "known"
+    UPDATED = "updated"
+    CHANGED = "changed"
+
+
+@dataclass(frozen=True, slots=True)
+class ProbeAtom:
+    """`known(x)`, `updated(x)` (two-valued) or `changed(x)` (an update with another value)."""
+
+    probe: Probe
+    name: str
+    span: Span | None = None
+
+
+class Bound(StrEnum):
+    """The two ends of a trace as propositions; `end` stands only alone, as a trigger."""
+
+    START = "start"
+    END = "end"
+
+
+@dataclass(frozen=True, slots=True)
+class BoundAtom:
+    """`start` is true at the first position; `end` when the trace is finished."""
+
+    bound: Bound
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Unary:
+    """An operator on one formula; `interval` is `None` exactly where the operator has none."""
+
+    op: UnaryOp
+    operand: Formula
+    interval: Interval | None = None
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Binary:
+    """An operator on two formulas; `interval` is `None` exactly where the operator has none."""
+
+    op: BinaryOp
+    left: Formula
+    right: Formula
+    interval: Interval | None = None
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Amount:
+    """`count(φ, D) >= n`, `sum(x, D) > c` and their kin: a window beside a limit, exactly.
+
+    Attributes:
+        of: the window.
+        limit: n or c, in the unit of what is measured: of a duration ticks, of an integral that of
+            x times seconds, of a variance the square of that of x.
+        strict: whether it is `> c`.
+        span: of the whole.
+        known: a comparison of c with itself, if it may change.
+    """
+
+    of: WindowValue
+    limit: Numeric
+    strict: bool = False
+    span: Span | None = None
+    known: Compare | None = None
+
+    @property
+    def operands(self) -> tuple[Formula, ...]:
+        """Those of the window; behind the first ones, whether c is known."""
+        own = self.of.operands
+        chosen = len(own) - len(self.of.chosen)
+        return own if self.known is None else (*own[:chosen], self.known, *own[chosen:])
+
+    @property
+    def comparison(self) -> Compare:
+        """The same of numbers, that of a duration in seconds: by how much it holds."""
+        of, limit = self.of, self.limit
+        if of.measured is Measured.DURATION and isinstance(limit, Literal):
+            limit = Literal(int(limit.value) / TICKS_PER_SECOND, "s")
+        return Compare(CompareOp.GT if self.strict else CompareOp.GE, of, limit, self.span)
+
+    def has_distance(self, *, held: bool) -> bool:
+        """Whether by how much it holds is worked out: not where it moves between samples."""
+        return not (held and self.of.moves)
+
+    @property
+    def born_with(self) -> tuple[Compare, ...]:
+        """Comparisons that are born first: of c, and of x where of nothing there is none."""
+        return (*(() if self.known is None else (self.known,)), *self.of.born_with)
+
+
+@dataclass(frozen=True, slots=True)
+class Passed:
+    """`now - t0 >= x`: at least so long has passed since an instant that was captured.
+
+    Attributes:
+        since: the name of that instant; `None`: since the first.
+        after: x, seconds, rounded to whole ticks; halves to even ones.
+        strict: whether it is `> x`.
+        known: a comparison with itself of what it reads: where that is known.
+    """
+
+    since: str | None
+    after: Numeric
+    strict: bool
+    known: Compare
+    span: Span | None = None
+
+    @property
+    def begins(self) -> bool:
+        """Whether it is true from a captured instant on."""
+        return self.since is not None and self.after == Literal(0) and not self.strict
+
+
+def itself(value: Numeric, span: Span | None = None) -> Compare:
+    """A comparison of a number with itself: unknown where that is, else true."""
+    return Compare(CompareOp.EQ, value, value, span)
+
+
+TRIGGERED = "upon"
+"""The instant of the trigger, as it is captured where something is measured since then."""
+
+
+def since_trigger(span: Span | None = None) -> Passed:
+    """That the trigger has come."""
+    return passed(TRIGGERED, Literal(0, "s"), False, span)
+
+
+def passed(since: str | None, after: Numeric, strict: bool, span: Span | None = None) -> Passed:
+    """That so many seconds have passed since an instant that was captured, or the first."""
+    read = after if since is None else Arithmetic(NumericOp.ADD, (Captured(since), after))
+    return Passed(since, after, strict, itself(read), span)
+
+
+Atom = Constant | SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom
+Formula = Atom | Unary | Binary | Amount | Passed

@@ -1,0 +1,113 @@
+"""The functions of the language: one entry for each, which parser, checker and documentation read.
+
+Those that are operators of formulas or operations on numbers have the rest in their own entries.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum
+
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.formula import Measured, Probe, UpdateFunction
+from rvmon.language.checked.operators import UnaryOp, Window
+
+
+class Argument(Enum):
+    """What an argument has to be."""
+
+    FORMULA = "a formula"
+    DURATION = "a duration"
+    NUMBER = "a number"
+    WHOLE = "a whole number"
+    SIGNAL = "the name of a signal"
+    SOURCE = "the name of a signal or event"
+
+
+@dataclass(frozen=True, slots=True)
+class Function:
+    """A function.
+
+    Attributes:
+        name: of it.
+        means: what a call becomes; `None`: an age, which stands in comparisons only, or the last
+            updates, which stand in windows only.
+        arguments: of a call.
+        doc: its value in a few words.
+        more: whether further arguments like the last may follow.
+        optional: how many of the last may be left out.
+    """
+
+    name: str
+    means: UnaryOp | Probe | UpdateFunction | NumericOp | Measured | None
+    arguments: tuple[Argument, ...]
+    doc: str
+    more: bool = False
+    optional: int = 0
+
+
+_OF_UPDATES = (
+    Function("changed", Probe.CHANGED, (Argument.SIGNAL,), "x is updated with another value"),
+    Function("known", Probe.KNOWN, (Argument.SIGNAL,), "x has a value that is known"),
+    Function("updated", Probe.UPDATED, (Argument.SOURCE,), "x is updated, with any value"),
+    Function(
+        *("age", None, (Argument.SOURCE,)),
+        "the time since the last update of x, beside a duration",
+    ),
+    Function(
+        *("prev", UpdateFunction.PREV, (Argument.SIGNAL,)), "the value of x before its last update"
+    ),
+    Function(
+        *("delta", UpdateFunction.DELTA, (Argument.SIGNAL, Argument.DURATION)),
+        "the difference between the last two values of x; with D, "
+        "by how much x is more than at the first instant of the last D",
+        optional=1,
+    ),
+    Function("rate", UpdateFunction.RATE, (Argument.SIGNAL,), "that difference per second"),
+)
+
+
+LAST = "last"
+"""What stands in windows: `last(n, x)`."""
+_COUNTED = (Argument.FORMULA, Argument.DURATION)
+_ADDED = (Argument.NUMBER, Argument.DURATION)
+
+_AMOUNTS = (
+    *(
+        Function(
+            *(measured.value, measured, _ADDED if measured.of_numbers else _COUNTED, measured.doc),
+            optional=int(measured is not Measured.AGO),
+        )
+        for measured in Measured
+        if measured not in (Measured.DELTA, Measured.MIN, Measured.MAX)
+    ),
+    Function(
+        *("share", Measured.DURATION, _COUNTED),
+        "that duration divided by D, beside a number or `%`",
+        optional=1,
+    ),
+    Function(
+        *(LAST, None, (Argument.WHOLE, Argument.NUMBER)),
+        "the last n updates of x, or of what φ reads, in place of a D: `mean(last(5, x)) <= 2`",
+    ),
+)
+
+
+def _all() -> Iterator[Function]:
+    for op in UnaryOp:
+        if op.entry.called:
+            length = (Argument.DURATION,) if op.entry.window is Window.LENGTH else ()
+            yield Function(op.entry.word, op, (Argument.FORMULA, *length), op.entry.doc)
+    yield from _OF_UPDATES
+    yield from _AMOUNTS
+    for operation in NumericOp:
+        if operation.is_function:
+            entry = operation.entry
+            numbers = (Argument.NUMBER,) * entry.least
+            many = entry.most is None
+            yield Function(operation.value, operation, numbers, entry.doc, many, int(many))
+
+
+FUNCTIONS = {function.name: function for function in _all()}
+"""All of them, by name."""

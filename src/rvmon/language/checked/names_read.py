@@ -1,0 +1,164 @@
+"""Which signals and events a formula or specification reads; requirements asked for by name."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator
+
+from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.language.checked.classify import subformulas
+from rvmon.language.checked.ctl import StateAtom, state_formulas
+from rvmon.language.checked.formula import (
+    Arithmetic,
+    Compare,
+    EventAtom,
+    FieldValue,
+    Formula,
+    Numeric,
+    ProbeAtom,
+    SignalAtom,
+    SignalValue,
+    UpdateValue,
+    WindowValue,
+)
+from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.texts import did_you_mean
+
+
+def names_read(formula: Formula) -> Iterator[str]:
+    """The names of the signals and events that a formula reads, with repetitions."""
+    for part in subformulas(formula):
+        match part:
+            case SignalAtom(name=name) | EventAtom(name=name) | ProbeAtom(name=name):
+                yield name
+            case Compare(left=left, right=right):
+                yield from names_in(left)
+                yield from names_in(right)
+
+
+def names_in(numeric: Numeric) -> Iterator[str]:
+    """The names that a number is made of."""
+    waiting = [numeric]
+    while waiting:
+        match waiting.pop():
+            case SignalValue(name=name) | UpdateValue(name=name) | FieldValue(event=name):
+                yield name
+            case Arithmetic(args=args):
+                waiting += args
+            case WindowValue() as window:
+                for part in window.operands:
+                    yield from names_read(part)
+
+
+def names_of_requirement(requirement: Requirement) -> Iterator[str]:
+    """The names that a requirement reads to be judged, with repetitions."""
+    yield from names_read(requirement.trigger)
+    yield from names_read(requirement.consequent)
+    for capture in requirement.captures:
+        yield from names_in(capture.value)
+    if requirement.for_each is not None:
+        yield requirement.for_each.value.event
+
+
+def names_of_spec(spec: CheckedSpec) -> Iterator[str]:
+    """The names that requirements, properties and goals read, with repetitions."""
+    for requirement in spec.requirements.values():
+        yield from names_of_requirement(requirement)
+    for found in spec.properties.values():
+        for part in state_formulas(found.formula):
+            if isinstance(part, StateAtom):
+                yield from names_read(part.formula)
+    for cover in spec.covers.values():
+        yield from names_read(cover.formula)
+    for _, names in names_of_coverage(spec):
+        yield from names
+
+
+def names_of_coverage(spec: CheckedSpec) -> Iterator[tuple[str, Iterator[str]]]:
+    """Each coverpoint and cross, and the names that it reads itself, with repetitions."""
+    for point in spec.coverpoints.values():
+        asked = [bin_.formula for bin_ in point.bins]
+        asked += [] if point.upon is None else [point.upon]
+        yield point.name, (name for formula in asked for name in names_read(formula))
+    for cross in spec.crosses.values():
+        if cross.upon is not None:
+            yield cross.name, names_read(cross.upon)
+
+
+def several(names: Iterable[str] | None) -> tuple[str, ...] | None:
+    """Names that were asked for; `None`: all.
+
+    Raises:
+        RvmonError: it is one text, whose letters would be the names.
+    """
+    if isinstance(names, str):
+        raise RvmonError(f"expected names, such as [{names!r}], found one text: {names!r}")
+    return None if names is None else tuple(names)
+
+
+def requirements_asked(spec: CheckedSpec, only: Iterable[str] | None) -> tuple[str, ...] | None:
+    """Ids of requirements; `None`: all.
+
+    Raises:
+        UnknownNameError: there is no such requirement.
+        RvmonError: one text was given for several names.
+    """
+    chosen = several(only)
+    for name in chosen or ():
+        if name not in spec.requirements:
+            known = ", ".join(spec.requirements) or "none"
+            raise UnknownNameError(f"no requirement `{name}`: there are {known}")
+    return chosen
+
+
+def labelled(
+    spec: CheckedSpec,
+    only: Iterable[str] | None,
+    severities: Iterable[Collection[str]],
+    tags: Iterable[Collection[str]],
+) -> tuple[str, ...]:
+    """Ids of the requirements that have, of each list, one of the severities or tags in it.
+
+    Args:
+        spec: with the requirements.
+        only: ids among which is chosen, which exist; `None`: all.
+        severities: lists of severities.
+        tags: lists of tags.
+
+    Raises:
+        UnknownNameError: no requirement has such a severity or tag, or none has one of each list.
+    """
+    left = list(spec.requirements) if only is None else list(only)
+    wanted = [("severity", one) for one in severities] + [("tag", one) for one in tags]
+    for kind, words in wanted:
+        of = {name: _labels(requirement, kind) for name, requirement in spec.requirements.items()}
+        known = sorted(set().union(*of.values()))
+        for word in words or [""]:
+            if word not in known:
+                there = f"there are {', '.join(known)}" if known else f"none has a {kind}"
+                meant = did_you_mean(word, known, there)
+                raise UnknownNameError(f"no requirement has the {kind} `{word}`: {meant}")
+        left = [name for name in left if not of[name].isdisjoint(words)]
+    if not left:
+        asked = ", ".join(f"the {kind} {' or '.join(words)}" for kind, words in wanted)
+        raise UnknownNameError(f"no requirement that is asked for has {asked}")
+    return tuple(left)
+
+
+def _labels(requirement: Requirement, kind: str) -> set[str]:
+    return set(requirement.tags) if kind == "tag" else {requirement.severity} - {""}
+
+
+def sources_asked(spec: CheckedSpec, names: Iterable[str] | None) -> frozenset[str] | None:
+    """Names of signals and events; `None`: all.
+
+    Raises:
+        UnknownNameError: there is no such signal or event.
+        RvmonError: one text was given for several names.
+    """
+    asked = several(names)
+    given = None if asked is None else frozenset(asked)
+    declared = [*spec.signals, *spec.events]
+    for name in sorted((given or frozenset()).difference(declared)):
+        meant = did_you_mean(name, declared, f"there are {', '.join(declared)}")
+        raise UnknownNameError(f"no signal or event named `{name}`: {meant}")
+    return given

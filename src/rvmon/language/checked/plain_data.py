@@ -1,0 +1,150 @@
+"""Checked specifications as plain data, and back; and as a text that tells them apart.
+
+Nothing but the classes of a checked specification is made of it, and nothing is executed.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Collection, Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from enum import Enum
+from functools import cache, partial
+from types import ModuleType
+from typing import Any
+
+from rvmon import diagnostics
+from rvmon.diagnostics import Source, Span
+from rvmon.language.checked import formula, specification
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.measured import Measured
+from rvmon.language.checked.operators import BinaryOp, Interval, UnaryOp
+from rvmon.trace.schema import Kind
+
+
+def _class_named(name: str) -> type | None:
+    """The class that a specification or its warnings are made of; `None` if there is none."""
+    return _classes().get(name) or _rarer_classes().get(name)
+
+
+@cache
+def _classes() -> Mapping[str, type]:
+    modules = (formula, specification, diagnostics)
+    own = {one.__name__: one for one in (Measured, NumericOp, UnaryOp, BinaryOp, Interval, Kind)}
+    return {**own, **dict(_own_classes(*modules))}
+
+
+@cache
+def _rarer_classes() -> Mapping[str, type]:
+    """Those of properties and goals, which few specifications have."""
+    from rvmon.language.checked import ctl, goals
+
+    return dict(_own_classes(ctl, goals))
+
+
+def _own_classes(*modules: ModuleType) -> Iterator[tuple[str, type]]:
+    for module in modules:
+        for name, one in vars(module).items():
+            if isinstance(one, type) and one.__module__ == module.__name__:
+                yield name, one
+
+
+def to_plain(value: Any) -> Any:
+    """A value as lists, numbers and texts; each source stands in it once.
+
+    Raises:
+        TypeError: something in it is of no class of a specification.
+
+    >>> from_plain(to_plain((1, "a", None))) == (1, "a", None)
+    True
+    """
+    sources: dict[int, int] = {}
+    return _to_plain(value, sources)
+
+
+def _to_plain(value: Any, sources: dict[int, int]) -> Any:
+    if value is None or type(value) in (bool, int, float, str):
+        return value
+    if isinstance(value, Source):
+        if id(value) in sources:
+            return ["same", sources[id(value)]]
+        sources[id(value)] = len(sources)
+    name = type(value).__name__
+    if isinstance(value, Enum) and _class_named(name) is type(value):
+        return [name, value.name]
+    own: Any = type(value)
+    names = _attributes(own)
+    if names is not None:
+        return [name, *[_to_plain(getattr(value, name), sources) for name in names]]
+    if isinstance(value, Mapping):
+        return ["dict", *(_to_plain(pair, sources) for pair in value.items())]
+    if type(value) in (tuple, frozenset):
+        return [name, *(_to_plain(one, sources) for one in value)]
+    raise TypeError(f"a {name} is no part of a specification")
+
+
+def from_plain(data: Any) -> Any:
+    """The value that was stored.
+
+    Raises:
+        ValueError, LookupError, TypeError: the data are no such value.
+    """
+    return _from_plain(data, [])
+
+
+def _from_plain(data: Any, sources: list[Source]) -> Any:
+    if type(data) is not list:
+        return data
+    name, *rest = data
+    if name == "same":
+        return sources[rest[0]]
+    values = [_from_plain(one, sources) if type(one) is list else one for one in rest]
+    match name:
+        case "dict":
+            return dict(values)
+        case "tuple":
+            return tuple(values)
+        case "frozenset":
+            return frozenset(values)
+    class_ = _class_named(name)
+    if class_ is None:
+        raise LookupError(f"no class `{name}`")
+    if issubclass(class_, Enum):
+        return class_[rest[0]]
+    made = class_(*values)
+    if isinstance(made, Source):
+        sources.append(made)
+    return made
+
+
+def identity_text(spec: specification.CheckedSpec, *, without: Collection[str] = ()) -> str:
+    """A text that two specifications share if they are equal but for where things stand in files.
+
+    It is the same in all processes.
+
+    Args:
+        spec: the specification.
+        without: names of attributes that are passed over.
+    """
+    return json.dumps(spec, default=partial(_parts, without), separators=(",", ":"))
+
+
+def _parts(without: Collection[str], value: Any) -> Any:
+    """What something is made of, for a JSON text: one level, which is gone when it is written."""
+    own: Any = type(value)
+    names = _attributes(own)
+    if names is not None:
+        wanted = [name for name in names if name not in without] if without else names
+        parts = map(partial(getattr, value), wanted)
+        return {own.__name__: [None if type(part) in (Source, Span) else part for part in parts]}
+    if own is frozenset:
+        return sorted(value)
+    raise TypeError(f"a {own.__name__} is no part of a specification")
+
+
+@cache
+def _attributes(class_: type) -> tuple[str, ...] | None:
+    """The attributes of objects of a class of a specification; `None`: it is no such class."""
+    if is_dataclass(class_) and _class_named(class_.__name__) is class_:
+        return tuple(field.name for field in fields(class_))
+    return None

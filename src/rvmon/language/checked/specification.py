@@ -1,0 +1,221 @@
+"""A specification whose names, types and units are settled: what monitors start from.
+
+Bare formulas are split into trigger and consequent (SEMANTICS 3).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from typing import TYPE_CHECKING
+
+from rvmon.diagnostics import Source, Span
+from rvmon.language.checked.formula import FieldValue, Formula, Numeric
+from rvmon.trace.schema import Kind, Schema
+
+if TYPE_CHECKING:
+    from rvmon.language.checked.ctl import Property
+    from rvmon.language.checked.goals import Cover, Coverpoint, Cross
+
+
+class Role(StrEnum):
+    """Who sets a signal or event: the environment (`input`) or the system (`output`)."""
+
+    INPUT = "input"
+    OUTPUT = "output"
+
+
+@dataclass(frozen=True, slots=True)
+class Type:
+    """The type of a signal or field: `unit` as written for reals ("" if none), labels in order."""
+
+    kind: Kind
+    unit: str = ""
+    labels: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Signal:
+    """A declared signal.
+
+    Attributes:
+        name: of the signal.
+        type: of its values.
+        role: who sets it.
+        stale_after: it is unknown so many ticks after its last update.
+        ignores_nan: whether NaN and null are no update of it, instead of an unknown value.
+        span: where its name is declared.
+    """
+
+    name: str
+    type: Type
+    role: Role | None = None
+    stale_after: int | None = None
+    ignores_nan: bool = False
+    span: Span | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """A declared event with the types of its payload's fields."""
+
+    name: str
+    fields: Mapping[str, Type] = field(default_factory=dict)
+    role: Role | None = None
+    span: Span | None = None
+
+
+class Mode(StrEnum):
+    """How attempts start and what they owe (SEMANTICS 3)."""
+
+    UPON = "upon"
+    WHENEVER = "whenever"
+
+
+class EndPolicy(StrEnum):
+    """What becomes of an undecided attempt when the trace ends (SEMANTICS 3, The end)."""
+
+    DEFAULT = "default"
+    STRICT = "strict"
+    WEAK = "weak"
+    STRONG = "strong"
+    PASS = "pass"
+    FAIL = "fail"
+
+
+@dataclass(frozen=True, slots=True)
+class Capture:
+    """`let name = expression`."""
+
+    name: str
+    value: Numeric
+
+
+@dataclass(frozen=True, slots=True)
+class ForEach:
+    """`for each name in event.field`: one instance of the requirement per value."""
+
+    name: str
+    value: FieldValue
+
+
+@dataclass(frozen=True, slots=True)
+class RunShare:
+    """`in at least 95 % of runs`: single runs are judged as always, campaigns decide by all.
+
+    Attributes:
+        at_least: whether the requirement is to hold in so many runs, or in so many at most.
+        percent: above 0, below 100.
+    """
+
+    at_least: bool
+    percent: float
+
+    def __str__(self) -> str:
+        """As it is written."""
+        return f"in at {'least' if self.at_least else 'most'} {self.percent:.15g} % of runs"
+
+
+@dataclass(frozen=True, slots=True)
+class Requirement:
+    """A requirement, split into trigger and consequent.
+
+    Attributes:
+        id: unique in the spec.
+        mode: `upon` or `whenever`.
+        trigger: present and past only; `BoundAtom(END)` only alone.
+        consequent: what is required.
+        text: the requirement in words.
+        at_end: policy for undecided attempts.
+        pulse: whether the trigger is a pulse (SEMANTICS 3): it starts an attempt wherever it holds.
+        ctl: the same, checked.
+        scope: the `scope` clause as written; trigger and consequent have it worked in.
+        run_share: in what share of runs it is to hold; `None`: in each.
+        span: of the whole item.
+    """
+
+    id: str
+    mode: Mode
+    trigger: Formula
+    consequent: Formula
+    text: str = ""
+    at_end: EndPolicy = EndPolicy.DEFAULT
+    pulse: bool = False
+    captures: tuple[Capture, ...] = ()
+    for_each: ForEach | None = None
+    source: str = ""
+    rationale: str = ""
+    severity: str = ""
+    tags: tuple[str, ...] = ()
+    span: Span | None = None
+    ctl: Property | None = None
+    scope: str = ""
+    run_share: RunShare | None = None
+
+
+class TimeModel(StrEnum):
+    """Which instants are positions (SEMANTICS 1)."""
+
+    HELD = "held"
+    SAMPLED = "sampled"
+    CLOCKED = "sampled every"
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedSpec:
+    """A whole specification, ready for lowering.
+
+    Attributes:
+        period: the D of `sampled every D`, ticks; `None` in the other time models.
+        max_delay: the watermark of `max delay D`, ticks.
+        source: the text it came from.
+        properties: the CTL properties, of requirements (under their id) and alone.
+        covers: the cover goals by id.
+        coverpoints: by name.
+        crosses: by name.
+    """
+
+    name: str
+    title: str
+    time: TimeModel
+    signals: Mapping[str, Signal]
+    events: Mapping[str, Event]
+    requirements: Mapping[str, Requirement]
+    period: int | None = None
+    max_delay: int | None = None
+    source: Source | None = None
+    properties: Mapping[str, Property] = field(default_factory=dict)
+    covers: Mapping[str, Cover] = field(default_factory=dict)
+    coverpoints: Mapping[str, Coverpoint] = field(default_factory=dict)
+    crosses: Mapping[str, Cross] = field(default_factory=dict)
+
+    @property
+    def gap(self) -> int | None:
+        """Ticks between two positions; `None` if only samples are positions."""
+        return {TimeModel.HELD: 1, TimeModel.SAMPLED: None}.get(self.time, self.period)
+
+    @property
+    def ignoring(self) -> frozenset[str]:
+        """The signals of which NaN and null are no update."""
+        return frozenset(name for name, signal in self.signals.items() if signal.ignores_nan)
+
+    @property
+    def schema(self) -> Schema:
+        """The declared names with the kinds of their values."""
+        return Schema(
+            {name: signal.type.kind for name, signal in self.signals.items()},
+            {
+                name: {field: type_.kind for field, type_ in event.fields.items()}
+                for name, event in self.events.items()
+            },
+            self.ignoring,
+            units={name: type_.unit for name, type_ in self._types() if type_.unit},
+        )
+
+    def _types(self) -> Iterator[tuple[str, Type]]:
+        """The type of each signal, and of each event's field as `event.field`."""
+        for name, signal in self.signals.items():
+            yield name, signal.type
+        for name, event in self.events.items():
+            yield from ((f"{name}.{field}", type_) for field, type_ in event.fields.items())

@@ -1,0 +1,116 @@
+"""Text to checked specification: the passes in their order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from rvmon.diagnostics import Diagnostic, Severity, Source, Span, render_full
+from rvmon.errors import SpecError
+from rvmon.language.check import check
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.language.names import overridden, resolve, unused_names
+from rvmon.language.rules import MOST, Enough, Findings
+from rvmon.language.rules.syntax import empty_file, too_many
+from rvmon.language.syntax.imports import load_files
+from rvmon.language.syntax.items import ParsedSpec
+from rvmon.texts import text_of_file
+
+
+@dataclass(frozen=True, slots=True)
+class Compilation:
+    """What the passes made of a text, right or wrong.
+
+    Attributes:
+        files: the text and what it imports, the items that could be read.
+        checked: what could be checked; `None` if there were too many errors.
+        findings: errors and warnings, those of the text itself first, in order of place.
+    """
+
+    files: Sequence[ParsedSpec]
+    checked: CheckedSpec | None
+    findings: tuple[Diagnostic, ...]
+
+    @property
+    def broken(self) -> bool:
+        """Whether a finding is an error."""
+        return _errors(self.findings)
+
+
+def compile_text(
+    text: str,
+    *,
+    name: str = "<string>",
+    constants: Mapping[str, str] | None = None,
+    directory: Path | None = None,
+    read: Callable[[Path], str] = text_of_file,
+) -> tuple[CheckedSpec, tuple[Diagnostic, ...]]:
+    r"""Compile the text of a specification.
+
+    Args:
+        text: the specification.
+        name: what messages call it.
+        constants: constants to override, by name, as text of the language (`{"T": "2 s"}`).
+        directory: where imports are looked up.
+        read: gives the text of a file that is imported.
+
+    Returns:
+        The checked specification and the warnings.
+
+    Raises:
+        SpecError: the text is wrong; carries all diagnostics, rendered.
+
+    >>> spec, warnings = compile_text("event a, b\nrequirement R upon a then within 3 s b")
+    >>> spec.requirements["R"].pulse, warnings
+    (True, ())
+    """
+    made = compilation(Source(name, text), directory, constants or {}, read)
+    if made.checked is None or made.broken:
+        raise SpecError(made.findings, render_full(made.findings))
+    return made.checked, made.findings
+
+
+def compilation(
+    source: Source,
+    directory: Path | None,
+    constants: Mapping[str, str],
+    read: Callable[[Path], str] = text_of_file,
+) -> Compilation:
+    """Compile a text as far as that goes; arguments as of `compile_text`.
+
+    Args:
+        source: the text.
+        directory: where imports are looked up.
+        constants: to override.
+        read: gives the text of a file that is imported.
+    """
+    findings = Findings()
+    checked: CheckedSpec | None = None
+    files: Sequence[ParsedSpec] = ()
+    with suppress(Enough):
+        files = load_files(source, directory, findings, read)
+        files = overridden(files, constants, findings)
+        resolved = resolve(files, findings)
+        checked = check(resolved, findings)
+        if not _errors(findings.diagnostics):
+            findings.extend(unused_names(resolved, checked))
+        if not files[0].items and not findings.diagnostics:
+            findings.add(empty_file(Span(source, 0, 0)))
+    found = sorted(findings.diagnostics, key=lambda finding: _place(finding, source))
+    if findings.more:
+        found.append(too_many(MOST, broken=_errors(found)))
+    return Compilation(files, checked, tuple(found))
+
+
+def _errors(findings: Iterable[Diagnostic]) -> bool:
+    return any(finding.severity is Severity.ERROR for finding in findings)
+
+
+def _place(finding: Diagnostic, main: Source) -> tuple[bool, str, int, int]:
+    """The main file comes first."""
+    if not finding.spans:
+        return (False, "", 0, 0)
+    span = finding.spans[0].span
+    return (span.source is not main, span.source.name, span.start, span.end)

@@ -1,0 +1,92 @@
+"""Specifications that were compiled before, from the user's cache folder."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rvmon.errors import RvmonError
+from rvmon.files import cache_folder, keep, read_kept, this_rvmon
+from rvmon.language.checked.plain_data import from_plain, to_plain
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.texts import text_of_file, tree_of
+
+if TYPE_CHECKING:
+    from rvmon.diagnostics import Diagnostic
+
+    Compiled = tuple[CheckedSpec, tuple[Diagnostic, ...]]
+
+
+def compile_cached(
+    text: str,
+    *,
+    name: str = "<string>",
+    constants: Mapping[str, str] | None = None,
+    directory: Path | None = None,
+) -> Compiled:
+    """As `rvmon.language.compile.compile_text`, which is asked once for each text.
+
+    What is kept is keyed by text, name, constants, folder, and rvmon's files by size and
+    time. With it stand the texts of the files that were imported: it is good as long as these may
+    be imported and say the same.
+
+    Raises:
+        RvmonError: the text, or a constant, is of another type.
+        SpecError: as `compile_text`.
+    """
+    if not isinstance(text, str):
+        raise RvmonError(f"expected the text of a specification, found {type(text).__name__}")
+    for constant, value in (constants or {}).items():
+        if not isinstance(value, str):
+            raise RvmonError(
+                f"const={{{constant!r}: {value!r}}}: expected a text of the language, such as '2 s'"
+            )
+    folder = cache_folder()
+    imported: dict[str, str] = {}
+
+    def read(file: Path) -> str:
+        imported[str(file)] = text_of_file(file)
+        return imported[str(file)]
+
+    if folder is None:
+        return _compiled(text, name, constants, directory, read)
+    about = name, text, sorted((constants or {}).items()), str(directory or "")
+    content = json.dumps([this_rvmon(), *about])
+    path = folder / f"spec-{hashlib.sha256(content.encode()).hexdigest()}.json"
+    found = _read(path, directory or Path())
+    if found is None:
+        found = _compiled(text, name, constants, directory, read)
+        keep(path, json.dumps([imported, to_plain(found)], separators=(",", ":")).encode())
+    return found
+
+
+def _compiled(
+    text: str,
+    name: str,
+    constants: Mapping[str, str] | None,
+    directory: Path | None,
+    read: Callable[[Path], str],
+) -> Compiled:
+    from rvmon.language.compile import compile_text
+
+    return compile_text(text, name=name, constants=constants, directory=directory, read=read)
+
+
+def _read(path: Path, directory: Path) -> Compiled | None:
+    body = read_kept(path)
+    if body is None:
+        return None
+    try:
+        imported, data = json.loads(body)
+        if imported:
+            tree = tree_of(directory)
+            for file, text in imported.items():
+                if not tree.holds(Path(file)) or text_of_file(file) != text:
+                    return None
+        spec, warnings = from_plain(data)
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
+        return None
+    return (spec, warnings) if isinstance(spec, CheckedSpec) else None

@@ -1,0 +1,295 @@
+"""From items to names: declared once, constants replaced, none circular; what nobody uses.
+
+The result is a specification whose names are known: what each is declared as, once.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations
+from typing import TypeVar
+
+from rvmon.diagnostics import Diagnostic, Source, Span
+from rvmon.language.checked.functions import FUNCTIONS
+from rvmon.language.checked.names_read import names_of_spec
+from rvmon.language.checked.specification import CheckedSpec, Event, Role, Signal
+from rvmon.language.rules import Findings
+from rvmon.language.rules import names as rules
+from rvmon.language.rules import requirements as trigger_rules
+from rvmon.language.syntax import items
+from rvmon.language.syntax.expressions import Call, Expression, Ident, Name, expressions_in
+from rvmon.language.syntax.parse import parse_expression
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredSignal:
+    """One signal of an item."""
+
+    name: Ident
+    type: items.TypeSyntax
+    role: Role | None
+    ignored: Span | None
+    stale_after: Expression | None
+
+
+@dataclass(frozen=True, slots=True)
+class DeclaredEvent:
+    """One event of an item."""
+
+    name: Ident
+    event: items.EventSyntax
+    role: Role | None
+
+
+Declared = DeclaredSignal | DeclaredEvent | items.DefineItem | items.ConstItem
+
+
+@dataclass(frozen=True, slots=True)
+class ResolvedSpec:
+    """All items of a specification, each under its name.
+
+    Attributes:
+        sources: the main file, then those it imports.
+        header: its `spec` line, if it has one.
+        time: its `time` line, if it has one.
+        delay: its `max delay` line, if it has one.
+        declared: signals, events, macros and constants by name, in order.
+        requirements: by id, in order.
+        properties: that stand alone, by id, in order.
+        covers: by id, in order.
+        coverpoints: by name, in order.
+        crosses: by name, in order.
+        doubtful: words of items that could not be read.
+    """
+
+    sources: tuple[Source, ...]
+    header: items.Header | None
+    time: items.TimeItem | None
+    delay: items.DelayItem | None
+    declared: Mapping[str, Declared]
+    requirements: Mapping[str, items.RequirementItem]
+    properties: Mapping[str, items.PropertyItem]
+    covers: Mapping[str, items.CoverItem]
+    coverpoints: Mapping[str, items.CoverpointItem]
+    crosses: Mapping[str, items.CrossItem]
+    doubtful: frozenset[str]
+
+
+_Stated = (
+    items.RequirementItem
+    | items.PropertyItem
+    | items.CoverItem
+    | items.CoverpointItem
+    | items.CrossItem
+)
+_S = TypeVar("_S", bound=_Stated)
+
+
+def resolve(parsed: Sequence[items.ParsedSpec], findings: Findings) -> ResolvedSpec:
+    """Gather the declarations of a file and of those it imports.
+
+    Returns:
+        The specification with the first declaration of every name.
+    """
+    resolver = _Resolver(findings)
+    for number, file in enumerate(parsed):
+        for item in file.items:
+            if number == 0 or not isinstance(item, items.Header):
+                resolver.add(item)
+    once = resolver.once
+    return ResolvedSpec(
+        tuple(file.source for file in parsed),
+        *(once.get(items.Header), once.get(items.TimeItem), once.get(items.DelayItem)),  # type: ignore[arg-type]  # each is of its own class
+        resolver.declared,
+        resolver.of(items.RequirementItem),
+        resolver.of(items.PropertyItem),
+        resolver.of(items.CoverItem),
+        resolver.of(items.CoverpointItem),
+        resolver.of(items.CrossItem),
+        frozenset(resolver.doubled).union(*(file.doubtful for file in parsed)),
+    )
+
+
+class _Resolver:
+    def __init__(self, findings: Findings) -> None:
+        self.doubled: set[str] = set()
+        self._findings = findings
+        self.once: dict[type, items.Header | items.TimeItem | items.DelayItem] = {}
+        self.declared: dict[str, Declared] = {}
+        self._stated: list[_Stated] = []
+        self._first: dict[tuple[str, str], Ident] = {}
+
+    def of(self, kind: type[_S]) -> dict[str, _S]:
+        return {stated.name.text: stated for stated in self._stated if isinstance(stated, kind)}
+
+    def add(self, item: items.Item) -> None:
+        match item:
+            case items.Header() | items.TimeItem() | items.DelayItem():
+                earlier = self.once.setdefault(type(item), item)
+                if earlier is not item:
+                    word = item.span.text.split(maxsplit=1)[0]
+                    self._findings.add(rules.double_item(word, item.span, earlier.span))
+            case items.SignalItem(names=names):
+                for name in names:
+                    self._declare(
+                        DeclaredSignal(name, item.type, item.role, item.ignored, item.stale_after)
+                    )
+            case items.EventItem(events=events):
+                for event in events:
+                    self._declare(DeclaredEvent(event.name, event, item.role))
+            case items.DefineItem(parameters=parameters):
+                for parameter, other in combinations(parameters or (), 2):
+                    if parameter.text == other.text:
+                        places = other.span, parameter.span
+                        self._findings.add(rules.double(other.text, "parameter", *places))
+                self._declare(item)
+            case items.ConstItem():
+                self._declare(item)
+            case items.ImportItem():
+                pass  # its file is among those given
+            case _ if self._is_new("requirement", item.name):
+                self._stated.append(item)
+
+    def _declare(self, declared: Declared) -> None:
+        name = declared.name
+        if name.text in FUNCTIONS and isinstance(declared, items.DefineItem):
+            self._findings.add(rules.built_in(name.span))
+        if self._is_new("name", name):
+            self.declared[name.text] = declared
+        else:
+            self.doubled.add(name.text)
+
+    def _is_new(self, kind: str, name: Ident) -> bool:
+        first = self._first.setdefault((kind, name.text), name)
+        if first is not name:
+            self._findings.add(rules.double(name.text, kind, name.span, first.span))
+        return first is name
+
+
+def overridden(
+    files: Sequence[items.ParsedSpec], constants: Mapping[str, str], findings: Findings
+) -> list[items.ParsedSpec]:
+    """The files with the values of some constants replaced."""
+    values: dict[str, Expression] = {}
+    known = [
+        item.name.text for file in files for item in file.items if isinstance(item, items.ConstItem)
+    ]
+    for name, text in constants.items():
+        if name not in known:
+            findings.add(rules.unknown_constant(name, known))
+            continue
+        value, wrong = parse_expression(Source(f"<constant {name}>", text))
+        findings.extend(wrong)
+        if value is not None:
+            values[name] = value
+    return [_with_values(file, values) for file in files]
+
+
+def _with_values(file: items.ParsedSpec, values: Mapping[str, Expression]) -> items.ParsedSpec:
+    def item_with_value(item: items.Item) -> items.Item:
+        if isinstance(item, items.ConstItem) and item.name.text in values:
+            return replace(item, value=values[item.name.text])
+        return item
+
+    return replace(file, items=tuple(map(item_with_value, file.items)))
+
+
+def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozenset[str]:
+    """The names from which a circle of definitions can be reached; each circle is reported."""
+    uses = {
+        name: sorted(set(_used(item)) & declared.keys())
+        for name, item in declared.items()
+        if isinstance(item, items.DefineItem | items.ConstItem)
+    }
+    caught: set[str] = set()
+    finished: set[str] = set()
+    for root in uses:
+        path: list[str] = []
+        waiting = [(root, iter(uses[root]))] if root not in finished else []
+        while waiting:
+            name, rest = waiting[-1]
+            if len(path) < len(waiting):
+                path.append(name)
+            following = next((n for n in rest if n in uses and n not in finished), None)
+            if following is None:
+                finished.add(name)
+                waiting.pop()
+                path.pop()
+                if caught & set(uses[name]):
+                    caught.add(name)
+            elif following in path:
+                circle = path[path.index(following) :]
+                caught.update(circle)
+                place = declared[circle[0]].name.span
+                shown = " → ".join(f"`{one}`" for one in [*circle, circle[0]])
+                findings.add(rules.recursive(place, circle[0], shown))
+            else:
+                waiting.append((following, iter(uses[following])))
+    return frozenset(caught)
+
+
+def _used(item: items.DefineItem | items.ConstItem) -> Iterator[str]:
+    own: frozenset[str] = frozenset()
+    body: Expression = item.value if isinstance(item, items.ConstItem) else item.body
+    if isinstance(item, items.DefineItem) and item.parameters:
+        own = frozenset(parameter.text for parameter in item.parameters)
+    for part in expressions_in(body):
+        if isinstance(part, Name) and part.text not in own:
+            yield part.text
+        elif isinstance(part, Call):
+            yield part.function.text
+
+
+_NO_CODE = re.compile(r'"([^"\\\n]|\\.)*"|#[^\n]*')
+_NAME = re.compile(r"`[^`\n]+`|[^\W\d]\w*(?:\.\w+)*")
+
+
+def unused_names(spec: ResolvedSpec, checked: CheckedSpec) -> Iterator[Diagnostic]:
+    """A finding for each name of the main file that nothing uses.
+
+    A file that demands nothing, only declares for others, is not looked at.
+    """
+    demands = (spec.requirements, spec.properties, spec.covers, spec.coverpoints)
+    if any(demands):
+        yield from _never_read(checked)
+        yield from _never_used(spec)
+
+
+def _never_read(spec: CheckedSpec) -> Iterator[Diagnostic]:
+    """Signals and events that nothing reads."""
+    read = frozenset(names_of_spec(spec))
+    kinds: tuple[tuple[str, Mapping[str, Signal | Event]], ...] = (
+        ("signal", spec.signals),
+        ("event", spec.events),
+    )
+    for kind, names in kinds:
+        for name, declared in names.items():
+            span = declared.span
+            if name not in read and span is not None and span.source is spec.source:
+                yield trigger_rules.never_read(span, kind, span.text.strip("`"))
+
+
+def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
+    """Macros and constants, and the values that requirements capture."""
+    main = spec.sources[0]
+    uses = Counter(name for source in spec.sources for name in _names(source.text))
+    for item in spec.declared.values():
+        if isinstance(item, items.DefineItem | items.ConstItem) and item.name.span.source is main:
+            kind = "define" if isinstance(item, items.DefineItem) else "const"
+            if uses[item.name.text] < 2:
+                yield rules.unused(item.name.span, kind, item.name.text)
+    for requirement in spec.requirements.values():
+        lets = [clause for clause in requirement.clauses if isinstance(clause, items.LetClause)]
+        if lets and requirement.span.source is main:
+            own = Counter(_names(requirement.span.text))
+            for let in (clause.name for clause in lets if own[clause.name.text] < 2):
+                yield rules.unused(let.span, "let", let.text)
+
+
+def _names(text: str) -> Iterator[str]:
+    """The names in a text, wherever they stand but in comments and strings."""
+    for found in _NAME.finditer(_NO_CODE.sub(" ", text)):
+        yield found[0].strip("`")

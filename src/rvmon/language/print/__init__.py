@@ -1,0 +1,314 @@
+"""Checked formulas as text of the language, with as few brackets as it takes."""
+
+from __future__ import annotations
+
+from decimal import Decimal
+from typing import assert_never
+
+from rvmon.language.checked.arithmetic import NumericOp
+from rvmon.language.checked.formula import (
+    Amount,
+    Arithmetic,
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Captured,
+    Compare,
+    CompareOp,
+    Constant,
+    EventAtom,
+    FieldValue,
+    Formula,
+    Interval,
+    Literal,
+    Measured,
+    NowValue,
+    Numeric,
+    Passed,
+    Probe,
+    ProbeAtom,
+    SignalAtom,
+    SignalValue,
+    Unary,
+    UnaryOp,
+    UpdateValue,
+    WindowValue,
+    itself,
+    since_trigger,
+)
+from rvmon.language.checked.operators import PREFIXED, Window
+from rvmon.language.checked.rewrite import chain, without_spans
+from rvmon.language.syntax.words import RESERVED
+from rvmon.trace.time import TICKS_PER_UNIT
+
+_SUM, _PRODUCT, _NEGATIVE, _OPERAND = 0, 1, 2, 3
+_ARITHMETIC = {
+    NumericOp.ADD: _SUM,
+    NumericOp.SUB: _SUM,
+    NumericOp.MUL: _PRODUCT,
+    NumericOp.DIV: _PRODUCT,
+    NumericOp.NEG: _NEGATIVE,
+}
+
+
+def format_formula(formula: Formula) -> str:
+    """A checked formula in the words of the language.
+
+    >>> format_formula(Unary(UnaryOp.EVENTUALLY, EventAtom("released"), Interval(0, 3 * 10**9)))
+    'within 3 s released'
+    """
+    return _formula(formula, 0)
+
+
+def format_numeric(numeric: Numeric) -> str:
+    """A checked number or label in the words of the language.
+
+    >>> format_numeric(Arithmetic(NumericOp.SUB, (SignalValue("x"), Literal(0.5, "m"))))
+    'x - 0.5 m'
+    """
+    return _numeric(numeric, _SUM)
+
+
+def format_duration(ticks: int) -> str:
+    """Ticks in the largest unit of which they are a whole number.
+
+    >>> [format_duration(ticks) for ticks in (3 * 10**9, 200_000_000, 90 * 10**9, 7, 0)]
+    ['3 s', '200 ms', '90 s', '7 ns', '0 s']
+    """
+    if ticks == 0:
+        return "0 s"
+    unit, size = max(
+        ((unit, size) for unit, size in TICKS_PER_UNIT.items() if ticks % size == 0),
+        key=lambda pair: pair[1],
+    )
+    return f"{ticks // size} {unit}"
+
+
+def _formula(formula: Formula, level: int) -> str:
+    """The formula, in brackets if it binds more loosely than `level`."""
+    match formula:
+        case Constant(value=value):
+            return "true" if value else "false"
+        case SignalAtom(name=name) | EventAtom(name=name):
+            return _name(name)
+        case ProbeAtom(probe=probe, name=name):
+            return f"{probe}({_name(name)})"
+        case BoundAtom(bound=bound):
+            return str(bound)
+        case Compare(left=left, right=Literal(value=bool())):  # a bool payload field and its kin
+            return format_numeric(left)
+        case Compare(op=op, left=left, right=right):
+            return f"{format_numeric(left)} {op} {format_numeric(right)}"
+        case Amount():
+            return _amount(formula, denied=False)
+        case Unary(op=UnaryOp.NOT, operand=Amount() as denied):
+            return _amount(denied, denied=True)
+        case Unary(op=UnaryOp.ONCE) if (age := _age(formula, denied=False)) is not None:
+            return age
+        case Unary(op=UnaryOp.NOT, operand=one) if (age := _age(one, denied=True)) is not None:
+            return age
+        case Unary():
+            return _unary(formula)
+        case Passed(since=since, after=after, strict=strict):
+            begin = "" if since is None else f" - {_name(since)}"
+            return f"now{begin} {'>' if strict else '>='} {format_numeric(after)}"
+        case Binary(op=op):
+            text = _binary(formula)
+            return f"({text})" if op.entry.level < level else text
+        case _:
+            assert_never(formula)
+
+
+def _age(formula: Formula, *, denied: bool) -> str | None:
+    """That an age is so much at most, or denied; `None`: that is not what it says."""
+    match formula:
+        case Unary(
+            op=UnaryOp.ONCE,
+            operand=Binary(
+                op=BinaryOp.OR,
+                left=ProbeAtom(probe=Probe.UPDATED, name=name),
+                right=BoundAtom(bound=Bound.START),
+            ),
+            interval=Interval(low=0, high=int() as high),
+        ):
+            most = (CompareOp.LE, format_duration(high))
+            below = (CompareOp.LT, format_duration(high + 1))
+            op, limit = min(most, below, key=lambda one: len(one[1]))
+            return f"age({_name(name)}) {op.denied if denied else op} {limit}"
+        case _:
+            return None
+
+
+def _amount(formula: Amount, *, denied: bool) -> str:
+    limit = format_numeric(formula.limit)
+    if formula.of.measured is Measured.DURATION and isinstance(formula.limit, Literal):
+        limit = format_duration(int(formula.limit.value))
+    op = CompareOp.GT if formula.strict else CompareOp.GE
+    return f"{format_window(formula.of)} {op.denied if denied else op} {limit}"
+
+
+def format_window(formula: WindowValue) -> str:
+    """A window in the words of the language.
+
+    >>> from rvmon.language.checked.formula import EventAtom
+    >>> format_window(WindowValue(Measured.COUNT, EventAtom("e"), 5 * 10**9))
+    'count(e, 5 s)'
+    """
+    word, what = str(formula.measured), ""
+    conditions = _conditions(formula)
+    since = since_trigger() in conditions
+    conditions = [condition for condition in conditions if condition != since_trigger()]
+    if formula.value is None and formula.counted is not None:
+        what = _formula(formula.counted, 0)
+    elif formula.value is None or isinstance(formula.value, Literal):  # so many times 1
+        word = "duration" if formula.measured.of_time else word
+        what = " and ".join(
+            _formula(condition, 0 if len(conditions) == 1 else 4) for condition in conditions
+        )
+    else:
+        what = format_numeric(formula.value)
+        if conditions and formula.most is None:
+            condition = " and ".join(_formula(condition, 4) for condition in conditions)
+            what = f"if {condition} then {what} else 0"
+    if formula.most is not None:
+        what = f"last({formula.most}, {what})"
+    if since:
+        what = f"({what}) since trigger" if " " in what else f"{what} since trigger"
+    window = "" if formula.window is None else f", {format_duration(formula.window)}"
+    return f"{word}({what}{window})"
+
+
+def _conditions(formula: WindowValue) -> list[Formula]:
+    """Where there is a member, but for that its number is there, and that a signal is updated."""
+    conditions = [without_spans(one) for one in chain(formula.operand)]
+    if formula.value is not None and not isinstance(formula.value, Literal):
+        conditions = [condition for condition in conditions if condition != itself(formula.value)]
+        if isinstance(formula.value, SignalValue):
+            updated = ProbeAtom(Probe.UPDATED, formula.value.name)
+            conditions = [condition for condition in conditions if condition != updated]
+    if formula.value is None and len(conditions) > 1 and since_trigger() not in conditions:
+        return [formula.operand]
+    return [*conditions, *formula.chosen]
+
+
+def _unary(formula: Unary) -> str:
+    op = formula.op
+    if not op.entry.called:
+        return f"{_operator(op, formula.interval)} {_formula(formula.operand, PREFIXED)}"
+    length = ""
+    if op.entry.window is Window.LENGTH:
+        length = f", {format_duration((formula.interval or Interval()).high or 0)}"
+    return f"{op.entry.word}({_formula(formula.operand, 0)}{length})"
+
+
+def _operator(op: UnaryOp, interval: Interval | None) -> str:
+    if interval is not None and interval.low == 0 and interval.high is not None:
+        if op is UnaryOp.EVENTUALLY:
+            return f"within {format_duration(interval.high)}"
+        if op is UnaryOp.ALWAYS:
+            return f"for {format_duration(interval.high)}"
+    return op.entry.word + _window(interval)
+
+
+def _window(interval: Interval | None) -> str:
+    if interval is None or interval == Interval():
+        return ""
+    low = format_duration(interval.low) if interval.low else "0"
+    if interval.high is None:
+        return f"[{low}, inf)"
+    return f"[{low}, {format_duration(interval.high)}]"
+
+
+def _binary(formula: Binary) -> str:
+    op = formula.op
+    level = op.entry.level
+    if op.entry.chained:
+        operands = chain(formula, op)
+        texts = [_left(operand, level + 1) for operand in operands[:-1]]
+        texts.append(_formula(operands[-1], level + 1))
+        if op is not BinaryOp.IFF:
+            pairs = zip(operands, texts, strict=True)
+            texts = [f"({text})" if _is_kin_of_until(one) else text for one, text in pairs]
+        return f" {op.entry.word} ".join(texts)
+    right = formula.right
+    same = isinstance(right, Binary) and right.op is op
+    right_level = level if same else level + 1
+    left = _left(formula.left, level + 1)
+    return f"{left} {op.entry.word}{_window(formula.interval)} {_formula(right, right_level)}"
+
+
+def _is_kin_of_until(formula: Formula) -> bool:
+    return isinstance(formula, Binary) and formula.op.entry.level == BinaryOp.UNTIL.entry.level
+
+
+def _left(formula: Formula, level: int) -> str:
+    """A left operand: in brackets also if a temporal prefix would stand before the connective."""
+    edge = formula
+    while True:
+        match edge:
+            case Unary(op=UnaryOp.NOT, operand=operand):
+                edge = operand
+            case Binary(op=op, right=right) if op.entry.level >= level:
+                edge = right
+            case _:
+                break
+    prefixed = isinstance(edge, Unary) and not edge.op.entry.called
+    return f"({_formula(formula, 0)})" if prefixed else _formula(formula, level)
+
+
+def _numeric(numeric: Numeric, level: int) -> str:
+    match numeric:
+        case Literal():
+            return _literal(numeric, level)
+        case NowValue():
+            return "now"
+        case SignalValue(name=name) | Captured(name=name):
+            return _name(name)
+        case FieldValue(event=event, field=field):
+            return _name(f"{event}.{field}")
+        case WindowValue():
+            return format_window(numeric)
+        case UpdateValue(function=function, name=name):
+            return f"{function}({_name(name)})"
+        case Arithmetic():
+            own = _ARITHMETIC.get(numeric.op, _OPERAND)
+            text = _arithmetic(numeric)
+            return f"({text})" if own < level else text
+        case _:
+            assert_never(numeric)
+
+
+def _arithmetic(numeric: Arithmetic) -> str:
+    match numeric.op:
+        case NumericOp.ADD | NumericOp.SUB:
+            left, right = numeric.args
+            return f"{_numeric(left, _SUM)} {numeric.op} {_numeric(right, _PRODUCT)}"
+        case NumericOp.MUL | NumericOp.DIV:
+            left, right = numeric.args
+            return f"{_numeric(left, _PRODUCT)} {numeric.op} {_numeric(right, _NEGATIVE)}"
+        case NumericOp.NEG:
+            return f"-{_numeric(numeric.args[0], _NEGATIVE)}"
+        case op:
+            written = numeric.args[: op.entry.most]  # a turn is behind those of an angle
+            return f"{op}({', '.join(_numeric(arg, _SUM) for arg in written)})"
+
+
+def _literal(literal: Literal, level: int) -> str:
+    if isinstance(literal.value, str):
+        return _name(literal.value)
+    text = format(Decimal(repr(literal.value)).normalize(), "f")
+    if len(text) > 20:
+        text = repr(literal.value)
+    if literal.unit.startswith("1/"):  # a number has no such unit, but its quotient does
+        text = f"{text} / 1 {literal.unit[2:].replace('/', '*')}"
+        return f"({text})" if level > _PRODUCT else text
+    if literal.unit:
+        text = f"{text} {literal.unit}"
+    return f"({text})" if literal.value < 0 and level > _NEGATIVE else text
+
+
+def _name(name: str) -> str:
+    """A name, in quotes if it would be read as something else."""
+    plain = all(part.isidentifier() for part in name.split("."))
+    return name if plain and name not in RESERVED else f"`{name}`"

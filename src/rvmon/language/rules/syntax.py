@@ -1,0 +1,101 @@
+"""Rules on how a specification is written: grammar, brackets, size."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from rvmon.diagnostics import Diagnostic, Severity, Span
+from rvmon.language.rules import Breach, Rule, finding, short
+
+SYNTAX = Rule("RV001", "syntax", Severity.ERROR)
+REACH = Rule("RV002", "reach-of-operator", Severity.ERROR)
+MIXED_CHAIN = Rule("RV003", "mixed-chain", Severity.ERROR)
+COMPARISON_CHAIN = Rule("RV004", "comparison-chain", Severity.ERROR)
+TOO_DEEP = Rule("RV005", "too-deep", Severity.ERROR)
+TOO_MANY = Rule("RV006", "too-many-findings", Severity.ERROR)
+EMPTY = Rule("RV007", "empty-file", Severity.WARNING)
+
+
+def reach(operator: Span, operand: Span, end: Span) -> Diagnostic:
+    """The operator can be read as reaching over its operand alone or on to `end`."""
+    head = short(operator.text)
+    near = short(operand.text)
+    rest = Span(end.source, operand.end, end.end)
+    far = short(operand.to(end).text)
+    return finding(
+        REACH,
+        f"`{head}` can be read in two ways here",
+        operator.to(operand),
+        fix=f"write `{head} ({far})` or `({head} {near}) {short(rest.text)}`",
+    )
+
+
+def two_sides(whole: Span, operator: Span, connective: Span, near: Span) -> Diagnostic:
+    """`a unless b and c`: the connective may belong to what stands beside it alone.
+
+    Args:
+        whole: the operator with both its sides.
+        operator: of the `until` family.
+        connective: that stands beside it.
+        near: the side that both may claim.
+    """
+    first, second = short(operator.text), short(connective.text)
+    behind = connective.start >= whole.end
+    text, side = short(whole.text), short(near.text)
+    other = f"{first} ({side} {second} …)" if behind else f"(… {second} {side}) {first}"
+    own = f"({text}) {second} …" if behind else f"… {second} ({text})"
+    return finding(
+        REACH,
+        f"`{first}` beside `{second}` can be read in two ways here",
+        whole,
+        connective,
+        fix=f"write `… {other}` or `{own}`" if behind else f"write `{other} …` or `{own}`",
+    )
+
+
+mixed_chain = Breach(
+    MIXED_CHAIN,
+    "`{1}` and `{0}` in one chain need brackets",
+    "put brackets around the part that belongs together",
+)
+"""Two different operators of the `until` family: the places of second and first, and the first."""
+
+
+def comparison_chain(left: Span, first: str, middle: Span, second: str, right: Span) -> Diagnostic:
+    """`a <= b <= c`."""
+    texts = [short(span.text) for span in (left, middle, right)]
+    return finding(
+        COMPARISON_CHAIN,
+        "comparisons cannot be chained",
+        left.to(right),
+        fix=f"write `{texts[0]} {first} {texts[1]} and {texts[1]} {second} {texts[2]}`",
+    )
+
+
+too_deep = Breach(
+    TOO_DEEP, "this is nested more than {1} levels deep", "split it into several requirements"
+)
+
+
+too_large = Breach(
+    TOO_DEEP,
+    "this has more than {1:,} operators once its macros are expanded",
+    "split it into several requirements",
+)
+too_much_work = Breach(
+    TOO_DEEP,
+    "the macros of this file expand to more than can be checked",
+    "use macros without parameters where you can: they are expanded once",
+)
+empty_file = Breach(
+    EMPTY,
+    "there is nothing in this file: no signal, no requirement",
+    "`rvmon init DATA` writes a first specification from a recording",
+)
+
+
+def too_many(most: int, *, broken: bool) -> Diagnostic:
+    """The end of a long list of findings: an error where one of them is."""
+    message = f"only the first {most} findings are shown"
+    made = finding(TOO_MANY, message, fix="fix these first")
+    return made if broken else replace(made, severity=Severity.WARNING)

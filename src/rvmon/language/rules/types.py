@@ -1,0 +1,236 @@
+"""Rules on types and units."""
+
+from __future__ import annotations
+
+from rvmon.diagnostics import Diagnostic, Severity, Span
+from rvmon.language.rules import Breach, Rule, finding, short
+
+WRONG_TYPE = Rule("RV020", "wrong-type", Severity.ERROR)
+WRONG_ARGUMENTS = Rule("RV021", "wrong-arguments", Severity.ERROR)
+UNIT_MISMATCH = Rule("RV022", "unit-mismatch", Severity.ERROR)
+MISSING_UNIT = Rule("RV023", "missing-unit", Severity.ERROR)
+UNKNOWN_UNIT = Rule("RV024", "unknown-unit", Severity.ERROR)
+OUT_OF_RANGE = Rule("RV025", "number-out-of-range", Severity.ERROR)
+LABELS = Rule("RV026", "label-use", Severity.ERROR)
+IGNORED_NAN = Rule("RV027", "nan-of-no-real", Severity.ERROR)
+
+
+def ignored_nan(span: Span, kind: str) -> Diagnostic:
+    """`ignore NaN` where there is none; `kind` is that of the signal."""
+    shown = "with labels" if kind == "label" else f"of type `{kind}`"
+    return finding(
+        IGNORED_NAN,
+        f"a signal {shown} is never NaN",
+        span,
+        fix="remove `ignore NaN`, or declare the signal `real`",
+    )
+
+
+def needs_formula(span: Span, kind: str) -> Diagnostic:
+    """A number or label where something true or false is needed; `kind` says what it is."""
+    text = short(span.text)
+    fix = f"compare it, as in `{text} > 0`" if kind == "a number" else ""
+    if kind == "a label":
+        fix = "compare it with a label by `==`"
+    return finding(WRONG_TYPE, f"`{text}` is {kind}, expected a formula", span, fix=fix)
+
+
+needs_number = Breach(
+    WRONG_TYPE,
+    "`{}` is true or false, expected a number",
+    "combine formulas by `and`, `or`, `->`, `<->`",
+)
+compared_truth = Breach(
+    WRONG_TYPE,
+    "`{}` is true or false and is not compared",
+    "write `p` for `p == true`, `not p` for `p == false`, `p <-> q` for `p == q`",
+)
+
+
+age_alone = Breach(
+    WRONG_TYPE,
+    "`{}` can only be compared with a constant duration, by < <= > >=",
+    "write `{} > 200 ms`",
+)
+now_alone = Breach(
+    WRONG_TYPE,
+    "`{}` is not what `now` is for: it is compared with a duration, by < <= > >=",
+    "with `let t0 = now` write `now - t0 <= x` or `now <= t0 + x`; the time since an event is "
+    "its age: `age(e) > 3 s`",
+)
+moves_beside = Breach(
+    WRONG_TYPE,
+    "`{}` moves between samples along more than one window, or through more than `+ - * /` and "
+    "constants: the tick at which it flips is not worked out",
+    "bring one window alone to one side; `mean(x, D) - mean(y, D)` is `mean(x - y, D)`; "
+    "on a clock, `time sampled every 10 ms`, any expression is looked at each time",
+)
+captured_moving = Breach(
+    WRONG_TYPE,
+    "`{}` moves between samples, and is not captured",
+    "compare with it where it is owed, or judge on a clock: `time sampled every 10 ms`",
+)
+window_in_window = Breach(
+    WRONG_TYPE,
+    "`{}` has a window of its own, and a window is of what is read",
+    "compare it, and measure that: `duration(mean(x, 1 s) > 2, 10 s)`",
+)
+limit_of_event = Breach(
+    WRONG_TYPE,
+    "`{}` is there only while its event occurs, and what adds up goes on",
+    "capture it: `let limit = e.x`",
+)
+sum_of_instances = Breach(
+    WRONG_TYPE,
+    "`{}` does not say of one occurrence whether it counts, and `for each` may see several at "
+    "one instant",
+    "join comparisons of its fields by `and`: `sum(if e.k == k and e.ok then e.x else 0, D)`",
+)
+variance_moves = Breach(
+    WRONG_ARGUMENTS,
+    "`{}` moves along a curve between samples, and the tick at which it crosses a bound is not "
+    "worked out",
+    "take that of updates, `variance(last(20, x))`, or of a field, `variance(e.x, 10 s)`",
+)
+last_alone = Breach(
+    WRONG_TYPE,
+    "`{}` are several values, expected one",
+    "say what they come to: `mean(last(5, x)) <= 2`, `count(last(8, x > 1)) >= 5`",
+)
+last_count = Breach(
+    WRONG_ARGUMENTS, "`{0}` is no whole number from 1 to {1:,}", "write `last(5, x)`"
+)
+last_of_several = Breach(
+    WRONG_ARGUMENTS,
+    "`{}` does not read one signal or event alone, whose updates were counted",
+    "write `last(5, x)`, `last(8, beat.ms < 500)`",
+)
+two_windows = Breach(
+    WRONG_ARGUMENTS,
+    "`{}` has two windows",
+    "leave the duration out, or what limits it before",
+)
+since_no_trigger = Breach(
+    WRONG_ARGUMENTS,
+    "`{}` is counted from a trigger, and there is none here",
+    "it stands in what is required: `upon e then always count(f since trigger) <= 3`",
+)
+
+
+not_of_last = Breach(
+    WRONG_ARGUMENTS,
+    "`{1}` is of a time, not of updates",
+    "of updates there are `count`, `sum`, `mean`, `min`, `max`, `variance` and `distinct`",
+)
+not_added = Breach(
+    WRONG_ARGUMENTS,
+    "`{1}` is of {2}, and `{0}` is not",
+    "what is held goes into `integral` or `mean`, what occurs into `sum` or `mean`",
+)
+"""Numbers that are not measured by a function: it, and of what it is."""
+
+
+count_of_state = Breach(
+    WRONG_TYPE,
+    "in `time held` `{0}` holds at every nanosecond of a stretch, and is not counted",
+    "count where it begins, `rise({0})`, or measure it: `duration({0}, …)`",
+)
+
+
+amount_of_future = Breach(
+    WRONG_TYPE,
+    "`{1}` is of the past, and `{0}` speaks of the future",
+    "count what shows that it came, as in `count(e and once[0, 3 s] a, 1 min)`",
+)
+choice_alone = Breach(
+    WRONG_TYPE,
+    "`{}` is a choice, expected one number",
+    "compare each side: `if φ then x <= 1 else x <= 2`",
+)
+
+
+many_outcomes = Breach(
+    WRONG_TYPE,
+    "`{0}` chooses between more than {1} numbers",
+    "split it into several requirements",
+)
+not_constant = Breach(
+    WRONG_TYPE, "`{}` changes during a run, expected a constant", "use a number or a `const`"
+)
+
+
+argument_count = Breach(
+    WRONG_ARGUMENTS, "`{1}` takes {2}, {3} given", "arguments are separated by commas"
+)
+"""Too many or too few: the function, how many it takes, in words, and how many are given."""
+
+
+argument_kind = Breach(WRONG_ARGUMENTS, "`{1}` needs {2}, `{0}` is none")
+"""An argument of the wrong kind: the function, and which is needed, with its article."""
+
+
+def argument_unit(span: Span, name: str, unit: str, needed: str) -> Diagnostic:
+    """An argument of another unit than a function takes; `needed` is empty for a plain number."""
+    text = short(span.text)
+    shown = f"comes in [{unit}]" if unit else "has no unit"
+    fix = (
+        f"divide it by 1 {unit}"
+        if unit
+        else "declare it in `[rad]` or `[deg]`: an angle is no plain number"
+    )
+    return finding(
+        UNIT_MISMATCH,
+        f"`{name}` takes {'an angle' if needed else 'a plain number'}, `{text}` {shown}",
+        span,
+        fix=fix,
+    )
+
+
+power_of_unit = Breach(
+    UNIT_MISMATCH,
+    "`{0}` leaves open which power of [{1}] comes out",
+    "write a whole number up to 9, or divide the base by one of its units",
+)
+
+
+mismatch = Breach(UNIT_MISMATCH, "[{1}] {3} [{2}]", "both sides need units of the same kind")
+"""Units of different kinds: both, and `compared with` and the like."""
+
+
+missing_unit = Breach(MISSING_UNIT, "`{0}` needs a unit", "did you mean `{0} {1}`?")
+
+
+superfluous_unit = Breach(
+    UNIT_MISMATCH,
+    "[{1}] meets `{2}`, which has no unit",
+    "declare the signal as `real [{1}]`, or leave the unit out",
+)
+no_root = Breach(
+    UNIT_MISMATCH,
+    "[{1}] has no square root",
+    "the root of a square has a unit: `sqrt(x * x + y * y)`",
+)
+
+
+def unknown_unit(span: Span, part: str, close: str) -> Diagnostic:
+    """A unit that is not in the table, or not joined; `close` is one that is alike, or empty."""
+    fix = f"did you mean `{close}`?" if close else "units are made of m, kg, s, A, K, rad, …"
+    if close == part:
+        joined = "parts of a unit are joined by `*` and `/`: `N*m`, `kg*m/s^2`"
+        return finding(UNKNOWN_UNIT, f"no `*` or `/` before `{short(part)}`", span, fix=joined)
+    return finding(UNKNOWN_UNIT, f"no unit named `{short(part)}`", span, fix=fix)
+
+
+swallowed_name = Breach(
+    UNKNOWN_UNIT,
+    "`{0}` is read as the unit of `{1}`, and there is no such unit",
+    "give the number its unit: `{1} s {0}`",
+)
+out_of_range = Breach(
+    OUT_OF_RANGE,
+    "`{}` is out of range",
+    "numbers go up to about 1e308, and nothing is divided by 0",
+)
+label_use = Breach(
+    LABELS, "`{}` is a label", "labels are compared with their signal by `==` and `!=` only"
+)

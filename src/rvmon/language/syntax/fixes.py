@@ -1,0 +1,240 @@
+"""What fixes a syntax error: what people write who come from another language."""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+import lark
+
+from rvmon.diagnostics import Span
+from rvmon.language.syntax.words import ITEM_WORDS, RESERVED
+from rvmon.texts import nearest
+from rvmon.units import SPOKEN, unit_table
+
+_FIX = {
+    "≤": "write `<=`",
+    "≥": "write `>=`",
+    "≠": "write `!=`",
+    "→": "write `->`",
+    "↔": "write `<->`",
+    "∧": "write `and`",
+    "∨": "write `or`",
+    "¬": "write `not`",
+    "□": "write `always`",
+    "◇": "write `eventually`",
+    '"': "a text ends on the line it starts on, with a second quote",
+    "“": 'write straight quotes: "',
+    "”": 'write straight quotes: "',
+    "'": 'texts stand in double quotes: "',
+    "`": "a quoted name ends on the line it starts on, with a second backtick",
+    "%": "`%` is a unit and stands behind a number",
+    ";": "items and clauses need no `;`",
+    "becomes": "write `rise(…)` for the instant at which something comes true",
+}
+_TRIGGER_WORDS = "for `{}` write `upon` (an instant) or `whenever` (as long as it holds)"
+NEVER = "for `never` write `always not (…)`"
+NAMELESS = RESERVED - frozenset(ITEM_WORDS)
+"""Words that are no name and may start what a requirement demands."""
+_CLAUSE = re.compile(
+    r'requirement\s+(?:[\w.]+|`[^`]+`)\s*(?:"[^"\n]*")?\s*'
+    r"(source|rationale|severity|tags|scope|at\s+end|for\s+each|in\s+at|property)"
+    r'(?:\s+\w+(?:\s+in(?:\s+\S+)?)?|\s+"[^"]*")?'
+)
+_LET = "`let` stands behind the trigger or the consequent: `upon … let x = … then …`"
+_SHARE = "write `in at least 95 % of runs`, or `in at most 5 % of runs`"
+_WRITTEN = (
+    (r'[={,]\s*\0"([^\W\d]\w*)"\Z', "NAME", "labels have no quotes: `{0}`"),
+    (r"\0=>\Z|==\s*\0>\Z", "", "write `->` for what follows, `>=` to compare"),
+    (r"(?<![\w.])never[ \t]+\0.", "", NEVER),
+    (
+        r"\Arequirement\s+([\w.]+)\s*\0\Z",
+        *("", "`{0}` is taken for its name; what it demands stands behind it"),
+    ),
+    (
+        rf"\Arequirement\s+\0({'|'.join(NAMELESS)})\Z",
+        *("", "its name comes first: `requirement R1 {0} …`"),
+    ),
+    (r"\0let\Z|(?<![\w.])let[ \t]+\0.", "", _LET),
+    (
+        r"\Asignal.*\0ignore\Z",
+        *("", "write `ignore NaN` behind the type and role, before `stale after`"),
+    ),
+    ("", "_OF_RUNS", _SHARE),
+    (r"\0in\Z", "AND", _SHARE),
+    (r"([^\W\d]\w*)[ \t]+\0\(\Z", "", "a call has no space before its bracket: `{0}(`"),
+    (r"\0([AE][\[<].*)", "LPAR", "put brackets around `{0} …`"),
+    ("", "THEN", "the consequent stands after `then`"),
+    (r"\Arequirement\s*\0", "NAME", 'its name comes first: `requirement R1 "text"`'),
+    (r"\Asignal\b", "COLON", "a signal has a type, as in `signal x : real [m]`"),
+    (
+        r"(?<![\w.])(?:after|at)[ \t]+\0([\d.]+\s*[^\W\d]+)\Z",
+        *("", "for what is to hold then write `eventually[{0}, {0}] (…)`"),
+    ),
+    (r"\Aevent\b", "COLON", "a field has a type, as in `event pick(id: int)`"),
+)
+"""What stands before a word or sign that cannot stand there, and behind `\\0` that; a terminal that
+could, or none; and what fixes it."""
+_BEGINNINGS = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->"
+"""Before what a formula begins."""
+_TYPES = {
+    "float": "real",
+    "double": "real",
+    "number": "real",
+    "boolean": "bool",
+    "integer": "int",
+    "string": "{one, another}",
+    "enum": "{one, another}",
+}
+
+
+def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> str:
+    """What fixes a syntax error; empty if nothing is known to.
+
+    Args:
+        found: the word or sign that could not stand there; empty at the end of the item.
+        accepted: the terminals that could have.
+        parser: knows their patterns.
+        before: what of the item stands before it.
+    """
+    return (
+        if_fix(before.text)
+        or _FIX.get(found, "")
+        or _unit_fix(found, before.text)
+        or _held_fix(found, before)
+        or _range_fix(found, before)
+        or _number_fix(found, before)
+        or _dash_fix(before.text)
+        or _clause_fix(found, before.text)
+        or _fix_written(found, accepted, before.text)
+        or _word_fix(found, accepted, parser, before.text)
+        or _decimal_comma(before.text)
+    )
+
+
+def if_fix(before: str) -> str:
+    """What fixes an `if` that is no choice between numbers; empty if there is none."""
+    found = re.search(r"(?<![\w.])if(?![\w.])(?!.*(?<![\w.])else(?![\w.]))", before, re.DOTALL)
+    return _TRIGGER_WORDS.format("if") if found else ""
+
+
+def _unit_fix(found: str, before: str) -> str:
+    """What fixes `40 A` and `5 W`, whose letters are operators behind a number."""
+    written = re.search(r"(?<![\w.])(\d[\d.]*)[ \t]*([AW])[ \t]*\Z", f"{before}{found}")
+    written = written or re.search(r"(?<![\w.])(\d[\d.]*)[ \t]*([AW])\s*\Z", before)
+    if written is None:
+        return ""
+    return f"`{written[2]}` is an operator here: write `{written[1]} {SPOKEN[written[2]]}`"
+
+
+def _range_fix(found: str, before: Span) -> str:
+    """What fixes `x in [a, b]`, where labels in braces are expected."""
+    said = re.search(rf".*(?:{_BEGINNINGS})\s*(.*\S)\s+in\s*\Z", before.text, re.DOTALL)
+    ends = re.compile(r"\s*\[([^],]+),([^]]+)\]").match(before.source.text, before.end)
+    if found != "[" or said is None or ends is None:
+        return ""
+    low, high = (end.strip() for end in ends.groups())
+    return f"`in` is of labels: write `({said[1]} >= {low} and {said[1]} <= {high})`"
+
+
+def _held_fix(found: str, before: Span) -> str:
+    """What fixes `φ for 1 s`, said of what has been."""
+    text = before.text
+    said = re.search(rf".*(?:{_BEGINNINGS}|\()\s*([^()]*\S)\s*\Z", text, re.DOTALL)
+    length = re.compile(r"for[ \t]+(\d[\d.]*[ \t]*\w+)").match(before.source.text, before.end)
+    if found != "for" or said is None or length is None:
+        return ""
+    ahead = f"for {length[1]} ({said[1]})"
+    return (
+        f"write `held({said[1]}, {length[1]})` for what has held so long, `{ahead}` for what is to"
+    )
+
+
+def _dash_fix(before: str) -> str:
+    dashed = re.fullmatch(r"requirement\s+([\w.]+(?:-\w+)+)\s*", before)
+    if not dashed:
+        return ""
+    name = dashed[1].replace("-", "_")
+    return f"`{dashed[1]}` is no name: write `{name}`, or quote it: `` `{dashed[1]}` ``"
+
+
+def _fix_written(found: str, accepted: set[str], before: str) -> str:
+    """What fixes one of `_WRITTEN`; or a unit without brackets."""
+    if found in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before):
+        return f"a unit stands in brackets: `[{found}]`"
+    for pattern, terminal, fix in _WRITTEN:
+        written = re.search(pattern, f"{before}\0{found}", re.DOTALL)
+        if written and (not terminal or terminal in accepted):
+            return fix.format(*written.groups())
+    return ""
+
+
+def _clause_fix(found: str, before: str) -> str:
+    """What fixes a clause above the formula, where the first word of most reads as a name."""
+    clause = _CLAUSE.fullmatch(f"{before.rstrip()} {found}")
+    return f"a clause, as `{clause[1]} …`, stands behind the formula" if clause else ""
+
+
+def _word_fix(found: str, accepted: set[str], parser: lark.Lark, before: str) -> str:
+    """What fixes a word that is none of the language, or stands where none can."""
+    if not re.fullmatch(r"[^\W\d]\w*", found):
+        return ""
+    if "LBRACE" in accepted and found.lower() in _TYPES:
+        return f"write `{_TYPES[found.lower()]}`"
+    phrases = " ".join(phrase for one in accepted for phrase in words_of(one, parser))
+    words = re.findall(r"[a-z]{3,}", phrases)
+    close = nearest(found, sorted({*words, *ITEM_WORDS}), 0.75)
+    if close and close != found:
+        return f"did you mean `{close}`?"
+    if "AND" not in accepted:
+        return ""
+    if found in ("within", "for"):
+        return f"`{found}` stands before what it speaks of: `{found} 3 s (…)`"
+    last = re.search(r"(\w+)\s*$", before)
+    if last and last[1].lower() in ("when", "where", "once"):
+        return _TRIGGER_WORDS.format(last[1])
+    return f"an operator is missing before `{found}`, or a word too many"
+
+
+def _number_fix(found: str, before: Span) -> str:
+    """What fixes a number or duration that is written as it is elsewhere."""
+    digits = re.search(r"(?<![\w.])\d*$", before.text)
+    behind = re.compile(r"[.,](\d*)").match(before.source.text, before.end)
+    if digits and behind and (behind[1] or (digits[0] and found == ".")):
+        return f"write `{digits[0] or 0}.{behind[1] or 0}`"
+    word = re.search(r"(?<![\w.])(within|for)[ \t]+([\w.]+(?:[ \t]+\w+)?)?[ \t]*$", before.text)
+    if word is None:
+        return ""
+    if word[2] is None:
+        operator = "eventually" if word[1] == "within" else "always"
+        window = f"`{word[1]}` takes a duration; a window stands behind `{operator}`"
+        return window if found == "[" else ""
+    if found in ("+", "-", "*", "/"):
+        return "a duration that is computed stands in brackets"
+    return "no comma stands behind a duration" if found == "," else ""
+
+
+def _decimal_comma(text: str) -> str:
+    comma = re.search(r"(?<![\w.,])(\d+),(\d+)(?![\w.,])", text)
+    return f"if a number was meant by `{comma[0]}`, write `{comma[1]}.{comma[2]}`" if comma else ""
+
+
+_LOOK_AHEAD = re.compile(r"\(\?[!=](?:[^()]|\([^()]*\))*\)")
+
+
+def words_of(terminal: str, parser: lark.Lark) -> list[str]:
+    """The words that a terminal of the grammar stands for; signs and single letters are left out.
+
+    >>> from rvmon.language.syntax.parse import grammar
+    >>> words_of("RUN_SHARE", grammar()), words_of("CTL", grammar())[:2]
+    (['in at least', 'in at most'], ['AG', 'AF'])
+    """
+    if terminal in ("$END", "NAME", "NUMBER", "CALL", "UNIT", "STRING"):
+        return []
+    pattern = str(parser.get_terminal(terminal).pattern.value)
+    plain = _LOOK_AHEAD.sub("", pattern).replace(r"\s+", " ")
+    if letters := re.fullmatch(r"\[([A-Z]+)\]\[([A-Z]+)\]", plain):
+        return [*map("".join, product(*letters.groups()))]
+    group = re.fullmatch(r"([a-z ]*)\(([a-z|]+)\)", plain)
+    words = [group[1] + one for one in group[2].split("|")] if group else plain.split("|")
+    return [word for word in words if re.fullmatch(r"[A-Za-z][A-Za-z ]+", word)]

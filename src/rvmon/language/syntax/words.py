@@ -1,0 +1,94 @@
+"""The words of the language, which are never names, and a file split into its items by them."""
+
+from __future__ import annotations
+
+import re
+from itertools import pairwise
+
+from rvmon.language.checked.operators import PREFIXED, BinaryOp, UnaryOp
+
+ITEM_WORDS = (
+    "spec",
+    "time",
+    "import",
+    "signal",
+    "event",
+    "define",
+    "const",
+    "requirement",
+    "property",
+    "cover",
+    "coverpoint",
+    "cross",
+)
+"""Words that start an item; besides, `max delay` does."""
+
+_PREFIXES = [op for op in UnaryOp if op.entry.level == PREFIXED and op is not UnaryOp.NOT]
+_INFIXES = [op for op in BinaryOp if op.entry.level == BinaryOp.UNTIL.entry.level]
+OPERATOR_TERMINALS = {
+    **{op.name: op.spellings for op in BinaryOp if op not in _INFIXES},
+    "TEMPORAL": tuple(text for op in _PREFIXES for text in op.spellings),
+    "INFIX": tuple(text for op in _INFIXES for text in op.spellings),
+}
+"""The terminals of the grammar that stand for operators, and all ways to write them."""
+
+_TEMPORAL_WORDS = (
+    *OPERATOR_TERMINALS["TEMPORAL"],
+    *("within", "for", "immediately"),
+    *("A", "E", "AG", "AF", "AX", "EG", "EF", "EX"),
+)
+_OTHER_WORDS = (
+    *("upon", "whenever", "then", "if", "else", "not", "start", "end", "true", "false"),
+    *(text for op in BinaryOp if op not in _INFIXES for text in op.spellings if text.isalpha()),
+)
+
+RESERVED = frozenset((*ITEM_WORDS, *_TEMPORAL_WORDS, *_OTHER_WORDS))
+"""Words that are never names, unless quoted."""
+
+INFIX_WORDS = frozenset(" ".join(OPERATOR_TERMINALS["INFIX"]).split())
+"""Operators between formulas; where an operand stands they are names."""
+
+CLAUSE_WORDS = frozenset(
+    {
+        *("source", "rationale", "severity", "tags", "scope", "at", "let", "monitor", "in"),
+        *("goal", "weight", "ignore", "illegal"),
+    }
+)
+"""Words that start a clause of an item; elsewhere they are names."""
+
+NOT_UNITS = RESERVED | INFIX_WORDS | CLAUSE_WORDS | frozenset(("input", "output", "stale", "of"))
+"""Words that do not count as the unit of a number before them."""
+
+
+_ITEM = re.compile(
+    rf"^[ \t\ufeff]*(?P<word>{'|'.join(ITEM_WORDS)}|max(?=\s+delay))(?!\w|\.\w)"
+    r"(?P<named>[ \t]*(?:\w[\w.]*|`[^`\n]*`)[ \t]*:)?",
+    re.MULTILINE,
+)
+
+
+def split_items(text: str) -> list[tuple[int, int]]:
+    r"""The places `[start, end)` of the items, with what stands before the first one, if anything.
+
+    `property` inside a requirement is a clause of it unless a name and a colon follow.
+
+    >>> split_items("spec a\nevent b")
+    [(0, 7), (7, 14)]
+    """
+    starts: list[int] = []
+    inside = ""
+    for found in _ITEM.finditer(text):
+        word = found["word"]
+        if word == "property" and inside == "requirement" and not found["named"]:
+            continue
+        starts.append(found.start("word"))
+        inside = word
+    first = starts[0] if starts else len(text)
+    places = list(pairwise([*starts, len(text)]))
+    return places if _blank(text[:first]) else [(0, first), *places]
+
+
+def _blank(text: str) -> bool:
+    """Whether there are only comments and space."""
+    lines = text.replace("\ufeff", "").split("\n")
+    return all(line.lstrip().startswith("#") or not line.strip() for line in lines)

@@ -1,0 +1,347 @@
+"""Whether a recorded run is one of a network's runs, as far as the recording shows.
+
+The recording becomes an automaton that watches the network: it waits for each action in turn, give
+or take the tolerance by a clock that is never set, and lets moves pass that the recording does not
+show; a move with several labels stands for several actions of one instant. Where no run gets
+further than some action is the first divergence. After the last action the network must be able to
+keep quiet until the recording's end.
+
+Source: Krichen and Tripakis, Conformance Testing for Real-Time Systems, Formal Methods in System
+Design 34, 2009, section 5 (state estimation); the end as quiescence, as in Tretmans' ioco.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from itertools import combinations, groupby
+
+from rvmon.models.network.evaluate import Evaluator
+from rvmon.models.network.expressions import (
+    FALSE,
+    MAX_TIME,
+    TRUE,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Expression,
+    LocationKind,
+    UnaryOp,
+    UnaryOperation,
+)
+from rvmon.models.network.guards import together
+from rvmon.models.network.network import Network, check_clocks
+from rvmon.models.network.refine import finer
+from rvmon.models.network.rules import model_error
+from rvmon.models.runs.run import Action, Position, Run
+from rvmon.models.runs.space import check_start
+from rvmon.models.search.lowered import Seek, Sought
+from rvmon.models.search.meter import UNLIMITED, Budget, Meter
+from rvmon.models.search.native import seek
+from rvmon.models.search.watcher import Watcher
+from rvmon.trace.sample import Sample
+from rvmon.trace.time import TICKS_PER_UNIT
+
+RESOLUTION = TICKS_PER_UNIT["ms"]
+"""Instants of recordings are rounded to this, outwards."""
+
+
+@dataclass(frozen=True, slots=True)
+class Allowed:
+    """What a network would have allowed instead.
+
+    Attributes:
+        label: of an action; empty: nothing more until the end of the recording.
+        earliest: ticks since the start.
+        latest: ticks; `None` if it has no end.
+    """
+
+    label: str
+    earliest: int
+    latest: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class Divergence:
+    """Where a recording leaves the network's runs.
+
+    Attributes:
+        at: ticks since the start.
+        label: the action that no run can do then; empty: the recording ends, but every run would
+            have done something before.
+        allowed: what some run could have done after the actions before.
+    """
+
+    at: int
+    label: str
+    allowed: tuple[Allowed, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Conformance:
+    """The answer for one recording.
+
+    Attributes:
+        explained: actions that some run of the network does at these instants.
+        divergence: the first that none does; `None` if the recording conforms.
+        undecided: which budget ended the search; empty if it was done.
+    """
+
+    explained: int
+    divergence: Divergence | None
+    undecided: str = ""
+
+    @property
+    def conforms(self) -> bool | None:
+        """Whether some run explains the whole recording; `None` if that was not decided."""
+        return None if self.undecided else self.divergence is None
+
+
+def conform(
+    network: Network,
+    actions: Sequence[Recorded],
+    *,
+    observed: frozenset[str],
+    end: int,
+    tolerance: int,
+    budget: Budget = UNLIMITED,
+) -> Conformance:
+    """Hold one recording against a network.
+
+    Args:
+        network: with a unit of time that is a whole number of milliseconds.
+        actions: in order of time; all their labels are observed.
+        observed: labels that the recording would show; all others happen unseen. A move has
+            the labels of all its edges and the name of its channel: it is recorded as all those of
+            them that are observed, at one instant.
+        end: ticks since the start; the recording goes on until then.
+        tolerance: ticks by which an instant may be off either way.
+        budget: when to give up, for each action.
+
+    Raises:
+        ModelError: the network has no such unit, or cannot start.
+    """
+    check_start(network)
+    check_clocks(network)
+    if network.unit is None or network.unit % RESOLUTION:
+        fix = "write its unit of time, such as `unit 50 ms`"
+        raise model_error("TA023", "time is not in whole milliseconds", None, fix)
+    if end + tolerance >= MAX_TIME * RESOLUTION:
+        fix = "compare a shorter part, with --until"
+        raise model_error("TA019", "the recording goes on for more than 24 days", None, fix)
+    fine, labels = finer(network, network.unit // RESOLUTION), tuple(sorted(observed))
+    most = len(network.automata) + 1
+    chain, meter = _chain_of(actions, end, tolerance, most), Meter(budget, None)
+    watcher = _following(fine, labels, chain, most)
+    over = watcher.add_location()
+    bound = ClockCompare(watcher.clock, ClockOp.GE, Constant(max(0, chain[-1].earliest)))
+    watcher.add_edge(over - 1, over, TRUE, [bound], watches=False)
+    spans = seek(watcher.network(), Sought(Seek.GOAL, FALSE), meter).spans
+    if over in spans:
+        return Conformance(len(actions), None)
+    reached = max(spans, default=0)
+    place = chain[reached]
+    if meter.stopped:
+        return Conformance(place.explained, None, meter.stopped)
+    # What could come there instead, until the end of the recording.
+    ahead = [*chain[:reached], replace(place, latest=end // RESOLUTION, left=())]
+    allowed = _allowed(fine, labels, ahead, most, Meter(budget, None))
+    return Conformance(
+        place.explained, Divergence(place.t, place.left[0] if place.left else "", allowed)
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class _Place:
+    """How far a recording is explained.
+
+    Attributes:
+        t: the instant of what comes next, in ticks.
+        left: the actions of this instant that are left; none at the end.
+        explained: the number of actions before.
+        earliest, latest: the instant give or take the tolerance, in units.
+        next: of the place that comes behind the instant; `None` at the end.
+    """
+
+    t: int
+    left: tuple[str, ...]
+    explained: int
+    earliest: int
+    latest: int
+    next: int | None
+
+
+def _chain_of(actions: Sequence[Recorded], end: int, tolerance: int, most: int) -> list[_Place]:
+    """The places of a recording; those of one instant stand together, with fewer and fewer left."""
+    chain: list[_Place] = []
+    explained = 0
+
+    def add(t: int, choices: Sequence[tuple[str, ...]], *, last: bool = False) -> None:
+        earliest, latest = (t - tolerance) // RESOLUTION, -(-(t + tolerance) // RESOLUTION)
+        behind = None if last else len(chain) + len(choices)
+        for left in choices:
+            done = explained + len(choices[0]) - len(left)
+            chain.append(_Place(t, left, done, earliest, latest, behind))
+
+    for t, group in groupby(actions, lambda action: action.t):
+        labels = tuple(action.label for action in group)
+        add(t, sorted(_rests(labels, most), key=len, reverse=True))
+        explained += len(labels)
+    add(end, [()], last=True)
+    return chain
+
+
+def _rests(labels: tuple[str, ...], most: int) -> set[tuple[str, ...]]:
+    """What can be left of actions of one instant before the last of them is explained."""
+    found, waiting = {labels}, [labels]
+    while waiting:
+        for _, left in _firsts(waiting.pop(), most):
+            if left and left not in found:
+                found.add(left)
+                waiting.append(left)
+    return found
+
+
+def _firsts(labels: tuple[str, ...], most: int) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
+    """At most so many names of a move that can be the first of some actions, and what is left."""
+    found = []
+    others = tuple(dict.fromkeys(name for name in labels[1:] if name != labels[0]))
+    for count in range(min(len(others), most - 1) + 1):
+        for more in combinations(others, count):
+            left = list(labels)
+            for name in (labels[0], *more):
+                left.remove(name)
+            found.append(((labels[0], *more), tuple(left)))
+    return found
+
+
+def _following(
+    network: Network, labels: Sequence[str], chain: Sequence[_Place], most: int
+) -> Watcher:
+    """The automaton that follows a recording up to the last of some places."""
+    watcher = Watcher(network, labels, [""])
+    for place in chain:
+        watcher.add_location([ClockCompare(watcher.clock, ClockOp.LE, Constant(place.latest))])
+    numbers = {(place.t, place.left): number for number, place in enumerate(chain)}
+    named: dict[tuple[str, ...], Expression] = {(): _named(watcher, labels, ())}
+    for number, place in enumerate(chain):
+        watcher.add_edge(number, number, named[()])
+        since = ClockCompare(watcher.clock, ClockOp.GE, Constant(max(0, place.earliest)))
+        for names, left in _firsts(place.left, most) if place.left else ():
+            target = numbers.get((place.t, left)) if left else place.next
+            if target is not None and target < len(chain):
+                when = named.setdefault(names, _named(watcher, labels, names))
+                watcher.add_edge(number, target, when, [since])
+    return watcher
+
+
+def _named(watcher: Watcher, labels: Iterable[str], names: Sequence[str]) -> Expression:
+    """Whether a move has just these of the observed names."""
+    return together(
+        watcher.has(name) if name in names else UnaryOperation(UnaryOp.NOT, watcher.has(name))
+        for name in labels
+    )
+
+
+def _allowed(
+    network: Network, labels: Sequence[str], chain: Sequence[_Place], most: int, meter: Meter
+) -> tuple[Allowed, ...]:
+    """What some run can do at the last place, with the earliest and the latest instant of each."""
+    watcher, last = _following(network, labels, chain, most), len(chain) - 1
+    end = ClockCompare(watcher.clock, ClockOp.GE, Constant(chain[-1].latest))
+    names = {watcher.add_location(kind=LocationKind.URGENT): label for label in labels}
+    for place, label in names.items():
+        watcher.add_edge(last, place, watcher.has(label))
+        for op in (ClockOp.GE, ClockOp.LE):  # so that the clock counts there, as far as that
+            watcher.add_edge(place, place, TRUE, [replace(end, op=op)], watches=False)
+    over = watcher.add_location(kind=LocationKind.URGENT)
+    watcher.add_edge(last, over, TRUE, [end], watches=False)
+    spans = seek(watcher.network(), Sought(Seek.GOAL, FALSE), meter).spans
+    found = [
+        Allowed(names[place], round(low) * RESOLUTION, round(high) * RESOLUTION)
+        for place, (low, high) in sorted(spans.items(), key=lambda one: one[1])
+        if place in names
+    ]
+    if over in spans:
+        found.append(Allowed("", chain[-1].latest * RESOLUTION, None))
+    return tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class Recorded:
+    """An action of a recording: its label, and its instant in ticks since the start."""
+
+    t: int
+    label: str
+
+
+def labels_of(network: Network) -> tuple[str, ...]:
+    """All names that the actions of a network may have in recordings, in order of appearance."""
+    names = dict.fromkeys(
+        name
+        for automaton in network.automata
+        for edge in automaton.edges
+        for name in (edge.label, _channel_name(network, edge.sync.slot.first) if edge.sync else "")
+    )
+    return tuple(name for name in names if name)
+
+
+def _channel_name(network: Network, first: int) -> str:
+    return network.channels[first].name
+
+
+def actions_in(
+    samples: Iterable[Sample], labels: frozenset[str]
+) -> tuple[list[Recorded], int, frozenset[str]]:
+    """The actions of a recording that have one of some labels.
+
+    Returns:
+        The actions with their ticks since the first sample; the ticks from the first to the last
+        sample; the labels that occurred.
+    """
+    actions: list[Recorded] = []
+    first = last = None
+    for sample in samples:
+        first = sample.t if first is None else first
+        last = sample.t
+        actions += [
+            Recorded(sample.t - first, name)
+            for name, value in sample.values.items()
+            if name in labels and value is not None and value is not False
+        ]
+    length = 0 if first is None or last is None else last - first
+    return actions, length, frozenset(action.label for action in actions)
+
+
+def recording_of(
+    network: Network, run: Run, signals: Mapping[str, Evaluator]
+) -> tuple[list[Sample], int]:
+    """A run as it would be recorded: its signals at each action, the actions' labels as events.
+
+    Args:
+        network: with a unit of time.
+        run: of the network.
+        signals: how each is read off locations and variables.
+
+    Returns:
+        The samples, actions at one instant in one of them; the instant at which the run ends.
+    """
+
+    def read(position: Position) -> dict[str, int]:
+        return {n: value(position.locations, position.values) for n, value in signals.items()}
+
+    unit, now = network.unit or 1, Fraction(0)
+    samples: dict[int, dict[str, int | bool]] = {0: {**read(run.start)}}
+    for step in run.steps:
+        now += step.delay
+        if step.action is not None:
+            at = samples.setdefault(round(now * unit), {})
+            at.update(read(step.position) | dict.fromkeys(_names(network, step.action), True))
+    return [Sample(t, values) for t, values in samples.items()], round(now * unit)
+
+
+def _names(network: Network, action: Action) -> list[str]:
+    sync = action.edges[0][1].sync
+    channel = _channel_name(network, sync.slot.first) if sync is not None else ""
+    return [name for name in (*(edge.label for _, edge in action.edges), channel) if name]

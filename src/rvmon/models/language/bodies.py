@@ -1,0 +1,263 @@
+"""Updates and the bodies of functions: statements as written to statements over the network."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import assert_never
+
+from rvmon.diagnostics import Span
+from rvmon.models.language import syntax
+from rvmon.models.language.operations import clock_number, fitted
+from rvmon.models.language.resolve import Resolver
+from rvmon.models.language.symbols import (
+    Extents,
+    claim,
+    element_of,
+    is_alike,
+    is_whole,
+    laid_out,
+    leaves,
+    parts_of_initial,
+    value_of,
+    values_of,
+)
+from rvmon.models.network.expressions import (
+    MAX_TIME,
+    Assignment,
+    BaseType,
+    BinaryOp,
+    BinaryOperation,
+    Constant,
+    Expression,
+    If,
+    Invoke,
+    Perform,
+    Reset,
+    Return,
+    Statement,
+    VariableValue,
+    While,
+)
+from rvmon.models.network.guards import is_discrete
+from rvmon.models.network.rules import model_error
+from rvmon.models.network.scope import (
+    ConstantSymbol,
+    PlacedSymbol,
+    RecordSymbol,
+    ResolvedType,
+    Scope,
+    Symbol,
+)
+
+
+def number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Expression:
+    """An expression whose value the variables give.
+
+    Raises:
+        ModelError: it speaks of clocks or runs.
+    """
+    value = resolver.expression(written, scope)
+    diagonals = resolver.diagonals
+    if not is_discrete(value) or (diagonals is not None and diagonals.are_read(value)):
+        fix = "set variables by numbers and variables only"
+        raise model_error("TA009", "a clock's state is written to a variable", written.span, fix)
+    return value
+
+
+def updates_of(
+    written: Sequence[syntax.UpdateText | syntax.Call], scope: Scope, resolver: Resolver
+) -> tuple[Statement, ...]:
+    """The updates of an edge.
+
+    Raises:
+        ModelError: something cannot be set, or not to that.
+    """
+    return tuple(s for update in written for s in _update(update, scope, resolver))
+
+
+def is_price(target: syntax.Expression, scope: Scope) -> bool:
+    """Whether this is the cost or the reward of priced automata, which nothing reads."""
+    match target:
+        case syntax.Name("cost" | "reward" as name):
+            return not scope.declares(name) and not scope.names_automaton(name)
+        case _:
+            return False
+
+
+def _update(
+    written: syntax.UpdateText | syntax.Call, scope: Scope, resolver: Resolver
+) -> list[Statement]:
+    if isinstance(written, syntax.Call):
+        call = resolver.expression(written, scope)
+        if not isinstance(call, Invoke):
+            raise model_error("TA004", "this is no function", written.span)
+        return [Perform(call)]
+    if is_price(written.target, scope):
+        return []
+    clock = resolver.clock(written.target, scope)
+    if clock is not None:
+        value = clock_number(number(written.value, scope, resolver), resolver.functions)
+        if isinstance(value, Constant) and not 0 <= value.value < MAX_TIME:
+            raise model_error("TA007", f"a clock is set to {value.value}", written.span)
+        return [Reset(clock, value, written.span)]
+    target = resolver.symbol(written.target, scope)
+    if is_whole(target) and isinstance(written.value, syntax.Name | syntax.Index | syntax.Member):
+        return _copy(target, resolver.symbol(written.value, scope), written.span, resolver)
+    return [_set(target, number(written.value, scope, resolver), written.target.span, resolver)]
+
+
+def _copy(target: Symbol, source: Symbol, span: Span, resolver: Resolver) -> list[Statement]:
+    """An array or record set to another one, element by element."""
+    if not is_alike(target, source):
+        raise model_error("TA004", "these are not of one type", span)
+    pairs = zip(leaves(target), leaves(source), strict=True)
+    return [_set(one, value_of(other, span), span, resolver) for one, other in pairs]
+
+
+def _set(target: Symbol, value: Expression, span: Span, resolver: Resolver) -> Statement:
+    match target:
+        case PlacedSymbol(BaseType.INT, slot) if target.is_single:
+            variable = resolver.functions.variable(slot)
+            value = fitted(value, variable.is_real, resolver.functions, span)
+            return Assignment(replace(slot, span=span), value, variable)
+        case _:
+            fix = "only variables and clocks can be set"
+            raise model_error("TA004", "this cannot be set", span, fix)
+
+
+@dataclass(frozen=True, slots=True)
+class Bodies:
+    """Makes the bodies of one function."""
+
+    text: syntax.FunctionText
+    resolver: Resolver
+
+    def statements(
+        self, written: Sequence[syntax.Statement], scope: Scope
+    ) -> tuple[list[Statement], bool]:
+        """The statements, and whether a run can go on behind them; what none reaches is left out.
+
+        Raises:
+            ModelError: something in them has no meaning.
+        """
+        made: list[Statement] = []
+        for statement in written:
+            more, goes_on = self._statement(statement, scope)
+            made += more
+            if not goes_on:
+                return made, False
+        return made, True
+
+    def _statement(self, written: syntax.Statement, scope: Scope) -> tuple[list[Statement], bool]:
+        resolver = self.resolver
+        match written:
+            case syntax.Declaration():
+                return self._declaration(written, scope), True
+            case syntax.UpdateText() | syntax.Call():
+                return _update(written, scope, resolver), True
+            case syntax.Block(statements):
+                return self.statements(statements, scope.inner({}))
+            case syntax.Branch(condition, then, otherwise):
+                test = number(condition, scope, resolver)
+                yes, after_yes = self.statements(then, scope.inner({}))
+                no, after_no = self.statements(otherwise, scope.inner({}))
+                return [If(test, tuple(yes), tuple(no))], after_yes or after_no
+            case syntax.Loop(condition, inside, span):
+                test = number(condition, scope, resolver)
+                body, _ = self.statements(inside, scope.inner({}))
+                return [While(test, tuple(body), span)], True
+            case syntax.Each():
+                return self._each(written, scope), True
+            case syntax.ReturnText(None, span) if self.text.type is not None:
+                raise model_error("TA004", f"`{self.text.name}` returns a value", span)
+            case syntax.ReturnText(value, span) if value is not None:
+                if self.text.type is None:
+                    raise model_error("TA004", f"`{self.text.name}` returns no value", span)
+                real = self.text.type.base is BaseType.DOUBLE
+                result = fitted(number(value, scope, resolver), real, resolver.functions, span)
+                return [Return(result)], False
+            case syntax.ReturnText():
+                return [Return(Constant(0))], False
+            case _:
+                assert_never(written)
+
+    def _declaration(self, item: syntax.Declaration, scope: Scope) -> list[Statement]:
+        resolver = self.resolver
+        claim(item.name, item.span, scope)
+        kind = resolver.type(item.type, scope)
+        extents = (*resolver.extents(item.sizes, scope), *kind.extents)
+        kind = replace(kind, extents=())
+        if kind.base in (BaseType.CLOCK, BaseType.CHANNEL):
+            fix = "declare it outside the function"
+            raise model_error("TA004", "a clock or channel in a function", item.span, fix)
+        initial = item.initial
+        if kind.const and initial is not None and not (extents or kind.fields):
+            value = self._single(initial, scope)
+            if isinstance(value, Constant):
+                scope.symbols[item.name] = ConstantSymbol(value.value)
+                return []
+        name = f"{self.text.name}.{item.name}"
+        symbol = laid_out(variable_type(kind), extents, [name], None, resolver.functions)
+        statements = self._initial(symbol, initial, extents, kind, scope)
+        scope.symbols[item.name] = symbol  # its initial value sees what the name meant before
+        return statements
+
+    def _initial(
+        self,
+        symbol: Symbol,
+        written: syntax.Initial | None,
+        extents: Extents,
+        kind: ResolvedType,
+        scope: Scope,
+    ) -> list[Statement]:
+        """Sets all of a local variable, which has no value from before."""
+        resolver = self.resolver
+        if written is None:
+            single = [leaf for leaf in leaves(symbol) if isinstance(leaf, PlacedSymbol)]
+            ranges = [resolver.functions.variable(leaf.slot) for leaf in single]
+            span = self.text.span
+            return [
+                _set(leaf, Constant(max(v.low, min(0, v.high))), span, resolver)
+                for leaf, v in zip(single, ranges, strict=True)
+            ]
+        if (extents or kind.fields) and not isinstance(written, syntax.Values):
+            return _copy(symbol, resolver.symbol(written, scope), written.span, resolver)
+        parts = parts_of_initial(written, extents, kind)
+        if parts is None:
+            return [_set(symbol, self._single(written, scope), written.span, resolver)]
+        if isinstance(symbol, RecordSymbol) and not extents:
+            members = [inner for _, inner in symbol.fields]
+        else:
+            members = [element_of(symbol, Constant(i), written.span) for i in extents[0]]
+        pairs = zip(members, parts, strict=True)
+        return [s for member, part in pairs for s in self._initial(member, *part, scope)]
+
+    def _single(self, written: syntax.Initial, scope: Scope) -> Expression:
+        """The initial value of a single thing."""
+        if isinstance(written, syntax.Values):
+            raise model_error("TA004", "one value expected, a list found", written.span)
+        return number(written, scope, self.resolver)
+
+    def _each(self, written: syntax.Each, scope: Scope) -> list[Statement]:
+        resolver, inner = self.resolver, scope.inner({})
+        values = values_of(resolver.type(written.type, scope), written.type.span)
+        span = written.span
+        kind = ResolvedType(BaseType.INT, values.start, values.stop)
+        symbol = resolver.functions.place(kind, (), [f"{self.text.name}.{written.name}"], None)
+        assert isinstance(symbol, PlacedSymbol), "of a number"
+        inner.symbols[written.name], inner.places[written.name] = symbol, span
+        body, goes_on = self.statements(written.body, inner.inner({}))
+        here = VariableValue(symbol.slot)
+        if goes_on:
+            after = BinaryOperation(BinaryOp.ADD, here, Constant(1))
+            body.append(_set(symbol, after, span, resolver))
+        first = _set(symbol, Constant(values.start), span, resolver)
+        test = BinaryOperation(BinaryOp.LT, here, Constant(values.stop))
+        return [first, While(test, tuple(body), span)]
+
+
+def variable_type(kind: ResolvedType) -> ResolvedType:
+    """The type of a variable that may be set once, where a constant one is declared."""
+    fields = tuple((name, variable_type(field)) for name, field in kind.fields)
+    return replace(kind, const=False, fields=fields)

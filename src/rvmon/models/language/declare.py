@@ -1,0 +1,294 @@
+"""Declarations to the clocks, variables and channels of a network, and to names in a scope."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from functools import partial
+from math import prod
+from typing import TypeVar
+
+from rvmon.diagnostics import Diagnostic, Label, Severity, Span
+from rvmon.errors import ModelError
+from rvmon.models.language import syntax
+from rvmon.models.language.resolve import Resolver
+from rvmon.models.language.symbols import (
+    MAX_VALUES,
+    Value,
+    claim,
+    default_of,
+    element_of,
+    flat,
+    laid_out,
+    leaves,
+    parts_of_initial,
+    variable_of,
+)
+from rvmon.models.network.expressions import BaseType, Constant, Slot, Variable
+from rvmon.models.network.network import Channel, Clock
+from rvmon.models.network.rules import finding, model_error, refusal
+from rvmon.models.network.scope import (
+    ConstantSymbol,
+    ConstantValue,
+    FunctionSymbol,
+    PlacedSymbol,
+    RecordSymbol,
+    ResolvedType,
+    Scope,
+    Symbol,
+    TypeSymbol,
+)
+
+MAX_FINDINGS = 100
+"""Behind so many, nothing more is looked for."""
+
+MOST_SHOWN = 2
+"""Further places that are shown of a finding that stands at many."""
+
+MAX_CLOCKS = 4_999
+"""The most clocks of a network: a zone has the square of it in numbers."""
+
+MAX_PARTS = 100_000
+"""The most variables, and the most channels, of a network with all elements of its arrays."""
+
+WIDE = 1 << 16
+"""A variable with more values gets a warning; UPPAAL's `int` has so many."""
+
+Part = TypeVar("Part", Clock, Variable, Channel)
+Read = TypeVar("Read")
+
+
+@dataclass(slots=True)
+class Parts:
+    """What the declarations of a model have made so far.
+
+    Attributes:
+        levels: the priorities of channels, if any are declared; `None` is all others.
+        are_split: whether some edge as written is several, of which clocks decide.
+    """
+
+    clocks: list[Clock] = field(default_factory=list)
+    variables: list[Variable] = field(default_factory=list)
+    channels: list[Channel] = field(default_factory=list)
+    channel_spans: list[Span] = field(default_factory=list)
+    levels: dict[int | None, int] = field(default_factory=dict)
+    are_split: bool = False
+
+
+@dataclass(slots=True)
+class Findings:
+    """Collects what is wrong, each thing once, so that all errors of a model appear together."""
+
+    found: dict[tuple[str, str, int], Diagnostic] = field(default_factory=dict)
+
+    def add(self, diagnostic: Diagnostic) -> None:
+        """Note a finding; template instances repeat those of their template.
+
+        Raises:
+            ModelError: there are so many that looking for more would help nobody.
+        """
+        start = diagnostic.spans[0].span.start if diagnostic.spans else -1
+        self.found.setdefault((diagnostic.code, diagnostic.message, start), diagnostic)
+        if len(self.found) >= MAX_FINDINGS:
+            self.raise_errors()
+
+    def has(self, code: str) -> bool:
+        """Whether a finding of a code is among them."""
+        return any(found == code for found, _, _ in self.found)
+
+    def raise_errors(self) -> None:
+        """Raise all errors found so far, if there are any."""
+        errors = [d for d in self.found.values() if d.severity is Severity.ERROR]
+        if errors:
+            raise refusal(*_counted(errors))
+
+    def attempt(self, read: Callable[[], Read], default: Read) -> Read:
+        """What `read` returns, or the default if it finds something wrong, which is noted."""
+        made = [default]
+        with self.collect():
+            made.append(read())
+        return made[-1]
+
+    @contextmanager
+    def collect(self) -> Iterator[None]:
+        """Note the findings of a `ModelError` raised inside, and go on behind."""
+        try:
+            yield
+        except ModelError as error:
+            for diagnostic in error.diagnostics:
+                self.add(diagnostic)
+
+
+def _counted(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """Findings that say the same of several places as one, with their number and the first few."""
+    alike: dict[tuple[str, str, str], list[Diagnostic]] = {}
+    for diagnostic in findings:
+        alike.setdefault((diagnostic.code, diagnostic.message, diagnostic.help), []).append(
+            diagnostic
+        )
+    for first, *others in alike.values():
+        if not others:
+            yield first
+            continue
+        further = [Label(label.span) for other in others[:MOST_SHOWN] for label in other.spans[:1]]
+        message = f"{first.message} ({1 + len(others)} places)"
+        yield replace(first, message=message, spans=(*first.spans, *further))
+
+
+def declare(
+    declared: Sequence[syntax.Declared],
+    scope: Scope,
+    parts: Parts,
+    resolver: Resolver,
+    findings: Findings,
+) -> None:
+    """Give all declared names a meaning in `scope`, and what they declare a place in `parts`."""
+    for item in declared:
+        with findings.collect():
+            if isinstance(item, syntax.PrioritiesText):
+                _rank(item, scope, parts, resolver)
+                continue
+            claim(item.name, item.span, scope)
+            before = len(parts.variables)
+            scope.symbols[item.name] = _symbol(item, scope, parts, resolver)
+            if len(parts.variables) > before:
+                _warn_of_range(parts.variables[before], item, findings)
+
+
+def _rank(written: syntax.PrioritiesText, scope: Scope, parts: Parts, resolver: Resolver) -> None:
+    """Give channels their priorities; `None` is all that are not named."""
+    if parts.levels:
+        fix = "write one list, from the lowest to the highest"
+        raise model_error("TA003", "a second list of priorities", written.span, fix)
+    for level, names in enumerate(written.levels):
+        for name in names:
+            for one in _ranked(name, scope, resolver):
+                if one in parts.levels:
+                    raise model_error("TA003", "a second priority of one channel", name.span)
+                parts.levels[one] = level
+    if None not in parts.levels:
+        fix = "name `default` too: all other channels, and steps without any"
+        raise model_error("TA004", "priorities without `default`", written.span, fix)
+
+
+def _ranked(name: syntax.Expression, scope: Scope, resolver: Resolver) -> Iterator[int | None]:
+    """The channels that a name in a list of priorities means."""
+    if isinstance(name, syntax.Name) and name.name == "default":
+        yield None
+        return
+    for leaf in leaves(resolver.symbol(name, scope)):
+        match leaf:
+            case PlacedSymbol(BaseType.CHANNEL, Slot(first, ())):
+                yield first
+            case _:
+                fix = "name channels, their arrays or elements, and `default`"
+                raise model_error("TA004", "this is no channel", name.span, fix)
+
+
+def _warn_of_range(variable: Variable, item: syntax.Named, findings: Findings) -> None:
+    count = variable.high - variable.low + 1
+    if count > WIDE:
+        message = f"`{item.name}` has {count:,} values: each that it takes makes states of its own"
+        fix = "give it the range that it needs, such as int[0, 10]"
+        findings.add(finding("TA005", message, item.span, fix, severity=Severity.WARNING))
+
+
+def _symbol(item: syntax.Named, scope: Scope, parts: Parts, resolver: Resolver) -> Symbol:
+    if isinstance(item, syntax.FunctionText):
+        seen = Scope(scope.parent, scope.prefix, dict(scope.symbols), dict(scope.places))
+        seen.symbols[item.name] = symbol = FunctionSymbol(item, seen)
+        return symbol
+    kind = resolver.type(item.type, scope)
+    extents = (*resolver.extents(item.sizes, scope), *kind.extents)
+    if isinstance(item, syntax.TypeDefinition):
+        return TypeSymbol(replace(kind, extents=extents))
+    if prod(map(len, extents)) > MAX_VALUES:
+        raise model_error("TA019", f"an array of more than {MAX_VALUES:,} elements", item.span)
+    value = None if item.initial is None else _initial(item.initial, extents, kind, scope, resolver)
+    if kind.const and value is None:
+        fix = f"write const {item.name} = …"
+        raise model_error("TA006", f"the constant `{item.name}` has no value", item.span, fix)
+    return laid_out(kind, extents, [scope.prefix + item.name], value, _Placer(parts, item.span))
+
+
+@dataclass(frozen=True, slots=True)
+class _Placer:
+    """Gives things that are declared their places."""
+
+    parts: Parts
+    span: Span
+
+    def place(
+        self, kind: ResolvedType, extents: tuple[range, ...], names: Sequence[str], value: Value
+    ) -> Symbol:
+        """Put clocks, variables or channels of some names behind those that are there."""
+        parts, span = self.parts, self.span
+        match kind.base:
+            case BaseType.CLOCK | BaseType.CHANNEL if value is not None:
+                raise model_error("TA004", "a clock or channel has no initial value", span)
+            case BaseType.CLOCK:
+                first = _room(parts.clocks, len(names), MAX_CLOCKS, "clocks", span)
+                parts.clocks += map(Clock, names)
+                return PlacedSymbol(kind.base, Slot(first, extents))
+            case BaseType.CHANNEL:
+                first = _room(parts.channels, len(names), MAX_PARTS, "channels", span)
+                parts.channels += [Channel(name, kind.broadcast, kind.urgent) for name in names]
+                parts.channel_spans += [span] * len(names)
+                return PlacedSymbol(kind.base, Slot(first, extents))
+            case _:
+                first = _room(parts.variables, len(names), MAX_PARTS, "variables", span)
+                numbers = [default_of(kind)] * len(names) if value is None else flat(value)
+                parts.variables += map(partial(variable_of, kind), names, numbers)
+                return PlacedSymbol(BaseType.INT, Slot(first, extents))
+
+
+def _room(parts: Sequence[Part], count: int, most: int, what: str, span: Span) -> int:
+    """The index of the next part, if as many as a declaration makes may be added."""
+    if len(parts) + count > most:
+        fix = "declare smaller arrays, or fewer instances of what has them"
+        raise model_error("TA019", f"more than {most:,} {what}", span, fix)
+    return len(parts)
+
+
+def _initial(
+    written: syntax.Initial,
+    extents: tuple[range, ...],
+    kind: ResolvedType,
+    scope: Scope,
+    resolver: Resolver,
+) -> ConstantValue:
+    if (extents or kind.fields) and isinstance(written, syntax.Name | syntax.Index | syntax.Member):
+        return _copied(resolver.symbol(written, scope), extents, kind, written.span)
+    parts = parts_of_initial(written, extents, kind)
+    if parts is None:
+        assert not isinstance(written, syntax.Values), "it would have parts"
+        value = resolver.constant(written, scope, real=kind.base is BaseType.DOUBLE)
+        check_range(value, kind, written.span)
+        return value
+    return tuple(_initial(*part, scope, resolver) for part in parts)
+
+
+def _copied(
+    symbol: Symbol, extents: tuple[range, ...], kind: ResolvedType, span: Span
+) -> ConstantValue:
+    """The values of a constant array or record."""
+    if extents:
+        elements = (element_of(symbol, Constant(index), span) for index in extents[0])
+        return tuple(_copied(element, extents[1:], kind, span) for element in elements)
+    if kind.fields and isinstance(symbol, RecordSymbol):
+        pairs = zip(symbol.fields, kind.fields, strict=False)
+        return tuple(_copied(own, field.extents, field, span) for (_, own), (_, field) in pairs)
+    match symbol:
+        case ConstantSymbol(int(value)) if not kind.fields:
+            check_range(value, kind, span)
+            return value
+        case _:
+            fix = "name a constant array or record of the same type, or write {a, b, …}"
+            raise model_error("TA004", "these are not the values of a constant", span, fix)
+
+
+def check_range(value: int, kind: ResolvedType, span: Span) -> None:
+    """Refuse a constant that its type cannot hold."""
+    if kind.base in (BaseType.INT, BaseType.BOOL) and not kind.low <= value <= kind.high:
+        raise model_error("TA007", f"{value} is outside [{kind.low}, {kind.high}]", span)

@@ -1,0 +1,303 @@
+"""What edges keep up instead of zones: differences of clocks, lower bounds of invariants.
+
+While time passes, `x − y <= c` stays true or false: only an edge that sets x or y changes it. The
+edge that sets x to v makes it `y >= v − c`, so it is taken apart into two: one for where that
+holds, one for where it does not. What is left has no diagonal constraint, and the same runs; zones
+with diagonals would need other searches, for which none of the bounds used here is sound.
+
+A clock only grows while a location is occupied, so that a lower bound that holds on entry holds on,
+unless another automaton sets the clock: it moves to the edges that lead there.
+
+Source: Bérard, Petit, Diekert, Gastin, Characterization of the Expressive Power of Silent
+Transitions in Timed Automata, Fundamenta Informaticae 36, 1998, section 4.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+from rvmon.diagnostics import Span
+from rvmon.models.language import syntax
+from rvmon.models.network.expressions import (
+    MAX_TIME,
+    Assignment,
+    BinaryOp,
+    BinaryOperation,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Expression,
+    Reset,
+    Slot,
+    UnaryOp,
+    UnaryOperation,
+    Variable,
+    VariableValue,
+)
+from rvmon.models.network.guards import normal_form, parts_of, resets_in
+from rvmon.models.network.network import Automaton, Channel, Clock, Edge
+from rvmon.models.network.rules import model_error
+
+
+@dataclass(frozen=True, slots=True)
+class Diagonal:
+    """`clock first − clock second <= number`, or `<` if strict."""
+
+    first: int
+    second: int
+    number: int
+    strict: bool
+
+    def holds(self, difference: int) -> bool:
+        """Whether it does for clocks that are so far apart."""
+        return difference < self.number if self.strict else difference <= self.number
+
+
+@dataclass(slots=True)
+class Diagonals:
+    """The diagonal constraints of a model, and the variables that they are.
+
+    Attributes:
+        clocks, variables: of the model, as far as they are declared.
+        places: the index of each one's variable, and where it was first written.
+    """
+
+    clocks: Sequence[Clock]
+    variables: list[Variable]
+    places: dict[Diagonal, tuple[int, Span]] = field(default_factory=dict)
+
+    def compare(self, first: int, second: int, op: BinaryOp, number: int, span: Span) -> Expression:
+        """`first − second` compared with a number, as a condition on variables."""
+        match op:
+            case BinaryOp.LE | BinaryOp.LT:
+                return self._kept(Diagonal(first, second, number, op is BinaryOp.LT), span)
+            case BinaryOp.GE | BinaryOp.GT:
+                kept = self._kept(Diagonal(first, second, number, op is BinaryOp.GE), span)
+                return UnaryOperation(UnaryOp.NOT, kept)
+            case BinaryOp.NE:
+                same = self.compare(first, second, BinaryOp.EQ, number, span)
+                return UnaryOperation(UnaryOp.NOT, same)
+            case _:
+                least = self.compare(first, second, BinaryOp.GE, number, span)
+                most = self.compare(first, second, BinaryOp.LE, number, span)
+                return BinaryOperation(BinaryOp.AND, least, most)
+
+    def _kept(self, diagonal: Diagonal, span: Span) -> Expression:
+        if diagonal not in self.places:
+            self.places[diagonal] = len(self.variables), span
+            # In the names of variables brackets are indices.
+            name = self._text(diagonal).replace("[", "(").replace("]", ")")
+            self.variables.append(Variable(name, 0, 1, int(diagonal.holds(0)), is_bool=True))
+        return VariableValue(Slot(self.places[diagonal][0]))
+
+    def _text(self, diagonal: Diagonal) -> str:
+        first, second = (self.clocks[clock].name for clock in (diagonal.first, diagonal.second))
+        return f"{first} - {second} {'<' if diagonal.strict else '<='} {diagonal.number}"
+
+    def are_read(self, expression: Expression) -> bool:
+        """Whether an expression reads the variable of one."""
+        places = {place for place, _ in self.places.values()}
+        parts = (part for part in parts_of(expression) if isinstance(part, VariableValue))
+        return any(part.slot.first in places for part in parts)
+
+    def kept_up(self, automata: Sequence[Automaton]) -> Iterator[Automaton]:
+        """The automata with edges that keep the variables up.
+
+        Raises:
+            ModelError: a clock is set in a function or to what is not constant, or both clocks are
+                set by edges that synchronise.
+        """
+        for diagonal, (_, span) in self.places.items():
+            self._refuse_meetings(diagonal, automata, span)
+        for automaton in automata:
+            edges = list(automaton.edges)
+            for diagonal in self.places:
+                edges = [part for edge in edges for part in self._apart(edge, diagonal)]
+            yield replace(automaton, edges=tuple(edges))
+
+    def _refuse_meetings(
+        self, diagonal: Diagonal, automata: Sequence[Automaton], span: Span
+    ) -> None:
+        """Refuse edges that are taken together and set different ones of the clocks."""
+        setting = [
+            (number, edge, frozenset(_values(edge, diagonal)))
+            for number, automaton in enumerate(automata)
+            for edge in automaton.edges
+            if edge.sync is not None and _values(edge, diagonal)
+        ]
+        for number, edge, sets in setting:
+            for other, its, own in setting:
+                if number != other and sets != own and _meet(edge, its):
+                    message = (
+                        f"clocks of `{self._text(diagonal)}` are set by edges that synchronise"
+                    )
+                    fix = f"set both clocks on one of the edges: {edge.text}, {its.text}"
+                    raise model_error("TA008", message, span, fix)
+
+    def _apart(self, edge: Edge, diagonal: Diagonal) -> Iterator[Edge]:
+        """The edge, in two if what the other clock shows decides on the difference behind it."""
+        values = _values(edge, diagonal)
+        match values.get(diagonal.first), values.get(diagonal.second):
+            case None, None:
+                yield edge
+            case int(first), int(second):
+                yield self._noted(edge, diagonal, diagonal.holds(first - second))
+            case int(first), _:
+                op = ClockOp.GT if diagonal.strict else ClockOp.GE
+                yield from self._split(edge, diagonal, diagonal.second, op, first - diagonal.number)
+            case _, int(second):
+                op = ClockOp.LT if diagonal.strict else ClockOp.LE
+                yield from self._split(edge, diagonal, diagonal.first, op, second + diagonal.number)
+
+    def _split(
+        self, edge: Edge, diagonal: Diagonal, clock: int, op: ClockOp, number: int
+    ) -> Iterator[Edge]:
+        if number >= MAX_TIME:
+            raise model_error("TA007", f"a clock compared with {number}", edge.span)
+        lower = op in (ClockOp.GE, ClockOp.GT)
+        if number < 0 or (number == 0 and op in (ClockOp.GE, ClockOp.LT)):  # clocks are not below 0
+            yield self._noted(edge, diagonal, lower)
+            return
+        for truth in (True, False):
+            compare = normal_form(ClockCompare(clock, op, Constant(number)), truth)
+            assert isinstance(compare, ClockCompare), "as its negation is"
+            guard = replace(edge.guard, clocks=(*edge.guard.clocks, compare))
+            text = f"{edge.text} where {self.clocks[clock].name} {compare.op} {number}"
+            yield self._noted(replace(edge, guard=guard, text=text), diagonal, truth)
+
+    def _noted(self, edge: Edge, diagonal: Diagonal, truth: bool) -> Edge:
+        place, _ = self.places[diagonal]
+        note = Assignment(Slot(place), Constant(int(truth)), self.variables[place])
+        return replace(edge, updates=(*edge.updates, note))
+
+
+def difference(
+    diagonals: Diagonals | None, first: int, second: int, op: BinaryOp, number: int, span: Span
+) -> Expression:
+    """`first − second` compared with a number.
+
+    Raises:
+        ModelError: no edges keep it up.
+    """
+    if diagonals is None:
+        fix = "ask for it with --query, for which edges are made to keep it up"
+        message = "two clocks are compared where edges cannot keep their difference up"
+        raise model_error("TA008", message, span, fix)
+    return diagonals.compare(first, second, op, number, span)
+
+
+def terms_of(written: syntax.Expression, sign: int = 1) -> Iterator[tuple[int, syntax.Expression]]:
+    """What an expression adds up, each part with its sign."""
+    match written:
+        case syntax.Binary(BinaryOp.ADD | BinaryOp.SUB as op, left, right):
+            yield from terms_of(left, sign)
+            yield from terms_of(right, sign if op is BinaryOp.ADD else -sign)
+        case _:
+            yield sign, written
+
+
+def _values(edge: Edge, diagonal: Diagonal) -> dict[int, int]:
+    """What an edge sets the clocks of a diagonal to."""
+    found: dict[int, int] = {}
+    for reset in resets_in(edge.updates):
+        if reset.clock in (diagonal.first, diagonal.second):
+            if not isinstance(reset.value, Constant) or not _stands_on(edge, reset):
+                fix = "set it to a number, in the update of the edge itself"
+                message = "a clock that is compared with another one is set to what is computed"
+                raise model_error("TA008", message, edge.span, fix)
+            found[reset.clock] = reset.value.value
+    return found
+
+
+def _stands_on(edge: Edge, reset: Reset) -> bool:
+    return any(update is reset for update in edge.updates)
+
+
+def _meet(edge: Edge, other: Edge) -> bool:
+    """Whether two edges of different automata can be taken together."""
+    if edge.sync is None or other.sync is None or (edge.sync.sends and other.sync.sends):
+        return False
+    one, its = edge.sync.slot, other.sync.slot
+    return one.first < its.first + its.size and its.first < one.first + one.size
+
+
+_LOWER = (ClockOp.GE, ClockOp.GT)
+
+
+def without_lower_bounds(
+    automata: Sequence[Automaton], channels: Sequence[Channel]
+) -> tuple[Automaton, ...]:
+    """The automata with invariants that bound clocks from above only, and the same runs.
+
+    Raises:
+        ModelError: a bound depends on variables, fails at the start, or cannot be moved.
+    """
+    return tuple(
+        _without(automaton, [a for a in automata if a is not automaton], channels)
+        for automaton in automata
+    )
+
+
+def _without(
+    automaton: Automaton, others: Sequence[Automaton], channels: Sequence[Channel]
+) -> Automaton:
+    lower = [
+        [bound for bound in place.invariant.clocks if bound.op in _LOWER]
+        for place in automaton.locations
+    ]
+    if not any(lower):
+        return automaton
+    for place, bounds in zip(automaton.locations, lower, strict=True):
+        for bound in bounds:
+            if not isinstance(bound.bound, Constant):
+                raise _refusal("the lower bound of this invariant is not constant", place.span)
+            sets = (r for a in others for e in a.edges for r in resets_in(e.updates))
+            if any(bound.clock == reset.clock for reset in sets):
+                message = "an invariant bounds a clock from below that another automaton sets"
+                raise _refusal(message, place.span)
+    start = automaton.locations[automaton.initial]
+    if any(not _holds(bound, 0) for bound in lower[automaton.initial]):
+        message = "an invariant of the initial location is false at time 0"
+        raise model_error("TA014", message, start.span, "weaken it, or start elsewhere")
+    edges = [_guarded(edge, lower[edge.target], channels) for edge in automaton.edges]
+    locations = []
+    for place in automaton.locations:
+        upper = tuple(bound for bound in place.invariant.clocks if bound.op not in _LOWER)
+        locations.append(replace(place, invariant=replace(place.invariant, clocks=upper)))
+    return replace(
+        automaton, locations=tuple(locations), edges=tuple(e for e in edges if e is not None)
+    )
+
+
+def _refusal(message: str, span: Span | None) -> Exception:
+    return model_error("TA009", message, span, "put it on the guards of the edges that lead here")
+
+
+def _holds(bound: ClockCompare, value: int) -> bool:
+    assert isinstance(bound.bound, Constant), "looked at before"
+    return value >= bound.bound.value + (bound.op is ClockOp.GT)
+
+
+def _guarded(
+    edge: Edge, bounds: Sequence[ClockCompare], channels: Sequence[Channel]
+) -> Edge | None:
+    """The edge, taken only where the bounds hold behind it; `None` if they never do."""
+    added: list[ClockCompare] = []
+    for bound in bounds:
+        resets = [reset for reset in resets_in(edge.updates) if reset.clock == bound.clock]
+        if not resets:
+            added.append(bound)
+            continue
+        value = resets[-1].value
+        if not isinstance(value, Constant) or resets[-1] not in edge.updates:
+            raise _refusal("an invariant bounds a clock from below that is computed", edge.span)
+        if not _holds(bound, value.value):
+            return None
+    if added and edge.sync is not None:
+        channel = channels[edge.sync.slot.first]
+        if channel.urgent or (channel.broadcast and not edge.sync.sends):
+            message = "an invariant bounds a clock from below behind an urgent or broadcast channel"
+            raise _refusal(message, edge.span)
+    guard = replace(edge.guard, clocks=(*edge.guard.clocks, *added))
+    return replace(edge, guard=guard)

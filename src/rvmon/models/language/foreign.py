@@ -1,0 +1,111 @@
+"""Parts of UPPAAL's language that are not supported, recognised where reading stops."""
+
+from __future__ import annotations
+
+import re
+
+from rvmon.diagnostics import Span
+from rvmon.models.network.rules import model_error
+
+Reason = tuple[str, str]
+"""What is not supported, and what to do instead."""
+
+_STATEMENTS: Reason = (
+    "statements stand in functions only",
+    "write a function, and call it in the update",
+)
+_JUMPS: Reason = ("break, continue and switch are not supported", "write if and while")
+_GAMES: Reason = ("games and strategies are not supported", "ask for a run with E<>")
+_STATISTICS: Reason = (
+    "this form of a statistical query is not supported",
+    "write Pr[<=T](<> p), with >= or <= a number for a test, or E[<=T; n](max: e)",
+)
+_UNTIL: Reason = (
+    "until takes brackets",
+    "write A[p U q], E[p U q], or (p U q) in a formula of LTL",
+)
+_HOOKS: Reason = ("updates around every step are not supported", "write them on the edges")
+_OUTSIDE: Reason = ("functions from outside are not supported", "write their body out")
+_DYNAMIC: Reason = (
+    "templates that are started by runs are not supported",
+    "declare all instances in the system line",
+)
+_TEXTS: Reason = ("texts are not supported", "use numbers")
+
+_DECLARING: dict[str, Reason] = {
+    "hybrid": ("hybrid clocks are not supported", "use a plain clock"),
+    "string": _TEXTS,
+    "import": _OUTSIDE,
+    "dynamic": _DYNAMIC,
+    "spawn": _DYNAMIC,
+    "before_update": _HOOKS,
+    "after_update": _HOOKS,
+}
+_COMPUTING: dict[str, Reason] = {
+    **_DECLARING,
+    **dict.fromkeys(("break", "continue", "switch"), _JUMPS),
+}
+_UPDATING: dict[str, Reason] = {
+    **_COMPUTING,
+    **dict.fromkeys(("if", "else", "for", "while", "do", "return"), _STATEMENTS),
+}
+_ASKING: dict[str, Reason] = {
+    **dict.fromkeys(("Pr", "simulate"), _STATISTICS),
+    **dict.fromkeys(("control", "strategy", "under", "minE", "maxE", "minPr", "maxPr"), _GAMES),
+    **dict.fromkeys(("U", "W", "AU", "EU"), _UNTIL),
+}
+_CALLS = "abs random random_normal random_poisson isnan exp2 log2 cbrt asin acos atan atan2"
+"""Functions of UPPAAL, over numbers with a fraction."""
+
+_COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
+_OLD_CONSTANT = re.compile(r"\bconst\s+(\w+)\s+(-?\d+)$")
+
+
+def type_reason(name: str) -> Reason | None:
+    """Why there is no type of a name, if it is one of UPPAAL's.
+
+    >>> type_reason("string")[1]
+    'use numbers'
+    """
+    return _DECLARING.get(name)
+
+
+def refuse_foreign(name: str, span: Span) -> None:
+    """Refuse a call of a function of UPPAAL's that is not here."""
+    if name in _CALLS.split():
+        fix = "write it as a function of what there is"
+        raise model_error("TA016", f"`{name}` is not supported", span, fix)
+
+
+def reason_at(text: str, start: int, length: int, rule: str) -> Reason | None:
+    """What of UPPAAL's language a text uses at the place where it could not be read.
+
+    >>> reason_at("hybrid clock x;", 7, 5, "declarations")[0]
+    'hybrid clocks are not supported'
+    """
+    end = start + length
+    found, clause = text[start:end], _clause(text[:end].rstrip(" ;"), rule)
+    words = re.findall(r"\w+", clause)
+    tables = {"query": _ASKING, "document": _DECLARING, "updates": _UPDATING}
+    table = tables.get(rule, _COMPUTING)
+    for word in words:
+        if word in table:
+            return table[word]
+    if old := _OLD_CONSTANT.search(clause):
+        return "a constant without a type", f"write const int {old[1]} = {old[2]}"
+    if found in ("=", ":=") and rule in ("updates", "declarations"):
+        return "an assignment is no value", "write one assignment after the other"
+    return None
+
+
+def without_comments(text: str) -> str:
+    """A text with nothing where comments stood."""
+    return _COMMENT.sub(" ", text)
+
+
+def _clause(text: str, rule: str) -> str:
+    """The last statement of a text, without comments; in a `.ta` file its last line."""
+    plain = without_comments(text)
+    if rule == "document":
+        return plain.rpartition("\n")[2]
+    return re.split(r"[;}]", plain)[-1]

@@ -1,0 +1,258 @@
+"""Functions as they are called: one for all calls with the same things passed by reference."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+
+from rvmon.diagnostics import Span
+from rvmon.models.language import syntax
+from rvmon.models.language.bodies import Bodies, number, variable_type
+from rvmon.models.language.operations import fitted
+from rvmon.models.language.resolve import Resolver
+from rvmon.models.language.symbols import (
+    Extents,
+    Value,
+    check_count,
+    claim,
+    count_of,
+    default_of,
+    laid_out,
+    leaves,
+    value_of,
+    variable_of,
+)
+from rvmon.models.network.expressions import (
+    Assignment,
+    BaseType,
+    Constant,
+    Expression,
+    Function,
+    InLocation,
+    Invoke,
+    Missing,
+    Reset,
+    Return,
+    Slot,
+    Statement,
+    Variable,
+    VariableValue,
+    expressions_of,
+    statements_in,
+)
+from rvmon.models.network.guards import parts_of
+from rvmon.models.network.rules import model_error
+from rvmon.models.network.scope import (
+    ChosenSymbol,
+    FunctionSymbol,
+    PlacedSymbol,
+    RecordSymbol,
+    ResolvedType,
+    Scope,
+    Symbol,
+)
+
+MAX_LOCALS = 100_000
+"""The most parameters and local variables of all functions together."""
+
+_NOTHING = ResolvedType(BaseType.INT, 0, 0)
+"""What a `cannot_pass` function returns."""
+
+_CHOSEN = InLocation(-1, -1)
+"""Stands for an index that is not constant, in the key of a function."""
+
+
+@dataclass(slots=True)
+class Functions:
+    """Those that were called so far, and the places that they use.
+
+    Attributes:
+        variables: of the network, as far as they are declared.
+        locals: the first has slot −1.
+        made: by what was written, the scope it was written in, and what it refers to.
+        open: those that are being made.
+    """
+
+    variables: list[Variable] = field(default_factory=list)
+    locals: list[Variable] = field(default_factory=list)
+    made: dict[tuple[object, ...], Function] = field(default_factory=dict)
+    open: set[tuple[object, ...]] = field(default_factory=set)
+
+    def place(
+        self, kind: ResolvedType, extents: Extents, names: Sequence[str], value: Value
+    ) -> Symbol:
+        """Make room for parameters or local variables."""
+        del value  # they are set whenever the function runs
+        self.locals += [variable_of(kind, name, default_of(kind)) for name in reversed(names)]
+        if len(self.locals) > MAX_LOCALS:
+            raise model_error("TA019", f"more than {MAX_LOCALS:,} local variables", None)
+        return PlacedSymbol(BaseType.INT, Slot(-len(self.locals), extents))
+
+    def variable(self, slot: Slot) -> Variable:
+        """The variable of a slot, or the first of its array."""
+        first = slot.first
+        return self.variables[first] if first >= 0 else self.locals[-first - 1]
+
+    def call(
+        self, symbol: FunctionSymbol, written: syntax.Call, scope: Scope, resolver: Resolver
+    ) -> Invoke:
+        """The value of a call.
+
+        Raises:
+            ModelError: the arguments do not fit, or the function calls itself.
+        """
+        text: syntax.FunctionText = symbol.written
+        check_count(text.name, text.parameters, written.arguments, written.span)
+        bound: list[Symbol | None] = []
+        values: list[Expression] = []
+        chosen: list[Expression] = []
+        for parameter, argument in zip(text.parameters, written.arguments, strict=True):
+            kind, extents = _type_of(parameter, symbol.scope, resolver)
+            if _is_bound(parameter, kind, extents):
+                thing = resolver.symbol(argument, scope)
+                _check_fit(thing, kind, extents, parameter, argument.span, self)
+                bound.append(_with_slots(thing, lambda slot: _without_choice(slot, chosen)))
+                continue
+            bound.append(None)
+            if not (extents or kind.fields):
+                value = number(argument, scope, resolver)
+                real = kind.base is BaseType.DOUBLE
+                values.append(fitted(value, real, resolver.functions, argument.span))
+                continue
+            thing = resolver.symbol(argument, scope)
+            _check_fit(thing, kind, extents, parameter, argument.span, self)
+            values += [value_of(leaf, argument.span) for leaf in leaves(thing)]
+        key = (id(text), id(symbol.scope), *bound)
+        function = self.made.get(key)
+        if function is None:
+            if key in self.open:
+                fix = "write a loop"
+                message = f"`{text.name}` calls itself"
+                raise model_error("TA016", message, written.span, fix)
+            self.open.add(key)
+            try:
+                function = self.made[key] = _make(text, symbol.scope, bound, resolver)
+            finally:
+                self.open.discard(key)
+        return Invoke(function, (*values, *chosen), written.span)
+
+
+def _type_of(
+    parameter: syntax.Parameter, scope: Scope, resolver: Resolver
+) -> tuple[ResolvedType, Extents]:
+    kind = resolver.type(parameter.type, scope)
+    extents = (*resolver.extents(parameter.sizes, scope), *kind.extents)
+    return replace(kind, extents=()), extents
+
+
+def _is_bound(parameter: syntax.Parameter, kind: ResolvedType, extents: Extents) -> bool:
+    """Whether a parameter stands for the argument itself, not for its value."""
+    if kind.placed_as is not BaseType.INT:
+        return True
+    return parameter.reference and not (kind.const and not (extents or kind.fields))
+
+
+def _check_fit(
+    thing: Symbol,
+    kind: ResolvedType,
+    extents: Extents,
+    parameter: syntax.Parameter,
+    span: Span,
+    calls: Functions,
+) -> None:
+    single = leaves(thing)
+    own = single[0].kind if isinstance(single[0], PlacedSymbol) else BaseType.INT
+    is_real = (
+        isinstance(single[0], PlacedSymbol)
+        and own is BaseType.INT
+        and calls.variable(single[0].slot).is_real
+    )
+    if (
+        own is not kind.placed_as
+        or len(single) != count_of(kind, extents)
+        or (not kind.fields and is_real != (kind.base is BaseType.DOUBLE))
+    ):
+        fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
+        raise model_error("TA015", "this argument is of the wrong kind", span, fix)
+
+
+def _with_slots(symbol: Symbol, change: Callable[[Slot], Slot]) -> Symbol:
+    match symbol:
+        case RecordSymbol(fields):
+            return RecordSymbol(tuple((name, _with_slots(s, change)) for name, s in fields))
+        case PlacedSymbol(_, slot) | ChosenSymbol(_, slot):
+            return replace(symbol, slot=change(slot))
+        case _:
+            return symbol
+
+
+def _without_choice(slot: Slot, chosen: list[Expression]) -> Slot:
+    """The slot with a mark for each index that is not constant; those are noted."""
+    indices: list[Expression] = []
+    for index in slot.indices:
+        if not isinstance(index, Constant):
+            chosen.append(index)
+        indices.append(index if isinstance(index, Constant) else _CHOSEN)
+    return replace(slot, indices=tuple(indices), span=None)
+
+
+def _make(
+    text: syntax.FunctionText, scope: Scope, bound: Sequence[Symbol | None], resolver: Resolver
+) -> Function:
+    """A function with its parameters bound, or given places of their own."""
+    functions, inner, taken = resolver.functions, Scope(scope), Scope()
+    parameters: list[int] = []
+    indices: list[int] = []
+
+    def chosen(slot: Slot) -> Slot:
+        """The slot with places for the indices that calls choose."""
+        own: list[Expression] = []
+        for index, extent in zip(slot.indices, slot.extents, strict=False):
+            if index == _CHOSEN:
+                kind = ResolvedType(BaseType.INT, extent.start, extent.stop - 1)
+                symbol = functions.place(kind, (), ["index"], None)
+                assert isinstance(symbol, PlacedSymbol), "of numbers"
+                indices.append(symbol.slot.first)
+                index = VariableValue(symbol.slot)
+            own.append(index)
+        return replace(slot, indices=tuple(own))
+
+    for parameter, thing in zip(text.parameters, bound, strict=True):
+        claim(parameter.name, parameter.span, taken)
+        if thing is not None:
+            inner.symbols[parameter.name] = _with_slots(thing, chosen)
+            continue
+        kind, extents = _type_of(parameter, scope, resolver)
+        kind, called = variable_type(kind), [f"{text.name}.{parameter.name}"]
+        symbol = laid_out(kind, extents, called, None, functions)
+        inner.symbols[parameter.name] = symbol
+        parameters += [leaf.slot.first for leaf in leaves(symbol) if isinstance(leaf, PlacedSymbol)]
+    result = _NOTHING if text.type is None else resolver.type(text.type, scope)
+    if result.extents or result.base not in (BaseType.INT, BaseType.BOOL, BaseType.DOUBLE):
+        fix = "let it set a parameter that is passed by reference"
+        message = f"`{text.name}` returns an array or record"
+        raise model_error("TA016", message, text.span, fix)
+    place = functions.place(replace(result, const=False), (), [f"{text.name}(…)"], None)
+    assert isinstance(place, PlacedSymbol), "of a number"
+    body, goes_on = Bodies(text, resolver).statements(text.body.statements, inner)
+    if goes_on:
+        body.append(Return(Constant(0)) if text.type is None else Missing(text.name, text.span))
+    slots = [*parameters, *indices]
+    return Function(
+        text.name,
+        tuple((slot, functions.variable(Slot(slot))) for slot in slots),
+        (place.slot.first, functions.variable(place.slot)),
+        tuple(body),
+        len(functions.locals),
+        any(map(_changes, statements_in(body))),
+    )
+
+
+def _changes(statement: Statement) -> bool:
+    """Whether a statement sets what is not a function's own."""
+    if isinstance(statement, Reset) or (
+        isinstance(statement, Assignment) and statement.slot.first >= 0
+    ):
+        return True
+    calls = (part for e in expressions_of(statement) for part in parts_of(e))
+    return any(isinstance(part, Invoke) and part.function.changes for part in calls)

@@ -1,0 +1,383 @@
+"""Templates to automata: parameters bound, locations with invariants, `select` unrolled."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from rvmon.diagnostics import Span
+from rvmon.models.language import automaton_syntax, syntax
+from rvmon.models.language.automaton_syntax import Document
+from rvmon.models.language.bodies import is_price, updates_of
+from rvmon.models.language.declare import Findings, Parts, check_range
+from rvmon.models.language.operations import as_real, binary, is_real, refuse_clocks
+from rvmon.models.language.resolve import Resolver
+from rvmon.models.language.symbols import (
+    MAX_VALUES,
+    check_count,
+    claim,
+    count_of,
+    leaves,
+    values_of,
+)
+from rvmon.models.network.expressions import TRUE, BaseType, BinaryOp, Expression
+from rvmon.models.network.guards import guards_of, refuse_changes, split_guard
+from rvmon.models.network.network import (
+    Automaton,
+    Channel,
+    Edge,
+    Guard,
+    Location,
+    Rate,
+    Sync,
+)
+from rvmon.models.network.rules import model_error
+from rvmon.models.network.scope import (
+    ConstantSymbol,
+    PlacedSymbol,
+    RecordSymbol,
+    Scope,
+    Symbol,
+)
+from rvmon.texts import did_you_mean
+
+Family = automaton_syntax.Template | automaton_syntax.Instance
+"""What a name in the system line may mean."""
+
+
+@dataclass(frozen=True, slots=True)
+class Process:
+    """A template with all its parameters bound: an automaton to be."""
+
+    family: str
+    arguments: tuple[int, ...]
+    template: automaton_syntax.Template
+    scope: Scope
+    priority: int
+
+
+def processes_of(
+    document: Document, top: Scope, resolver: Resolver, findings: Findings
+) -> list[Process]:
+    """All processes of the system, in its order; what is wrong goes to `findings`."""
+    families: dict[str, Family] = {}
+    declared: tuple[Family, ...] = (*document.templates, *document.instances)
+    for family in declared:
+        with findings.collect():
+            claim(family.name, family.span, top)
+            top.families.add(family.name)
+            families[family.name] = family
+    used = {instance.template.name for instance in document.instances}
+    system = document.system
+    if system is None:
+        system = tuple(
+            (syntax.Name(name, family.span), 0)
+            for name, family in families.items()
+            if name not in used
+        )
+    processes: list[Process] = []
+    for name, priority in system:
+        with findings.collect():
+            if name.name not in families:
+                fix = did_you_mean(name.name, list(families))
+                raise model_error("TA002", f"no automaton `{name.name}`", name.span, fix)
+            processes += _instances(families[name.name], families, top, resolver, priority)
+    return processes
+
+
+def _instances(
+    family: Family,
+    families: Mapping[str, Family],
+    top: Scope,
+    resolver: Resolver,
+    priority: int,
+) -> Iterator[Process]:
+    """One process for each choice of the parameters' values."""
+    _refuse_circle(family, families)
+    ranges = []
+    for parameter in family.parameters:
+        if parameter.reference or parameter.sizes:
+            fix = f"write instance = {family.name}(…)"
+            message = f"the parameter `{parameter.name}` needs an argument"
+            raise model_error("TA015", message, parameter.span, fix)
+        ranges.append(values_of(resolver.type(parameter.type, top), parameter.type.span))
+    for count, arguments in enumerate(product(*ranges)):
+        if count >= MAX_VALUES:
+            fix = "narrow the types of its parameters"
+            raise model_error("TA019", f"more than {MAX_VALUES:,} instances", family.span, fix)
+        bound = [ConstantSymbol(value) for value in arguments]
+        template, scope = _bind(family, bound, families, top, resolver)
+        listed = f"({', '.join(map(str, arguments))})" if arguments else ""
+        scope.prefix = f"{family.name}{listed}."
+        yield Process(family.name, arguments, template, scope, priority)
+
+
+def _refuse_circle(family: Family, families: Mapping[str, Family]) -> None:
+    """Refuse an instance of an instance of … itself."""
+    seen: set[str] = set()
+    current: Family | None = family
+    while isinstance(current, automaton_syntax.Instance):
+        if current.name in seen:
+            fix = "make it an instance of an automaton"
+            message = f"`{current.name}` is an instance of itself"
+            raise model_error("TA015", message, current.span, fix)
+        seen.add(current.name)
+        current = families.get(current.template.name)
+
+
+def _bind(
+    family: Family,
+    arguments: Sequence[Symbol],
+    families: Mapping[str, Family],
+    top: Scope,
+    resolver: Resolver,
+) -> tuple[automaton_syntax.Template, Scope]:
+    scope = Scope(top)
+    for parameter, argument in zip(family.parameters, arguments, strict=True):
+        claim(parameter.name, parameter.span, scope)
+        scope.symbols[parameter.name] = argument
+    if isinstance(family, automaton_syntax.Template):
+        return family, scope
+    target = families.get(family.template.name)
+    if target is None:
+        fix = did_you_mean(family.template.name, list(families))
+        message = f"no template `{family.template.name}`"
+        raise model_error("TA002", message, family.template.span, fix)
+    check_count(target.name, target.parameters, family.arguments, family.span)
+    bound: list[Symbol] = []
+    own = Scope(top)  # a parameter's type may speak of the parameters before it
+    for parameter, written in zip(target.parameters, family.arguments, strict=True):
+        bound.append(_argument(parameter, written, scope, own, resolver))
+        own.symbols[parameter.name] = bound[-1]
+    return _bind(target, bound, families, top, resolver)
+
+
+def _argument(
+    parameter: syntax.Parameter,
+    written: syntax.Expression,
+    scope: Scope,
+    own: Scope,
+    resolver: Resolver,
+) -> Symbol:
+    """What an argument stands for; its type has the names of `own`, itself those of `scope`."""
+    kind = resolver.type(parameter.type, own)
+    extents = (*resolver.extents(parameter.sizes, own), *kind.extents)
+    if not parameter.reference and kind.base in (BaseType.INT, BaseType.BOOL) and not extents:
+        value = resolver.constant(written, scope)
+        check_range(value, kind, written.span)
+        return ConstantSymbol(value)
+    symbol = resolver.symbol(written, scope)
+    match symbol:
+        case PlacedSymbol(place, slot):
+            fits = place is kind.placed_as and slot.extents[len(slot.indices) :] == extents
+        case RecordSymbol():
+            fits = bool(kind.fields) and len(leaves(symbol)) == count_of(kind, extents)
+        case _:
+            fits = isinstance(symbol, ConstantSymbol) and (kind.const or not parameter.reference)
+    if not fits:
+        fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
+        raise model_error("TA015", "this argument is of the wrong kind", written.span, fix)
+    return symbol
+
+
+MAX_CASES = 16
+"""The most cases of a guard in which clocks stand under `or`: each is an edge."""
+
+
+def location_names(template: automaton_syntax.Template, findings: Findings) -> dict[str, int]:
+    """The index of each location of a template; what is wrong goes to `findings`."""
+    names: dict[str, int] = {}
+    scope = Scope()
+    for index, location in enumerate(template.locations):
+        with findings.collect():
+            claim(location.name, location.span, scope)
+            names[location.name] = index
+    return names
+
+
+def automaton_of(
+    process: Process,
+    names: Mapping[str, int],
+    parts: Parts,
+    resolver: Resolver,
+    findings: Findings,
+) -> Automaton:
+    """The automaton that a process is; what is wrong goes to `findings`."""
+    template, scope = process.template, process.scope
+    locations = []
+    for written in template.locations:
+        place = Location(written.name, written.kind, Guard(), written.span)
+        with findings.collect():
+            place = _place(written, scope, resolver)
+        locations.append(place)
+    edges: list[Edge] = []
+    for edge in template.edges:
+        with findings.collect():
+            edges += _edges(edge, names, scope, parts, resolver)
+    initial = 0
+    with findings.collect():
+        if template.initial is None:
+            fix = "write `start` and the location's name"
+            message = f"`{template.name}` has no initial location"
+            raise model_error("TA013", message, template.span, fix)
+        initial = _location(template.initial, names)
+    return Automaton(
+        scope.prefix.removesuffix("."), tuple(locations), tuple(edges), initial, template.span
+    )
+
+
+def _place(written: automaton_syntax.LocationText, scope: Scope, resolver: Resolver) -> Location:
+    """A location with its invariant, from which the rates of clocks are taken."""
+    condition: Expression = TRUE
+    rates, leaving = list[Rate](), None
+    parts = [] if written.invariant is None else _parts(written.invariant, scope, resolver)
+    for part, inner in parts:
+        match part:
+            case syntax.Binary(BinaryOp.EQ, syntax.Rate(target), value):
+                if is_price(target, inner):
+                    continue
+                clock = resolver.clock(target, inner)
+                if clock is None:
+                    raise model_error("TA004", "this is no clock", target.span, "declare it")
+                rate = _number(value, inner, resolver)
+                if is_real(rate, resolver.functions):
+                    rate = as_real(rate, resolver.functions, value.span)
+                rates.append(Rate(clock, rate))
+            case _:
+                more = resolver.condition(part, inner)
+                condition = binary(BinaryOp.AND, condition, more, part.span, resolver.functions)
+    if written.leaving is not None:
+        one, other = (_number(share, scope, resolver) for share in written.leaving)
+        leaving = (one, other)
+    guard = split_guard(
+        condition, written.span if written.invariant is None else written.invariant.span
+    )
+    return Location(written.name, written.kind, guard, written.span, tuple(rates), leaving)
+
+
+def _number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Expression:
+    number = resolver.condition(written, scope)
+    refuse_clocks(number, written.span)
+    return number
+
+
+def _has_rate(written: syntax.Expression) -> bool:
+    match written:
+        case syntax.Binary(BinaryOp.AND, left, right):
+            return _has_rate(left) or _has_rate(right)
+        case syntax.Quantified(BinaryOp.AND, body=body):
+            return _has_rate(body)
+        case syntax.Binary(BinaryOp.EQ, syntax.Rate(), _):
+            return True
+        case _:
+            return False
+
+
+def _parts(
+    written: syntax.Expression, scope: Scope, resolver: Resolver
+) -> Iterator[tuple[syntax.Expression, Scope]]:
+    """What an invariant joins, as far as rates are among it."""
+    match written:
+        case syntax.Binary(BinaryOp.AND, left, right) if _has_rate(written):
+            yield from _parts(left, scope, resolver)
+            yield from _parts(right, scope, resolver)
+        case syntax.Quantified(BinaryOp.AND, name, kind, body) if _has_rate(body):
+            for value in values_of(resolver.type(kind, scope), kind.span):
+                inner = scope.inner({name: ConstantSymbol(value)})
+                yield from _parts(body, inner, resolver)
+        case _:
+            yield written, scope
+
+
+def _location(name: syntax.Name, names: Mapping[str, int]) -> int:
+    if name.name not in names:
+        fix = did_you_mean(name.name, list(names))
+        raise model_error("TA002", f"no location `{name.name}`", name.span, fix)
+    return names[name.name]
+
+
+def _edges(
+    written: automaton_syntax.EdgeText,
+    names: Mapping[str, int],
+    scope: Scope,
+    parts: Parts,
+    resolver: Resolver,
+) -> Iterator[Edge]:
+    """One edge for each choice of the selected values, and each case of a guard with clocks."""
+    source, target = _location(written.source, names), _location(written.target, names)
+    ranges, selected_names = [], Scope()
+    for selection in written.selections:
+        claim(selection.name, selection.span, selected_names)
+        ranges.append(values_of(resolver.type(selection.type, scope), selection.span))
+    for count, chosen in enumerate(product(*ranges)):
+        if count >= MAX_VALUES:
+            raise model_error("TA019", f"more than {MAX_VALUES:,} edges in one", written.span)
+        selected = {
+            selection.name: ConstantSymbol(value)
+            for selection, value in zip(written.selections, chosen, strict=True)
+        }
+        inner = scope.inner(selected) if selected else scope
+        guards = [Guard()]
+        if written.guard is not None:
+            guards = guards_of(resolver.condition(written.guard, inner))
+        if len(guards) > MAX_CASES:
+            message = f"a guard of more than {MAX_CASES} cases with clocks"
+            raise model_error("TA019", message, written.span, "write several edges")
+        sync = None if written.sync is None else _sync(written.sync, inner, resolver)
+        if sync is not None:
+            for guard in guards:
+                _refuse_clock_guard(guard, parts.channels[sync.slot.first], sync, written.span)
+        updates = updates_of(written.updates, inner, resolver)
+        weight = _weight(written, inner, resolver)
+        if weight == 0:
+            continue
+        parts.are_split |= len(guards) > 1
+        for guard in guards:
+            yield Edge(
+                source, target, guard, sync, updates, weight, written.label,
+                _edge_text(written, selected), written.span,
+            )  # fmt: skip
+
+
+def _weight(written: automaton_syntax.EdgeText, scope: Scope, resolver: Resolver) -> float:
+    """The share of the runs that take an edge: written by itself, or among its branches."""
+    if written.shares is None:
+        return written.weight
+    own, *every = (
+        w.value if isinstance(w, syntax.Decimal) else resolver.constant(w, scope)
+        for w in (written.shares[0], *written.shares[1])
+    )
+    if min(every) < 0 or max(every) == 0:
+        fix = "weights are numbers, one of them above 0"
+        raise model_error("TA017", "the branches of this edge have no share", written.span, fix)
+    return own / sum(every)
+
+
+def _edge_text(written: automaton_syntax.EdgeText, selected: Mapping[str, ConstantSymbol]) -> str:
+    text = f"{written.source.name} → {written.target.name}"
+    if written.sync is not None:
+        text += f" on {written.sync.span.text}"
+    chosen = [
+        f"{name} = {s.value}" for name, s in selected.items() if isinstance(s, ConstantSymbol)
+    ]
+    return text + (f" with {', '.join(chosen)}" if chosen else "")
+
+
+def _sync(written: automaton_syntax.SyncText, scope: Scope, resolver: Resolver) -> Sync:
+    match resolver.symbol(written.channel, scope):
+        case PlacedSymbol(BaseType.CHANNEL, slot) as channel if channel.is_single:
+            for index in slot.indices:
+                refuse_changes(index, written.span)
+            return Sync(slot, written.sends)
+        case PlacedSymbol(BaseType.CHANNEL):
+            raise model_error("TA004", "an array of channels", written.span, "give an index")
+        case _:
+            fix = f"declare it: chan {written.channel.span.text}"
+            raise model_error("TA004", "this is no channel", written.span, fix)
+
+
+def _refuse_clock_guard(guard: Guard, channel: Channel, sync: Sync, span: Span) -> None:
+    if guard.clocks and channel.urgent and (sync.sends or not channel.broadcast):
+        fix = "move the clock guard to an edge before, or make the channel not urgent"
+        raise model_error("TA011", "a clock guard on an urgent channel", span, fix)

@@ -1,0 +1,400 @@
+"""Expressions as written to expressions over the network; constants are folded on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from typing import assert_never
+
+from rvmon.diagnostics import Span
+from rvmon.errors import ModelError
+from rvmon.models.language import operations, syntax
+from rvmon.models.language.diagonals import Diagonals, difference, terms_of
+from rvmon.models.language.foreign import refuse_foreign, type_reason
+from rvmon.models.language.symbols import (
+    INT16,
+    INT32,
+    MAX_VALUES,
+    Calls,
+    automaton_at,
+    clock_of,
+    element_of,
+    is_whole,
+    value_of,
+    values_of,
+)
+from rvmon.models.network.evaluate import evaluator
+from rvmon.models.network.expressions import (
+    MAX_TIME,
+    TRUE,
+    BaseType,
+    BinaryOp,
+    Choice,
+    Constant,
+    Deadlock,
+    Expression,
+    InLocation,
+    PathFormula,
+)
+from rvmon.models.network.fractions import FUNCTIONS, literal
+from rvmon.models.network.guards import is_fixed, refuse_changes
+from rvmon.models.network.rules import model_error, refusal
+from rvmon.models.network.scope import (
+    AutomatonKey,
+    AutomatonSymbol,
+    ConstantSymbol,
+    FunctionSymbol,
+    PlacedSymbol,
+    RecordSymbol,
+    ResolvedType,
+    Scope,
+    Symbol,
+    TypeSymbol,
+)
+from rvmon.texts import did_you_mean
+
+MAX_UNROLLED = 100_000
+"""The most conditions that the quantifiers of a model may stand for together."""
+
+
+@dataclass(slots=True)
+class Resolver:
+    """What expressions may refer to beside the names of their scope.
+
+    Attributes:
+        functions: those that can be called.
+        automata: by name and arguments; only queries can see them.
+        open_ints: whether `int` without a range is allowed.
+        diagonals: what differences of clocks become; `None` where they may not be compared.
+        unrolled: conditions that quantifiers stood for so far.
+        fraction: where a number with a fraction stands, if one was met.
+    """
+
+    functions: Calls
+    automata: Mapping[AutomatonKey, AutomatonSymbol] = field(default_factory=dict)
+    open_ints: bool = False
+    diagonals: Diagonals | None = None
+    unrolled: int = 0
+    fraction: Span | None = None
+
+    def expression(self, written: syntax.Expression, scope: Scope) -> Expression:
+        """The expression over the network.
+
+        Raises:
+            ModelError: a name is unknown or of the wrong kind, or the expression has no meaning.
+        """
+        match written:
+            case syntax.Number(value):
+                return Constant(value)
+            case syntax.Decimal(value, span):
+                self.fraction = self.fraction or span
+                return literal(value)
+            case syntax.Name("deadlock", _) if self.automata and not scope.find("deadlock"):
+                return Deadlock()
+            case syntax.Call(name) if isinstance(function := scope.find(name), FunctionSymbol):
+                return self.functions.call(function, written, scope, self)
+            case syntax.Call(name, given, span) if name in FUNCTIONS and not scope.find(name):
+                self.fraction = self.fraction or span
+                numbers = [self.expression(expression, scope) for expression in given]
+                return operations.fractional_call(name, numbers, span, self.functions)
+            case syntax.Call(name, (body,), span) if (
+                name in operations.LINEAR_WORDS and self.automata
+            ):
+                return operations.linear_of(name, self.expression(body, scope), span)
+            case syntax.Name() | syntax.Index() | syntax.Member() | syntax.Call():
+                if (location := self._location(written, scope)) is not None:
+                    return location
+                return value_of(self.symbol(written, scope), written.span)
+            case syntax.Rate(_, span):
+                fix = "a rate stands in an invariant: x' == 2, alone or joined by &&"
+                raise model_error("TA009", "the rate of a clock stands here", span, fix)
+            case syntax.Unary(op, operand, span):
+                return operations.unary(op, self.expression(operand, scope), span, self.functions)
+            case syntax.Binary(op, left, right, span):
+                if op in operations.COMPARISONS and (clocks := self._clock_compare(written, scope)):
+                    return clocks
+                if op in operations.SAMENESS and (whole := self._whole_compare(written, scope)):
+                    return whole
+                first = self.expression(left, scope)
+                if first == Constant(0) and op is BinaryOp.AND:
+                    return first  # what stands behind need not have a meaning then
+                return operations.binary(
+                    op, first, self.expression(right, scope), span, self.functions
+                )
+            case syntax.Conditional(condition, then, otherwise, _):
+                test = self.expression(condition, scope)
+                yes, no = self.expression(then, scope), self.expression(otherwise, scope)
+                if isinstance(test, Constant):
+                    return yes if test.value else no
+                return Choice(test, yes, no)
+            case syntax.Quantified(op, name, kind, body, span):
+                values = values_of(self.type(kind, scope), kind.span)
+                self.unrolled += len(values)
+                if self.unrolled > MAX_UNROLLED:
+                    message = f"quantifiers stand for more than {MAX_UNROLLED:,} conditions"
+                    raise model_error("TA019", message, span, "let them range over smaller types")
+                parts = [
+                    self.expression(body, scope.inner({name: ConstantSymbol(value)}))
+                    for value in values
+                ]
+                return operations.joined(op, parts, span, self.functions)
+            case syntax.Path(op, body, bound, span, left):
+                if not self.automata:
+                    raise model_error("TA020", "only queries speak of runs", span)
+                until = TRUE if left is None else self.expression(left, scope)
+                return PathFormula(
+                    op, self.expression(body, scope), self.limit(bound, scope), until
+                )
+            case syntax.LeadsTo(_, _, _, span):
+                message = "`-->` can only stand outermost"
+                raise model_error("TA020", message, span, "write A[] (p imply A<> q)")
+            case (
+                syntax.Assuming()
+                | syntax.Chance()
+                | syntax.Mean()
+                | syntax.Simulation()
+                | syntax.Extremes()
+            ):
+                raise model_error("TA020", "this can only stand outermost", written.span)
+            case _:
+                assert_never(written)
+
+    def condition(self, written: syntax.Expression, scope: Scope) -> Expression:
+        """An expression that changes nothing where it is evaluated.
+
+        Raises:
+            ModelError: it does, or it has no meaning.
+        """
+        condition = self.expression(written, scope)
+        refuse_changes(condition, written.span)
+        return condition
+
+    def constant(self, written: syntax.Expression, scope: Scope, *, real: bool = False) -> int:
+        """The value of an expression that must not depend on the state; `real`: its bits.
+
+        Raises:
+            ModelError: it does, or it has none.
+        """
+        value = self.expression(written, scope)
+        value = operations.fitted(value, real, self.functions, written.span)
+        if not is_fixed(value):
+            fix = "use numbers, `const` names, parameters, and functions of them only"
+            raise model_error("TA006", "this is not constant", written.span, fix)
+        return evaluator(value)((), ())
+
+    def limit(self, written: syntax.Expression | None, scope: Scope) -> int | None:
+        """The bound of a path operator in units of time, if it has one.
+
+        Raises:
+            ModelError: it is not constant, or no time.
+        """
+        if written is None:
+            return None
+        units = self.constant(written, scope)
+        if not 0 <= units < MAX_TIME:
+            fix = f"bounds are from 0 to {MAX_TIME - 1:,}"
+            raise model_error("TA007", f"a bound of {units}", written.span, fix)
+        return units
+
+    def extents(self, sizes: Sequence[syntax.Size], scope: Scope) -> tuple[range, ...]:
+        """The indices of each dimension: those below a number, or a type's values.
+
+        Raises:
+            ModelError: a size is not a constant above 0, or a type has too many values.
+        """
+        return tuple(self._extent(size, scope) for size in sizes)
+
+    def _extent(self, size: syntax.Size, scope: Scope) -> range:
+        if isinstance(size, syntax.TypeText):
+            return values_of(self.type(size, scope), size.span)
+        if isinstance(size, syntax.Name) and isinstance(
+            symbol := scope.find(size.name), TypeSymbol
+        ):
+            return values_of(symbol.type, size.span)
+        number = self.constant(size, scope)
+        if number < 1:
+            raise model_error("TA007", f"an array of {number} elements", size.span)
+        if number > MAX_VALUES:
+            raise model_error("TA019", f"an array of more than {MAX_VALUES:,} elements", size.span)
+        return range(number)
+
+    def type(self, written: syntax.TypeText, scope: Scope) -> ResolvedType:
+        """The type with its range evaluated.
+
+        Raises:
+            ModelError: the range is empty, missing, or not constant; the typedef does not exist.
+        """
+        kind = self._plain_type(written, scope)
+        return replace(
+            kind,
+            const=kind.const or written.const,
+            broadcast=kind.broadcast or written.broadcast,
+            urgent=kind.urgent or written.urgent,
+        )
+
+    def _plain_type(self, written: syntax.TypeText, scope: Scope) -> ResolvedType:
+        """A type without its prefixes."""
+        if written.base is BaseType.NAMED:
+            symbol = scope.find(written.name)
+            if not isinstance(symbol, TypeSymbol):
+                if reason := type_reason(written.name):
+                    raise model_error("TA016", reason[0], written.span, reason[1])
+                types = [n for n in scope.names() if isinstance(scope.find(n), TypeSymbol)]
+                fix = did_you_mean(written.name, [*types, "int", "bool", "clock", "chan"])
+                raise model_error("TA002", f"no type named `{written.name}`", written.span, fix)
+            return symbol.type
+        if written.base is BaseType.RECORD:
+            fields = {}
+            for part in written.fields:
+                kind = self.type(part.type, scope)
+                if part.name in fields:
+                    raise model_error("TA003", f"two fields named `{part.name}`", part.span)
+                sizes = self.extents(part.sizes, scope)
+                fields[part.name] = replace(kind, extents=(*sizes, *kind.extents))
+            return ResolvedType(BaseType.RECORD, fields=tuple(fields.items()))
+        if written.base is BaseType.DOUBLE:
+            self.fraction = self.fraction or written.span
+        if written.base is not BaseType.INT:
+            return ResolvedType(written.base, 0, 1)
+        if written.low is None or written.high is None:
+            if not (self.open_ints or written.const):
+                fix = "give its range: int[low, high]"
+                raise model_error("TA005", "an int without a range", written.span, fix)
+            return ResolvedType(BaseType.INT, *(INT32 if written.const else INT16))
+        low, high = self.constant(written.low, scope), self.constant(written.high, scope)
+        if low > high:
+            raise model_error("TA007", f"the range [{low}, {high}] is empty", written.span)
+        return ResolvedType(BaseType.INT, low, high)
+
+    def symbol(self, written: syntax.Expression, scope: Scope) -> Symbol:
+        """What a name, an element or a member stands for.
+
+        Raises:
+            ModelError: nothing has that name, or the expression is no name.
+        """
+        match written:
+            case syntax.Name(name, span):
+                symbol = scope.find(name)
+                if symbol is None and scope.names_automaton(name):
+                    raise _no_value(span)
+                if symbol is None and scope.declares(name):
+                    raise refusal()  # why its declaration has no meaning is reported there
+                if symbol is None:
+                    fix = did_you_mean(name, [*scope.names(), *(n for n, _ in self.automata)])
+                    raise model_error("TA002", f"no name `{name}`", span, fix)
+                return symbol
+            case syntax.Index(base, index, span):
+                position = self.expression(index, scope)
+                operations.refuse_clocks(position, index.span)
+                return element_of(self.symbol(base, scope), position, span)
+            case syntax.Member(base, name, span) if whole := self._record(base, scope):
+                if name not in (fields := dict(whole.fields)):
+                    fix = did_you_mean(name, list(fields))
+                    raise model_error("TA002", f"no field `{name}`", span, fix)
+                return fields[name]
+            case syntax.Member(base, name, span):
+                automaton = self._automaton(base, scope)
+                if name in automaton.scope.symbols:
+                    return automaton.scope.symbols[name]
+                names = [*automaton.locations, *automaton.scope.symbols]
+                message = f"no location or variable `{name}` in this automaton"
+                raise model_error("TA002", message, span, did_you_mean(name, names))
+            case syntax.Call(name, _, span):
+                if any(name == known for known, _ in self.automata):
+                    raise _no_value(span)
+                refuse_foreign(name, span)
+                names = [n for n in scope.names() if isinstance(scope.find(n), FunctionSymbol)]
+                raise model_error("TA002", f"no function `{name}`", span, did_you_mean(name, names))
+            case _:
+                fix = "name a variable, a clock or a channel"
+                raise model_error("TA004", "this is no name", written.span, fix)
+
+    def clock(self, written: syntax.Expression, scope: Scope) -> int | None:
+        """The clock that an expression names, if it names one."""
+        match self._named(written, scope):
+            case PlacedSymbol(BaseType.CLOCK, slot):
+                return clock_of(slot, written.span)
+            case _:
+                return None
+
+    def _named(self, written: syntax.Expression, scope: Scope) -> Symbol | None:
+        """What an expression names, if it names anything but a location."""
+        is_name = isinstance(written, syntax.Name | syntax.Index | syntax.Member)
+        if not is_name or self._location(written, scope) is not None:
+            return None
+        return self.symbol(written, scope)
+
+    def _clock_compare(self, written: syntax.Binary, scope: Scope) -> Expression | None:
+        """A comparison in which clocks stand; `None` if none does."""
+        terms = [*terms_of(written.left), *terms_of(written.right, -1)]
+        named = [(sign, part, self.clock(part, scope)) for sign, part in terms]
+        clocks = sorted((sign, clock) for sign, _, clock in named if clock is not None)
+        op, span = written.op, written.span
+        match clocks:
+            case []:
+                return None
+            case [(sign, clock)] if any(
+                part in (written.left, written.right) for _, part, its in named if its is not None
+            ):
+                bound = self.expression(written.right if sign > 0 else written.left, scope)
+                bound = operations.clock_number(bound, self.functions)
+                turned = op if sign > 0 else operations.MIRRORED[op]
+                return operations.compare_clock(clock, turned, bound, span)
+        number = -sum(
+            sign * self.constant(part, scope) for sign, part, clock in named if clock is None
+        )
+        match clocks:
+            case [(sign, clock)]:
+                turned = op if sign > 0 else operations.MIRRORED[op]
+                return operations.compare_clock(clock, turned, Constant(sign * number), span)
+            case [(-1, second), (1, first)] if first != second:
+                return difference(self.diagonals, first, second, op, number, span)
+            case _:
+                fix = "compare one clock, or the difference of two, with a number"
+                raise model_error("TA008", "a sum of clocks is compared", span, fix)
+
+    def _whole_compare(self, written: syntax.Binary, scope: Scope) -> Expression | None:
+        """Records or arrays compared element by element."""
+        left, right = self._named(written.left, scope), self._named(written.right, scope)
+        if left is None or right is None or not (is_whole(left) and is_whole(right)):
+            return None
+        return operations.whole_compare(written.op, left, right, written.span, self.functions)
+
+    def _record(self, written: syntax.Expression, scope: Scope) -> RecordSymbol | None:
+        """The record that an expression names, if it names one."""
+        match written:
+            case syntax.Name(name):
+                symbol = scope.find(name)
+            case syntax.Index(base, index, span) if inner := self._record(base, scope):
+                symbol = element_of(inner, self.expression(index, scope), span)
+            case syntax.Member(base, name) if inner := self._record(base, scope):
+                symbol = dict(inner.fields).get(name)
+            case syntax.Member(syntax.Name() | syntax.Call() as base, name) if self.automata:
+                symbol = self._automaton(base, scope).scope.symbols.get(name)
+            case _:
+                return None
+        return symbol if isinstance(symbol, RecordSymbol) else None
+
+    def _location(self, written: syntax.Expression, scope: Scope) -> InLocation | None:
+        if not isinstance(written, syntax.Member) or self._record(written.base, scope):
+            return None
+        automaton = self._automaton(written.base, scope)
+        if written.name not in automaton.locations:
+            return None
+        return InLocation(automaton.index, automaton.locations[written.name])
+
+    def _automaton(self, written: syntax.Expression, scope: Scope) -> AutomatonSymbol:
+        match written:
+            case syntax.Name(name, span):
+                key: AutomatonKey = (name, ())
+            case syntax.Call(name, arguments, span):
+                key = (name, tuple(self.constant(a, scope) for a in arguments))
+            case _:
+                span = written.span
+                key = ("", ())
+        return automaton_at(self.automata, key, span)
+
+
+def _no_value(span: Span) -> ModelError:
+    fix = f"name a location: {span.text}.location"
+    return model_error("TA004", "an automaton is no value", span, fix)

@@ -1,0 +1,367 @@
+"""What names stand for: how arrays and records are laid out, and what can be done with a name."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence, Sized
+from dataclasses import replace
+from math import prod
+from typing import Any, Protocol, assert_never
+
+from rvmon.diagnostics import Label, Span
+from rvmon.models.language import syntax
+from rvmon.models.network.evaluate import check_index
+from rvmon.models.network.expressions import (
+    BaseType,
+    Constant,
+    Expression,
+    Fractional,
+    Lookup,
+    Slot,
+    Variable,
+    VariableValue,
+)
+from rvmon.models.network.rules import model_error
+from rvmon.models.network.scope import (
+    AutomatonKey,
+    AutomatonSymbol,
+    ChosenSymbol,
+    ConstantSymbol,
+    ConstantValue,
+    FunctionSymbol,
+    PlacedSymbol,
+    RecordSymbol,
+    ResolvedType,
+    Scope,
+    Symbol,
+    TypeSymbol,
+)
+from rvmon.texts import counted, did_you_mean
+
+MAX_VALUES = 10_000
+"""The most values that a quantifier, a `select`, a parameter or an array may range over."""
+
+INT16 = (-32768, 32767)
+"""UPPAAL's `int` without a range."""
+
+INT32 = (-(1 << 31), (1 << 31) - 1)
+"""What a constant without a range may be."""
+
+Extents = tuple[range, ...]
+"""The indices of each dimension of an array, the outermost first."""
+
+Value = ConstantValue | None
+"""An initial value: of an array or record one for each part, in order; `None` without one."""
+
+
+class Placer(Protocol):
+    """Gives things their places."""
+
+    def place(
+        self, kind: ResolvedType, extents: Extents, names: Sequence[str], value: Value
+    ) -> Symbol:
+        """Make a symbol for things of one type, side by side."""
+        ...
+
+
+def laid_out(
+    kind: ResolvedType,
+    extents: Extents,
+    names: Sequence[str],
+    value: Value,
+    placer: Placer,
+    unnamed: Extents | None = None,
+) -> Symbol:
+    """The symbol of something declared; a record's fields are laid out one after the other.
+
+    Args:
+        kind: its type.
+        extents: of the array, if it is one.
+        names: what it is called.
+        value: its initial value.
+        placer: for single things and arrays of them.
+        unnamed: the last dimensions, of which the names say nothing yet; default all.
+    """
+    suffixes = _suffixes(extents if unnamed is None else unnamed)
+    names = [name + suffix for name in names for suffix in suffixes]
+    if kind.base is not BaseType.RECORD:
+        real = kind.base is BaseType.DOUBLE
+        if kind.const and value is not None and not (real and extents):
+            return ConstantSymbol(value, extents, real)
+        return placer.place(kind, extents, names, value)
+    fields = []
+    for place, (field, written) in enumerate(kind.fields):
+        own = replace(written, const=kind.const or written.const, extents=())
+        inner = None if value is None else _field(value, len(extents), place)
+        called = [f"{name}.{field}" for name in names]
+        whole = (*extents, *written.extents)
+        symbol = laid_out(own, whole, called, inner, placer, written.extents)
+        fields.append((field, symbol))
+    return RecordSymbol(tuple(fields))
+
+
+def _field(value: ConstantValue, depth: int, place: int) -> ConstantValue:
+    """The values of a field of all elements of an array of records."""
+    assert isinstance(value, tuple), "a record's value has parts"
+    if depth == 0:
+        return value[place]
+    return tuple(_field(element, depth - 1, place) for element in value)
+
+
+def _suffixes(extents: Extents) -> list[str]:
+    """The index of each element of an array, such as `[0]`; one empty text for a single thing."""
+    if not extents:
+        return [""]
+    return [f"[{i}]{rest}" for i in extents[0] for rest in _suffixes(extents[1:])]
+
+
+def variable_of(kind: ResolvedType, name: str, initial: int) -> Variable:
+    """A variable of a type."""
+    is_bool, is_real = kind.base is BaseType.BOOL, kind.base is BaseType.DOUBLE
+    return Variable(name, kind.low, kind.high, initial, is_bool, is_real)
+
+
+def default_of(kind: ResolvedType) -> int:
+    """The value of a variable of a type that is given none."""
+    return 0 if kind.low <= 0 <= kind.high else kind.low
+
+
+def count_of(kind: ResolvedType, extents: Extents) -> int:
+    """The single things that an array or record of a type has."""
+    each = sum(count_of(field, field.extents) for _, field in kind.fields) if kind.fields else 1
+    return prod(map(len, extents)) * each
+
+
+Part = tuple[syntax.Initial, Extents, ResolvedType]
+"""A part of an initial value: as written, the array that it is for, the type."""
+
+
+def parts_of_initial(
+    written: syntax.Initial, extents: Extents, kind: ResolvedType
+) -> list[Part] | None:
+    """The values for the elements of an array or the fields of a record; `None` of a single thing.
+
+    Raises:
+        ModelError: they are too few or too many, or a list stands where one value is expected.
+    """
+    if not isinstance(written, syntax.Values):
+        if extents or kind.fields:
+            fix = "write {a, b, …}"
+            raise model_error("TA004", "an array needs a list of values", written.span, fix)
+        return None
+    expected = list(_expected(extents, kind))
+    if len(expected) != len(written.items):
+        count = f"{len(expected)} values" if expected else "one value"
+        message = f"{count} expected, {len(written.items)} found"
+        raise model_error("TA004", message, written.span)
+    return [(item, *rest) for item, rest in zip(written.items, expected, strict=True)]
+
+
+def _expected(extents: Extents, kind: ResolvedType) -> Iterator[tuple[Extents, ResolvedType]]:
+    if extents:
+        yield from [(extents[1:], kind)] * len(extents[0])
+    for _, field in () if extents else kind.fields:
+        yield field.extents, replace(field, extents=())
+
+
+def values_of(kind: ResolvedType, span: Span) -> range:
+    """All values of a finite type.
+
+    Raises:
+        ModelError: the type has none or too many.
+    """
+    if kind.base not in (BaseType.INT, BaseType.BOOL):
+        raise model_error("TA004", "only int and bool types can be enumerated", span)
+    if kind.high - kind.low >= MAX_VALUES:
+        fix = "give a small range: int[low, high]"
+        raise model_error("TA019", f"more than {MAX_VALUES:,} values", span, fix)
+    return range(kind.low, kind.high + 1)
+
+
+def check_count(name: str, parameters: Sized, arguments: Sized, span: Span) -> None:
+    """Refuse too few or too many arguments."""
+    count = len(parameters)
+    if count != len(arguments):
+        message = f"`{name}` takes {counted(count, 'argument')}, {len(arguments)} given"
+        raise model_error("TA015", message, span)
+
+
+def claim(name: str, span: Span, scope: Scope) -> None:
+    """Note where a name is declared; refuse one that the same level already has."""
+    if name in scope.places:
+        first = Label(scope.places[name], "first declared here")
+        raise model_error("TA003", f"two things named `{name}`", span, "rename one", others=[first])
+    scope.places[name] = span
+
+
+class Calls(Protocol):
+    """Functions that can be called (`functions.Functions`)."""
+
+    @property
+    def locals(self) -> Sequence[Variable]:
+        """The parameters and local variables; the first has slot −1."""
+        ...
+
+    def call(
+        self, symbol: FunctionSymbol, written: syntax.Call, scope: Scope, resolver: Any
+    ) -> Expression:
+        """The value of a call."""
+        ...
+
+    def place(
+        self, kind: ResolvedType, extents: Extents, names: Sequence[str], value: Value
+    ) -> Symbol:
+        """Make room for parameters or local variables."""
+        ...
+
+    def variable(self, slot: Slot) -> Variable:
+        """The variable of a slot, or the first of its array."""
+        ...
+
+
+def value_of(symbol: Symbol, span: Span) -> Expression:
+    """The value that a symbol has in an expression.
+
+    Raises:
+        ModelError: it has none: a clock, an array, a channel or a type.
+    """
+    match symbol:
+        case ConstantSymbol(int(value), _, is_real):
+            return Fractional("=", (Constant(value),)) if is_real else Constant(value)
+        case PlacedSymbol(BaseType.INT, slot) if symbol.is_single:
+            return VariableValue(replace(slot, span=span))
+        case ChosenSymbol(values, slot) if len(slot.indices) == len(slot.extents):
+            return Lookup(values, replace(slot, span=span))
+        case PlacedSymbol(BaseType.CLOCK):
+            fix = "a clock can only be compared with a number, or be set"
+            raise model_error("TA009", "a clock has no value here", span, fix)
+        case PlacedSymbol(BaseType.INT) | ConstantSymbol() | ChosenSymbol():
+            raise model_error("TA004", "an array is no value", span, "give an index")
+        case RecordSymbol(fields):
+            fix = f"name a field, such as {span.text}.{fields[0][0]}"
+            raise model_error("TA004", "a record is no value", span, fix)
+        case FunctionSymbol():
+            raise model_error("TA004", "a function is no value", span, f"call it: {span.text}(…)")
+        case PlacedSymbol() | TypeSymbol():
+            fix = "channels stand in synchronisations, types in declarations"
+            raise model_error("TA004", f"`{span.text}` is no value", span, fix)
+        case _:
+            assert_never(symbol)
+
+
+def element_of(symbol: Symbol, index: Expression, span: Span) -> Symbol:
+    """An element of an array.
+
+    Raises:
+        ModelError: the symbol is no array, or the index is outside it.
+    """
+    match symbol:
+        case ConstantSymbol(tuple() as values, (extent, *inner)):
+            if not isinstance(index, Constant) or index.value not in extent:
+                slot = Slot(0, (extent, *inner), (index,), span)
+                return ChosenSymbol(tuple(flat(values)), slot)
+            return ConstantSymbol(values[index.value - extent.start], tuple(inner))
+        case PlacedSymbol(_, slot) | ChosenSymbol(_, slot):
+            return replace(symbol, slot=_deeper(slot, index, span))
+        case RecordSymbol(fields):
+            return RecordSymbol(tuple((name, element_of(s, index, span)) for name, s in fields))
+        case ConstantSymbol() | TypeSymbol() | FunctionSymbol():
+            raise model_error("TA004", "this is no array", span)
+        case _:
+            assert_never(symbol)
+
+
+def flat(value: ConstantValue) -> list[int]:
+    """The numbers of a constant, those of the last index side by side."""
+    if isinstance(value, int):
+        return [value]
+    return [number for item in value for number in flat(item)]
+
+
+def is_whole(symbol: Symbol) -> bool:
+    """Whether a symbol is an array or record that holds numbers, not one of them."""
+    match symbol:
+        case RecordSymbol():
+            return True
+        case PlacedSymbol(BaseType.INT, slot) | ChosenSymbol(_, slot):
+            return len(slot.indices) < len(slot.extents)
+        case ConstantSymbol(value):
+            return isinstance(value, tuple)
+        case _:
+            return False
+
+
+def is_alike(one: Symbol, other: Symbol) -> bool:
+    """Whether two arrays or records have the same parts."""
+    if isinstance(one, RecordSymbol) and isinstance(other, RecordSymbol):
+        return [name for name, _ in one.fields] == [name for name, _ in other.fields] and all(
+            is_alike(a, b) for (_, a), (_, b) in zip(one.fields, other.fields, strict=True)
+        )
+    records = isinstance(one, RecordSymbol) or isinstance(other, RecordSymbol)
+    return not records and len(leaves(one)) == len(leaves(other))
+
+
+def leaves(symbol: Symbol) -> list[Symbol]:
+    """The single things of an array or record, in order."""
+    match symbol:
+        case RecordSymbol(fields):
+            return [leaf for _, inner in fields for leaf in leaves(inner)]
+        case ConstantSymbol(tuple() as values, (_, *inner)):
+            return [leaf for v in values for leaf in leaves(ConstantSymbol(v, tuple(inner)))]
+        case PlacedSymbol(_, slot) | ChosenSymbol(_, slot) if len(slot.indices) < len(slot.extents):
+            extent = slot.extents[len(slot.indices)]
+            deeper = (settle(replace(slot, indices=(*slot.indices, Constant(i)))) for i in extent)
+            return [leaf for slot in deeper for leaf in leaves(replace(symbol, slot=slot))]
+        case _:
+            return [symbol]
+
+
+def _deeper(slot: Slot, index: Expression, span: Span) -> Slot:
+    if len(slot.indices) == len(slot.extents):
+        raise model_error("TA004", "more indices than the array has dimensions", span)
+    return settle(Slot(slot.first, slot.extents, (*slot.indices, index), span))
+
+
+def settle(slot: Slot) -> Slot:
+    """The same slot without its array, if its indices are constant and complete."""
+    if len(slot.indices) < len(slot.extents):
+        return slot
+    offset = 0
+    for extent, index in zip(slot.extents, slot.indices, strict=True):
+        if not isinstance(index, Constant) or index.value not in extent:
+            return slot  # a run that comes to an index outside the array has no meaning
+        offset = offset * len(extent) + index.value - extent.start
+    return Slot(slot.first + offset, (), (), slot.span)
+
+
+def clock_of(slot: Slot, span: Span) -> int:
+    """The index of the clock that a slot names.
+
+    Raises:
+        ModelError: the variables would have to choose it, or it is an array.
+    """
+    for extent, index in zip(slot.extents, slot.indices, strict=False):
+        if isinstance(index, Constant):
+            check_index(index.value, extent, span)
+    if slot.extents:
+        missing = len(slot.indices) < len(slot.extents)
+        message = "an array of clocks" if missing else "the index of a clock is not constant"
+        raise model_error("TA006", message, span, "use a number or a parameter as index")
+    return slot.first
+
+
+def automaton_at(
+    automata: Mapping[AutomatonKey, AutomatonSymbol], key: AutomatonKey, span: Span
+) -> AutomatonSymbol:
+    """The automaton of a name and arguments.
+
+    Raises:
+        ModelError: there is none, or none can be seen from where it is named.
+    """
+    if not automata:
+        message = f"edges and invariants do not see the locations of `{span.text}`"
+        fix = "only queries do: set a variable where it is entered and left, and read that"
+        raise model_error("TA002", message, span, fix)
+    if key not in automata:
+        fix = did_you_mean(key[0], sorted({name for name, _ in automata}))
+        raise model_error("TA002", f"no automaton `{span.text}`", span, fix)
+    return automata[key]

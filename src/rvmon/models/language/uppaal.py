@@ -1,0 +1,354 @@
+"""UPPAAL's XML to syntax.
+
+Read: declarations, templates with parameters, locations (invariant, rate of leaving, urgent,
+committed), edges (select, guard, synchronisation, assignment), instances, the system line, queries.
+Colours, coordinates and test code do not change which runs there are: they are passed over.
+Refused, with place and reason: what `ta.lark` has no rule for. A query that cannot be read, or that
+names what is not there, is a warning, and left out. Declarations of entities are refused, nothing
+outside the file is ever read, and size and depth are limited.
+
+A unit of time, weights, labels and ids of queries, which UPPAAL does not have, are read from
+comments as `export.uppaal` writes them: `// unit 50 ms` in the declarations; `weight 0.9` and
+`as name` in an edge's comments; `query R1` alone on the first line of a query's comment.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_right
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+from xml.parsers import expat
+
+from rvmon.diagnostics import Diagnostic, Source, Span
+from rvmon.errors import ModelError
+from rvmon.models.language import automaton_syntax, syntax
+from rvmon.models.language.automaton_syntax import Document
+from rvmon.models.language.declare import Findings
+from rvmon.models.language.foreign import without_comments
+from rvmon.models.language.parse import MAX_CHARACTERS, parse_part
+from rvmon.models.network.expressions import LocationKind
+from rvmon.models.network.rules import finding, left_out, model_error
+from rvmon.trace.time import TICKS_PER_UNIT
+
+MAX_DEPTH = 20
+"""A model's elements are nested no deeper than this."""
+
+
+@dataclass(slots=True)
+class Element:
+    """An element with its texts joined, and where each piece of them stands.
+
+    Attributes:
+        pieces: of the text, as they were read.
+        offsets: of the pieces in `text`.
+        places: of the same pieces in the file.
+    """
+
+    name: str
+    attributes: Mapping[str, str]
+    source: Source
+    start: int
+    children: list[Element] = field(default_factory=list)
+    text: str = ""
+    pieces: list[str] = field(default_factory=list)
+    offsets: list[int] = field(default_factory=list)
+    places: list[int] = field(default_factory=list)
+
+    def all(self, name: str) -> Iterator[Element]:
+        """The children of a name."""
+        return (child for child in self.children if child.name == name)
+
+    def first(self, name: str) -> Element | None:
+        """The first child of a name."""
+        return next(self.all(name), None)
+
+    def span(self) -> Span:
+        """The beginning of the element's tag."""
+        return Span(self.source, self.start, self.start + len(self.name) + 1)
+
+    def place(self, start: int, end: int) -> Span:
+        """Where some characters of the text stand in the file."""
+        if not self.offsets:
+            return self.span()
+        first = self._position(start)
+        return Span(self.source, first, max(first, self._position(end - 1) + 1 if end else first))
+
+    def _position(self, offset: int) -> int:
+        piece = max(0, bisect_right(self.offsets, offset) - 1)
+        return self.places[piece] + offset - self.offsets[piece]
+
+
+def read_xml(source: Source) -> Element:
+    """Read a text as XML.
+
+    Raises:
+        ModelError: it is not well-formed, declares entities, or is too large or too deep.
+    """
+    text = source.text
+    if len(text) > MAX_CHARACTERS:
+        raise model_error("TA019", f"the text has more than {MAX_CHARACTERS:,} characters", None)
+    data = text.encode("utf-8")
+    reader = _Reader(source, data)
+    try:
+        # The text is already decoded, whatever encoding its declaration names.
+        parser = expat.ParserCreate(encoding="utf-8")
+        reader.read(parser, data)
+    except expat.ExpatError as error:
+        place = reader.position(parser.ErrorByteIndex)
+        message = f"no well-formed XML: {expat.errors.messages[error.code]}"
+        raise model_error("TA018", message, Span(source, place, place)) from None
+    assert reader.root is not None, "well-formed XML has a root"
+    return reader.root
+
+
+class _Reader:
+    def __init__(self, source: Source, data: bytes) -> None:
+        self.root: Element | None = None
+        self._source = source
+        self._data = data
+        self._open: list[Element] = []
+        self._parser: Any = None
+        self._reached = (0, 0)
+
+    def read(self, parser: Any, data: bytes) -> None:  # expat's parser type has no public name
+        self._parser = parser
+        parser.StartElementHandler = self._start
+        parser.EndElementHandler = self._end
+        parser.CharacterDataHandler = self._characters
+        parser.EntityDeclHandler = self._entity
+        parser.Parse(data, True)
+
+    def position(self, byte: int) -> int:
+        """The character that a byte of the file belongs to; asked of later and later bytes."""
+        if len(self._data) == len(self._source.text):
+            return byte
+        before, characters = self._reached
+        characters += len(self._data[before:byte].decode("utf-8", errors="ignore"))
+        self._reached = (byte, characters)
+        return characters
+
+    def _here(self) -> int:
+        return self.position(self._parser.CurrentByteIndex)
+
+    def _start(self, name: str, attributes: dict[str, str]) -> None:
+        element = Element(name, attributes, self._source, self._here())
+        if len(self._open) >= MAX_DEPTH:
+            raise model_error("TA019", "elements are nested too deeply", element.span())
+        if self._open:
+            self._open[-1].children.append(element)
+        else:
+            self.root = element
+        self._open.append(element)
+
+    def _end(self, _name: str) -> None:
+        element = self._open.pop()
+        element.text = "".join(element.pieces)
+
+    def _characters(self, data: str) -> None:
+        element = self._open[-1]
+        last = element.offsets[-1] + len(element.pieces[-1]) if element.pieces else 0
+        element.offsets.append(last)
+        element.places.append(self._here())
+        element.pieces.append(data)
+
+    def _entity(self, name: str, *_rest: object) -> None:
+        here = self._here()
+        fix = "write the text itself"
+        span = Span(self._source, here, here)
+        raise model_error("TA018", f"the entity `{name}` is declared", span, fix)
+
+
+_UNIT = re.compile(r"^[ \t]*//[ \t]*unit[ \t]+([1-9]\d{0,9})[ \t]+(\w+)[ \t]*$", re.MULTILINE)
+_NOT = re.compile(r"\bnot\b")
+_NAME = re.compile(
+    r"^[ \t]*//[ \t]*network[ \t]+(\w+)(?:[ \t]+\"([^\"\n]*)\")?[ \t]*$", re.MULTILINE
+)
+_WEIGHT = re.compile(r"^[ \t]*weight[ \t]+(\d+(?:\.\d+)?)[ \t]*$", re.MULTILINE)
+_QUERY = re.compile(r"\s*query[ \t]+([A-Za-z_]\w*)[ \t]*(?:\n|$)")
+_LABEL = re.compile(r"^[ \t]*as[ \t]+(\S+)[ \t]*$", re.MULTILINE)
+
+
+def read_uppaal(source: Source) -> tuple[Document, list[Diagnostic]]:
+    """Read a model in UPPAAL's XML.
+
+    Returns:
+        The model, and warnings.
+
+    Raises:
+        ModelError: with everything that cannot be read.
+    """
+    root = read_xml(source)
+    if root.name != "nta":
+        fix = "the outermost element of UPPAAL's models is `nta`"
+        raise model_error("TA018", f"`{root.name}` is no model", root.span(), fix)
+    findings, warnings = Findings(), list[Diagnostic]()
+    declarations = _part(root.first("declaration"), "declarations", findings, ())
+    templates = tuple(_template(element, findings) for element in root.all("template"))
+    instances, system = _system(root, findings)
+    queries = tuple(_queries(root, warnings))
+    findings.raise_errors()
+    text = _text(root.first("declaration"))
+    name, unit = _NAME.search(text), _UNIT.search(text)
+    document = Document(
+        source,
+        name[1] if name else "model",
+        (name[2] or "") if name else "",
+        int(unit[1]) * TICKS_PER_UNIT[unit[2]] if unit and unit[2] in TICKS_PER_UNIT else None,
+        (*declarations, *system[0]),
+        templates,
+        instances,
+        system[1],
+        queries,
+        open_ints=True,
+    )
+    return document, warnings
+
+
+def _text(element: Element | None) -> str:
+    return "" if element is None else element.text
+
+
+def _part(element: Element | None, start: str, findings: Findings, default: Any) -> Any:
+    """The text of an element, read by a rule of the grammar; `default` if there is none."""
+    if element is None or not element.text.strip():
+        return default
+    return findings.attempt(lambda: _parsed(element, start), default)
+
+
+def _parsed(element: Element, start: str) -> Any:
+    """What a text says. UPPAAL's `not` binds as its `!` does, tighter than a comparison."""
+    return parse_part(_NOT.sub("!  ", element.text), start, element.place)
+
+
+def _system(
+    root: Element, findings: Findings
+) -> tuple[
+    tuple[automaton_syntax.Instance, ...],
+    tuple[tuple[syntax.Declared, ...], tuple[tuple[syntax.Name, int], ...] | None],
+]:
+    first = _part(root.first("instantiation"), "instances", findings, ())
+    element = root.first("system")
+    declared, instances, names = _part(element, "system", findings, ((), (), None))
+    return (*first, *instances), (declared, names)
+
+
+def _template(element: Element, findings: Findings) -> automaton_syntax.Template:
+    name = element.first("name")
+    span = element.span() if name is None else name.place(0, len(name.text))
+    if name is None or not name.text.strip():
+        findings.add(finding("TA018", "a template without a name", span))
+    names = {
+        place.attributes.get("id", ""): _location_name(place) for place in element.all("location")
+    }
+    locations = tuple(_location(place, findings) for place in element.all("location"))
+    return automaton_syntax.Template(
+        _text(name).strip(),
+        _part(element.first("parameter"), "parameters", findings, ()),
+        _part(element.first("declaration"), "declarations", findings, ()),
+        locations,
+        _reference(element.first("init"), names),
+        tuple(_edges(element, names, findings)),
+        span,
+    )
+
+
+def _location_name(element: Element) -> str:
+    return _text(element.first("name")).strip() or element.attributes.get("id", "")
+
+
+def _location(element: Element, findings: Findings) -> automaton_syntax.LocationText:
+    kind = LocationKind.NORMAL
+    for mark in (LocationKind.URGENT, LocationKind.COMMITTED):
+        if element.first(mark.value) is not None:
+            kind = mark
+    labels = _labels(element)
+    name = element.first("name")
+    span = element.span() if name is None else name.place(0, len(name.text))
+    invariant = _part(labels.get("invariant"), "conditions", findings, None)
+    leaving = _part(labels.get("exponentialrate"), "leaving", findings, None)
+    return automaton_syntax.LocationText(_location_name(element), kind, invariant, span, leaving)
+
+
+def _labels(element: Element) -> dict[str, Element]:
+    return {label.attributes.get("kind", ""): label for label in element.all("label")}
+
+
+def _reference(element: Element | None, names: Mapping[str, str]) -> syntax.Name | None:
+    """The location that a `ref` means; an unknown one keeps its id, which no location has."""
+    if element is None:
+        return None
+    reference = element.attributes.get("ref", "")
+    return syntax.Name(names.get(reference, reference), element.span())
+
+
+def _edges(
+    template: Element, names: Mapping[str, str], findings: Findings
+) -> Iterator[automaton_syntax.EdgeText]:
+    """The edges; one to a branch point is one for each of its branches."""
+    branches: dict[str, list[tuple[automaton_syntax.EdgeText, syntax.Expression]]] = {
+        point.attributes.get("id", ""): [] for point in template.all("branchpoint")
+    }
+    entering: list[tuple[str, automaton_syntax.EdgeText]] = []
+    for element in template.all("transition"):
+        edge = _edge(element, names, findings)
+        source, target = (element.first(end) for end in ("source", "target"))
+        start = "" if source is None else source.attributes.get("ref", "")
+        end = "" if target is None else target.attributes.get("ref", "")
+        if start in branches:
+            weight = _part(_labels(element).get("probability"), "conditions", findings, None)
+            branches[start].append((edge, weight or syntax.Number(1, edge.span)))
+        elif end in branches:
+            entering.append((end, edge))
+        else:
+            yield edge
+    for point, edge in entering:
+        every = tuple(weight for _, weight in branches[point])
+        for branch, weight in branches[point]:
+            updates = (*edge.updates, *branch.updates)
+            yield replace(edge, target=branch.target, updates=updates, shares=(weight, every))
+
+
+def _edge(
+    element: Element, names: Mapping[str, str], findings: Findings
+) -> automaton_syntax.EdgeText:
+    labels = _labels(element)
+    nowhere = syntax.Name("", element.span())
+    comments = _text(labels.get("comments"))
+    weight, label = _WEIGHT.search(comments), _LABEL.search(comments)
+    if weight and not 0 < float(weight[1]) <= 1:
+        message, fix = f"weight {weight[1]}", "a weight is a share: above 0, at most 1"
+        findings.add(finding("TA017", message, labels["comments"].span(), fix))
+        weight = None
+    return automaton_syntax.EdgeText(
+        _reference(element.first("source"), names) or nowhere,
+        _reference(element.first("target"), names) or nowhere,
+        element.span(),
+        _part(labels.get("select"), "selections", findings, ()),
+        _part(labels.get("guard"), "conditions", findings, None),
+        _part(labels.get("synchronisation"), "sync", findings, None),
+        _part(labels.get("assignment"), "updates", findings, ()),
+        float(weight[1]) if weight else 1.0,
+        label[1] if label else "",
+    )
+
+
+def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[automaton_syntax.QueryText]:
+    queries = root.first("queries")
+    for element in [] if queries is None else queries.all("query"):
+        formula = element.first("formula")
+        if formula is None or not without_comments(formula.text).strip():
+            continue
+        comment = _text(element.first("comment"))
+        named = _QUERY.match(comment)
+        remark = " ".join((comment[named.end() :] if named else comment).split())
+        try:
+            read = _parsed(formula, "query")
+        except ModelError as error:
+            warnings.append(left_out(formula.text, error.diagnostics[0]))
+            continue
+        length = len(formula.text.rstrip())
+        text = formula.text.strip()
+        span = formula.place(0, length)
+        yield automaton_syntax.QueryText(named[1] if named else "", remark, text, read, span)

@@ -1,0 +1,362 @@
+"""Expressions and statements as closures, and what operators do with numbers and refuse."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import assert_never
+
+from rvmon.diagnostics import Span
+from rvmon.models.network.expressions import (
+    MAX_TIME,
+    MOST_ROUNDS,
+    Assignment,
+    BinaryOp,
+    BinaryOperation,
+    Choice,
+    ClockCompare,
+    Constant,
+    Deadlock,
+    Expression,
+    Fractional,
+    If,
+    InLocation,
+    Invoke,
+    Lookup,
+    Missing,
+    PathFormula,
+    Perform,
+    Reset,
+    Return,
+    Slot,
+    Statement,
+    UnaryOp,
+    UnaryOperation,
+    Variable,
+    VariableValue,
+    While,
+)
+from rvmon.models.network.fractions import GRID, operation
+from rvmon.models.network.rules import model_error
+
+
+def apply_unary(op: UnaryOp, value: int) -> int:
+    """The value of an operator on one operand."""
+    match op:
+        case UnaryOp.NOT:
+            return int(not value)
+        case UnaryOp.NEGATE:
+            return -value
+        case UnaryOp.INVERT:
+            return ~value
+        case _:
+            assert_never(op)
+
+
+def apply_binary(op: BinaryOp, left: int, right: int) -> int:
+    """The value of an operator on two operands; division truncates, as in C.
+
+    >>> apply_binary(BinaryOp.DIV, -7, 2), apply_binary(BinaryOp.MOD, -7, 2)
+    (-3, -1)
+    """
+    return OPERATIONS[op](left, right)
+
+
+def _divide(left: int, right: int) -> int:
+    quotient = abs(left) // abs(right)
+    return quotient if (left < 0) == (right < 0) else -quotient
+
+
+OPERATIONS: dict[BinaryOp, Callable[[int, int], int]] = {
+    BinaryOp.AND: lambda a, b: int(bool(a) and bool(b)),
+    BinaryOp.OR: lambda a, b: int(bool(a) or bool(b)),
+    BinaryOp.IMPLY: lambda a, b: int(not a or bool(b)),
+    BinaryOp.LT: lambda a, b: int(a < b),
+    BinaryOp.LE: lambda a, b: int(a <= b),
+    BinaryOp.EQ: lambda a, b: int(a == b),
+    BinaryOp.NE: lambda a, b: int(a != b),
+    BinaryOp.GE: lambda a, b: int(a >= b),
+    BinaryOp.GT: lambda a, b: int(a > b),
+    BinaryOp.ADD: lambda a, b: a + b,
+    BinaryOp.SUB: lambda a, b: a - b,
+    BinaryOp.MUL: lambda a, b: a * b,
+    BinaryOp.DIV: _divide,
+    BinaryOp.MOD: lambda a, b: a - b * _divide(a, b),
+    BinaryOp.BIT_AND: lambda a, b: a & b,
+    BinaryOp.BIT_OR: lambda a, b: a | b,
+    BinaryOp.BIT_XOR: lambda a, b: a ^ b,
+    BinaryOp.SHIFT_LEFT: lambda a, b: a << b,
+    BinaryOp.SHIFT_RIGHT: lambda a, b: a >> b,
+    BinaryOp.MINIMUM: min,
+    BinaryOp.MAXIMUM: max,
+}
+
+
+def check_shift(bits: int, span: Span | None) -> int:
+    """Refuse a number of bits by which no number of 32 bits can be shifted."""
+    if not 0 <= bits < 32:
+        raise model_error("TA007", f"a shift by {bits} bits", span, "shift by 0 to 31 bits")
+    return bits
+
+
+def check_index(position: int, extent: range, span: Span | None) -> None:
+    """Refuse an index outside its array."""
+    if position not in extent:
+        fix = (
+            f"the indices are {extent.start} to {extent.stop - 1}: "
+            "guard the edge, or narrow the index's type"
+        )
+        raise model_error("TA007", f"index {position} is outside the array", span, fix)
+
+
+def fitting(number: int, variable: Variable, span: Span | None) -> int:
+    """The number as a variable holds it.
+
+    Raises:
+        ModelError: it lies outside the variable's range.
+    """
+    if variable.is_bool:
+        return int(bool(number))
+    if variable.is_real:
+        return number
+    if not variable.low <= number <= variable.high:
+        limits = f"[{variable.low}, {variable.high}]"
+        message = f"`{variable.name}` is set to {number}, outside {limits}"
+        raise model_error("TA007", message, span, "guard the edge, or widen the range")
+    return number
+
+
+def check_time(number: int, span: Span | None) -> int:
+    """Refuse a number that no clock can be compared with or set to."""
+    if not 0 <= number < MAX_TIME:
+        fix = f"keep it from 0 to {MAX_TIME - 1:,}, or choose a larger unit of time"
+        raise model_error("TA007", f"{number} is no time for a clock", span, fix)
+    return number
+
+
+Locations = Sequence[int]
+"""The location of each automaton."""
+
+Values = Sequence[int]
+"""The value of each variable."""
+
+Evaluator = Callable[[Locations, Values], int]
+
+
+def evaluator(expression: Expression) -> Evaluator:
+    """Make a function of locations and variables for an expression without clocks.
+
+    The connectives evaluate their right side only if it matters, so that `i < N and a[i] > 0`
+    never leaves the array.
+    """
+    match expression:
+        case Constant(value):
+            return lambda _locations, _values: value
+        case VariableValue(Slot(first, ())):
+            return lambda _locations, values: values[first]
+        case VariableValue(slot):
+            element = slot_evaluator(slot)
+            return lambda locations, values: values[element(locations, values)]
+        case Lookup(table, slot):
+            place = slot_evaluator(slot)
+            return lambda locations, values: table[place(locations, values)]
+        case Invoke():
+            return caller(expression)
+        case Fractional(name, operands, span):
+            compute, parts = operation(name, span), [evaluator(part) for part in operands]
+            return lambda locations, values: compute(*(part(locations, values) for part in parts))
+        case InLocation(automaton, location):
+            return lambda locations, _values: int(locations[automaton] == location)
+        case UnaryOperation(unary, operand):
+            inner = evaluator(operand)
+            return lambda locations, values: apply_unary(unary, inner(locations, values))
+        case BinaryOperation(BinaryOp.AND, _, _):
+            every = [evaluator(part) for part in chained(BinaryOp.AND, expression)]
+            return lambda locations, values: int(all(part(locations, values) for part in every))
+        case BinaryOperation(BinaryOp.OR, _, _):
+            some = [evaluator(part) for part in chained(BinaryOp.OR, expression)]
+            return lambda locations, values: int(any(part(locations, values) for part in some))
+        case BinaryOperation(op, left, right, span):
+            return _binary_evaluator(op, evaluator(left), evaluator(right), span)
+        case Choice(condition, then, otherwise):
+            test, yes, no = evaluator(condition), evaluator(then), evaluator(otherwise)
+            return lambda locations, values: (
+                yes(locations, values) if test(locations, values) else no(locations, values)
+            )
+        case ClockCompare() | Deadlock() | PathFormula():
+            raise AssertionError(f"{expression} has no value in a discrete state")
+        case _:
+            assert_never(expression)
+
+
+def chained(op: BinaryOp, expression: Expression) -> list[Expression]:
+    """What a connective joins, however it is nested."""
+    match expression:
+        case BinaryOperation(found, left, right) if found is op:
+            return [*chained(op, left), *chained(op, right)]
+        case _:
+            return [expression]
+
+
+def _binary_evaluator(
+    op: BinaryOp, left: Evaluator, right: Evaluator, span: Span | None
+) -> Evaluator:
+    match op:
+        case BinaryOp.IMPLY:
+            return lambda ls, vs: int(not left(ls, vs) or bool(right(ls, vs)))
+        case BinaryOp.DIV | BinaryOp.MOD:
+            divide = OPERATIONS[op]
+
+            def quotient(ls: Locations, vs: Values) -> int:
+                divisor = right(ls, vs)
+                if divisor == 0:
+                    fix = "guard it with a test of the divisor"
+                    raise model_error("TA007", "division by zero", span, fix)
+                return divide(left(ls, vs), divisor)
+
+            return quotient
+        case BinaryOp.SHIFT_LEFT | BinaryOp.SHIFT_RIGHT:
+            shift = OPERATIONS[op]
+
+            def shifted(ls: Locations, vs: Values) -> int:
+                number = left(ls, vs)
+                return shift(number, check_shift(right(ls, vs), span))
+
+            return shifted
+        case _:
+            function = OPERATIONS[op]
+            return lambda ls, vs: function(left(ls, vs), right(ls, vs))
+
+
+def slot_evaluator(slot: Slot) -> Evaluator:
+    """Make a function that gives the index of the variable or channel that a slot names."""
+    if not slot.extents:
+        return lambda _locations, _values: slot.first
+    indices = [evaluator(index) for index in slot.indices]
+
+    def element(locations: Locations, values: Values) -> int:
+        offset = 0
+        for extent, index in zip(slot.extents, indices, strict=True):
+            position = index(locations, values)
+            check_index(position, extent, slot.span)
+            offset = offset * len(extent) + position - extent.start
+        return slot.first + offset
+
+    return element
+
+
+class Frame(list[int]):
+    """The values of all variables, behind them room for functions, and the clocks that are set."""
+
+    def __init__(self, values: Values, room: int) -> None:
+        super().__init__([*values, *[0] * room])
+        self.clocks: dict[int, float] = {}
+        self.rounds = 0
+        self._variables = len(values)
+
+    def variables(self) -> tuple[int, ...]:
+        """The values of the variables alone."""
+        return tuple(self[: self._variables])
+
+
+Runner = Callable[[Locations, Frame], int | None]
+"""Runs statements; gives the value if they return one."""
+
+
+def runner(statements: Sequence[Statement]) -> Runner:
+    """Make a function that runs statements one behind the other."""
+    steps = [_step(statement) for statement in statements]
+
+    def run(locations: Locations, frame: Frame) -> int | None:
+        for step in steps:
+            value = step(locations, frame)
+            if value is not None:
+                return value
+        return None
+
+    return run
+
+
+def caller(call: Invoke) -> Callable[[Locations, Values], int]:
+    """Make a function that gives the value of a call."""
+    function = call.function
+    arguments = [evaluator(argument) for argument in call.arguments]
+    body: list[Runner] = []
+
+    def value(locations: Locations, values: Values) -> int:
+        frame = values if isinstance(values, Frame) else Frame(values, function.room)
+        if not body:
+            body.append(runner(function.body))
+        given = [argument(locations, frame) for argument in arguments]
+        for (slot, variable), number in zip(function.parameters, given, strict=True):
+            frame[slot] = fitting(number, variable, call.span)
+        result = body[0](locations, frame)
+        assert result is not None, "every way through a body ends with a value"
+        return fitting(result, function.result[1], call.span)
+
+    return value
+
+
+def _step(statement: Statement) -> Runner:
+    match statement:
+        case Assignment():
+            return _assigner(statement)
+        case Reset(clock, written, span):
+            value, steps = evaluator(written), GRID if isinstance(written, Fractional) else 1
+
+            def set_clock(locations: Locations, frame: Frame) -> None:
+                frame.clocks[clock] = check_time(value(locations, frame), span) / steps
+
+            return set_clock
+        case Perform(call):
+            perform = caller(call)
+
+            def do(locations: Locations, frame: Frame) -> None:
+                perform(locations, frame)
+
+            return do
+        case If(condition, then, otherwise):
+            test, yes, no = evaluator(condition), runner(then), runner(otherwise)
+            return lambda locations, frame: (
+                yes(locations, frame) if test(locations, frame) else no(locations, frame)
+            )
+        case While():
+            return _repeater(statement)
+        case Return(written):
+            return evaluator(written)
+        case Missing(name, span):
+
+            def miss(_locations: Locations, _frame: Frame) -> int:
+                fix = "end every way through it with `return`"
+                raise model_error("TA007", f"`{name}` ends without a value", span, fix)
+
+            return miss
+        case _:
+            assert_never(statement)
+
+
+def _assigner(statement: Assignment) -> Runner:
+    slot, variable, span = statement.slot, statement.variable, statement.slot.span
+    index, value = slot_evaluator(slot), evaluator(statement.value)
+
+    def assign(locations: Locations, frame: Frame) -> None:
+        place = index(locations, frame)
+        frame[place] = fitting(value(locations, frame), variable, span)
+
+    return assign
+
+
+def _repeater(statement: While) -> Runner:
+    test, body, span = evaluator(statement.condition), runner(statement.body), statement.span
+
+    def repeat(locations: Locations, frame: Frame) -> int | None:
+        while test(locations, frame):
+            frame.rounds += 1
+            if frame.rounds > MOST_ROUNDS:
+                message = f"loops go round more than {MOST_ROUNDS:,} times in one step"
+                raise model_error("TA019", message, span, "let them end sooner")
+            value = body(locations, frame)
+            if value is not None:
+                return value
+        return None
+
+    return repeat

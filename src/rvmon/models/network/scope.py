@@ -1,0 +1,172 @@
+"""What names stand for while a model is elaborated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from rvmon.diagnostics import Span
+from rvmon.models.network.expressions import BaseType, Slot
+
+ConstantValue = int | tuple["ConstantValue", ...]
+"""A number, or an array of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class ResolvedType:
+    """A type with its constants evaluated; an int always has a range.
+
+    Attributes:
+        extents: the indices of each dimension, if it is that of an array.
+        fields: of a record, in their order.
+    """
+
+    base: BaseType
+    low: int = 0
+    high: int = 1
+    extents: tuple[range, ...] = ()
+    fields: tuple[tuple[str, ResolvedType], ...] = ()
+    const: bool = False
+    broadcast: bool = False
+    urgent: bool = False
+
+    @property
+    def placed_as(self) -> BaseType:
+        """The kind of place that things of the type have; see `PlacedSymbol`."""
+        return self.base if self.base in (BaseType.CLOCK, BaseType.CHANNEL) else BaseType.INT
+
+
+@dataclass(frozen=True, slots=True)
+class ConstantSymbol:
+    """A constant, a parameter's value, or a bound variable of a quantifier or `select`.
+
+    Attributes:
+        extents: the indices of each dimension, if it is an array.
+        is_real: whether the value is the bits of a number with a fraction.
+    """
+
+    value: ConstantValue
+    extents: tuple[range, ...] = ()
+    is_real: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class PlacedSymbol:
+    """A variable, clock or channel, or an array of them while the slot lacks indices.
+
+    Attributes:
+        kind: `CLOCK`, `CHANNEL`, or `INT` for all variables.
+    """
+
+    kind: BaseType
+    slot: Slot
+
+    @property
+    def is_single(self) -> bool:
+        """Whether it is no array."""
+        return len(self.slot.indices) == len(self.slot.extents)
+
+
+@dataclass(frozen=True, slots=True)
+class TypeSymbol:
+    """A typedef."""
+
+    type: ResolvedType
+
+
+@dataclass(frozen=True, slots=True)
+class ChosenSymbol:
+    """An element of a constant array, chosen by the variables; the slot counts from 0."""
+
+    values: tuple[int, ...]
+    slot: Slot
+
+
+@dataclass(frozen=True, slots=True)
+class RecordSymbol:
+    """A record, or an array of them: each field as if it were declared by itself."""
+
+    fields: tuple[tuple[str, Symbol], ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FunctionSymbol:
+    """A function as written (`syntax.FunctionText`), and the names that it can see."""
+
+    written: Any
+    scope: Scope
+
+
+Symbol = ConstantSymbol | ChosenSymbol | PlacedSymbol | TypeSymbol | RecordSymbol | FunctionSymbol
+
+
+@dataclass(slots=True)
+class Scope:
+    """Names of one level, and those of the levels around it.
+
+    Attributes:
+        prefix: put before the names of what is declared here, such as `Train(1).`.
+        places: where each name was declared.
+        families: names of automata, templates and instances.
+    """
+
+    parent: Scope | None = None
+    prefix: str = ""
+    symbols: dict[str, Symbol] = field(default_factory=dict)
+    places: dict[str, Span] = field(default_factory=dict)
+    families: set[str] = field(default_factory=set)
+
+    def find(self, name: str) -> Symbol | None:
+        """The innermost meaning of a name."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.symbols:
+                return scope.symbols[name]
+            scope = scope.parent
+        return None
+
+    def declares(self, name: str) -> bool:
+        """Whether a name is declared here or around, be it without a meaning."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.places:
+                return True
+            scope = scope.parent
+        return False
+
+    def names_automaton(self, name: str) -> bool:
+        """Whether a name without another meaning is that of an automaton."""
+        return name in self.families or (
+            self.parent is not None and self.parent.names_automaton(name)
+        )
+
+    def names(self) -> list[str]:
+        """All names that can be seen from here."""
+        return [*self.symbols, *(self.parent.names() if self.parent else ())]
+
+    def inner(self, symbols: Mapping[str, Symbol]) -> Scope:
+        """A level inside this one with some names of its own."""
+        return Scope(self, self.prefix, dict(symbols))
+
+
+@dataclass(frozen=True, slots=True)
+class AutomatonSymbol:
+    """An automaton as queries see it: its locations and its local names."""
+
+    index: int
+    locations: Mapping[str, int]
+    scope: Scope
+
+
+AutomatonKey = tuple[str, tuple[int, ...]]
+"""The name of an automaton's template or instance, and the values of its parameters."""
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """All that a query on a network may refer to."""
+
+    top: Scope
+    automata: Mapping[AutomatonKey, AutomatonSymbol]
+    functions: Any

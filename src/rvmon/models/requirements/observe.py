@@ -1,0 +1,258 @@
+"""Requirements of a specification, checked on all runs of a network."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+from rvmon.logic.construct import Budget as TableBudget
+from rvmon.logic.construct import DoesNotCloseError, construct
+from rvmon.logic.formula import (
+    Core,
+    Factory,
+    Next,
+    Release,
+    Until,
+    horizon,
+    looks_back,
+    nodes_of,
+)
+from rvmon.logic.letters import alphabet_of
+from rvmon.logic.lower import Obligation, lower
+from rvmon.models.conform import labels_of
+from rvmon.models.language.elaborate import signal_on
+from rvmon.models.network.evaluate import Evaluator, evaluator
+from rvmon.models.network.expressions import (
+    BaseType,
+    Expression,
+    InLocation,
+    LocationKind,
+    VariableValue,
+)
+from rvmon.models.network.guards import either, together
+from rvmon.models.network.network import Network, check_clocks
+from rvmon.models.network.refine import finer
+from rvmon.models.network.rules import model_error
+from rvmon.models.network.scope import PlacedSymbol
+from rvmon.models.requirements.observer import Observed
+from rvmon.models.requirements.propositions import NotExpressibleError
+from rvmon.models.runs.run import Run
+from rvmon.models.runs.space import check_start
+from rvmon.models.search.lowered import Seek, Sought
+from rvmon.models.search.meter import UNLIMITED, Budget, Meter, Statistics, Watch
+from rvmon.models.search.native import seek
+from rvmon.trace.time import TICKS_PER_UNIT
+
+MET_IN_THE_END = "none stays open for ever while time passes on"
+OPEN_FOR_EVER = "an attempt stays open for ever"
+UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"
+"""What is reported of a requirement without deadline that no finite run fails."""
+
+
+@dataclass(frozen=True, slots=True)
+class Observation:
+    """A requirement on all runs of a network.
+
+    Attributes:
+        requirement: its id.
+        text: the requirement in words.
+        holds: whether no attempt of any run fails; `None` if the budget ended first, or if the
+            network cannot express it.
+        triggered: a run with an attempt; `None`: there is none, so that the claim is vacuous.
+        passing: a run with an attempt that passes.
+        failing: a run with an attempt that fails.
+        network: in whose unit the runs are.
+        statistics: what it cost.
+        remark: why it is not decided, or what the answer does not cover.
+    """
+
+    requirement: str
+    text: str
+    holds: bool | None
+    triggered: Run | None
+    passing: Run | None
+    failing: Run | None
+    network: Network
+    statistics: Statistics
+    remark: str = ""
+
+
+def observe(
+    network: Network,
+    spec: CheckedSpec,
+    *,
+    bindings: Mapping[str, str] | None = None,
+    budget: Budget = UNLIMITED,
+    watch: Watch | None = None,
+) -> Iterator[Observation]:
+    """Check each requirement of a specification on all runs of a network.
+
+    Signals are the network's `signal` lines, its variables of the same name, or bindings; events
+    are labels of its edges, or its channels.
+
+    Args:
+        network: with a unit of time.
+        spec: in held time.
+        bindings: expressions over the network by signal.
+        budget: when to give up, for each requirement.
+        watch: called now and then.
+
+    Raises:
+        ModelError: the network has no unit or cannot start, or a binding has no meaning on it.
+    """
+    if network.unit is None:
+        raise model_error("TA023", "the model has no unit of time", None, "write `unit 50 ms`")
+    check_start(network)
+    check_clocks(network)
+    bound = [signal_on(network, name, text) for name, text in (bindings or {}).items()]
+    network = replace(network, signals=(*network.signals, *bound))
+    for requirement in spec.requirements.values():
+        meter = Meter(budget, watch)
+        try:
+            yield _observe(network, spec, requirement, meter)
+        except NotExpressibleError as error:
+            yield Observation(
+                requirement.id, requirement.text, None, None, None, None, network,
+                meter.statistics(), f"not expressible: {error}",
+            )  # fmt: skip
+
+
+def _problem(
+    network: Network, spec: CheckedSpec, requirement: Requirement
+) -> tuple[Network, Observed, Obligation]:
+    """A network, in finer units if need be, and the same with a requirement's monitor."""
+    if spec.time is not TimeModel.HELD:
+        raise NotExpressibleError("only requirements in held time are checked on models")
+    if requirement.captures or requirement.for_each is not None:
+        raise NotExpressibleError("it captures values")
+    factory = Factory()
+    obligation = lower(requirement, factory)
+    alphabet = alphabet_of(obligation.required)
+    trigger = obligation.trigger
+    if looks_back(obligation.required):
+        raise NotExpressibleError("it looks back from what lies ahead")
+    if trigger is None:
+        raise NotExpressibleError("it is evaluated at the end of a trace")
+    try:
+        automaton = construct(factory.next(obligation.required), alphabet, TableBudget())
+    except DoesNotCloseError as error:
+        raise NotExpressibleError(f"it has no finite monitor: {error}") from None
+    unit = network.unit or 1
+    # A strict bound lies a tick behind its number; any other cut asks for a finer unit.
+    if any(cut % unit > 1 for cut in automaton.cuts) and unit % TICKS_PER_UNIT["ms"] == 0:
+        network = finer(network, unit // TICKS_PER_UNIT["ms"])
+    signals, labels = _values(network), frozenset(labels_of(network))
+    watched = Observed(network, obligation, requirement.pulse, automaton, signals, labels)
+    return network, watched, obligation
+
+
+def _in_the_end(
+    network: Network, spec: CheckedSpec, requirement: Requirement, meter: Meter
+) -> tuple[bool | None, Run | None, str]:
+    """Whether what has no deadline is met, where no finite run fails it; else a run."""
+    original, (_, problem, obligation) = network, _problem(network, spec, requirement)
+    met = open_means(obligation.required)
+    if met is None and requirement.mode is Mode.WHENEVER and not problem.reads_events:
+        # Within a stretch without actions what one attempt meets the others do.
+        attempts = replace(requirement, mode=Mode.UPON, pulse=True)
+        _, problem, obligation = _problem(network, spec, attempts)
+        met = open_means(obligation.required)
+    if met is not False:
+        return True, None, "" if met else UNDECIDED_IN_THE_END
+    run = None
+    # Best where nothing keeps time from passing for ever: a run that idles there is the shortest.
+    for first in (together((problem.rests, _unbounded(original))), problem.is_open):
+        if run is None and not meter.stopped:
+            sought = Sought(Seek.STAY_AFTER, first, problem.is_open)
+            run = seek(problem.network, sought, meter, proper_only=True).run
+    if meter.stopped:
+        return None, None, f"not decided: {meter.stopped}"
+    if run is None:
+        return True, None, MET_IN_THE_END
+    return False, run, OPEN_FOR_EVER
+
+
+def _observe(
+    network: Network, spec: CheckedSpec, requirement: Requirement, meter: Meter
+) -> Observation:
+    original = network
+    network, problem, obligation = _problem(network, spec, requirement)
+    sought = {"failing": problem.failed, "triggered": problem.triggered, "passing": problem.passed}
+    runs = {name: _reached(problem, goal, meter) for name, goal in sought.items()}
+    holds: bool | None = runs["failing"] is None
+    if holds and _reached(problem, problem.lost, meter) is not None:
+        raise NotExpressibleError("its monitor is moved by time itself")
+    remark = ""
+    if meter.stopped and holds:
+        holds, remark = None, f"not decided: {meter.stopped}"
+    elif holds and runs["triggered"] is None:
+        remark = "vacuous: no run triggers it"
+    elif holds and horizon(obligation.required) is None:
+        holds, runs["failing"], remark = _in_the_end(original, spec, requirement, meter)
+    return Observation(
+        requirement.id,
+        requirement.text,
+        holds,
+        runs["triggered"],
+        runs["passing"],
+        runs["failing"],
+        network,
+        meter.statistics(),
+        remark,
+    )
+
+
+def _unbounded(network: Network) -> Expression:
+    """Every automaton is where no invariant bounds clocks."""
+    free = (
+        tuple(
+            InLocation(index, number)
+            for number, place in enumerate(automaton.locations)
+            if place.kind is LocationKind.NORMAL and not place.invariant.clocks
+        )
+        for index, automaton in enumerate(network.automata)
+    )
+    return together(either(places) for places in free)
+
+
+def _reached(problem: Observed, goal: Expression, meter: Meter) -> Run | None:
+    """A run to where an attempt is like that."""
+    if meter.stopped:
+        return None
+    run = seek(problem.network, Sought(Seek.GOAL, goal), meter).run
+    if run is not None and run.steps and run.steps[-1].action is None:
+        # It is decided a little later than time brings it about: that instant is not shown.
+        return replace(run, steps=run.steps[:-1], timing=None)
+    return run
+
+
+def open_means(required: Core) -> bool | None:
+    """Whether an attempt that stays open for ever is met; `None` if that depends on more.
+
+    Without deadline may be promises (`eventually`), or prohibitions (`always`), but not both.
+    """
+    nodes = list(nodes_of(required))
+    unbounded = {
+        isinstance(node, Release)
+        for node in nodes
+        if isinstance(node, Until | Release) and node.high is None
+    }
+    if len(unbounded) > 1 or any(isinstance(node, Next) for node in nodes):
+        return None
+    return unbounded.pop() if unbounded else True
+
+
+def signals_of(network: Network) -> dict[str, Evaluator]:
+    """How specifications' names are read off the network; its own variables come last."""
+    return {name: evaluator(value) for name, value in _values(network).items()}
+
+
+def _values(network: Network) -> dict[str, Expression]:
+    values: dict[str, Expression] = {}
+    for name, symbol in network.names.top.symbols.items():
+        if isinstance(symbol, PlacedSymbol) and symbol.kind is BaseType.INT and symbol.is_single:
+            values[name] = VariableValue(symbol.slot)
+    for signal in network.signals:
+        values[signal.name] = signal.value
+    return values

@@ -1,0 +1,296 @@
+"""A requirement's monitor as an automaton that watches a network.
+
+The monitor follows one attempt, which begins at any action that triggers it, or not: so every
+attempt of every run is followed by some path. It steps at each action, with the action's names as
+events and the signals as they are behind it, and between actions as time passes, with no event:
+once just behind the action, and wherever an age passes a bound of its window. Actions at one
+instant are stepped one after the other, where a recording would show one sample.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from itertools import product
+
+from rvmon.language.checked.formula import Bound, BoundAtom
+from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton
+from rvmon.logic.lower import Obligation
+from rvmon.models.network.evaluate import evaluator
+from rvmon.models.network.expressions import (
+    FALSE,
+    BinaryOp,
+    BinaryOperation,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Expression,
+    LocationKind,
+)
+from rvmon.models.network.guards import either, together
+from rvmon.models.network.network import Network
+from rvmon.models.requirements.propositions import (
+    Ages,
+    Edge,
+    Labelling,
+    NotExpressibleError,
+    Region,
+    Tables,
+    bounds_of,
+    events_of,
+    negated,
+)
+from rvmon.models.search.watcher import Watcher
+
+MOST_STEPS = 20
+"""A monitor that still moves after so many steps at one instant is moved by time itself."""
+
+_LOST = -2
+"""In place of a location: the monitor is moved by time itself."""
+
+
+class Phase(Enum):
+    """Where the monitor is between two positions."""
+
+    START = "the run has just begun: both without an attempt and with one, if one begins there"
+    IDLE = "no attempt is followed, and the trigger does not hold"
+    READY = "no attempt is followed, and the trigger holds"
+    FRESH = "an action has just been stepped, no time has passed since"
+    HELD = "time passes, nothing changes"
+
+
+@dataclass(frozen=True, slots=True)
+class _Site:
+    """A location of the watcher.
+
+    Attributes:
+        location: of the monitor, if an attempt is followed.
+        clocks: for each of the monitor's clocks the one of the watcher that it is.
+        region: while time passes, for each the number of bounds that its age has passed.
+    """
+
+    phase: Phase
+    location: int = -1
+    clocks: tuple[int, ...] = ()
+    region: Region = ()
+
+    @property
+    def held(self) -> _Held:
+        """Where the monitor waits there."""
+        return self.location, self.clocks, self.region
+
+    @property
+    def is_decided(self) -> bool:
+        """Whether the attempt has passed or failed, or is not followed any more."""
+        return self.location in (FAILED, PASSED, _LOST)
+
+
+_Held = tuple[int, tuple[int, ...], Region]
+"""Where the monitor waits: its location, what its clocks are, their region."""
+
+
+class Observed:
+    """A network with the monitor of one requirement.
+
+    Args:
+        network: with a unit of time.
+        obligation: trigger and what is required.
+        pulse: whether the trigger starts an attempt wherever it holds.
+        automaton: of what is required.
+        signals: how each signal is read off locations and variables.
+        labels: the labels of the network's actions, which are its events.
+
+    Attributes:
+        network: with the monitor.
+        triggered, passed, failed: where an attempt is followed, and where it has ended like this.
+        lost: where no monitor of this kind can follow it.
+        is_open: where an attempt is followed and not decided.
+        rests: where it also stays so while time passes without end.
+        reads_events: whether what is required speaks of events, which actions alone have.
+
+    Raises:
+        NotExpressibleError: it speaks of what the network does not have, or a window does not end
+            at a whole number of units.
+    """
+
+    def __init__(
+        self,
+        network: Network,
+        obligation: Obligation,
+        pulse: bool,
+        automaton: Automaton,
+        signals: dict[str, Expression],
+        labels: frozenset[str],
+    ) -> None:
+        self._automaton = automaton
+        self._pulse = pulse
+        alphabet = automaton.alphabet
+        required = [
+            name for proposition in alphabet.propositions for name in events_of(proposition)
+        ]
+        self.reads_events = bool(required)
+        trigger = obligation.trigger
+        bound = None if trigger is None or not isinstance(trigger.leaf, BoundAtom) else trigger.leaf
+        read = [*required, *([] if trigger is None or bound else events_of(trigger))]
+        for name in read:
+            if name not in labels:
+                raise NotExpressibleError(f"the network has no action `{name}`")
+        count = max(1, automaton.clocks)
+        self._watcher = Watcher(network, read, [""] * (count + 1))
+        self._clocks = range(self._watcher.clock, self._watcher.clock + count)
+        self._since = self._watcher.clock + count
+        """The clock that the watcher sets in each step."""
+        now = Labelling(signals, self._watcher.has)
+        between = Labelling(signals, lambda _name: FALSE)
+        self._triggers = FALSE if trigger is None or bound else now.expression(trigger)
+        self._lasting = FALSE if trigger is None or bound else between.expression(trigger)
+        propositions = [now.expression(proposition) for proposition in alphabet.propositions]
+        self._tables = Tables(automaton, propositions, network.unit or 1)
+        self._sites: dict[_Site, int] = {}
+        self._waiting: list[_Site] = []
+        self._place(_Site(Phase.START))
+        at_start = [a.initial for a in network.automata], [
+            *(v.initial for v in network.variables), *(0 for _ in read)
+        ]  # fmt: skip
+        self._is_ready = bool(evaluator(self._lasting)(*at_start))
+        self._begun: _Site | None = None
+        if self._is_ready or (bound is not None and bound.bound is Bound.START):
+            letter = self._tables.class_of(lambda expression: evaluator(expression)(*at_start))
+            edge = self._tables.edge(automaton.initial, (), letter)
+            assert edge is not None, "every letter may begin a run"
+            self._begun, _ = self._fresh(edge, ())
+        for site in self._waiting:
+            self._expand(site)
+        self.network = self._watcher.network()
+        self.triggered = self._where(lambda site: site.location >= 0)
+        self.lost = self._where(lambda site: site.location == _LOST)
+        self.is_open = self._where(lambda site: site.location > PASSED, at_start=False)
+        self.rests = self._where(self._is_resting, at_start=False)
+        self.passed = self._where(lambda site: site.location == PASSED)
+        self.failed = self._where(lambda site: site.location == FAILED)
+
+    # The watcher's locations.
+
+    def _place(self, site: _Site) -> int:
+        """The number of a site; a new one is gone on from later."""
+        place = self._sites.get(site)
+        if place is None:
+            urgent = site.phase is Phase.FRESH and not site.is_decided
+            kind = LocationKind.URGENT if urgent else LocationKind.NORMAL
+            waits = site.phase is Phase.HELD and not site.is_decided
+            bounds = self._tables.highest(*site.held) if waits else ()
+            place = self._sites[site] = self._watcher.add_location(bounds, kind)
+            self._waiting.append(site)
+        return place
+
+    def _where(self, counts: Callable[[_Site], bool], *, at_start: bool = True) -> Expression:
+        """The states in which the watcher is in some sites."""
+        places = []
+        for site, place in self._sites.items():
+            shown = self._begun if site.phase is Phase.START and at_start else site
+            if shown is not None and counts(shown):
+                there = self._watcher.is_in(place)
+                if site.phase is Phase.HELD and site.is_decided:  # decided once time has passed
+                    there = BinaryOperation(BinaryOp.AND, there, self._after())
+                places.append(there)
+        return either(places)
+
+    def _is_resting(self, site: _Site) -> bool:
+        waits = site.phase is Phase.HELD and not site.is_decided
+        return waits and self._tables.is_last(site.location, site.region)
+
+    def _after(self) -> ClockCompare:
+        """Some time has passed since the watcher stepped."""
+        return ClockCompare(self._since, ClockOp.GT, Constant(0))
+
+    def _expand(self, site: _Site) -> None:
+        """Add the edges that leave a site."""
+        place = self._sites[site]
+        match site.phase:
+            case Phase.START:
+                self._follow_none(place, self._is_ready)
+                if self._begun is not None and not self._begun.is_decided:
+                    at_once = ClockCompare(self._since, ClockOp.LE, Constant(0))
+                    self._follow(place, self._begun, (at_once,))
+            case Phase.IDLE | Phase.READY:
+                self._follow_none(place, site.phase is Phase.READY)
+            case Phase.FRESH | Phase.HELD if not site.is_decided:
+                self._follow(place, site, (self._after(),) if site.phase is Phase.HELD else ())
+            case _:
+                pass  # decided
+
+    def _follow_none(self, place: int, is_ready: bool) -> None:
+        """Moves without an attempt, and those that begin one."""
+        held, resets = self._lasting, (self._since,)
+        self._watcher.add_edge(place, self._place(_Site(Phase.IDLE)), negated(held), (), resets)
+        if held != FALSE:
+            self._watcher.add_edge(place, self._place(_Site(Phase.READY)), held, (), resets)
+        if self._pulse or not is_ready:
+            for letters, edge in self._tables.edges(self._automaton.initial, ()):
+                when = together((self._triggers, letters))
+                if when != FALSE:
+                    site, started = self._fresh(edge, ())
+                    self._watcher.add_edge(place, self._place(site), when, (), started)
+
+    def _follow(self, place: int, site: _Site, room: tuple[ClockCompare, ...]) -> None:
+        """Moves with an attempt, and what time does to it: behind an action, or at a bound."""
+        regions = [*self._tables.regions(site.location, site.region)]
+        for region in regions:
+            bounds = (*room, *self._tables.exact(site.location, site.clocks, region))
+            for letters, edge in self._tables.edges(site.location, region):
+                fresh, started = self._fresh(edge, site.clocks)
+                self._watcher.add_edge(place, self._place(fresh), letters, bounds, started)
+        # The state, and with it the class of its letter, is the same in all steps of an instant.
+        waits: dict[tuple[tuple[ClockCompare, ...], _Held], set[int]] = {}
+        for region, letter in product(regions, range(self._automaton.classes)):
+            for way in self._held((site.location, site.clocks, region), letter, {}, 0):
+                if site.phase is not Phase.HELD or way[1] != site.held:
+                    waits.setdefault(way, set()).add(letter)
+        for (bounds, held), classes in waits.items():
+            self._wait(place, self._tables.letters(classes), (*room, *bounds), held)
+
+    def _wait(
+        self, place: int, letters: Expression, bounds: tuple[ClockCompare, ...], held: _Held
+    ) -> None:
+        location, clocks, region = held
+        numbers, started = self._started(clocks)
+        site = _Site(Phase.HELD, location, numbers, region)
+        self._watcher.add_edge(place, self._place(site), letters, bounds, started, watches=False)
+
+    def _fresh(self, edge: Edge, clocks: Sequence[int]) -> tuple[_Site, list[int]]:
+        """Where the monitor is behind a step, and the clocks that are set."""
+        target, sources = edge
+        numbers, started = self._started([NOW if s == NOW else clocks[s] for s in sources])
+        if target <= PASSED:
+            return _Site(Phase.FRESH, target), [self._since]
+        return _Site(Phase.FRESH, target, numbers), started
+
+    def _started(self, clocks: Sequence[int]) -> tuple[tuple[int, ...], list[int]]:
+        """The clocks with one for those that begin now; those that are set."""
+        if NOW not in clocks:
+            return tuple(clocks), [self._since]
+        free = next(clock for clock in self._clocks if clock not in clocks)
+        return tuple(free if c == NOW else c for c in clocks), [free, self._since]
+
+    def _held(
+        self, held: _Held, letter: int, ages: Ages, steps: int
+    ) -> Iterator[tuple[tuple[ClockCompare, ...], _Held]]:
+        """How the monitor steps just behind an instant, until it only waits: when, and where."""
+        if steps > MOST_STEPS:
+            yield bounds_of(ages), (_LOST, (), ())
+            return
+        location, clocks, region = held
+        narrowed = self._tables.just_behind(location, clocks, region, ages)
+        edge = self._tables.edge(location, region, letter)
+        if narrowed is None or edge is None:
+            return
+        target, sources = edge
+        after = tuple(NOW if source == NOW else clocks[source] for source in sources)
+        if target <= PASSED:
+            yield bounds_of(narrowed), (target, (), ())
+        elif target == location and sources == tuple(range(len(sources))):
+            yield bounds_of(narrowed), held
+        else:
+            for further in self._tables.regions(target):
+                yield from self._held((target, after, further), letter, narrowed, steps + 1)

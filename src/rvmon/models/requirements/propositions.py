@@ -1,0 +1,311 @@
+"""What a requirement is in a network: its propositions, and the tables of its monitor."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import product
+from math import ceil, floor, inf
+from typing import NamedTuple
+
+from rvmon.language.checked.formula import (
+    Compare,
+    CompareOp,
+    EventAtom,
+    Literal,
+    Numeric,
+    SignalAtom,
+    SignalValue,
+)
+from rvmon.language.checked.formula import Constant as ConstantLeaf
+from rvmon.logic.automaton import NOW, Automaton, row_of
+from rvmon.logic.state_formula import Lapsed, Lost, StateOp, Unborn
+from rvmon.logic.state_formula import State as Proposition
+from rvmon.models.network.expressions import (
+    FALSE,
+    MAX_TIME,
+    TRUE,
+    BinaryOp,
+    BinaryOperation,
+    Choice,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Expression,
+    UnaryOp,
+    UnaryOperation,
+)
+from rvmon.models.network.guards import either, together
+
+
+class NotExpressibleError(Exception):
+    """A requirement speaks of what the network does not have; the message says of what."""
+
+
+def events_of(proposition: Proposition) -> Iterator[str]:
+    """The events that occur in a proposition."""
+    if isinstance(proposition.leaf, EventAtom):
+        yield proposition.leaf.name
+    for argument in proposition.args:
+        yield from events_of(argument)
+
+
+class Labelling:
+    """Propositions as expressions over a network.
+
+    Args:
+        signals: how each signal is read off locations and variables.
+        event: whether an action has a name, or what that is between actions.
+    """
+
+    def __init__(
+        self, signals: Mapping[str, Expression], event: Callable[[str], Expression]
+    ) -> None:
+        self._signals = signals
+        self._event = event
+
+    def expression(self, proposition: Proposition) -> Expression:
+        """A proposition of a state, or of an action that leads to it.
+
+        Raises:
+            NotExpressibleError: it names an unknown signal, or looks into the past.
+        """
+        args = [self.expression(argument) for argument in proposition.args]
+        match proposition.op, proposition.leaf:
+            case StateOp.NOT, _:
+                return UnaryOperation(UnaryOp.NOT, args[0])
+            case StateOp.AND, _:
+                return together(args)
+            case StateOp.OR, _:
+                return either(args)
+            case StateOp.SURE, _:  # nothing is unknown
+                return args[0]
+            case StateOp.LEAF, ConstantLeaf(value=value):
+                return Constant(int(value))
+            case StateOp.LEAF, Unborn() | Lost() | Lapsed():  # nor is anything unborn
+                return FALSE
+            case StateOp.LEAF, SignalAtom(name=name):
+                return self._signal(name)
+            case StateOp.LEAF, EventAtom(name=name):
+                return self._event(name)
+            case StateOp.LEAF, Compare(op=op, left=left, right=right):
+                return self._comparison(op, left, right)
+            case StateOp.LEAF, _:
+                raise NotExpressibleError("it speaks of updates or of the trace's ends")
+            case _:
+                raise NotExpressibleError("it speaks of the past")
+
+    def _comparison(self, op: CompareOp, left: Numeric, right: Numeric) -> Expression:
+        match left, right:
+            case Literal(int() | float() as one), Literal(int() | float() as other):
+                return Constant(int(op.holds(one, other)))
+            case Literal(), _:
+                return self._comparison(op.mirrored, right, left)
+            case _, Literal(float() as number) if not number.is_integer():
+                if op in (CompareOp.EQ, CompareOp.NE):  # a model has whole numbers
+                    return Constant(int(op is CompareOp.NE))
+                up = op in (CompareOp.LT, CompareOp.GE)
+                return self._comparison(op, left, Literal(ceil(number) if up else floor(number)))
+            case _:
+                return BinaryOperation(BinaryOp(op), self._number(left), self._number(right))
+
+    def _number(self, number: Numeric) -> Expression:
+        match number:
+            case SignalValue(name):
+                return self._signal(name)
+            case Literal(int() | float() as value):
+                return Constant(int(value))
+            case _:
+                raise NotExpressibleError("it calculates with numbers")
+
+    def _signal(self, name: str) -> Expression:
+        if name not in self._signals:
+            fix = f"`--bind '{name}=…'` gives it a meaning"
+            raise NotExpressibleError(f"the network has no signal `{name}`: {fix}")
+        return self._signals[name]
+
+
+MOST_CONDITIONS = 14
+"""Conditions that a requirement may read."""
+
+
+class _Cut(NamedTuple):
+    """A bound of a window: ages behind `number` units are in the next region, or from it on."""
+
+    number: int
+    behind: bool
+
+
+_Tree = int | tuple[int, "_Tree", "_Tree"]
+"""A class of letters; or a proposition, and what follows where it is false and where it is true."""
+
+Edge = tuple[int, tuple[int, ...]]
+"""Where the monitor goes, and where its clocks come from."""
+
+Region = tuple[int, ...]
+"""For each clock the number of bounds that its age has passed."""
+
+Ages = Mapping[int, tuple[int, float]]
+"""Of some clocks the least age, and that which they have not reached."""
+
+
+class Tables:
+    """The tables of a monitor.
+
+    Args:
+        automaton: the monitor.
+        propositions: of its alphabet.
+        unit: ticks of one unit of the network.
+
+    Raises:
+        NotExpressibleError: it reads too many conditions, or a window does not end at a whole
+            number of units.
+    """
+
+    def __init__(self, automaton: Automaton, propositions: Sequence[Expression], unit: int) -> None:
+        if len(propositions) > MOST_CONDITIONS:
+            raise NotExpressibleError(f"it reads more than {MOST_CONDITIONS} conditions")
+        self._automaton = automaton
+        self._propositions = propositions
+        self._tree = self._classes(0, 0)
+        self._cuts = [
+            tuple(tuple(_cut(ticks, unit) for ticks in cuts) for cuts in location.cuts)
+            for location in automaton.locations
+        ]
+
+    # Letters.
+
+    def edge(self, location: int, region: Region, letter: int) -> Edge | None:
+        """Where a class of letters leads; `None` where no run comes."""
+        automaton = self._automaton
+        edge = automaton.edges[row_of(automaton, location, region) * automaton.classes + letter]
+        return None if edge < 0 else (automaton.targets[edge], automaton.sources[edge])
+
+    def edges(self, location: int, region: Region) -> Iterator[tuple[Expression, Edge]]:
+        """All edges from a region, each with when it is taken."""
+        classes: dict[Edge, set[int]] = {}
+        for number in range(self._automaton.classes):
+            edge = self.edge(location, region, number)
+            if edge is not None:
+                classes.setdefault(edge, set()).add(number)
+        for edge, numbers in classes.items():
+            yield self.letters(numbers), edge
+
+    def letters(self, classes: set[int]) -> Expression:
+        """Whether a letter is in some classes."""
+        return self._in(self._tree, classes)
+
+    def class_of(self, holds: Callable[[Expression], int]) -> int:
+        """The class of the letter of a state, given which propositions hold there."""
+        tree = self._tree
+        while not isinstance(tree, int):
+            place, false, true = tree
+            tree = true if holds(self._propositions[place]) else false
+        return tree
+
+    def _classes(self, place: int, letter: int) -> _Tree:
+        """How the values of the propositions from one on decide the class of a letter."""
+        alphabet = self._automaton.alphabet
+        if place == len(alphabet.propositions):
+            return self._automaton.class_of[letter]
+        low, _, high = alphabet.pessimistic[place]
+        false = self._classes(place + 1, letter + low)
+        true = self._classes(place + 1, letter + high)
+        return false if false == true else (place, false, true)
+
+    def _in(self, tree: _Tree, classes: set[int]) -> Expression:
+        if isinstance(tree, int):
+            return TRUE if tree in classes else FALSE
+        place, false, true = tree
+        no, yes = self._in(false, classes), self._in(true, classes)
+        test = self._propositions[place]
+        if no == yes:
+            return no
+        if yes == FALSE:
+            return together((negated(test), no))
+        return together((test, yes)) if no == FALSE else Choice(test, yes, no)
+
+    # Ages.
+
+    def regions(self, location: int, beyond: Region = ()) -> Iterator[Region]:
+        """The regions of a location, from one on."""
+        for region in product(*(range(len(cuts) + 1) for cuts in self._cuts[location])):
+            if all(new >= old for new, old in zip(region, beyond, strict=False)):
+                yield region
+
+    def is_last(self, location: int, region: Region) -> bool:
+        """Whether no age passes a bound any more."""
+        return all(n == len(cuts) for cuts, n in zip(self._cuts[location], region, strict=True))
+
+    def highest(
+        self, location: int, clocks: Sequence[int], region: Region
+    ) -> Iterator[ClockCompare]:
+        """The bounds up to which ages stay in a region."""
+        for clock, _, high in self._bounds(location, clocks, region):
+            if high is not None:
+                yield ClockCompare(clock, ClockOp.LE, Constant(high.number))
+
+    def exact(self, location: int, clocks: Sequence[int], region: Region) -> Iterator[ClockCompare]:
+        """The ages in a region."""
+        for clock, low, high in self._bounds(location, clocks, region):
+            if low is not None:
+                op = ClockOp.GT if low.behind else ClockOp.GE
+                yield ClockCompare(clock, op, Constant(low.number))
+            if high is not None:
+                op = ClockOp.LE if high.behind else ClockOp.LT
+                yield ClockCompare(clock, op, Constant(high.number))
+
+    def just_behind(
+        self, location: int, clocks: Sequence[int], region: Region, ages: Ages
+    ) -> Ages | None:
+        """Those of some ages from which any delay, however short, leads into a region.
+
+        Args:
+            location: of the monitor.
+            clocks: what its clocks are; `NOW`: one that begins at this instant.
+            region: of it.
+            ages: to begin with.
+        """
+        narrowed = dict(ages)
+        for clock, below, above in self._bounds(location, clocks, region):
+            low, high = narrowed.get(clock, (0, 1 if clock == NOW else inf))
+            low = low if below is None else max(low, below.number)
+            high = high if above is None else min(high, above.number)
+            if low >= high:
+                return None
+            narrowed[clock] = low, high
+        return narrowed
+
+    def _bounds(
+        self, location: int, clocks: Sequence[int], region: Region
+    ) -> Iterator[tuple[int, _Cut | None, _Cut | None]]:
+        """Each clock with the bounds of its region."""
+        for clock, cuts, place in zip(clocks, self._cuts[location], region, strict=True):
+            low = cuts[place - 1] if place else None
+            yield clock, low, cuts[place] if place < len(cuts) else None
+
+
+def bounds_of(ages: Ages) -> tuple[ClockCompare, ...]:
+    """That clocks have some ages; those that begin now do."""
+    bounds = []
+    for clock, (low, high) in ages.items():
+        if clock != NOW and low:
+            bounds.append(ClockCompare(clock, ClockOp.GE, Constant(low)))
+        if clock != NOW and high < inf:
+            bounds.append(ClockCompare(clock, ClockOp.LT, Constant(int(high))))
+    return tuple(bounds)
+
+
+def _cut(ticks: int, unit: int) -> _Cut:
+    number, rest = divmod(ticks, unit)
+    if rest > 1:
+        raise NotExpressibleError("a window does not end at a whole number of the model's units")
+    if number >= MAX_TIME:
+        raise NotExpressibleError("a window has too many of the model's units")
+    return _Cut(number, behind=rest == 1)
+
+
+def negated(one: Expression) -> Expression:
+    """That something does not hold."""
+    if one in (TRUE, FALSE):
+        return FALSE if one == TRUE else TRUE
+    return UnaryOperation(UnaryOp.NOT, one)

@@ -1,0 +1,287 @@
+"""Random runs of a network.
+
+How chance decides: each automaton draws one of the moves that it begins and that are possible now
+or after a delay, in proportion to their weights, and a delay for it: uniformly from the window in
+which it is possible, or, if that has no end, from an exponential distribution behind its beginning,
+at the rate of the location that it leaves (`rate`, UPPAAL's exponential rates) if it has one. A
+clock runs at the rate that an invariant gives it: times stay whole grid steps, so that whole rates
+are exact; at others a clock comes to a bound with the step that takes it there or beyond.
+Weights that add up to less than 1 leave the rest to doing nothing this time. The automaton with the
+shortest delay moves, and all draw anew. A move that several windows make possible, as where one of
+higher priority comes between, is drawn from all of them.
+
+Source: David, Larsen, Legay, Mikučionis, Wang, Time for Statistical Model Checking of Real-Time
+Systems, CAV 2011 (races between components; weights among the moves of one).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from math import ceil, inf, prod
+from random import Random
+
+from rvmon.models.network.evaluate import evaluator
+from rvmon.models.network.expressions import Expression
+from rvmon.models.network.fractions import GRID, number_in
+from rvmon.models.network.network import Location, Network
+from rvmon.models.network.rules import model_error
+from rvmon.models.runs.run import Atom
+from rvmon.models.runs.space import Move, Space, State, pieces_of
+
+CHECK_EVERY = 256
+"""Moves between two looks at the clock."""
+
+SLACK = 1e-6
+"""Steps by which a clock may miss a bound, where rates with a fraction are rounded."""
+
+MOST_MOVES = 100_000
+"""A run with more moves before its end is taken for a Zeno loop."""
+
+
+class CutShortError(Exception):
+    """A run is not simulated to its end, because time is up."""
+
+
+def trial_of(
+    network: Network,
+    sought: Expression,
+    horizon: int,
+    random: Random,
+    mean_wait: float,
+    goes_on: Callable[[], bool],
+) -> Callable[[], bool]:
+    """What simulates one run and says whether it meets a normalised formula within a horizon."""
+    space = Space(network, GRID)
+    pieces = pieces_of(sought, GRID)
+
+    def meets() -> bool:
+        run = stretches(space, horizon * GRID, random, mean_wait * GRID, goes_on)
+        return any(
+            _window(piece, clocks, rates, 0, stay) is not None
+            for state, clocks, rates, stay in run
+            for piece in pieces(state.locations, state.values)
+        )
+
+    return meets
+
+
+def stretches(
+    space: Space, horizon: int, random: Random, mean_wait: float, goes_on: Callable[[], bool]
+) -> Iterator[tuple[State, list[float], Sequence[float], int]]:
+    """One random run: each state, the clocks as it begins, their rates and how long it lasts.
+
+    Clocks and times are in grid steps.
+
+    Raises:
+        CutShortError: it may not go on.
+    """
+    state, paces = space.initial(), _Paces(space.network)
+    assert state is not None, "the network can start"
+    clocks: list[float] = [0] * (1 + len(space.network.clocks))
+    now = 0
+    for number in range(1, MOST_MOVES + 1):
+        if number % CHECK_EVERY == 0 and not goes_on():
+            raise CutShortError
+        rates = paces.rates(state)
+        drawn = _draw(space, state, clocks, rates, random, paces.waits(state, mean_wait))
+        # If nothing is left to do, time passes as long as it may.
+        most = _longest(state, clocks, rates) if drawn is None else drawn[1]
+        stay = int(min(most, horizon - now))
+        yield state, clocks, rates, stay
+        if drawn is None or most > stay:
+            return
+        now += stay
+        move = drawn[0]
+        clocks = [clock + stay * rate for clock, rate in zip(clocks, rates, strict=True)]
+        for clock, bound in state.invariant:
+            clocks[clock] = min(clocks[clock], _limit(bound))
+        for clock, value in move.resets:
+            clocks[clock] = round(value)
+        state = move.target
+    fix = "look for a loop in which no time passes: A<> of its end finds one"
+    message = f"a simulated run made {MOST_MOVES:,} moves in {now / GRID:g} units of time"
+    raise model_error("TA019", message, None, fix)
+
+
+def _draw(
+    space: Space,
+    state: State,
+    clocks: list[float],
+    rates: Sequence[float],
+    random: Random,
+    mean_waits: Sequence[float],
+) -> tuple[Move, int] | None:
+    """A move and its delay in grid steps; `None` if none is possible any more."""
+    longest = _longest(state, clocks, rates)
+    begun: dict[int, list[_Choice]] = {}
+    for choice in _possible(space, state, clocks, rates, longest):
+        begun.setdefault(choice.move.edges[0].automaton, []).append(choice)
+    draws: list[tuple[int, float, Move]] = []
+    while begun and not draws:
+        for automaton, possible in begun.items():
+            weights = [prod(edge.edge.weight for edge in choice.move.edges) for choice in possible]
+            if random.random() < sum(weights):
+                (one,) = random.choices(possible, weights)
+                draws.append((one.delay(random, mean_waits[automaton]), random.random(), one.move))
+    if not draws:
+        return None
+    delay, _, move = min(draws, key=lambda draw: draw[:2])
+    if move.failure is not None:
+        raise move.failure
+    return move, delay
+
+
+class _Paces:
+    """How fast clocks run in states, and how long runs wait there that may wait for ever."""
+
+    def __init__(self, network: Network) -> None:
+        self._network = network
+        self._ones = (1,) * (1 + len(network.clocks))
+        self._are_changed = next(network.rates, None) is not None
+        self._known: dict[int, tuple[State, tuple[float, ...]]] = {}
+
+    def _places(self, state: State) -> Iterator[Location]:
+        for automaton, place in zip(self._network.automata, state.locations, strict=True):
+            yield automaton.locations[place]
+
+    def rates(self, state: State) -> tuple[float, ...]:
+        """Of each clock, counted from 1.
+
+        Raises:
+            ModelError: two automata disagree, or a rate is below 0.
+        """
+        if not self._are_changed:
+            return self._ones
+        if id(state) not in self._known:
+            self._known[id(state)] = (state, self._found(state))
+        return self._known[id(state)][1]
+
+    def _found(self, state: State) -> tuple[float, ...]:
+        found: dict[int, float] = {}
+        for place in self._places(state):
+            for rate in place.rates:
+                bits = evaluator(rate.value)(state.locations, state.values)
+                value = number_in(rate.value, bits)
+                name = self._network.clocks[rate.clock].name
+                if found.setdefault(rate.clock + 1, value) != value:
+                    message = f"the rate of `{name}` is set by two automata at once"
+                    raise model_error("TA007", message, place.span, "give it one")
+        return tuple(found.get(clock, 1) for clock in range(len(self._ones)))
+
+    def waits(self, state: State, default: float) -> list[float]:
+        """The mean of each automaton's waits without end, in grid steps."""
+        return [
+            default if place.leaving is None else self._wait(place, place.leaving, state)
+            for place in self._places(state)
+        ]
+
+    def _wait(self, place: Location, leaving: tuple[Expression, Expression], state: State) -> float:
+        often, units = (evaluator(one)(state.locations, state.values) for one in leaving)
+        if often <= 0 or units <= 0:
+            message = f"`{place.name}` is left at a rate that is not above 0"
+            raise model_error("TA017", message, place.span, "write one above 0, such as 1:20")
+        return GRID * units / often
+
+
+def _possible(
+    space: Space, state: State, clocks: list[float], rates: Sequence[float], longest: float
+) -> list[_Choice]:
+    """The moves that are possible now or after a delay, with all such delays."""
+    found = []
+    for move in space.moves(state):
+        window = _move_window(move, clocks, rates, longest)
+        choice = _Choice(move, [] if window is None else [window])
+        for atoms in move.left_out:
+            taken = _window(atoms, clocks, rates, 0, longest)
+            if taken is not None:
+                choice.take_out(taken)
+        found.append(choice)
+    if space.network.priorities is not None:
+        whole = [(choice.move.rank, choice.windows) for choice in found]
+        for one in found:
+            one.windows = [*one.windows]
+            for window in (w for rank, windows in whole if rank > one.move.rank for w in windows):
+                one.take_out(window)
+    return [choice for choice in found if choice.windows]
+
+
+@dataclass(slots=True)
+class _Choice:
+    """A move and when it is possible: first and last delays, ascending."""
+
+    move: Move
+    windows: list[tuple[int, float]]
+
+    def take_out(self, window: tuple[int, float]) -> None:
+        """Leave out some delays."""
+        first, last = window
+        rest: list[tuple[int, float]] = []
+        for low, high in self.windows:
+            rest.append((low, min(high, first - 1)))
+            if last < inf:
+                rest.append((max(low, int(last) + 1), high))
+        self.windows = [(low, high) for low, high in rest if low <= high]
+
+    def delay(self, random: Random, mean_wait: float) -> int:
+        """A delay: uniformly from all windows, or if the last has no end exponentially in them."""
+        counts = [b - a + 1 for a, b in self.windows]
+        drawn = (
+            int(random.expovariate(1 / mean_wait))
+            if counts[-1] == inf
+            else random.randrange(int(sum(counts)))
+        )
+        place = 0
+        while drawn >= counts[place]:
+            drawn -= int(counts[place])
+            place += 1
+        return self.windows[place][0] + drawn
+
+
+def _longest(state: State, clocks: list[float], rates: Sequence[float]) -> float:
+    """How long time may pass in a state."""
+    if not state.delays:
+        return 0
+    atoms = tuple((0, clock, bound) for clock, bound in state.invariant)
+    window = _window(atoms, clocks, rates, 0, inf)
+    return 0 if window is None else window[1]
+
+
+def _move_window(
+    move: Move, clocks: list[float], rates: Sequence[float], longest: float
+) -> tuple[int, float] | None:
+    """The delays after which a move is possible."""
+    set_now, atoms = dict(move.resets), list(move.guard)
+    for clock, bound in move.target.invariant:
+        if clock not in set_now:
+            atoms.append((0, clock, bound))
+        elif set_now[clock] > bound:
+            return None
+    return _window(tuple(atoms), clocks, rates, 0, longest)
+
+
+def _window(
+    atoms: Sequence[Atom], clocks: list[float], rates: Sequence[float], low: int, high: float
+) -> tuple[int, float] | None:
+    """The delays in [low, high] after which all bounds hold; `None` if there are none."""
+    for x, y, bound in atoms:
+        sign, clock = (1, y) if x == 0 else (-1, x)
+        # The clock's value times the sign stays at or below a limit.
+        left, rate = _limit(bound) - sign * clocks[clock], sign * rates[clock]
+        if rate == 0:
+            if left < -SLACK:
+                return None
+        elif isinstance(left, int) and isinstance(rate, int):
+            low, high = (
+                (low, min(high, left // rate)) if rate > 0 else (max(low, -(left // -rate)), high)
+            )
+        else:
+            step = ceil(left / rate - SLACK)
+            low, high = (low, min(high, step)) if rate > 0 else (max(low, step), high)
+    return (low, high) if low <= high else None
+
+
+def _limit(bound: float) -> int:
+    """A bound in grid steps; a strict one is one step less."""
+    whole = ceil(bound)
+    return whole - (bound != whole)

@@ -1,0 +1,374 @@
+"""The discrete side of a network: states of locations and variables, and the moves between them.
+
+The rules: all guards are read before the step; the sender's update comes first, then the receivers'
+in the order of the automata; while some location is committed, only steps in which a committed
+location is left are taken; a broadcast takes along every automaton that can receive, which clocks
+may decide; a step waits for those of higher priority that can be taken. What clocks say is told as
+bounds. Each state is worked out once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from itertools import product
+from math import inf
+
+from rvmon.diagnostics import Label, Span
+from rvmon.errors import ModelError
+from rvmon.models.network.evaluate import (
+    Evaluator,
+    Frame,
+    Locations,
+    Runner,
+    Values,
+    check_time,
+    evaluator,
+    runner,
+    slot_evaluator,
+)
+from rvmon.models.network.expressions import (
+    TRUE,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Expression,
+    Fractional,
+    LocationKind,
+)
+from rvmon.models.network.guards import alternatives_of
+from rvmon.models.network.network import Edge, Guard, Network
+from rvmon.models.network.rules import model_error
+from rvmon.models.runs.run import Atom, bound_of
+
+AtomMaker = Callable[[Locations, Values], tuple[Atom, ...]]
+"""The clock bounds of a guard or invariant, given the variables."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReadyEdge:
+    """An edge of one automaton, ready to be tried.
+
+    Attributes:
+        automaton: its index.
+        number: of the edge in the automaton.
+        edge: the edge itself.
+        data: its guard on the variables; `None` if there is none.
+        atoms: its clock bounds.
+        channel: gives the index of the channel; `None` without synchronisation.
+        channels: all channels that it may be; one unless the variables choose.
+        updates: runs them; `None` if there are none.
+    """
+
+    automaton: int
+    number: int
+    edge: Edge
+    data: Evaluator | None
+    atoms: AtomMaker
+    channel: Evaluator | None
+    channels: range
+    updates: Runner | None
+
+    @property
+    def sends(self) -> bool:
+        """Whether it begins a synchronisation."""
+        return self.edge.sync is not None and self.edge.sync.sends
+
+
+@dataclass(slots=True, eq=False)  # not frozen, as there are many
+class State:
+    """Locations and values of the variables; one object for each combination.
+
+    Attributes:
+        delays: whether time may pass here.
+        invariant: `(clock, bound)`: upper bounds; clocks count from 1.
+        moves: the steps from here; `None` until `Space.moves` was asked.
+    """
+
+    locations: tuple[int, ...]
+    values: tuple[int, ...]
+    delays: bool
+    invariant: tuple[tuple[int, float], ...]
+    moves: list[Move] | None = field(default=None, repr=False)
+
+    @property
+    def is_time_bounded(self) -> bool:
+        """Whether time cannot pass for ever."""
+        return not self.delays or bool(self.invariant)
+
+
+@dataclass(slots=True, eq=False)
+class Move:
+    """A step between two states.
+
+    Attributes:
+        edges: those that take part, the sender first.
+        guard: clock bounds that must hold before.
+        left_out: the bounds of each receiver that takes no part, which must not hold together.
+        resets: clocks that are set and their values; clocks count from 1.
+        target: the state behind.
+        rank: its priority; those of higher rank come first.
+        failure: what is wrong with its updates; raised only if the step can be taken.
+    """
+
+    edges: tuple[ReadyEdge, ...]
+    guard: tuple[Atom, ...]
+    left_out: tuple[tuple[Atom, ...], ...]
+    resets: tuple[tuple[int, float], ...]
+    target: State
+    rank: int = 0
+    failure: ModelError | None = None
+
+
+class Space:
+    """All discrete states of a network met so far."""
+
+    def __init__(self, network: Network, grid: int = 1) -> None:
+        self.network = network
+        self._grid = grid
+        self._states: dict[tuple[tuple[int, ...], tuple[int, ...]], State] = {}
+        self._edges = [
+            [_ready(network, index, number, grid) for number in range(len(automaton.edges))]
+            for index, automaton in enumerate(network.automata)
+        ]
+        self._leaving = [
+            [[edges[number] for number in leaving] for leaving in automaton.leaving()]
+            for automaton, edges in zip(network.automata, self._edges, strict=True)
+        ]
+        self._invariants = [
+            [(_data(p.invariant), atoms_of(p.invariant.clocks, p.span, grid)) for p in a.locations]
+            for a in network.automata
+        ]
+
+    def initial(self) -> State | None:
+        """The initial state; `None` if an invariant forbids the variables' initial values."""
+        locations = tuple(automaton.initial for automaton in self.network.automata)
+        return self.state(locations, tuple(v.initial for v in self.network.variables))
+
+    def state(self, locations: tuple[int, ...], values: tuple[int, ...]) -> State | None:
+        """The state of some locations and values; `None` if its invariant forbids the values."""
+        key = (locations, values)
+        state = self._states.get(key)
+        if state is None:
+            here = [own[place] for own, place in zip(self._invariants, locations, strict=True)]
+            if not all(holds is None or holds(locations, values) for holds, _ in here):
+                return None
+            tightest: dict[int, float] = {}
+            for _, atoms in here:
+                for _, clock, bound in atoms(locations, values):
+                    tightest[clock] = min(bound, tightest.get(clock, inf))
+            invariant = tuple(sorted(tightest.items()))
+            state = State(locations, values, delays=True, invariant=invariant)
+            state.delays = not self._stops_time(state)
+            self._states[key] = state
+        return state
+
+    def step(self, state: State, edges: Iterable[tuple[int, int]]) -> Move | None:
+        """What edges do together, given by automaton and number; `None` if it is forbidden."""
+        return self._move(state, tuple(self._edges[a][number] for a, number in edges), ())
+
+    def moves(self, state: State) -> list[Move]:
+        """All steps from a state whose guards on variables hold."""
+        if state.moves is None:
+            found = (self._move(state, *together) for together in self._together(state))
+            state.moves = [move for move in found if move is not None]
+        return state.moves
+
+    def _move(
+        self, state: State, edges: tuple[ReadyEdge, ...], left_out: tuple[tuple[Atom, ...], ...]
+    ) -> Move | None:
+        locations, values, changed = state.locations, state.values, [*state.locations]
+        guard = tuple(atom for edge in edges for atom in edge.atoms(locations, values))
+        rank = self._rank(state, edges)
+        frame = Frame(values, len(self.network.locals))
+        try:
+            for edge in edges:
+                changed[edge.automaton] = edge.edge.target
+                if edge.updates is not None:
+                    edge.updates(locations, frame)
+        except ModelError as error:
+            return Move(edges, guard, left_out, (), state, rank, error)
+        behind = self.state(tuple(changed), frame.variables())
+        if behind is None:
+            return None
+        resets = tuple((c + 1, value * self._grid) for c, value in frame.clocks.items())
+        return Move(edges, guard, left_out, resets, behind, rank)
+
+    def _rank(self, state: State, edges: tuple[ReadyEdge, ...]) -> int:
+        priorities, channel = self.network.priorities, edges[0].channel
+        if priorities is None:
+            return 0
+        number = None if channel is None else channel(state.locations, state.values)
+        return priorities.rank(number, (edge.automaton for edge in edges))
+
+    def _kinds(self, state: State) -> list[LocationKind]:
+        pairs = zip(self.network.automata, state.locations, strict=True)
+        return [automaton.locations[place].kind for automaton, place in pairs]
+
+    def _stops_time(self, state: State) -> bool:
+        if any(kind is not LocationKind.NORMAL for kind in self._kinds(state)):
+            return True
+        tried = _Tried(state, self._leaving)
+        return any(
+            self.network.channels[edge.channels[0]].urgent
+            and tried.is_able(edge)
+            and (self.network.channels[edge.channels[0]].broadcast or any(tried.receivers(edge)))
+            for edge in tried.senders()
+        )
+
+    def _together(
+        self, state: State
+    ) -> Iterator[tuple[tuple[ReadyEdge, ...], tuple[tuple[Atom, ...], ...]]]:
+        """Edges that may move together, and what keeps the receivers back that they leave out."""
+        tried = _Tried(state, self._leaving)
+        kinds = enumerate(self._kinds(state))
+        committed = {index for index, kind in kinds if kind is LocationKind.COMMITTED}
+
+        def goes(edges: Iterable[ReadyEdge]) -> bool:
+            return not committed or any(edge.automaton in committed for edge in edges)
+
+        broadcasts = []
+        for edge in tried.leaving():
+            if edge.channel is None:
+                if goes((edge,)) and tried.is_able(edge):
+                    yield (edge,), ()
+            elif edge.sends and self.network.channels[edge.channels[0]].broadcast:
+                broadcasts.append(edge)
+            elif edge.sends and tried.is_able(edge):
+                for other in tried.receivers(edge):
+                    if goes((edge, other)):
+                        yield (edge, other), ()
+        for sender in filter(tried.is_able, broadcasts):
+            groups: dict[int, list[ReadyEdge | None]] = {}
+            for other in tried.receivers(sender):
+                groups.setdefault(other.automaton, []).append(other)
+            for group in groups.values():
+                if all(edge is not None and edge.edge.guard.clocks for edge in group):
+                    group.append(None)
+            for chosen in product(*groups.values()):
+                edges = (sender, *(edge for edge in chosen if edge is not None))
+                if goes(edges):
+                    yield (
+                        edges,
+                        tuple(
+                            other.atoms(state.locations, state.values)
+                            for group, edge in zip(groups.values(), chosen, strict=True)
+                            if edge is None
+                            for other in group
+                            if other is not None
+                        ),
+                    )
+
+
+class _Tried:
+    """The edges that leave the locations of a state; each guard is read at most once."""
+
+    def __init__(self, state: State, leaving: Sequence[Sequence[Sequence[ReadyEdge]]]) -> None:
+        self._here = (state.locations, state.values)
+        self._edges = [own[place] for own, place in zip(leaving, state.locations, strict=True)]
+        self._known: dict[tuple[int, int], bool] = {}
+
+    def leaving(self) -> Iterator[ReadyEdge]:
+        """All of them."""
+        return (edge for edges in self._edges for edge in edges)
+
+    def senders(self) -> Iterator[ReadyEdge]:
+        """Those that begin a synchronisation."""
+        return (edge for edge in self.leaving() if edge.sends)
+
+    def is_able(self, edge: ReadyEdge) -> bool:
+        """Whether the guard on the variables holds."""
+        key = edge.automaton, edge.number
+        if key not in self._known:
+            self._known[key] = edge.data is None or bool(edge.data(*self._here))
+        return self._known[key]
+
+    def receivers(self, sender: ReadyEdge) -> Iterator[ReadyEdge]:
+        """Those that can receive from a sender."""
+        first = sender.channels
+        for edge in self.leaving():
+            if edge.automaton == sender.automaton or edge.channel is None or edge.sends:
+                continue
+            second = edge.channels
+            if first.start < second.stop and second.start < first.stop and self.is_able(edge):
+                single = len(first) == len(second) == 1
+                if single or edge.channel(*self._here) == self._channel(sender):
+                    yield edge
+
+    def _channel(self, edge: ReadyEdge) -> int:
+        assert edge.channel is not None, "asked of senders"
+        return edge.channel(*self._here)
+
+
+def _ready(network: Network, automaton: int, number: int, grid: int) -> ReadyEdge:
+    edge = network.automata[automaton].edges[number]
+    channel, channels = None, range(0)
+    if edge.sync is not None:
+        slot = edge.sync.slot
+        channel = slot_evaluator(slot)
+        channels = range(slot.first, slot.first + slot.size)
+    atoms = atoms_of(edge.guard.clocks, edge.span, grid)
+    updates = runner(edge.updates) if edge.updates else None
+    return ReadyEdge(automaton, number, edge, _data(edge.guard), atoms, channel, channels, updates)
+
+
+def _data(guard: Guard) -> Evaluator | None:
+    """A guard's condition on the variables; `None` if it always holds."""
+    return None if guard.data == TRUE else evaluator(guard.data)
+
+
+def atoms_of(compares: Sequence[ClockCompare], span: Span | None, grid: int = 1) -> AtomMaker:
+    """A function that gives the bounds of some comparisons, in steps of a grid."""
+    if all(isinstance(compare.bound, Constant) for compare in compares):
+        fixed = tuple(
+            _atom(compare, compare.bound.value * grid)
+            for compare in compares
+            if isinstance(compare.bound, Constant)
+        )
+        return lambda _locations, _values: fixed
+    bounds = [
+        (compare, evaluator(compare.bound), 1 if isinstance(compare.bound, Fractional) else grid)
+        for compare in compares
+    ]
+    return lambda locations, values: tuple(
+        _atom(compare, check_time(bound(locations, values), span) * steps)
+        for compare, bound, steps in bounds
+    )
+
+
+def _atom(compare: ClockCompare, number: int) -> Atom:
+    clock, strict = compare.clock + 1, compare.op in (ClockOp.LT, ClockOp.GT)
+    if compare.op in (ClockOp.LT, ClockOp.LE):
+        return 0, clock, bound_of(number, strict)
+    return clock, 0, bound_of(-number, strict)
+
+
+PiecesMaker = Callable[[Locations, Values], list[tuple[Atom, ...]]]
+"""The bounds under which a formula holds in a discrete state, in alternatives."""
+
+
+def pieces_of(formula: Expression, grid: int = 1) -> PiecesMaker:
+    """Make a function that gives the pieces of a normalised formula that is plain."""
+    pieces = [
+        (evaluator(guard.data), atoms_of(guard.clocks, None, grid))
+        for guard in alternatives_of(formula)
+    ]
+    return lambda locations, values: [
+        atoms(locations, values) for holds, atoms in pieces if holds(locations, values)
+    ]
+
+
+def check_start(network: Network) -> None:
+    """Refuse a network that has no initial state.
+
+    Raises:
+        ModelError: an invariant forbids it.
+    """
+    state = Space(network).initial()
+    if state is None or any(bound < 0 for _, bound in state.invariant):
+        places = [a.locations[a.initial] for a in network.automata]
+        spans = [place.span for place in places if place.span is not None]
+        span, others = (spans[0] if spans else None), [Label(other) for other in spans[1:]]
+        message = "an invariant of the initial locations is false at time 0"
+        fix = "weaken it, or start elsewhere"
+        raise model_error("TA014", message, span, fix, others=others)

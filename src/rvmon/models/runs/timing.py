@@ -1,0 +1,226 @@
+"""Paths of symbolic states step by step, and the timed runs along them.
+
+The times of the steps along a path satisfy constraints `t[q] − t[p] <= c`; closed, they are exactly
+the set of timed runs. A solution with integer constants and strict bounds exists if and only if one
+exists on a grid of 1/scale, where `scale` is larger than the number of steps: so all is done in
+integers, a strict bound being one grid step short.
+
+Source: Alur, Kurshan, Viswanathan, Membership Questions for Timed and Hybrid Automata, RTSS 1998
+(a path's timed runs as difference constraints).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+from itertools import pairwise, product
+from math import ceil, inf, isqrt
+
+from rvmon.models.network.network import Network
+from rvmon.models.runs.concrete import Rules
+from rvmon.models.runs.run import (
+    Action,
+    Atom,
+    Constraint,
+    Ending,
+    Position,
+    Run,
+    RunStep,
+    Timing,
+    Window,
+    Zone,
+)
+from rvmon.models.runs.space import Move, State
+
+
+@dataclass(frozen=True, slots=True)
+class TimedStep:
+    """A step as far as its time matters.
+
+    Attributes:
+        waits: whether time may pass before it.
+        leave: bounds that hold at its instant, before it.
+        resets: clocks that it sets, and their values.
+        enter: bounds that hold at its instant, after it.
+    """
+
+    waits: bool
+    leave: tuple[Atom, ...]
+    resets: tuple[tuple[int, float], ...]
+    enter: tuple[Atom, ...]
+
+
+def timing_of(
+    steps: Sequence[TimedStep], start: Zone | None = None, *, rounds: int = 1
+) -> Timing | None:
+    """The timed runs along a path; `None` if there are none.
+
+    Args:
+        steps: of the path.
+        start: the valuations it may start from; `None`: all clocks are 0. If given, the last rows
+            and columns of the result are the instants at which each clock was 0 before.
+        rounds: how often the path will be put together with itself: the grid is as much finer.
+    """
+    dim = 1 if start is None else isqrt(len(start))
+    size = len(steps) + dim
+    scale = rounds * size + 1
+    found: list[list[Constraint]] = [[] for _ in range(len(steps) + 1)]
+    reset_at: dict[int, tuple[int, float]] = {}
+    if start is not None:
+        born = [0, *range(len(steps) + 1, size)]
+        reset_at = {clock: (born[clock], 0.0) for clock in range(1, dim)}
+        for x, y in product(range(dim), repeat=2):
+            if start[x * dim + y] < inf:
+                found[0].append((born[y], born[x], on_grid(start[x * dim + y], scale)))
+
+    def apply(atoms: Iterable[Atom], now: int) -> None:
+        for x, y, bound in atoms:
+            # A clock's value now is t[now] − t[its reset] + its value then; clock 0 is 0.
+            (p, low), (q, high) = reset_at.get(x, (0, 0.0)), reset_at.get(y, (0, 0.0))
+            if x == 0:
+                found[now].append((q, now, on_grid(bound - high, scale)))
+            elif y == 0:
+                found[now].append((now, p, on_grid(bound + low, scale)))
+            else:
+                found[now].append((q, p, on_grid(bound - high + low, scale)))
+
+    for now, step in enumerate(steps, start=1):
+        found[now].append((now, now - 1, 0.0))
+        if not step.waits:
+            found[now].append((now - 1, now, 0.0))
+        apply(step.leave, now)
+        for clock, value in step.resets:
+            reset_at[clock] = now, value
+        apply(step.enter, now)
+    timing = Timing(found, dim - 1, scale)
+    return timing if timing.is_possible else None
+
+
+def on_grid(bound: float, scale: int) -> float:
+    """A finite bound in grid steps, a strict one short of one."""
+    whole = ceil(bound)
+    return whole * scale - (bound != whole)
+
+
+def windows(timing: Timing) -> list[Window]:
+    """How long the wait before each step can last, over all runs along the path."""
+    found = []
+    for low, high, _ in timing.waits:
+        low_units, high_units = int(low // timing.scale), None
+        if high != inf:
+            high_units = int(-(-high // timing.scale))
+        found.append(
+            Window(
+                low_units,
+                high_units,
+                low_units * timing.scale != low,
+                high_units is not None and high_units * timing.scale != high,
+            )
+        )
+    return found
+
+
+def earliest(timing: Timing) -> list[Fraction]:
+    """The delay before each step in the run that does every step as early as possible.
+
+    The least solution of difference constraints is one of them, so no choice hinders a later one;
+    a strict bound is kept by one grid step.
+    """
+    return _delays([0.0, *(first for _, _, first in timing.waits)], timing.scale)
+
+
+def _delays(times: Sequence[float], scale: int) -> list[Fraction]:
+    return [Fraction(int(later - before), scale) for before, later in pairwise(times)]
+
+
+Piece = tuple[Atom, ...]
+"""Bounds that hold together; without any they hold everywhere."""
+
+
+@dataclass(frozen=True, slots=True)
+class PathStep:
+    """One instant of a path.
+
+    Attributes:
+        timed: what its time must satisfy.
+        move: what is done; `None` if the instant matters for the query only.
+        state: where the path is then.
+    """
+
+    timed: TimedStep
+    move: Move | None
+    state: State
+
+
+def invariant_of(state: State) -> Piece:
+    """A state's invariant as bounds."""
+    return tuple((0, clock, bound) for clock, bound in state.invariant)
+
+
+def move_step(state: State, move: Move, leave: Piece = (), enter: Piece = ()) -> PathStep:
+    """A move, with what else must hold before and after it."""
+    target = move.target
+    timed = TimedStep(
+        state.delays,
+        (*invariant_of(state), *move.guard, *leave),
+        move.resets,
+        (*invariant_of(target), *enter),
+    )
+    return PathStep(timed, move, target)
+
+
+def mark_step(state: State, holds: Piece, resets: Sequence[int] = ()) -> PathStep:
+    """An instant at which something holds, and some clocks of the query start."""
+    leave = (*invariant_of(state), *holds)
+    return PathStep(
+        TimedStep(state.delays, leave, tuple((clock, 0.0) for clock in resets), ()), None, state
+    )
+
+
+def crossing_step(state: State, leave: Piece, enter: Piece) -> PathStep:
+    """The instant at which a run crosses from one piece of a formula to another."""
+    timed = TimedStep(state.delays, (*invariant_of(state), *leave), (), enter)
+    return PathStep(timed, None, state)
+
+
+def make_run(
+    network: Network,
+    start: State,
+    steps: Sequence[PathStep],
+    ending: Ending = Ending.REACHED,
+    loop: int | None = None,
+) -> Run:
+    """The run along a path that does everything as early as possible.
+
+    Args:
+        network: whose run is shown. The path may be of another that has more automata, clocks and
+            variables behind those of this one.
+        start: where it starts.
+        steps: the path.
+        ending: how the run ends.
+        loop: the first step that is repeated, of a loop.
+    """
+    timing = timing_of([step.timed for step in steps])
+    assert timing is not None, "the search found a run along the path"
+    run_steps = tuple(
+        RunStep(window, wait, _action(network, step.move), _position(network, step.state))
+        for step, window, wait in zip(steps, windows(timing), earliest(timing), strict=True)
+    )
+    run = Run(_position(network, start), run_steps, ending, loop, timing)
+    Rules(network).replay(run)
+    return run
+
+
+def _action(network: Network, move: Move | None) -> Action | None:
+    edges = tuple(
+        (edge.automaton, network.automata[edge.automaton].edges[edge.number])
+        for edge in (() if move is None else move.edges)
+        if edge.automaton < len(network.automata)
+    )
+    return Action(edges) if edges else None
+
+
+def _position(network: Network, state: State) -> Position:
+    automata, variables = len(network.automata), len(network.variables)
+    return Position(state.locations[:automata], state.values[:variables])

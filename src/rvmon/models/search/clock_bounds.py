@@ -1,0 +1,164 @@
+"""The numbers that clocks are compared with before they are next reset, per location.
+
+Source: Behrmann, Bouyer, Fleury, Larsen, Static Guard Analysis in Timed Automata Verification,
+TACAS 2003; lower and upper bounds apart as in Behrmann et al., Lower and Upper Bounds in Zone-Based
+Abstractions of Timed Automata, 2006.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from rvmon.models.network.expressions import (
+    BinaryOp,
+    BinaryOperation,
+    Choice,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Expression,
+    InLocation,
+    Invoke,
+    Lookup,
+    Reset,
+    UnaryOp,
+    UnaryOperation,
+    VariableValue,
+)
+from rvmon.models.network.network import Automaton, Edge, Network
+
+Limits = dict[int, int]
+"""For each clock that is compared the largest number; others are compared with none."""
+
+
+@dataclass(frozen=True, slots=True)
+class ClockBounds:
+    """The numbers in lower and in upper bounds."""
+
+    lower: Limits = field(default_factory=dict)
+    upper: Limits = field(default_factory=dict)
+
+    def note(self, compares: Iterable[ClockCompare], network: Network) -> None:
+        """Add the numbers of some comparisons."""
+        for compare in compares:
+            table = self.lower if compare.op in (ClockOp.GE, ClockOp.GT) else self.upper
+            highest = value_range(compare.bound, network)[1]
+            table[compare.clock] = max(table.get(compare.clock, 0), highest)
+
+
+def joined(several: Iterable[ClockBounds]) -> ClockBounds:
+    """The largest numbers of some, clock by clock."""
+    made = ClockBounds()
+    for bounds in several:
+        for table, own in ((made.lower, bounds.lower), (made.upper, bounds.upper)):
+            for clock, number in own.items():
+                table[clock] = max(table.get(clock, 0), number)
+    return made
+
+
+def location_bounds(
+    network: Network,
+    automaton: Automaton,
+    asked: Mapping[int, Sequence[ClockCompare]] | None = None,
+) -> list[ClockBounds]:
+    """The bounds of each location of an automaton, from its guards and invariants.
+
+    Args:
+        network: of the automaton.
+        automaton: whose bounds.
+        asked: by location, what a query compares clocks with only while the automaton is there.
+    """
+    bounds = [ClockBounds() for _ in automaton.locations]
+    for index, location in enumerate(automaton.locations):
+        bounds[index].note((*location.invariant.clocks, *(asked or {}).get(index, ())), network)
+    resets = []
+    for edge in automaton.edges:
+        own = bounds[edge.source]
+        own.note(edge.guard.clocks, network)
+        if _is_kept_back(edge, network):  # who is kept back, counts the other way round
+            ClockBounds(own.upper, own.lower).note(edge.guard.clocks, network)
+        resets.append({update.clock for update in edge.updates if isinstance(update, Reset)})
+    changed = True
+    while changed:
+        changed = False
+        # Numbers go against the edges, which most often lead onwards.
+        for edge, gone in zip(reversed(automaton.edges), reversed(resets), strict=True):
+            source, target = bounds[edge.source], bounds[edge.target]
+            for here, behind in ((source.lower, target.lower), (source.upper, target.upper)):
+                for clock, number in list(behind.items()):
+                    if clock not in gone and number > here.get(clock, -1):
+                        here[clock] = number
+                        changed = True
+    if network.priorities is not None:  # who cannot be taken keeps nobody back
+        for own in bounds:
+            both = joined((own, ClockBounds(own.upper, own.lower)))
+            own.lower.update(both.lower)
+            own.upper.update(both.upper)
+    return bounds
+
+
+def _is_kept_back(edge: Edge, network: Network) -> bool:
+    """Whether an edge has no part in a move because its guard on clocks fails."""
+    sync = edge.sync
+    return sync is not None and not sync.sends and network.channels[sync.slot.first].broadcast
+
+
+def value_range(expression: Expression, network: Network) -> tuple[int, int]:
+    """Numbers between which an expression over the variables lies."""
+    match expression:
+        case Constant(value):
+            return value, value
+        case VariableValue(slot):
+            first, table = slot.first, network.variables
+            if first < 0:
+                first, table = first + len(network.locals), network.locals
+            variables = table[first : first + slot.size]
+            return min(v.low for v in variables), max(v.high for v in variables)
+        case Lookup(values, _):
+            return min(values), max(values)
+        case Invoke(function):
+            _, result = function.result
+            return result.low, result.high
+        case Choice(_, then, otherwise):
+            return _hull(value_range(then, network), value_range(otherwise, network))
+        case UnaryOperation(UnaryOp.NEGATE, operand):
+            low, high = value_range(operand, network)
+            return -high, -low
+        case UnaryOperation(UnaryOp.INVERT, operand):
+            low, high = value_range(operand, network)
+            return -high - 1, -low - 1
+        case BinaryOperation(op, left, right):
+            return _binary_range(op, value_range(left, network), value_range(right, network))
+        case InLocation() | UnaryOperation():
+            return 0, 1
+        case _:
+            raise AssertionError(f"{expression} is no number")
+
+
+def _binary_range(op: BinaryOp, left: tuple[int, int], right: tuple[int, int]) -> tuple[int, int]:
+    match op:
+        case BinaryOp.ADD:
+            return left[0] + right[0], left[1] + right[1]
+        case BinaryOp.SUB:
+            return left[0] - right[1], left[1] - right[0]
+        case BinaryOp.MUL:
+            products = [a * b for a in left for b in right]
+            return min(products), max(products)
+        case BinaryOp.DIV | BinaryOp.MOD | BinaryOp.SHIFT_RIGHT:
+            limit = max(map(abs, left))
+            return -limit, limit
+        case BinaryOp.MINIMUM | BinaryOp.MAXIMUM:
+            return _hull(left, right)
+        case BinaryOp.SHIFT_LEFT:
+            limit = max(map(abs, left)) << min(31, max(0, right[1]))
+            return -limit, limit
+        case BinaryOp.BIT_AND | BinaryOp.BIT_OR | BinaryOp.BIT_XOR:
+            limit = (1 << max(abs(n).bit_length() for n in (*left, *right))) - 1
+            return -limit - 1, limit
+        case _:
+            return 0, 1
+
+
+def _hull(*ranges: Sequence[int]) -> tuple[int, int]:
+    return min(low for low, _ in ranges), max(high for _, high in ranges)

@@ -1,0 +1,353 @@
+"""A network and what is sought in it as the plan of the native search: one array of int32."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from math import log
+
+from rvmon.models.network.expressions import (
+    TRUE,
+    BinaryOp,
+    BinaryOperation,
+    ClockCompare,
+    ClockOp,
+    Constant,
+    Deadlock,
+    Expression,
+    InLocation,
+    LocationKind,
+    PathFormula,
+    PathOp,
+    UnaryOp,
+    UnaryOperation,
+)
+from rvmon.models.network.guards import (
+    MOST_PIECES,
+    alternatives_of,
+    has_paths,
+    parts_of,
+    resets_in,
+    speaks_of_deadlock,
+    together,
+)
+from rvmon.models.network.network import Edge, Guard, Network
+from rvmon.models.network.rules import model_error
+from rvmon.models.search.clock_bounds import ClockBounds, location_bounds
+from rvmon.models.search.linear import Ways, WayState
+from rvmon.models.search.meter import Policy
+from rvmon.models.search.programs import Programs
+
+MAGIC = 0x5A4E3031
+MOST_CLOCKS = 5000
+MOST_TREE_ROWS = 1000
+LARGEST = (1 << 31) - 2
+_OPS = {ClockOp.LT: 0, ClockOp.LE: 1, ClockOp.GE: 2, ClockOp.GT: 3}
+_KINDS = {LocationKind.NORMAL: 0, LocationKind.URGENT: 1, LocationKind.COMMITTED: 2}
+_PLAIN, _AND, _OR, _NOT, _UNTIL, _STAY, _NEXT = range(7)
+
+
+class Plan:
+    """A plan and what its numbers stand for.
+
+    Attributes:
+        edges: of the plan: automaton and number there.
+        goal, inside: the alternatives of those.
+        numbers, costs: the plan itself and the cost of each edge, as bytes.
+
+    Raises:
+        ModelError: the network or the query is too large for a plan.
+    """
+
+    def __init__(self, network: Network, sought: Sought) -> None:
+        self._network = network
+        self._programs = Programs(len(network.variables) + len(network.locals))
+        self._atoms: list[int] = []
+        self._limits: list[int] = []
+        self._tree: list[int] = []
+        self._pieces: list[int] = []
+        self.edges: list[tuple[int, int]] = []
+        timer = len(network.clocks)
+        due: tuple[ClockCompare, ...] = ()
+        if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
+            due = (ClockCompare(timer, ClockOp.LE, Constant(sought.bound)),)
+        self._sets = [
+            {reset.clock for edge in a.edges for reset in resets_in(edge.updates)}
+            for a in network.automata
+        ]
+        # What a query compares clocks with, by automaton and location, or with None everywhere.
+        self._asked: dict[int | None, dict[int, list[ClockCompare]]] = {}
+        self.goal = alternatives_of(sought.goal, due)
+        self.inside = alternatives_of(sought.inside, due)
+        states = () if sought.ways is None else sought.ways.states
+        self.inside += [
+            guard for state in states for guard in alternatives_of(together(state.label))
+        ]
+        goal = self._alternatives(self.goal)
+        inside = self._alternatives(self.inside)
+        if sought.nested is not None:
+            self._grow(sought.nested)
+        automata, locations, edges = self._automata()
+        self._refuse_too_large(len(self.inside))
+        variables, ranks = (*network.variables, *network.locals), network.priorities
+        sections = [
+            (4, [x for v in variables for x in (v.low, v.high, v.initial, v.is_bool)]),
+            (3, automata),
+            (8, locations),
+            (10, edges),
+            (4, self._atoms),
+            (3, self._limits),
+            (1, self._programs.code),
+            (1, self._programs.table),
+            (3, goal),
+            (3, inside),
+            (3, self._extra(sought, timer + 1)),
+            (4, self._tree),
+            (3, self._pieces),
+            (4, _way_rows(states)),
+            (1, [arc for state in states for arc in state.arcs]),
+            (1, [] if ranks is None else [*ranks.automata, ranks.internal, *ranks.channels]),
+        ]
+        late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else sought.progress
+        choose = list(Policy).index(sought.choose)
+        head = [MAGIC, sought.kind, choose, timer, sought.has_timer, sought.is_levelled]
+        sets = 0 if sought.ways is None else sought.ways.sets
+        head += [int(late or 0), sets, len(network.locals), network.is_watched]
+        self.numbers = _packed(head, sections)
+        weights = (network.automata[a].edges[number].weight for a, number in self.edges)
+        self.costs = array("d", (-log(weight) for weight in weights)).tobytes()
+
+    def _refuse_too_large(self, pieces: int) -> None:
+        if (
+            len(self._network.clocks) >= MOST_CLOCKS
+            or pieces > MOST_PIECES
+            or len(self._tree) > 4 * MOST_TREE_ROWS
+        ):
+            raise model_error("TA019", "the query has too many alternatives, or clocks", None)
+
+    def _automata(self) -> tuple[list[int], list[int], list[int]]:
+        """The rows of automata, locations and edges; edges stand by their source."""
+        automata: list[int] = []
+        locations: list[int] = []
+        edges: list[int] = []
+        for index, automaton in enumerate(self._network.automata):
+            automata += [len(locations) // 8, len(automaton.locations), automaton.initial]
+            bounds = location_bounds(self._network, automaton, self._asked.get(index))
+            pairs = zip(automaton.locations, automaton.leaving(), strict=True)
+            for number, (place, leaving) in enumerate(pairs):
+                first, limit = len(self.edges), len(self._limits) // 3
+                for k in leaving:
+                    edges += self._edge(index, automaton.edges[k])
+                    self.edges.append((index, k))
+                self._limits += _limit_rows(bounds[number])
+                data = self._data(place.invariant.data)
+                locations += [_KINDS[place.kind], data, *self._compares(place.invariant.clocks)]
+                locations += [limit, len(self._limits) // 3 - limit]
+                locations += [first, len(self.edges) - first]
+        return automata, locations, edges
+
+    def _edge(self, automaton: int, edge: Edge) -> list[int]:
+        row = [automaton, edge.target, self._data(edge.guard.data)]
+        row += self._compares(edge.guard.clocks)
+        row.append(self._programs.add_updates(edge.updates) if edge.updates else -1)
+        if edge.sync is None:
+            return [*row, -1, 0, 0, edge.watches << 3]
+        slot = edge.sync.slot
+        channel = self._network.channels[slot.first]
+        flags = edge.sync.sends | channel.broadcast << 1 | channel.urgent << 2
+        last = slot.first + slot.size
+        return [*row, self._programs.add_index(slot), slot.first, last, flags]
+
+    def _data(self, expression: Expression) -> int:
+        return -1 if expression == TRUE else self._programs.add(expression)
+
+    def _compares(self, compares: Iterable[ClockCompare]) -> tuple[int, int]:
+        """Add atoms; where they begin, and how many they are."""
+        first = len(self._atoms) // 4
+        for compare in compares:
+            row = [compare.clock + 1, _OPS[compare.op]]
+            match compare.bound:
+                case Constant(value) if 0 <= value <= LARGEST:
+                    row += [-1, value]
+                case bound:
+                    row += [self._programs.add(bound), 0]
+            self._atoms += row
+        return first, len(self._atoms) // 4 - first
+
+    def _alternatives(self, alternatives: Sequence[Guard]) -> list[int]:
+        for alternative in alternatives:
+            places = list(_places_of(alternative.data))
+            for compare in alternative.clocks:
+                if compare.clock == len(self._network.clocks):
+                    continue  # the timer
+                # Best the place of an automaton that sets the clock: its edges forget the number.
+                chosen = [p for p in places if compare.clock in self._sets[p[0]]] or places
+                automaton, place = chosen[0] if chosen else (None, 0)
+                self._asked.setdefault(automaton, {}).setdefault(place, []).append(compare)
+        return [
+            number
+            for alternative in alternatives
+            for number in (self._data(alternative.data), *self._compares(alternative.clocks))
+        ]
+
+    def _extra(self, sought: Sought, timer: int) -> list[int]:
+        """What the query compares clocks with, wherever the automata are."""
+        everywhere = self._asked.get(None, {}).get(0, [])
+        bounds = ClockBounds()
+        bounds.note(everywhere, self._network)
+        rows = _limit_rows(bounds)
+        if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
+            rows += [timer, 0, sought.bound]
+        return rows
+
+    def _grow(self, formula: Expression) -> int:
+        """Add rows of the tree for a normalised formula; the number of the last."""
+        match formula:
+            case Deadlock():
+                return self._row(_NOT, self._row(_NEXT, -1))
+            case UnaryOperation(UnaryOp.NOT, Deadlock()):
+                return self._row(_NEXT, -1)
+            case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right) if has_paths(
+                formula
+            ) or speaks_of_deadlock(formula):
+                kind = _AND if op is BinaryOp.AND else _OR
+                return self._row(kind, self._grow(left), self._grow(right))
+            case PathFormula(op, body, bound, left):
+                return self._path(op, self._grow(body), left, -1 if bound is None else bound)
+            case _:
+                first = len(self._pieces) // 3
+                self._pieces += self._alternatives(alternatives_of(formula))
+                return self._row(_PLAIN, first, len(self._pieces) // 3 - first)
+
+    def _path(self, op: PathOp, body: int, until: Expression, bound: int) -> int:
+        left = -1 if until == TRUE else self._grow(until)
+        match op:
+            case PathOp.POSSIBLY:
+                return self._row(_UNTIL, left, body, bound)
+            case PathOp.INVARIANTLY:
+                return self._row(_NOT, self._row(_UNTIL, left, self._row(_NOT, body), bound))
+            case PathOp.POTENTIALLY_ALWAYS:
+                return self._stay(body, left, bound)
+            case PathOp.EVENTUALLY:
+                return self._row(_NOT, self._stay(self._row(_NOT, body), left, bound))
+            case PathOp.SOME_NEXT:
+                return self._row(_NEXT, body)
+            case PathOp.EVERY_NEXT:
+                return self._row(_NOT, self._row(_NEXT, self._row(_NOT, body)))
+            case _:
+                raise AssertionError(f"{op} speaks of one run")
+
+    def _stay(self, body: int, left: int, bound: int) -> int:
+        """A run on which the body holds for ever, or until both it and `left` end at once."""
+        stay = self._row(_STAY, body, 0, bound)
+        if left < 0:
+            return stay
+        ends = self._row(_AND, self._row(_NOT, left), body)
+        return self._row(_OR, stay, self._row(_UNTIL, body, ends, bound))
+
+    def _row(self, kind: int, left: int, right: int = 0, bound: int = -1) -> int:
+        self._tree += (kind, left, right, bound)
+        return len(self._tree) // 4 - 1
+
+
+def _packed(head: Sequence[int], sections: Sequence[tuple[int, Sequence[int]]]) -> bytes:
+    at = len(head) + 2 * len(sections)
+    numbers = [*head]
+    for width, section in sections:
+        numbers += [at, len(section) // width]
+        at += len(section)
+    for _, section in sections:
+        numbers += section
+    return array("i", numbers).tobytes()
+
+
+def _places_of(condition: Expression) -> Iterator[tuple[int, int]]:
+    """Automata and the locations in which they are wherever a condition holds."""
+    match condition:
+        case InLocation(automaton, location):
+            yield automaton, location
+        case BinaryOperation(BinaryOp.AND, left, right):
+            yield from _places_of(left)
+            yield from _places_of(right)
+
+
+def _way_rows(states: Iterable[WayState]) -> list[int]:
+    rows, arcs = list[int](), 0
+    for state in states:
+        rows += (state.starts, state.sets, arcs, len(state.arcs))
+        arcs += len(state.arcs)
+    return rows
+
+
+def _limit_rows(bounds: ClockBounds) -> list[int]:
+    return [
+        number
+        for is_lower, table in ((1, bounds.lower), (0, bounds.upper))
+        for clock, limit in table.items()
+        for number in (clock + 1, is_lower, min(limit, LARGEST))
+    ]
+
+
+class Seek(IntEnum):
+    """What a plan seeks, as `plan.h` says."""
+
+    GOAL = 0
+    DEADLOCK = 1
+    STAY = 2
+    STAY_AFTER = 3
+    LATE = 4
+    LATE_AFTER = 5
+    NESTED = 6
+    START = 7
+    RUN = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Sought:
+    """What is sought in a network.
+
+    Attributes:
+        kind: of search.
+        goal: normalised; where runs lead, or from where they are watched, or what holds where
+            there is no deadlock.
+        inside: normalised; where runs stay, or what holds where there is a deadlock.
+        ways: the automaton of a formula of LTL, that accepts the run.
+        progress: whether time has to pass on for ever on the run, beside what `ways` says.
+        nested: normalised; where runs lead, or what holds at the start, if that speaks of runs.
+        choose: among several runs.
+        bound: units of time, if there is one.
+    """
+
+    kind: Seek
+    goal: Expression | None = None
+    inside: Expression | None = None
+    nested: Expression | None = None
+    ways: Ways | None = None
+    progress: bool = False
+    choose: Policy = Policy.SHORTEST
+    bound: int | None = None
+
+    @property
+    def has_timer(self) -> bool:
+        """Whether one more clock belongs to the query."""
+        nested = () if self.nested is None else parts_of(self.nested)
+        return (
+            self.bound is not None
+            or self.progress
+            or self.choose is Policy.FASTEST
+            or any(isinstance(part, PathFormula) and part.bound is not None for part in nested)
+        )
+
+    @property
+    def is_levelled(self) -> bool:
+        """Whether only states that can do the same stand for each other, not those that do more."""
+        return self.kind in (
+            Seek.DEADLOCK,
+            Seek.STAY,
+            Seek.STAY_AFTER,
+            Seek.NESTED,
+            Seek.START,
+            Seek.RUN,
+        )

@@ -1,0 +1,180 @@
+"""What a search may cost and what it cost, and the answer to a query."""
+
+from __future__ import annotations
+
+import gc
+import mmap
+import sys
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+from rvmon.models.network.network import Query
+from rvmon.models.runs.run import Run
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """When a search gives up; `None` is no limit.
+
+    Attributes:
+        states: symbolic states visited.
+        seconds: of wall-clock time.
+        megabytes: of memory that the whole process holds.
+    """
+
+    states: int | None = None
+    seconds: float | None = None
+    megabytes: int | None = None
+
+
+UNLIMITED = Budget()
+
+
+@dataclass(frozen=True, slots=True)
+class Progress:
+    """How far a search is: symbolic states visited and waiting, seconds since it began."""
+
+    visited: int
+    waiting: int
+    seconds: float
+
+
+Watch = Callable[[Progress], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Statistics:
+    """What a search cost.
+
+    Attributes:
+        visited: symbolic states that were kept when they were met.
+        stored: those that were not dropped later for a larger one.
+        seconds: of wall-clock time.
+    """
+
+    visited: int
+    stored: int
+    seconds: float
+
+
+class Policy(StrEnum):
+    """Which run shows that a state can be reached, if several do."""
+
+    SHORTEST = "shortest"
+    """One with the fewest actions."""
+
+    FASTEST = "fastest"
+    """One that takes the least time."""
+
+    LIKELIEST = "likely"
+    """One with the largest product of edge weights."""
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """Whether a query holds, and a run that shows why or why not.
+
+    Attributes:
+        query: the question.
+        holds: `None` if the budget ended first.
+        run: a witness where `E` holds, a counterexample where `A` or `-->` does not.
+        policy: how the run was chosen; `None` where there is no choice.
+        statistics: what it cost.
+        remark: what else people should know; why it is not decided, or that time stops.
+    """
+
+    query: Query
+    holds: bool | None
+    run: Run | None
+    policy: Policy | None
+    statistics: Statistics
+    remark: str = ""
+
+
+class Meter:
+    """Counts states against a budget and reports to a watcher how far the search is.
+
+    Attributes:
+        visited: states so far.
+        stored: those that a search still held when it ended.
+        stopped: which limit was met; empty while none was.
+    """
+
+    def __init__(self, budget: Budget, watch: Watch | None) -> None:
+        self._budget = budget
+        self._watch = watch
+        self._start = time.perf_counter()
+        self.visited = 0
+        self.stored = 0
+        self.stopped = ""
+
+    @property
+    def seconds(self) -> float:
+        """Since the meter was made."""
+        return time.perf_counter() - self._start
+
+    def statistics(self) -> Statistics:
+        """What was counted, as data."""
+        return Statistics(self.visited, self.stored, self.seconds)
+
+    @property
+    def left(self) -> int:
+        """How many states may still be visited; -1: any number."""
+        states = self._budget.states
+        return -1 if states is None else max(0, states - self.visited)
+
+    def look(self, visited: int, waiting: int) -> bool:
+        """Look at the clock and the memory in a search that counts for itself; whether to go on."""
+        self._look(self.visited + visited, waiting)
+        return not self.stopped
+
+    def goes_on(self, runs: int) -> bool:
+        """Whether one more run may be simulated, after so many."""
+        return self.look(runs, 0)
+
+    def add(self, visited: int, stored: int) -> None:
+        """Count what a search did that counts for itself."""
+        self.visited += visited
+        self.stored += stored
+
+    def stop(self, reason: str) -> None:
+        """Note what stopped a search, unless that is known."""
+        self.stopped = self.stopped or reason
+
+    def stop_at_states(self) -> None:
+        """Note that no more states may be visited, if nothing else stopped a search."""
+        self.stop(f"{self._budget.states or 0:,} states were visited")
+
+    def _look(self, visited: int, waiting: int) -> None:
+        budget, seconds = self._budget, self.seconds
+        if budget.seconds is not None and seconds > budget.seconds:
+            self.stopped = f"{budget.seconds:g} s went by"
+        elif budget.megabytes is not None and _is_full(budget.megabytes):
+            self.stopped = f"{budget.megabytes:,} MB of memory were in use"
+        elif self._watch is not None:
+            self._watch(Progress(visited, waiting, seconds))
+
+
+def _is_full(limit: int) -> bool:
+    if _megabytes() <= limit:
+        return False
+    gc.collect()  # what earlier searches left behind goes round in circles
+    return _megabytes() > limit
+
+
+def _megabytes() -> float:
+    """What the process holds now; at its highest, or 0, where the system reports no more."""
+    try:
+        pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
+        return pages * mmap.PAGESIZE / (1 << 20)
+    except OSError:
+        pass
+    try:
+        import resource
+    except ImportError:
+        return 0.0
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / (1 << 20 if sys.platform == "darwin" else 1 << 10)

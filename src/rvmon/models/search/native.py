@@ -1,0 +1,267 @@
+"""The native search asked from here, and what it found as a path, step by step."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from functools import cached_property
+from math import inf
+from typing import TYPE_CHECKING
+
+from rvmon.models.network.guards import together
+from rvmon.models.network.network import Guard, Network
+from rvmon.models.network.rules import model_error
+from rvmon.models.runs.run import STRICT, Atom, Ending, Run, Zone
+from rvmon.models.runs.space import Space, State, atoms_of, pieces_of
+from rvmon.models.runs.timing import (
+    PathStep,
+    Piece,
+    crossing_step,
+    make_run,
+    mark_step,
+    move_step,
+    timing_of,
+)
+from rvmon.models.search.loops import time_passes
+from rvmon.models.search.lowered import Plan, Seek, Sought
+from rvmon.models.search.meter import Meter
+from rvmon.native import extension
+from rvmon.native.sources import ZONES_FOLDER
+
+if TYPE_CHECKING:
+    from rvmon.native import _zones
+
+    search = _zones.search
+else:
+    search = extension("_zones", ZONES_FOLDER, "the search of models").search
+
+_UNBOUNDED = (1 << 63) - 1
+_NOWHERE = -(1 << 63)
+
+
+class _State(IntEnum):
+    ENDED = 1
+    FOUND = 2
+    STOPPED = 3
+    FAILED = 4
+    NO_MEMORY = 5
+    TOO_LARGE = 6
+
+
+class _Step(IntEnum):
+    MOVE = 0
+    CROSSING = 1
+    MARK = 2
+
+
+_ENDINGS = (
+    *(Ending.REACHED, Ending.DEADLOCK, Ending.IDLE),
+    *(Ending.TIME_LOCK, Ending.LOOP, Ending.ZENO_LOOP),
+)
+"""By the numbers of `zones.h`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What a search gave.
+
+    Attributes:
+        run: to what was sought; `None` if there is none or the search was stopped.
+        improper: whether a way to stay was passed by because time stops on it.
+        spans: of a goal that was not found, with a watcher: by location of that which was met, the
+            least and largest value that the last clock came near there; `inf`: it has no end.
+    """
+
+    run: Run | None
+    improper: bool
+    spans: Mapping[int, tuple[float, float]]
+
+
+def seek(
+    network: Network,
+    sought: Sought,
+    meter: Meter,
+    *,
+    proper_only: bool = False,
+) -> Answer:
+    """Search for a run.
+
+    Args:
+        network: where it runs.
+        sought: where it leads, or stays.
+        meter: counts the states, and ends the search.
+        proper_only: whether a way to stay counts only if time passes on it without bound.
+
+    Raises:
+        ModelError: a run of it leaves a variable's range, or numbers are too large.
+    """
+    plan = Plan(network, sought)
+    paths = _Paths(network, plan, sought)
+
+    def counts(path: bytes, loop: int, head: bytes) -> int:
+        steps = [step.timed for step in paths.walk(path)[1][loop:]]
+        return time_passes(steps, _zone(array("q", head)), paths.dim)
+
+    state, ending, loop, improper, visited, stored, _, _, path, parts, spans = search(
+        plan.numbers, plan.costs, meter.look, counts, meter.left, -1, proper_only
+    )
+    meter.add(visited, stored)
+    match _State(state):
+        case _State.NO_MEMORY:
+            meter.stop("memory ran out")
+        case _State.STOPPED:
+            meter.stop_at_states()
+        case _State.FAILED:
+            paths.fail(path, sought)
+        case _State.TOO_LARGE:
+            fix = "choose a larger unit of time"
+            raise model_error("TA019", "times grow too large in this network", None, fix)
+        case _State.FOUND:
+            run = paths.run(path, parts, _ENDINGS[ending], loop)
+            return Answer(run, bool(improper), {})
+        case _State.ENDED:
+            pass
+    return Answer(None, bool(improper), _spans(array("q", spans)))
+
+
+def _spans(numbers: Sequence[int]) -> dict[int, tuple[float, float]]:
+    pairs = enumerate(zip(numbers[::2], numbers[1::2], strict=True))
+    return {
+        place: (-(low >> 1), inf if high == _UNBOUNDED else high >> 1)
+        for place, (low, high) in pairs
+        if low > _NOWHERE
+    }
+
+
+def _zone(numbers: Sequence[int]) -> Zone:
+    """A zone in this package's numbers."""
+    return [
+        inf if number == _UNBOUNDED else (number >> 1) - (0.0 if number & 1 else STRICT)
+        for number in numbers
+    ]
+
+
+class _Paths:
+    """Takes paths that the native search tells through the network once more."""
+
+    def __init__(self, network: Network, plan: Plan, sought: Sought) -> None:
+        self._network = network
+        self._plan = plan
+        self.dim = 1 + len(network.clocks) + sought.has_timer
+        late = sought.kind in (Seek.LATE, Seek.LATE_AFTER)
+        self._timers = [self.dim - 1] if late else []
+
+    @cached_property
+    def _space(self) -> Space:
+        return Space(self._network)
+
+    @property
+    def _start(self) -> State:
+        start = self._space.initial()
+        assert start is not None, "the network can start"
+        return start
+
+    def run(self, path: bytes, parts: bytes, ending: Ending, loop: int) -> Run:
+        """The run along a path, to the first of some parts that it can reach."""
+        last, steps = self.walk(path)
+        for part in self._parts(parts):
+            marked = [*steps, mark_step(last, part)]
+            if timing_of([step.timed for step in marked]) is not None:
+                steps = marked
+                break
+        if ending is Ending.DEADLOCK and last.is_time_bounded:
+            ending = Ending.TIME_LOCK
+        shown = self._network.original or self._network
+        return make_run(shown, self._start, steps, ending, None if loop < 0 else loop)
+
+    def fail(self, path: bytes, sought: Sought) -> None:
+        """Say what is wrong where a search could not go on.
+
+        Raises:
+            ModelError: always, unless the native search is wrong.
+        """
+        state, _ = self.walk(path)
+        for move in self._space.moves(state):
+            self._space.moves(move.target)
+            self._ask(move.target, sought)
+        self._ask(state, sought)
+        raise AssertionError("the native search failed where the rules do not")
+
+    def _ask(self, state: State, sought: Sought) -> None:
+        labels = [] if sought.ways is None else [s.label for s in sought.ways.states]
+        for formula in (sought.goal, sought.inside, *map(together, labels)):
+            if formula is not None:
+                pieces_of(formula)(state.locations, state.values)
+
+    def walk(self, path: bytes) -> tuple[State, list[PathStep]]:
+        """The last state of a path and its steps.
+
+        Raises:
+            ModelError: the last one leaves a variable's range.
+        """
+        numbers = array("i", path)
+        state, piece, steps, at = self._start, numbers[0], list[PathStep](), 1
+        while at < len(numbers):
+            kind, behind, number, count = numbers[at : at + 4]
+            at += 4 + count
+            here = self._constraint(self._plan.inside, piece, state)
+            match _Step(kind):
+                case _Step.MOVE:
+                    edges = [self._plan.edges[edge] for edge in numbers[at - count : at]]
+                    bounds, at = numbers[at : at + 4 * number], at + 4 * number
+                    step = self._move(state, edges, (*_bounds(bounds), *here), behind)
+                case _Step.CROSSING:
+                    there = self._constraint(self._plan.inside, behind, state)
+                    leave = here if number else _rounded(here, uppers=True)
+                    enter = _rounded(there, uppers=False) if number else there
+                    step = crossing_step(state, leave, enter)
+                case _Step.MARK:
+                    holds = self._constraint(self._plan.goal, number, state)
+                    there = self._constraint(self._plan.inside, behind, state)
+                    step = mark_step(state, (*holds, *there), self._timers)
+            steps.append(step)
+            state, piece = step.state, behind
+        return state, steps
+
+    def _move(
+        self, state: State, edges: Sequence[tuple[int, int]], leave: Piece, behind: int
+    ) -> PathStep:
+        move = self._space.step(state, edges)
+        assert move is not None, "the native search made it"
+        if move.failure is not None:
+            raise move.failure
+        enter = self._constraint(self._plan.inside, behind, move.target)
+        return move_step(state, move, leave, enter)
+
+    def _constraint(self, alternatives: Sequence[Guard], number: int, state: State) -> Piece:
+        """The bounds of an alternative in a state; none for −1."""
+        if number < 0:
+            return ()
+        return atoms_of(alternatives[number].clocks, None)(state.locations, state.values)
+
+    def _parts(self, parts: bytes) -> Iterator[Piece]:
+        numbers, entries = array("q", parts), self.dim * self.dim
+        for at in range(0, len(numbers), entries):
+            zone = _zone(numbers[at : at + entries])
+            yield tuple(
+                (x, y, zone[x * self.dim + y])
+                for x in range(self.dim)
+                for y in range(self.dim)
+                if x != y and zone[x * self.dim + y] < inf
+            )
+
+
+def _bounds(numbers: Sequence[int]) -> Iterator[Atom]:
+    """Bounds that a move needs besides its guards."""
+    for x, y, number, closed in zip(*[iter(numbers)] * 4, strict=True):
+        yield x, y, number - (0.0 if closed else STRICT)
+
+
+def _rounded(constraint: Piece, *, uppers: bool) -> Piece:
+    """A piece with the instants at which time leaves it, or behind which it enters it."""
+    return tuple(
+        (x, y, float(-(-bound // 1)) if (x == 0 if uppers else y == 0) else bound)
+        for x, y, bound in constraint
+    )

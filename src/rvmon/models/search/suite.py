@@ -1,0 +1,186 @@
+"""Few runs that together go through every location, edge, or pair of edges of a network.
+
+A shortest run to each item that the runs before do not go through is sought; then runs are chosen
+greedily, the one with the most items that are still missing first.
+
+Source: Blom, Hessel, Jonsson, Pettersson, Specifying and Generating Test Cases Using Observer
+Automata, FATES 2004 (coverage items as observers); Chvátal, A Greedy Heuristic for the Set-Covering
+Problem, 1979.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+from rvmon.models.network.expressions import (
+    Assignment,
+    BinaryOp,
+    BinaryOperation,
+    Choice,
+    Constant,
+    Expression,
+    InLocation,
+    Slot,
+    Variable,
+    VariableValue,
+)
+from rvmon.models.network.network import Network, check_clocks
+from rvmon.models.runs.run import Run
+from rvmon.models.runs.space import check_start
+from rvmon.models.search.lowered import Seek, Sought
+from rvmon.models.search.meter import UNLIMITED, Budget, Meter, Statistics, Watch
+from rvmon.models.search.native import seek
+
+
+class Criterion(StrEnum):
+    """What a suite goes through."""
+
+    LOCATIONS = "locations"
+    EDGES = "edges"
+    EDGE_PAIRS = "edge-pairs"
+    """An edge of an automaton, and the one that the automaton takes next."""
+
+
+@dataclass(frozen=True, slots=True)
+class Item:
+    """Something to go through: a location, an edge, or two edges, by their numbers."""
+
+    automaton: int
+    numbers: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Suite:
+    """Runs that cover what can be covered.
+
+    Attributes:
+        criterion: what was to be covered.
+        runs: each with the items that it adds to those before.
+        missing: items that no run goes through.
+        statistics: what the search cost.
+        stopped: which budget ended the search, so that `missing` may say too much; empty if none.
+    """
+
+    criterion: Criterion
+    runs: tuple[tuple[Run, tuple[Item, ...]], ...]
+    missing: tuple[Item, ...]
+    statistics: Statistics
+    stopped: str
+
+    @property
+    def covered(self) -> int:
+        """The number of items that the runs go through."""
+        return sum(len(items) for _, items in self.runs)
+
+
+def build_suite(
+    network: Network,
+    criterion: Criterion,
+    *,
+    budget: Budget = UNLIMITED,
+    watch: Watch | None = None,
+) -> Suite:
+    """Make a suite of runs.
+
+    Raises:
+        ModelError: the network cannot start, or a run of it leaves a variable's range.
+    """
+    check_start(network)
+    check_clocks(network)
+    meter, found, covered = Meter(budget, watch), list[tuple[Run, frozenset[Item]]](), set[Item]()
+    for item in all_items(network, criterion):
+        if item not in covered and not meter.stopped:
+            run = _way_to(network, criterion, item, meter)
+            if run is not None:
+                found.append((run, _items_on(network, run, criterion) | {item}))
+                covered |= found[-1][1]
+    missing = tuple(item for item in all_items(network, criterion) if item not in covered)
+    return Suite(criterion, tuple(_chosen(found)), missing, meter.statistics(), meter.stopped)
+
+
+def _way_to(network: Network, criterion: Criterion, item: Item, meter: Meter) -> Run | None:
+    """The shortest run to an item; `None` if there is none, or the search was stopped."""
+    if criterion is Criterion.LOCATIONS:
+        goal: Expression = InLocation(item.automaton, *item.numbers)
+        return seek(network, Sought(Seek.GOAL, goal), meter).run
+    # One more variable counts how many of the edges have just been taken in turn.
+    slot, count = Slot(len(network.variables)), len(item.numbers)
+    progress = Variable("", 0, count, 0)
+    last, edges = item.numbers[-1], [*network.automata[item.automaton].edges]
+    for number, edge in enumerate(edges):
+        taken: Expression = Constant(int(number == item.numbers[0]))
+        if count > 1 and number == last:
+            before = BinaryOperation(BinaryOp.EQ, VariableValue(slot), Constant(1))
+            taken = Choice(before, Constant(count), taken)
+        edges[number] = replace(edge, updates=(*edge.updates, Assignment(slot, taken, progress)))
+    automata = [*network.automata]
+    automata[item.automaton] = replace(automata[item.automaton], edges=tuple(edges))
+    counting = replace(
+        network,
+        variables=(*network.variables, progress),
+        automata=tuple(automata),
+        original=network,
+    )
+    goal = BinaryOperation(BinaryOp.EQ, VariableValue(slot), Constant(count))
+    return seek(counting, Sought(Seek.GOAL, goal), meter).run
+
+
+def all_items(network: Network, criterion: Criterion) -> Iterator[Item]:
+    """Everything that a criterion asks for, whether or not a run can get there."""
+    for index, automaton in enumerate(network.automata):
+        match criterion:
+            case Criterion.LOCATIONS:
+                for number in range(len(automaton.locations)):
+                    yield Item(index, (number,))
+            case Criterion.EDGES:
+                for number in range(len(automaton.edges)):
+                    yield Item(index, (number,))
+            case Criterion.EDGE_PAIRS:
+                for first, before in enumerate(automaton.edges):
+                    for second, after in enumerate(automaton.edges):
+                        if before.target == after.source:
+                            yield Item(index, (first, second))
+
+
+def item_text(network: Network, item: Item, criterion: Criterion) -> str:
+    """An item for people."""
+    automaton = network.automata[item.automaton]
+    if criterion is Criterion.LOCATIONS:
+        return f"{automaton.name}.{automaton.locations[item.numbers[0]].name}"
+    return f"{automaton.name}: " + ", then ".join(
+        automaton.edges[number].text for number in item.numbers
+    )
+
+
+def _items_on(network: Network, run: Run, criterion: Criterion) -> frozenset[Item]:
+    """All items that a run goes through."""
+    positions = (run.start, *(step.position for step in run.steps))
+    places = {
+        Item(a, (place,)) for position in positions for a, place in enumerate(position.locations)
+    }
+    edges, pairs, last = set[Item](), set[Item](), dict[int, int]()
+    numbers = {
+        id(edge): k for automaton in network.automata for k, edge in enumerate(automaton.edges)
+    }
+    actions = (step.action for step in run.steps if step.action is not None)
+    for automaton, edge in (pair for action in actions for pair in action.edges):
+        number = numbers[id(edge)]
+        edges.add(Item(automaton, (number,)))
+        if automaton in last:
+            pairs.add(Item(automaton, (last[automaton], number)))
+        last[automaton] = number
+    items = {Criterion.LOCATIONS: places, Criterion.EDGES: edges, Criterion.EDGE_PAIRS: pairs}
+    return frozenset(items[criterion])
+
+
+def _chosen(
+    found: Sequence[tuple[Run, frozenset[Item]]],
+) -> Iterator[tuple[Run, tuple[Item, ...]]]:
+    left = {item for _, items in found for item in items}
+    while left:
+        # The first of the best, so that equal networks have equal suites.
+        run, items = max(found, key=lambda one: len(one[1] & left))
+        added, left = items & left, left - items
+        yield run, tuple(sorted(added, key=lambda item: (item.automaton, item.numbers)))

@@ -1,0 +1,321 @@
+"""Answers queries: each kind of query becomes the native search that is sound for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from rvmon.models.language.elaborate import asked_on
+from rvmon.models.network.expressions import (
+    FALSE,
+    TRUE,
+    BinaryOp,
+    BinaryOperation,
+    ClockCompare,
+    Expression,
+    PathFormula,
+    PathOp,
+)
+from rvmon.models.network.guards import (
+    compares_of,
+    has_paths,
+    is_linear,
+    is_plain,
+    normal_form,
+    together,
+    with_deadlock,
+)
+from rvmon.models.network.network import (
+    Chance,
+    Extremes,
+    LeadsToFormula,
+    Mean,
+    Network,
+    Query,
+    QueryFormula,
+    Simulation,
+    check_clocks,
+)
+from rvmon.models.network.rules import model_error
+from rvmon.models.runs.run import Ending, Run
+from rvmon.models.runs.space import check_start
+from rvmon.models.search.linear import check_linear, ways_of
+from rvmon.models.search.lowered import Seek, Sought
+from rvmon.models.search.meter import UNLIMITED, Budget, Meter, Outcome, Policy, Watch
+from rvmon.models.search.native import seek
+
+
+@dataclass(frozen=True, slots=True)
+class _Question:
+    """What all searches for one query share."""
+
+    network: Network
+    meter: Meter
+    policy: Policy
+
+
+def verify(
+    network: Network,
+    query: Query | str,
+    *,
+    budget: Budget = UNLIMITED,
+    watch: Watch | None = None,
+    policy: Policy = Policy.SHORTEST,
+) -> Outcome:
+    """Decide a query, with a run that shows why where one run can.
+
+    Args:
+        network: what the query asks about.
+        query: as resolved, or as text.
+        budget: when to give up undecided.
+        watch: called now and then.
+        policy: which run to show for `E<>` and `A[]`, if several do.
+
+    Raises:
+        ModelError: the query is none that can be decided, or the network cannot start, or a run
+            of it leaves a variable's range.
+    """
+    network, asked = asked_on(network, query) if isinstance(query, str) else (network, query)
+    check_start(network)
+    check_clocks(network, (comparison.clock for comparison in compares_in(asked.formula)))
+    question = _Question(network, Meter(budget, watch), policy)
+    found = _search(question, asked)
+    meter, run = question.meter, found.run
+    holds = found.holds
+    if holds is None:
+        holds = None if run is None and meter.stopped else (run is not None) == found.shows
+    remark = f"not decided: {meter.stopped}" if holds is None else _remark(run)
+    if run is not None and found.chosen not in (None, policy):
+        remark = f"no {policy} run was found: {meter.stopped}"
+    return Outcome(asked, holds, run, found.chosen, meter.statistics(), remark)
+
+
+def compares_in(formula: QueryFormula) -> Iterator[ClockCompare]:
+    """All comparisons of clocks in what a query asks."""
+    match formula:
+        case LeadsToFormula(left, right):
+            yield from compares_of(left)
+            yield from compares_of(right)
+        case Chance() | Mean() | Simulation() | Extremes():
+            pass
+        case _:
+            yield from compares_of(formula)
+
+
+def _remark(run: Run | None) -> str:
+    match run:
+        case Run(ending=Ending.ZENO_LOOP):
+            return "only by a Zeno loop: it goes round without end while time does not pass"
+        case Run(ending=Ending.TIME_LOCK):
+            return "time stops here: no edge can be taken, and time may not pass"
+        case _:
+            return ""
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """What a search says of a query.
+
+    Attributes:
+        shows: whether a run shows that it holds, else that it does not.
+        run: that run; `None` if there is none.
+        chosen: the policy that chose it, if there was a choice.
+        holds: whether it holds, where no single run shows it.
+    """
+
+    shows: bool
+    run: Run | None
+    chosen: Policy | None = None
+    holds: bool | None = None
+
+
+_OUTERMOST = (
+    PathOp.POSSIBLY,
+    PathOp.INVARIANTLY,
+    PathOp.EVENTUALLY,
+    PathOp.POTENTIALLY_ALWAYS,
+)
+
+
+def _search(question: _Question, query: Query) -> _Found:
+    match query.formula:
+        case LeadsToFormula(left, right) if is_linear(left) or is_linear(right):
+            check_linear(PathFormula(PathOp.EVENTUALLY, left), query.span)
+        case LeadsToFormula():
+            pass
+        case Chance() | Mean() | Simulation():
+            fix = "simulate it: `rvmon verify` does, as does `sample`"
+            raise model_error("TA020", "statistics are no decision", query.span, fix)
+        case Extremes():
+            fix = "`rvmon verify` answers it, as does `extremes`"
+            raise model_error("TA020", "a value is no decision", query.span, fix)
+        case formula if is_linear(formula):
+            return _on_runs(question, query, formula)
+    match query.formula:
+        case LeadsToFormula(left, right, bound):
+            if is_plain(left) and is_plain(right):
+                return _Found(False, _unanswered(question, left, right, bound))
+            answered = PathFormula(PathOp.EVENTUALLY, right, bound)
+            implied = BinaryOperation(BinaryOp.IMPLY, left, answered)
+            return _at_start(question, PathFormula(PathOp.INVARIANTLY, implied))
+        case PathFormula(op, body, None, until) if (
+            until != TRUE and op in _OUTERMOST and is_plain(body) and is_plain(until)
+        ):
+            shows = op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS)
+            ends = op in (PathOp.POSSIBLY, PathOp.EVENTUALLY)
+            linear = PathFormula(PathOp.FINALLY if ends else PathOp.GLOBALLY, body, None, until)
+            return _Found(shows, _accepted(question, normal_form(linear, positive=shows)))
+        case PathFormula(op, body, bound, until) if until == TRUE and op in _OUTERMOST:
+            if op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS):
+                sought, shows = normal_form(body), True
+            else:
+                sought, shows = normal_form(body, positive=False), False
+            match op:
+                case PathOp.POSSIBLY | PathOp.INVARIANTLY if has_paths(sought) and bound is None:
+                    return _reach_nested(question, sought, shows)
+                case PathOp.POSSIBLY | PathOp.INVARIANTLY if is_plain(sought):
+                    return _Found(shows, *_reach(question, sought, bound))
+                case PathOp.POSSIBLY | PathOp.INVARIANTLY if not has_paths(sought):
+                    return _Found(shows, _reach_deadlock(question, sought, bound))
+                case PathOp.EVENTUALLY | PathOp.POTENTIALLY_ALWAYS if is_plain(sought):
+                    return _Found(shows, _staying(question, None, sought, bound))
+                case _:
+                    return _at_start(question, query.formula)
+        case formula if has_paths(formula):
+            return _at_start(question, formula)
+        case _:
+            fix = "begin it with E<>, A[], A<> or E[], or write p --> q"
+            raise model_error("TA020", "a query speaks of runs", query.span, fix)
+
+
+def _at_start(question: _Question, formula: Expression) -> _Found:
+    """Whether a formula that speaks of runs holds at the start: no single run shows it."""
+    # Going backwards meets no run that leaves a variable's range: going forwards does.
+    seek(question.network, Sought(Seek.GOAL, FALSE), question.meter)
+    if not question.meter.stopped:
+        sought = Sought(Seek.START, nested=normal_form(formula))
+        found = seek(question.network, sought, question.meter).run is not None
+        if found or not question.meter.stopped:
+            return _Found(True, None, holds=found)
+    return _Found(True, None)
+
+
+# Reaching.
+
+
+def _alternatives(formula: Expression) -> list[list[Expression]]:
+    """A normalised formula as alternatives of parts that hold together; plain parts stay whole."""
+    match formula:
+        case BinaryOperation(BinaryOp.OR, left, right) if has_paths(formula):
+            return [*_alternatives(left), *_alternatives(right)]
+        case BinaryOperation(BinaryOp.AND, left, right) if has_paths(formula):
+            return [
+                [*some, *others] for some in _alternatives(left) for others in _alternatives(right)
+            ]
+        case _:
+            return [[formula]]
+
+
+def _lasting_part(parts: Sequence[Expression]) -> PathFormula | None:
+    """The only part that speaks of runs, if it is `E[]` with a plain formula inside."""
+    match [part for part in parts if has_paths(part)]:
+        case [PathFormula(PathOp.POTENTIALLY_ALWAYS, body, _, left) as lasting] if (
+            left == TRUE and is_plain(body)
+        ):
+            return lasting
+        case _:
+            return None
+
+
+def _reach(
+    question: _Question, formula: Expression, within: int | None
+) -> tuple[Run | None, Policy | None]:
+    """A run to a normalised formula, as the policy chooses it, or the shortest if that ends early.
+
+    Returns:
+        The run and how it was chosen; twice `None` if there is none.
+    """
+    network, meter, policy = question.network, question.meter, question.policy
+    run = seek(network, Sought(Seek.GOAL, formula, bound=within), meter).run
+    if run is None:
+        return None, None
+    if policy is not Policy.SHORTEST:
+        sought = Sought(Seek.GOAL, formula, bound=within, choose=policy)
+        best = seek(network, sought, meter).run
+        if best is not None:
+            return best, policy
+    return run, Policy.SHORTEST
+
+
+def _reach_deadlock(question: _Question, formula: Expression, within: int | None) -> Run | None:
+    alive, dead = (with_deadlock(formula, value=value) for value in (False, True))
+    sought = Sought(Seek.DEADLOCK, alive, dead, bound=within)
+    return seek(question.network, sought, question.meter).run
+
+
+def _reach_nested(question: _Question, formula: Expression, shows: bool) -> _Found:
+    """A run to a formula that speaks of runs from there; each alternative is sought by itself."""
+    run = None
+    for parts in _alternatives(formula):
+        lasting = _lasting_part(parts)
+        first = [part for part in parts if part is not lasting]
+        if lasting is None or not all(map(is_plain, first)):
+            sought = Sought(Seek.NESTED, nested=together(parts))
+            run = seek(question.network, sought, question.meter).run
+        else:
+            away = normal_form(lasting.body, positive=False)
+            run = _unanswered(question, together(first), away, lasting.bound)
+        if run is not None or question.meter.stopped:
+            break
+    return _Found(shows, run)
+
+
+# Staying away.
+
+
+def _unanswered(
+    question: _Question, left: Expression, right: Expression, bound: int | None
+) -> Run | None:
+    """A run on which `left` holds, but `right` not from there on, or not within the bound."""
+    inside = normal_form(normal_form(right), positive=False)
+    return _staying(question, normal_form(left), inside, bound)
+
+
+def _staying(
+    question: _Question, first: Expression | None, inside: Expression, bound: int | None
+) -> Run | None:
+    """A run that stays inside, from the start or from where `first` holds."""
+    network, meter = question.network, question.meter
+    if bound is not None:
+        late = Seek.LATE if first is None else Seek.LATE_AFTER
+        run = seek(network, Sought(late, first, inside, bound=bound), meter).run
+        if run is not None or meter.stopped:
+            return run
+    sought = Sought(Seek.STAY if first is None else Seek.STAY_AFTER, first, inside)
+    answer = seek(network, sought, meter, proper_only=True)
+    if answer.run is None and not meter.stopped and answer.improper:
+        answer = seek(network, sought, meter)
+    return answer.run
+
+
+# Accepting.
+
+
+def _on_runs(question: _Question, query: Query, formula: Expression) -> _Found:
+    """Whether all runs satisfy a formula of LTL, or some run does."""
+    body, shows = formula, False
+    if isinstance(formula, PathFormula) and formula.op in (PathOp.EVERY_RUN, PathOp.SOME_RUN):
+        body, shows = formula.body, formula.op is PathOp.SOME_RUN
+    check_linear(body, query.span)
+    return _Found(shows, _accepted(question, normal_form(body, positive=shows)))
+
+
+def _accepted(question: _Question, formula: Expression) -> Run | None:
+    """A run that satisfies a normalised formula of LTL, if there is one on which time passes."""
+    network, meter = question.network, question.meter
+    sought = Sought(Seek.RUN, ways=ways_of(formula))
+    run = seek(network, sought, meter).run
+    if run is not None and run.ending in (Ending.ZENO_LOOP, Ending.TIME_LOCK):
+        better = seek(network, replace(sought, progress=True), meter).run
+        return run if better is None else better
+    return run

@@ -1,0 +1,134 @@
+"""Networks with one automaton more, that watches the others.
+
+It takes part in each of their moves, and reads which names the move has: those are noted in
+variables that the edges set and the watcher resets, so that they are never seen between moves.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+
+from rvmon.models.network.expressions import (
+    FALSE,
+    TRUE,
+    Assignment,
+    ClockCompare,
+    Constant,
+    Expression,
+    InLocation,
+    LocationKind,
+    Reset,
+    Slot,
+    Statement,
+    Variable,
+    VariableValue,
+)
+from rvmon.models.network.network import (
+    Automaton,
+    Clock,
+    Edge,
+    Guard,
+    Location,
+    Network,
+    Priorities,
+)
+
+
+def names_of(network: Network, edge: Edge) -> tuple[str, ...]:
+    """What an edge adds to the names of a move: its label, and if it begins one its channel's."""
+    sends = edge.sync is not None and edge.sync.sends
+    channel = network.channels[edge.sync.slot.first].name if edge.sync and sends else ""
+    return tuple(dict.fromkeys(name for name in (edge.label, channel) if name))
+
+
+class Watcher:
+    """A watcher in the making, and the network with it.
+
+    Args:
+        network: whose moves are watched.
+        names: those of moves that it reads.
+        clocks: names of the clocks that it has.
+
+    Attributes:
+        clock: the number of the first of its clocks.
+    """
+
+    def __init__(self, network: Network, names: Iterable[str], clocks: Sequence[str]) -> None:
+        self._network = network
+        self._clocks = tuple(map(Clock, clocks))
+        self.clock = len(network.clocks)
+        first = len(network.variables)
+        self._slots = {name: Slot(first + k) for k, name in enumerate(dict.fromkeys(names))}
+        self._unnoted: tuple[Statement, ...] = tuple(_set(s, 0) for s in self._slots.values())
+        self._locations: list[Location] = []
+        self._edges: list[Edge] = []
+
+    def has(self, name: str) -> Expression:
+        """Whether a move has a name; false between moves."""
+        return VariableValue(self._slots[name])
+
+    def add_location(
+        self, bounds: Iterable[ClockCompare] = (), kind: LocationKind = LocationKind.NORMAL
+    ) -> int:
+        """Add a location with an invariant; its number."""
+        self._locations.append(Location("", kind, Guard(TRUE, tuple(bounds))))
+        return len(self._locations) - 1
+
+    def add_edge(
+        self,
+        source: int,
+        target: int,
+        when: Expression = TRUE,
+        bounds: Iterable[ClockCompare] = (),
+        resets: Iterable[int] = (),
+        *,
+        watches: bool = True,
+    ) -> None:
+        """Add an edge that goes along with moves, or one that the watcher takes by itself."""
+        if when == FALSE:
+            return
+        set_now = tuple(Reset(clock, Constant(0)) for clock in resets)
+        unnoted = self._unnoted if watches else ()
+        updates = (*unnoted, *set_now) if set_now else unnoted
+        guard = Guard(when, tuple(bounds))
+        self._edges.append(Edge(source, target, guard, None, updates, 1.0, "", "", watches=watches))
+
+    def is_in(self, location: int) -> Expression:
+        """Whether it is in a location."""
+        return InLocation(len(self._network.automata), location)
+
+    def network(self, initial: int = 0) -> Network:
+        """The network with the watcher, in one of its locations at the start."""
+        network, own = (
+            self._network,
+            (Variable(name, 0, 1, 0, is_bool=True) for name in self._slots),
+        )
+        ranks = network.priorities
+        automata = [
+            replace(automaton, edges=tuple(map(self._noting, automaton.edges)))
+            for automaton in network.automata
+        ]
+        watcher = Automaton("", tuple(self._locations), tuple(self._edges), initial)
+        return replace(
+            network,
+            clocks=(*network.clocks, *self._clocks),
+            variables=(*network.variables, *own),
+            automata=(*automata, watcher),
+            queries=(),
+            priorities=ranks and Priorities((*ranks.automata, 0), ranks.internal, ranks.channels),
+            original=network,
+            is_watched=True,
+        )
+
+    def _noting(self, edge: Edge) -> Edge:
+        noted = (
+            _set(self._slots[name], 1)
+            for name in names_of(self._network, edge)
+            if name in self._slots
+        )
+        return replace(edge, updates=(*edge.updates, *noted))
+
+
+def _set(slot: Slot, value: int) -> Assignment:
+    return Assignment(slot, Constant(value), Variable("", 0, 1, 0, is_bool=True))

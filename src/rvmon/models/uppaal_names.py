@@ -1,0 +1,323 @@
+"""Names, expressions and functions of a network in the words of UPPAAL and of other tools."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+from math import prod
+from typing import assert_never
+
+from rvmon.models.network.expressions import (
+    Assignment,
+    BinaryOp,
+    BinaryOperation,
+    Choice,
+    ClockCompare,
+    Constant,
+    Deadlock,
+    Expression,
+    Fractional,
+    Function,
+    If,
+    InLocation,
+    Invoke,
+    Lookup,
+    Missing,
+    PathFormula,
+    Perform,
+    Reset,
+    Return,
+    Slot,
+    Statement,
+    UnaryOp,
+    UnaryOperation,
+    Variable,
+    VariableValue,
+    While,
+    expressions_of,
+    statements_in,
+)
+from rvmon.models.network.fractions import FUNCTIONS, number_of
+from rvmon.models.network.guards import parts_of
+from rvmon.models.network.network import Network
+
+_KEYWORDS = (
+    "after_update and assign before_update bool break broadcast case chan clock "
+    "commit const continue deadlock default do double else exists false for forall "
+    "guard hybrid if imply init int meta not or priority process progress rate return "
+    "scalar select state struct switch sync system trans true typedef urgent void "
+    "while"
+)
+_RESERVED = frozenset(_KEYWORDS.split())
+_INDICES = re.compile(r"\[(-?\d+)\]")
+_SIGNS = {BinaryOp.AND: "&&", BinaryOp.OR: "||"}
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """A clock, variable or channel, or an array of them, under its new name.
+
+    Attributes:
+        first: index of its first element in the network.
+        extents: the indices of each dimension in the network; in the text they start at 0.
+    """
+
+    name: str
+    first: int
+    extents: tuple[range, ...]
+
+    @property
+    def length(self) -> int:
+        """The number of elements."""
+        return prod(map(len, self.extents))
+
+    @property
+    def declarator(self) -> str:
+        """The name with the sizes of an array."""
+        return self.name + "".join(f"[{len(extent)}]" for extent in self.extents)
+
+    def element(self, index: int) -> str:
+        """The text for an element."""
+        rest, places = index - self.first, ""
+        for extent in reversed(self.extents):
+            rest, place = divmod(rest, len(extent))
+            places = f"[{place}]{places}"
+        return self.name + places
+
+
+class Names:
+    """The new names of everything in a network.
+
+    Args:
+        network: whose names are made identifiers; all that is local becomes global.
+
+    Attributes:
+        clocks: in order, arrays as one thing.
+        variables: likewise.
+        channels: likewise.
+        locals: of functions, likewise.
+        functions: those that were named so far, those that others call before them.
+        automata: a name for each.
+    """
+
+    def __init__(self, network: Network) -> None:
+        self._taken: set[str] = set(_RESERVED)
+        self.network = network
+        self.clocks = self._things([clock.name for clock in network.clocks])
+        self.variables = self._things([variable.name for variable in network.variables])
+        self.channels = self._things([channel.name for channel in network.channels])
+        self.locals = self._things([variable.name for variable in network.locals])
+        self.functions: dict[int, tuple[str, Function]] = {}
+        self.automata = [self._fresh(automaton.name) for automaton in network.automata]
+
+    def _fresh(self, name: str) -> str:
+        base = re.sub(r"\W+", "_", name).strip("_") or "x"
+        base = f"_{base}" if base[0].isdigit() else base
+        fresh, number = base, 1
+        while fresh in self._taken:
+            number += 1
+            fresh = f"{base}_{number}"
+        self._taken.add(fresh)
+        return fresh
+
+    def _things(self, names: Sequence[str]) -> list[Thing]:
+        things = []
+        numbered = enumerate(names)
+        for base, members in groupby(numbered, key=lambda item: _INDICES.sub("", item[1])):
+            alike: dict[tuple[int, ...], int] = {}
+            for index, name in members:
+                place = tuple(map(int, _INDICES.findall(name)))
+                if place in alike:  # locals of one name follow each other
+                    things.append(self._thing(base, alike))
+                    alike = {}
+                alike[place] = index
+            things.append(self._thing(base, alike))
+        return things
+
+    def _thing(self, base: str, indices: Mapping[tuple[int, ...], int]) -> Thing:
+        extents = tuple(
+            range(min(places), max(places) + 1) for places in zip(*indices, strict=True)
+        )
+        return Thing(self._fresh(base), min(indices.values()), extents)
+
+    def function(self, function: Function) -> str:
+        """The name of a function; those that it calls are named before."""
+        if id(function) not in self.functions:
+            for statement in statements_in(function.body):
+                for part in (p for e in expressions_of(statement) for p in parts_of(e)):
+                    if isinstance(part, Invoke):
+                        self.function(part.function)
+            self.functions[id(function)] = self._fresh(function.name), function
+        return self.functions[id(function)][0]
+
+    def location(self, automaton: int, place: int) -> str:
+        """The name of a location, unique in its automaton."""
+        names = [location.name for location in self.network.automata[automaton].locations]
+        name = re.sub(r"\W+", "_", names[place]) or f"location_{place}"
+        return f"{name}_" if name in _RESERVED else name
+
+    def clock(self, index: int) -> str:
+        """The text for a clock."""
+        return _holder(self.clocks, index).element(index)
+
+    def variable(self, slot: Slot) -> str:
+        """The text for a variable that the variables may choose, be it one of a function."""
+        if slot.first >= 0:
+            return self.slot(slot, self.variables)
+        first = slot.first + len(self.network.locals)
+        return self.slot(replace(slot, first=first), self.locals)
+
+    def slot(self, slot: Slot, things: Iterable[Thing]) -> str:
+        """The text for a variable or channel that the variables may choose."""
+        thing = _holder(things, slot.first)
+        if not slot.extents:
+            return thing.element(slot.first)
+        places = []
+        for extent, index in zip(slot.extents, slot.indices, strict=True):
+            text = self.expression(index)
+            places.append(f"[{text} - {extent.start}]" if extent.start else f"[{text}]")
+        return thing.name + "".join(places)
+
+    def expression(self, expression: Expression) -> str:
+        """An expression, operands in brackets where they need any."""
+        match expression:
+            case Constant(value):
+                return str(value) if value >= 0 else f"({value})"
+            case VariableValue(slot):
+                return self.variable(slot)
+            case Lookup(values, slot):
+                return _chosen(values, slot.extents, [self.expression(i) for i in slot.indices])
+            case Invoke(function, arguments):
+                given = ", ".join(map(self.expression, arguments))
+                return f"{self.function(function)}({given})"
+            case Fractional("=", (Constant(bits),)):
+                text = repr(number_of(bits))
+                return text if bits >= 0 else f"({text})"
+            case Fractional("=" | "double" | "grid", (operand,)):
+                return self.expression(operand)
+            case Fractional(name, operands):
+                texts = [*map(self.expression, operands)]
+                call = f"{name}({', '.join(texts)})"
+                return call if name in FUNCTIONS else f"({texts[0]} {name} {texts[1]})"
+            case UnaryOperation(UnaryOp.NOT, operand):
+                return f"!({self.expression(operand)})"
+            case UnaryOperation(op, operand):
+                return f"({op}{self.expression(operand)})"
+            case BinaryOperation(op, left, right):
+                sign = _SIGNS.get(op, str(op))
+                return f"({self.expression(left)} {sign} {self.expression(right)})"
+            case Choice(condition, then, otherwise):
+                parts = map(self.expression, (condition, then, otherwise))
+                return "({} ? {} : {})".format(*parts)
+            case InLocation(automaton, place):
+                return f"{self.automata[automaton]}.{self.location(automaton, place)}"
+            case ClockCompare(clock, op, bound):
+                return f"{self.clock(clock)} {op} {self.expression(bound)}"
+            case Deadlock():
+                return "deadlock"
+            case PathFormula(op, body, bound):
+                limit = "" if bound is None else f"[<={bound}]"
+                return f"{op}{limit} {self.expression(body)}"
+            case _:
+                assert_never(expression)
+
+
+def _chosen(values: Sequence[int], extents: Sequence[range], indices: Sequence[str]) -> str:
+    """An element of a constant array, one condition for each index."""
+    if not extents:
+        return str(values[0])
+    size = len(values) // len(extents[0])
+    rows = [values[at : at + size] for at in range(0, len(values), size)]
+    texts = [_chosen(row, extents[1:], indices[1:]) for row in rows]
+    tests = "".join(
+        f"{indices[0]} == {place} ? {text} : "
+        for place, text in zip(extents[0], texts[:-1], strict=False)
+    )
+    return f"({tests}{texts[-1]})"
+
+
+def _holder(things: Iterable[Thing], index: int) -> Thing:
+    """The thing that an index belongs to."""
+    return next(thing for thing in things if thing.first <= index < thing.first + thing.length)
+
+
+def updates_text(names: Names, updates: Iterable[Statement]) -> str:
+    """The updates of an edge in their order."""
+    return ", ".join(line.removesuffix(";") for line in _lines(names, updates))
+
+
+def function_lines(names: Names) -> list[str]:
+    """All functions that were named so far, those that others call first."""
+    return [line for _, function in names.functions.values() for line in _function(names, function)]
+
+
+def type_text(variable: Variable) -> str:
+    """The type of a variable."""
+    if variable.is_real:
+        return "double"
+    return "bool" if variable.is_bool else f"int[{variable.low},{variable.high}]"
+
+
+def _function(names: Names, function: Function) -> Iterator[str]:
+    given = [(f"given_{i}", slot, v) for i, (slot, v) in enumerate(function.parameters)]
+    listed = ", ".join(f"{type_text(variable)} {name}" for name, _, variable in given)
+    yield f"{type_text(function.result[1])} {names.function(function)}({listed}) {{"
+    for thing in _locals(names, function):
+        yield f"  {type_text(names.network.locals[thing.first])} {thing.declarator};"
+    count = len(names.network.locals)
+    for name, slot, _ in given:
+        thing = next(t for t in names.locals if t.first <= slot + count < t.first + t.length)
+        yield f"  {thing.element(slot + count)} = {name};"
+    for line in _lines(names, function.body):
+        yield f"  {line}"
+    yield "}"
+
+
+def _locals(names: Names, function: Function) -> list[Thing]:
+    """The parameters and local variables of a function, arrays as one thing."""
+    slots = {slot for slot, _ in function.parameters}
+    for statement in statements_in(function.body):
+        if isinstance(statement, Assignment):
+            slots.add(statement.slot.first)
+        for part in (p for e in expressions_of(statement) for p in parts_of(e)):
+            if isinstance(part, VariableValue):
+                slots.add(part.slot.first)
+    places = {slot + len(names.network.locals) for slot in slots if slot < 0}
+    return [t for t in names.locals if places & set(range(t.first, t.first + t.length))]
+
+
+def _lines(names: Names, statements: Iterable[Statement]) -> Iterator[str]:
+    for statement in statements:
+        yield from _statement(names, statement)
+
+
+def _statement(names: Names, statement: Statement) -> Iterator[str]:
+    text = names.expression
+    match statement:
+        case Assignment(slot, value):
+            yield f"{names.variable(slot)} = {text(value)};"
+        case Reset(clock, value):
+            yield f"{names.clock(clock)} = {text(value)};"
+        case Perform(call):
+            yield f"{text(call)};"
+        case If(condition, then, otherwise):
+            yield from _nested(names, f"if ({text(condition)}) {{", then)
+            if otherwise:
+                yield from _nested(names, "else {", otherwise)
+        case While(condition, body):
+            yield from _nested(names, f"while ({text(condition)}) {{", body)
+        case Return(value):
+            yield f"return {text(value)};"
+        case Missing():
+            pass
+        case _:
+            assert_never(statement)
+
+
+def _nested(names: Names, head: str, inside: Sequence[Statement]) -> Iterator[str]:
+    yield head
+    for line in _lines(names, inside):
+        yield f"  {line}"
+    yield "}"

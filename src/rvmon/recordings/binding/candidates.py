@@ -1,0 +1,300 @@
+"""What in a recording may feed a signal: its fields, what is calculated of them, their ranges."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+from rvmon.errors import TraceError
+from rvmon.recordings.binding.expression import number, term_of
+from rvmon.recordings.binding.words import (
+    AXES,
+    EMPTY,
+    MODIFIERS,
+    OF_COMMENTS,
+    OF_TOPICS,
+    PLACES,
+    Dimension,
+    dimensions_of,
+    unit_in_name,
+    words_of,
+)
+from rvmon.recordings.messages.by_names import Get, arrays_with_names
+from rvmon.recordings.messages.fields import getter
+from rvmon.recordings.messages.file import MessageFile
+from rvmon.recordings.messages.look import MOST, Looked
+from rvmon.recordings.messages.meaning import UNKNOWN, Meaning, Sort, is_listed, meaning_of
+from rvmon.recordings.messages.topic import Topic
+from rvmon.recordings.values import plain, shorten
+from rvmon.trace.schema import TURNS, Kind
+from rvmon.units import Unit, parse_unit
+
+_ALONG: Mapping[str, Mapping[str, tuple[str, ...]]] = {
+    "m/s": {
+        "x": ("forward", "longitudinal", "surge"),
+        "y": ("lateral", "sideways", "sway"),
+        "z": ("vertical", "climb", "rate", "heave"),
+    },
+    "m/s^2": {
+        "x": ("forward", "longitudinal"),
+        "y": ("lateral", "sideways"),
+        "z": ("vertical",),
+    },
+    "rad/s": {"x": ("roll",), "y": ("pitch",), "z": ("yaw", "turn")},
+}
+"""What people call a quantity along, or about, an axis of a robot."""
+
+ALONG = frozenset(
+    {word for axes in _ALONG.values() for words in axes.values() for word in words}
+    | {"altitude", "height"}  # of positions as ROS has them, with z upwards
+) - {"rate"}
+"""Words that name an axis without its letter."""
+
+_COMMANDS = frozenset({"command", "trajectory", "jog"})
+
+_COMMANDING = re.compile(r"Ackermann|Trajectory|Setpoint|Command|Target|Goal|Jog")
+"""In names of types: their messages say what should be."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """What may feed a name.
+
+    Attributes:
+        topic: of the messages.
+        value: an expression; empty: each message is an occurrence.
+        kind: of the value; `None` of each message.
+        own: words of the value, and those of its meaning.
+        around: words of the topic, of its frames and of the type.
+        meaning: of the field; of what is calculated that of the result.
+        axis: along which it is measured; empty if along none.
+        comment_words: those of a comment on it.
+        implied: words that people have for it along its axis, or of a joint.
+    """
+
+    topic: Topic
+    value: str
+    kind: Kind | None
+    own: tuple[str, ...]
+    around: tuple[str, ...]
+    meaning: Meaning
+    axis: str = ""
+    comment_words: tuple[str, ...] = ()
+    implied: tuple[str, ...] = ()
+
+    @property
+    def is_command(self) -> bool:
+        """Whether it says what should be, and not what is."""
+        words = {*words_of(self.topic.name), *self.own}
+        return not _COMMANDS.isdisjoint(words) or bool(_COMMANDING.search(self.topic.type))
+
+    @property
+    def is_code(self) -> bool:
+        """Whether it is a number that stands for something, of which nobody says for what."""
+        return self.kind is Kind.INT and not self.dimensions
+
+    @property
+    def unit(self) -> Unit | None:
+        """What the messages say, or the name of the field; `None` if neither says one."""
+        if self.meaning.sort is Sort.MEASURED and len(self.meaning.units) == 1:
+            return self.meaning.units[0]
+        named = unit_in_name(self.value) if self.meaning.sort is Sort.OPEN else ""
+        return parse_unit(named) if named else None
+
+    @property
+    def says_unit(self) -> bool:
+        """Whether the messages say its unit, or one of several, or the name of the field does."""
+        return self.meaning.sort is Sort.MEASURED or self.unit is not None
+
+    @property
+    def dimensions(self) -> frozenset[Dimension]:
+        """Of its units; by its words where the messages do not say it; none if nobody knows."""
+        if self.meaning.sort is Sort.MEASURED:
+            return frozenset(unit.dimension for unit in self.meaning.units)
+        if self.unit is not None:
+            return frozenset({self.unit.dimension})
+        return dimensions_of(self.own) or dimensions_of(words_of(self.topic.name))
+
+
+def candidates_of(topic: Topic, named: Looked) -> Iterator[Candidate]:
+    """All that the messages of a topic say or that can be calculated of them."""
+    frames = [word for frame in sorted(named.frames) for word in words_of(frame)]
+    type_words = words_of(topic.type.rpartition("/")[2]) if is_listed(topic.type) else []
+    around = tuple(dict.fromkeys([*words_of(topic.name), *frames, *type_words]))
+    with_names = arrays_with_names(topic)
+    # In flight z points down: what is along it is no height, and no climbing.
+    # Types of MAVLink and of ArduPilot's logs are in capitals.
+    is_down = topic.type.startswith("px4_msgs/") or topic.type.isupper() or "ned" in around
+    for leaf, kind in topic.leaves.items():
+        meaning = meaning_of(leaf, topic)
+        if leaf.startswith("header.") or meaning.sort is Sort.ODD or "covariance" in leaf:
+            continue
+        for value, own, axis in _places(leaf, meaning, named, with_names):
+            sunk = axis == "z" and is_down
+            words = tuple(word for word in own if not (sunk and word in ALONG))
+            implied = () if sunk else _implied(value, own, meaning, axis)
+            comments = tuple(words_of(topic.comments.get(leaf, "")))
+            yield Candidate(topic, value, kind, words, around, meaning, axis, comments, implied)
+        if leaf.endswith("w") and meaning.sort is Sort.QUATERNION and "[" not in leaf:
+            turned = Meaning(Sort.MEASURED, (parse_unit("rad"),))
+            whole = leaf.rpartition(".")[0]
+            # What drives on a plane says of these two that they are 0.
+            for turn in TURNS if topic.type.endswith("/Imu") else TURNS[:1]:
+                called = (turn, "angle")
+                yield Candidate(topic, f"{turn}({whole})", kind, called, around, turned)
+        if leaf.endswith("linear.x") and "[" not in leaf:
+            value = f"hypot({leaf}, {leaf[:-1]}y)"
+            level = ("speed", "ground", "horizontal")
+            yield Candidate(topic, value, kind, level, around, meaning)
+    yield from _of_keys(topic, named, around)
+
+
+def _of_keys(topic: Topic, looked: Looked, around: tuple[str, ...]) -> Iterator[Candidate]:
+    """The values that have a key, which are texts, and may be numbers."""
+    for path, value in looked.entries.items():
+        own = tuple(words_of(" ".join(re.findall(r"\[([^\[\]]+)\]", path))))
+        if number(value) is None:
+            yield Candidate(topic, path, Kind.LABEL, own, around, UNKNOWN)
+        else:
+            yield Candidate(topic, f"number({path})", Kind.REAL, own, around, UNKNOWN)
+
+
+def _places(
+    leaf: str, meaning: Meaning, named: Looked, with_names: Mapping[str, str]
+) -> Iterator[tuple[str, list[str], str]]:
+    """The values that a field has, with words and axis; of an array some elements, or the least."""
+    words = [*words_of(leaf), *(one for word in meaning.words for one in words_of(word))]
+    if "[" not in leaf:
+        last = words_of(leaf.rpartition(".")[2])[-1:]
+        yield leaf, words, last[0] if last and last[0] in AXES else ""
+        return
+    array = leaf.removesuffix("[]")
+    if "[" in array:
+        return
+    if "xyz" in meaning.words and meaning.sort is not Sort.QUATERNION:
+        plain = [word for word in words if word != "xyz"]
+        for place, axis in enumerate(AXES):
+            yield f"{array}[{place}]", [*plain, axis], axis
+    elif "distance" in words and meaning.sort is Sort.MEASURED:
+        yield f"min({array})", ["nearest", *words], ""
+    for name in named.joints.get(with_names.get(array, ""), ()):
+        yield f"{array}[{name}]", [*words, *words_of(name)], ""
+
+
+def _implied(value: str, own: Iterable[str], meaning: Meaning, axis: str) -> tuple[str, ...]:
+    if "position" in own and value.endswith("]"):
+        return ("extension", "angle")
+    dimensions = [unit.dimension for unit in meaning.units[:1]]
+    found = (own for unit, own in _ALONG.items() if parse_unit(unit).dimension in dimensions)
+    return next(found, {}).get(axis, ())
+
+
+def events_of(topics: Mapping[str, Topic]) -> Iterator[Candidate]:
+    """What may be an event: a topic whose only truth value is true, or each of its messages."""
+    for topic in topics.values():
+        flags = [leaf for leaf, kind in topic.leaves.items() if kind is Kind.BOOL]
+        around, meaning = tuple(words_of(topic.name)), Meaning(Sort.CODE)
+        if len(flags) == 1 and "[" not in flags[0]:
+            own = tuple(words_of(flags[0]))
+            yield Candidate(topic, flags[0], Kind.BOOL, own, around, meaning)
+        elif not topic.fault:
+            yield Candidate(topic, "", None, (), around, meaning)
+
+
+def foreign_words(candidate: Candidate) -> list[str]:
+    """The words of a candidate that say something, without those of the meaning alone."""
+    field = words_of(candidate.value)
+    written = [*words_of(candidate.topic.name), *field]
+    plain = {*EMPTY, *AXES, "hypot", candidate.axis}
+    if {*field} <= PLACES:
+        plain -= PLACES  # it is what the field says, and no place of it
+    return [word for word in dict.fromkeys(written) if word not in plain]
+
+
+def modifiers_of(candidate: Candidate) -> set[str]:
+    """The words that make another quantity of it: of its field, of a number alone of its topic."""
+    is_alone = candidate.meaning.sort is Sort.OPEN and candidate.value == "data"
+    words = words_of(candidate.topic.name)
+    found = {word for word in words if word in (MODIFIERS if is_alone else OF_TOPICS)}
+    found |= {word for word in candidate.comment_words if word in OF_COMMENTS}
+    return found | {word for word in candidate.own if word in MODIFIERS}
+
+
+_FIRST = 3
+"""Values that are shown."""
+
+
+@dataclass(slots=True)
+class Range:
+    """What a value was.
+
+    Attributes:
+        count: of messages that had it.
+        first: the first values, each once.
+        low: the least number; `None` if there was none.
+        high: the greatest.
+    """
+
+    count: int = 0
+    first: list[Any] = field(default_factory=list)
+    low: float | None = None
+    high: float | None = None
+
+    def add(self, value: Any) -> None:
+        """Take the value of a message."""
+        if value is None or value != value:
+            return
+        self.count += 1
+        if value not in self.first and len(self.first) < _FIRST:
+            self.first.append(value)
+        if isinstance(value, int | float) and not isinstance(value, bool):
+            self.low = value if self.low is None else min(self.low, value)
+            self.high = value if self.high is None else max(self.high, value)
+
+    @property
+    def is_constant(self) -> bool:
+        """Whether it is a number that was always the same."""
+        return self.low is not None and self.low == self.high
+
+    def __str__(self) -> str:
+        if not self.count:
+            return "no value"
+        first = ", ".join(_shown(value) for value in self.first)
+        if self.low is None or self.high is None:
+            return f"first {first}"
+        if self.low == self.high:
+            return f"always {_shown(self.low)}"
+        return f"{_shown(self.low)} … {_shown(self.high)}, first {first}"
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, int | float):
+        return f"{value + 0:.6g}"  # without the sign of -0
+    return shorten(str(value))
+
+
+def ranges_of(
+    source: MessageFile, candidates: Iterable[Candidate]
+) -> Mapping[tuple[str, str], Range]:
+    """By topic and value, what the values of these were."""
+    ranges: dict[tuple[str, str], Range] = {}
+    readers: dict[str, list[tuple[Range, Get]]] = defaultdict(list)
+    for candidate in candidates:
+        key = candidate.topic.name, candidate.value
+        if candidate.value and key not in ranges:
+            ranges[key] = Range()
+            readers[candidate.topic.name].append((ranges[key], getter(term_of(candidate.value))))
+    with suppress(TraceError):
+        for number, (topic, _, content) in enumerate(source.read(set(readers))):
+            if number == MOST:
+                break
+            for kept, read in readers[topic]:
+                with suppress(KeyError, TraceError):
+                    kept.add(plain(read(content)))
+    return ranges

@@ -1,0 +1,288 @@
+"""Columns of arrays, of Arrow and of values of Python as cells."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rvmon.recordings.batch import (
+    NO,
+    NO_UPDATE,
+    UNKNOWN,
+    YES,
+    Batch,
+    Cells,
+    NotPlainError,
+    Occurrences,
+)
+from rvmon.recordings.csv_rows import Column, Layout
+from rvmon.recordings.values import as_declared, fits, plain
+from rvmon.trace.schema import Gaps, Kind
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_EXACT = 1 << 53
+"""Floats up to here are the whole numbers that they stand for."""
+
+_WIDEST = 8
+"""Bytes of the widest numbers that are numbers of Python, too."""
+
+_TYPES = {Kind.BOOL: np.bool_, Kind.INT: np.int64, Kind.REAL: np.float64, Kind.LABEL: np.int32}
+
+
+def batch_of(
+    times: NDArray[np.int64],
+    layout: Layout,
+    columns: Mapping[Column, Cells],
+    first: int = 0,
+    lines: NDArray[np.int64] | None = None,
+    *,
+    is_last: bool = False,
+) -> Batch:
+    """Rows of columns, read as rows are: see `rvmon.recordings.csv_rows.row_values`.
+
+    `first`, `lines` and `is_last` are those of `Batch`.
+    """
+    signals = {signal.name: columns[signal] for signal in layout.signals}
+    payloads: dict[str, dict[str, Cells]] = {}
+    own: dict[str, Cells] = {}
+    for column in layout.events:
+        if column.field is None:
+            own[column.name] = columns[column]
+            payloads.setdefault(column.name, {})
+        else:
+            payloads.setdefault(column.name, {})[column.field] = columns[column]
+    events = {}
+    for name, fields in payloads.items():
+        says = _occurrences(own.get(name), fields.values(), len(times))
+        heard = {field: _where(cells, says != NO) for field, cells in fields.items()}
+        events[name] = Occurrences(says, heard)
+    return Batch(times, signals, events, first, lines, is_last)
+
+
+def _where(cells: Cells, heard: NDArray[np.bool_]) -> Cells:
+    """The same, but that rows say nothing where they are not heard."""
+    if heard.all():
+        return cells
+    says = np.uint8(YES) if cells.says is None else cells.says
+    return replace(cells, says=np.where(heard, says, np.uint8(NO_UPDATE)))
+
+
+def _occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDArray[np.uint8]:
+    """Where an event occurs: with a payload unless its own cell says false, else as that says."""
+    if own is None:
+        says = np.full(count, NO_UPDATE, np.uint8)
+    else:
+        says = np.where(own.values, np.uint8(YES), np.uint8(NO))
+        if own.says is not None:
+            says = np.where(own.says == YES, says, own.says)
+    for field in fields:
+        given = np.True_ if field.says is None else field.says != NO_UPDATE
+        says = np.where(given & (says != NO), np.uint8(YES), says)
+    return says
+
+
+def cells_of_array(
+    values: NDArray[Any], given: NDArray[np.bool_] | None, kind: Kind, gaps: Gaps
+) -> Cells:
+    """An array as a column.
+
+    Args:
+        values: of truth values, integers or floats.
+        given: bool[n], where there is a value; `None`: everywhere.
+        kind: what is declared.
+        gaps: values that stand for no update.
+
+    Raises:
+        NotPlainError: it holds other values than were declared.
+    """
+    found = values.dtype.kind
+    if found not in "bif" or values.dtype.itemsize > _WIDEST or kind is Kind.LABEL:
+        raise NotPlainError("a column is no array of numbers or truth values")
+    if gaps:
+        stays = kept(values, gaps)
+        if not stays.all():
+            given = stays if given is None else given & stays
+    says = None if given is None else np.where(given, np.uint8(YES), np.uint8(NO_UPDATE))
+    if (kind, found) in ((Kind.BOOL, "b"), (Kind.INT, "i")):
+        return Cells(values.astype(_TYPES[kind], copy=False), says)
+    if kind is Kind.REAL and found in "if":
+        return Cells(values.astype(np.float64, copy=False), says)
+    if kind is Kind.REAL or found == "b":
+        raise NotPlainError("a column holds other values than were declared")
+    known = np.True_ if found != "f" else values == values
+    looked_at = known if given is None else known & given
+    whole = np.where(looked_at, values, 0)
+    least, most = (0, 1) if kind is Kind.BOOL else (-_EXACT, _EXACT)
+    is_within = ((least <= whole) & (whole <= most)).all()  # NumPy warns of a cast of what is not
+    if not is_within or ((made := whole.astype(np.int64)) != whole).any():
+        raise NotPlainError("a column holds other values than were declared")
+    if not known.all():
+        says = np.full(len(values), YES, np.uint8) if says is None else says
+        says[~known & (says == YES)] = UNKNOWN
+    return Cells(made.astype(_TYPES[kind], copy=False), says)
+
+
+def kept(values: NDArray[Any], gaps: Gaps) -> NDArray[np.bool_]:
+    """Where a value does not stand for no update."""
+    found = np.ones(len(values), bool)
+    if gaps.nan and values.dtype.kind == "f":
+        found &= values == values
+    value = gaps.no_update
+    if isinstance(value, int | float) and isinstance(value, bool) == (values.dtype.kind == "b"):
+        found &= values != value
+    return found
+
+
+def cells_of_labels(
+    places: NDArray[Any], given: NDArray[np.bool_] | None, labels: Sequence[Any], gaps: Gaps
+) -> Cells:
+    """Places of labels as a column.
+
+    Raises:
+        NotPlainError: what they stand for is no text.
+    """
+    if not all(isinstance(label, str) for label in labels):
+        raise NotPlainError("a label is no text")
+    if gaps.no_update in labels:
+        kept = places != list(labels).index(gaps.no_update)
+        given = kept if given is None else given & kept
+    says = None if given is None else np.where(given, np.uint8(YES), np.uint8(NO_UPDATE))
+    return Cells(places.astype(np.int32, copy=False), says, tuple(labels))
+
+
+def cells_of_values(cells: Sequence[Any], kind: Kind, gaps: Gaps, nothing: object = None) -> Cells:
+    """Values of Python as a column.
+
+    Args:
+        cells: values as samples have them.
+        kind: what is declared.
+        gaps: values that stand for no update.
+        nothing: stands for no update, too.
+
+    Raises:
+        NotPlainError: one of them is none of its kind.
+    """
+    made = None if gaps else _cells_alike(cells, kind, nothing)
+    if made is not None:
+        return made
+    labels: dict[str, int] = {}
+    values: list[Any] = []
+    says: list[int] = []
+    for cell in cells:
+        value = plain(cell)
+        if value is nothing or gaps.holds(value):
+            said, value = NO_UPDATE, 0
+        else:
+            value = as_declared(value, kind)
+            if not fits(value, kind):
+                raise NotPlainError("a column holds other values than were declared")
+            said = YES if value is not None else UNKNOWN
+            if kind is Kind.LABEL:
+                value = labels.setdefault(value, len(labels))
+        values.append(value or 0)
+        says.append(said)
+    every = says.count(YES) == len(says)
+    return Cells(
+        _array(values, kind),
+        None if every else np.array(says, np.uint8),
+        (tuple(labels) or ("",)) if kind is Kind.LABEL else None,
+    )
+
+
+_ALIKE: Mapping[Kind, frozenset[type]] = {
+    Kind.BOOL: frozenset({bool}),
+    Kind.INT: frozenset({int}),
+    Kind.REAL: frozenset({float, int}),
+    Kind.LABEL: frozenset({str}),
+}
+
+
+def _cells_alike(cells: Sequence[Any], kind: Kind, nothing: object) -> Cells | None:
+    """Values of which all are of the kind's own types, or nothing; `None`: they are not."""
+    types = set(map(type, cells))
+    if types <= _ALIKE[kind]:
+        if kind is not Kind.LABEL:
+            return Cells(_array(cells, kind))
+        labels = {label: place for place, label in enumerate(dict.fromkeys(cells))}
+        places = np.fromiter(map(labels.__getitem__, cells), np.int32, len(cells))
+        return Cells(places, None, tuple(labels) or ("",))
+    if type(nothing) not in types or not types - {type(nothing)} <= _ALIKE[kind]:
+        return None
+    given = np.fromiter((cell is not nothing for cell in cells), bool, len(cells))
+    some = _cells_alike([cell for cell in cells if cell is not nothing], kind, nothing)
+    if some is None:
+        return None
+    values = np.zeros(len(cells), some.values.dtype)
+    values[given] = some.values
+    return Cells(values, np.where(given, np.uint8(YES), np.uint8(NO_UPDATE)), some.labels)
+
+
+def _array(values: Sequence[Any], kind: Kind) -> NDArray[Any]:
+    try:
+        return np.array(values, _TYPES[kind])
+    except OverflowError:
+        raise NotPlainError("a number is too large") from None
+
+
+def cells_of_arrow(column: Any, kind: Kind, gaps: Gaps) -> Cells:
+    """An array of Arrow as a column; null says nothing.
+
+    Raises:
+        NotPlainError: it holds other values than were declared.
+    """
+    import pyarrow
+    from pyarrow import types
+
+    if hasattr(column, "combine_chunks") and hasattr(column, "num_chunks"):
+        column = column.combine_chunks()
+        if isinstance(column, pyarrow.ChunkedArray):
+            column = pyarrow.concat_arrays(column.chunks) if column.num_chunks else column
+    given = np.asarray(column.is_valid()) if column.null_count else None
+    type_ = column.type
+    if kind is Kind.LABEL:
+        if not types.is_dictionary(type_):
+            if not (types.is_string(type_) or types.is_large_string(type_)):
+                raise NotPlainError("a column holds other values than were declared")
+            column = column.dictionary_encode()
+        places = column.indices.fill_null(0) if given is not None else column.indices
+        labels = column.dictionary.to_pylist() or [""]
+        return cells_of_labels(places.to_numpy(zero_copy_only=False), given, labels, gaps)
+    if not (types.is_boolean(type_) or types.is_integer(type_) or types.is_floating(type_)):
+        raise NotPlainError("a column holds other values than were declared")
+    if given is not None:
+        column = column.fill_null(False if types.is_boolean(type_) else 0)
+    return cells_of_array(column.to_numpy(zero_copy_only=False), given, kind, gaps)
+
+
+def cells_of_column(name: str, column: Any, kind: Kind, gaps: Gaps) -> Cells:
+    """A column of a table in memory; see `rvmon.recordings.tables.columns_by_name`.
+
+    Raises:
+        NotPlainError: it holds other values than were declared.
+        TraceError: it is no column.
+    """
+    from rvmon.recordings.tables import cells_of
+
+    given = None
+    values = column
+    if hasattr(column, "combine_chunks") or hasattr(column, "to_pylist"):
+        return cells_of_arrow(column, kind, gaps)
+    if type(column) is np.ma.MaskedArray:
+        given = ~np.ma.getmaskarray(column) if np.ma.is_masked(column) else None
+        values = column.data
+    elif callable(getattr(column, "to_arrow", None)) and callable(
+        getattr(column, "null_count", None)
+    ):  # of polars
+        if kind is not Kind.LABEL and not column.null_count():
+            values = column.to_numpy()
+    elif hasattr(column, "isna") and type(column.dtype).__module__.startswith("numpy"):
+        values = column.to_numpy()  # of pandas
+    is_array = type(values) in (np.ndarray, np.memmap) and values.ndim == 1
+    if is_array and kind is not Kind.LABEL and values.dtype.kind in "bif":
+        return cells_of_array(values, given, kind, gaps)
+    return cells_of_values(cells_of(name, column), kind, gaps)

@@ -1,0 +1,175 @@
+"""A piece of a recording as a recording of the same format; of Parquet here."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from rvmon.errors import RvmonError, TraceError, writing
+from rvmon.files import beside
+from rvmon.recordings.clipping.piece import Copied, Piece, stamp_number, stamp_text
+from rvmon.recordings.csv_rows import Layout
+from rvmon.recordings.messages.forms import FORMATS, MESSAGE_FORMATS
+from rvmon.recordings.parquet import (
+    numbers_of_durations,
+    parquet_batches,
+    parquet_file,
+    parquet_layout,
+)
+from rvmon.recordings.places import endings_of, local_path
+from rvmon.recordings.recording import JOINED, format_of
+from rvmon.recordings.tables import arrow_cells
+from rvmon.trace.schema import Stamps
+from rvmon.trace.stamps import ticks_of_stamp
+from rvmon.trace.time import format_stamp
+
+CLIPPED = {
+    "csv": "CSV",
+    "jsonl": "JSON lines",
+    "parquet": "Parquet",
+    "mcap": "MCAP",
+    "ros1": "bags of ROS 1",
+    "ros2": "bags of ROS 2",
+}
+"""The formats that pieces are cut out of, and what they are called."""
+
+
+def refuse_place(path: str, out: str | None) -> None:
+    """Say, before any work is done for it, that a piece of a recording cannot go to a place.
+
+    Args:
+        path: of the recording.
+        out: the place; `None`: one that suits it.
+
+    Raises:
+        RvmonError: no piece can be cut out of the recording's format, or the place has the ending
+            of another, or is a folder that is there.
+        TraceError: the recording has no known format.
+    """
+    form = format_of(path)
+    if path == "-":
+        raise RvmonError("standard input can be read once only: save the recording first")
+    if form in ("tables", JOINED):
+        raise RvmonError(f"{path} is several files: clip each of them, by --from and --to")
+    if form not in CLIPPED:
+        listed = ", ".join(CLIPPED.values())
+        raise RvmonError(f"{path}: no piece can be cut out of this format, as out of {listed}")
+    if out is None:
+        return
+    if form == "ros2" and local_path(path).is_dir():
+        if os.path.lexists(out):
+            raise RvmonError(f"cannot write {out}: it is there, and a bag is a new folder")
+        return
+    ending = endings_of(out)[0]
+    if FORMATS.get(ending) != form:
+        fitting = " or ".join(one for one, other in FORMATS.items() if other == form)
+        raise RvmonError(f"cannot write {out}: a piece of {path} ends in {fitting}")
+    if form not in ("csv", "jsonl") and endings_of(out)[1]:
+        raise RvmonError(f"cannot write {out}: only text is packed")
+
+
+def clip(path: str, piece: Piece, out: str) -> Copied:
+    """Write a piece of a recording, whole or not at all.
+
+    Args:
+        path: of the recording; its copy, where it is an address.
+        piece: what is cut out.
+        out: the new file, or folder of ROS 2; see `refuse_place`.
+
+    Returns:
+        What of it is in the piece.
+
+    Raises:
+        RvmonError: a package is not installed, or the piece cannot be written.
+        TraceError: the recording cannot be read up to the end of the piece, or has nothing in it.
+    """
+    with writing(out), beside(out) as made:
+        try:
+            copied = _written(path, piece, made)
+        except TraceError as error:
+            message = str(error)
+            raise TraceError(message if path in message else f"{path}: {message}") from None
+        if not copied.count:
+            between = f"{format_stamp(piece.start)} and {format_stamp(piece.stop)}"
+            raise TraceError(f"{path}: there is nothing between {between}")
+    return copied
+
+
+def _written(path: str, piece: Piece, out: Path) -> Copied:
+    form = format_of(path)
+    if form in MESSAGE_FORMATS.values():
+        from rvmon.recordings.clipping.messages import clip_messages
+
+        return clip_messages(path, form, piece, out)
+    if form == "parquet":
+        return clip_parquet(local_path(path), piece, out)
+    from rvmon.recordings.clipping.piece import clip_text
+
+    return clip_text(path, piece, out, is_csv=form == "csv")
+
+
+def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
+    """Write a piece of a file, and report what is in it.
+
+    Raises:
+        RvmonError: there is no pyarrow.
+        TraceError: the file cannot be read.
+        OSError: a file cannot be read or written.
+    """
+    schema = parquet_file(path).schema_arrow
+    if piece.held:  # the row that brings values along lacks others
+        for place, field in enumerate(schema):
+            schema = schema.set(place, field.with_nullable(True))
+    import pyarrow
+    from pyarrow import parquet
+
+    layout = parquet_layout(path, piece.schema)
+    copied = Copied()
+    with parquet.ParquetWriter(out, schema) as writer:
+        if piece.held:
+            writer.write_table(_start(piece, layout, schema))
+        for arrays in parquet_batches(path, list(schema.names)):
+            stamps = arrow_cells(numbers_of_durations(arrays[layout.time]))
+            instants = [ticks_of_stamp(stamp, layout.stamps) for stamp in stamps]
+            kept = [t for t in instants if piece.holds(t)]
+            if kept:
+                mask = pyarrow.array(list(map(piece.holds, instants)))
+                batch = pyarrow.RecordBatch.from_arrays(arrays, schema=schema)
+                writer.write_batch(batch.filter(mask))
+                copied.note(*kept)
+            if piece.ordered and instants and instants[-1] > piece.stop:
+                break
+    return copied
+
+
+def _start(piece: Piece, layout: Layout, schema: Any) -> Any:
+    """A row of the values that are brought along."""
+    import pyarrow
+
+    cells: list[Any] = [None] * len(layout.header)
+    for column in layout.signals:
+        cells[column.index] = piece.held.get(column.name)
+    arrays = [
+        pyarrow.nulls(1, field.type) if cell is None else pyarrow.array([cell]).cast(field.type)
+        for cell, field in zip(cells, schema, strict=True)
+    ]
+    arrays[layout.time] = _stamp(piece.start, layout.stamps, schema.field(layout.time).type)
+    return pyarrow.table(arrays, schema=schema)
+
+
+def _stamp(ticks: int, stamps: Stamps, kind: Any) -> Any:
+    """An instant, or the nearest one before it that the column can hold."""
+    import pyarrow
+
+    if pyarrow.types.is_timestamp(kind):
+        exact = pyarrow.array([ticks], pyarrow.timestamp("ns", kind.tz))
+        return exact.cast(kind, safe=False)
+    if pyarrow.types.is_duration(kind):
+        return pyarrow.array([ticks], pyarrow.duration("ns")).cast(kind, safe=False)
+    if stamps.unit == "iso":
+        return pyarrow.array([stamp_text(ticks, stamps)]).cast(kind)
+    number = stamp_number(ticks, stamps)
+    if pyarrow.types.is_integer(kind):
+        number = int(number // 1)
+    return pyarrow.array([number]).cast(kind)

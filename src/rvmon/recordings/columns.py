@@ -1,0 +1,294 @@
+"""Columns in memory as samples, row by row."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rvmon.errors import TraceError
+from rvmon.recordings.batch import Batch, NotPlainError
+from rvmon.recordings.cells import batch_of, cells_of_column
+from rvmon.recordings.csv_rows import Layout, layout_of, row_values
+from rvmon.recordings.naming import stamps_among
+from rvmon.recordings.rows import LOOKED_AT, Row, Rows, doubt_unit
+from rvmon.recordings.tables import cells_of, is_of_dates, is_of_durations, nanoseconds_of
+from rvmon.recordings.values import plain
+from rvmon.trace.sample import Health, Sample
+from rvmon.trace.schema import NO_GAPS, Kind, Schema, Stamps
+from rvmon.trace.stamps import ticks_of_stamp
+from rvmon.trace.time import TICKS_PER_UNIT, TIME_LIMIT, whole_ticks
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+class TableRecording:
+    """A table in memory as a recording, row by row.
+
+    Attributes:
+        columns: by name, see `rvmon.recordings.tables.columns_by_name`.
+        layout: what they are.
+        names: declared names that have a source.
+        end: `None`: it ends with its last row.
+        ignored: the columns that stand for nothing.
+        rows: what makes samples of it.
+
+    >>> from rvmon.trace.schema import Kind
+    >>> table = TableRecording({"t": [0, 1], "v": [2, None]}, Schema({"v": Kind.REAL}, {}))
+    >>> [sample.values for sample in table]
+    [{'v': 2.0}, {}]
+    """
+
+    end: int | None = None
+    path = "a table"
+    outages: tuple[()] = ()
+
+    def __init__(self, columns: Mapping[str, Any], schema: Schema, *, ordered: bool = True) -> None:
+        """Look at the names of columns.
+
+        Args:
+            columns: by name; undeclared ones are passed over, and so is a signal or event by the
+                name of the time column, as in files.
+            schema: the declared names, and how the table gives them.
+            ordered: whether a stamp before the one above it is an error. Under `max delay` rows are
+                put in order instead.
+
+        Raises:
+            TraceError: there is no such time column.
+        """
+        self._schema = schema
+        self.columns = columns
+        header = list(columns)
+        stamps = stamps_among(header, schema)
+        given = columns[stamps.column]
+        stamps = stamps_of_column(stamps, given)
+        if is_of_durations(given):
+            self.columns = {**columns, stamps.column: nanoseconds_of(given)}
+        self.layout: Layout = layout_of(header, stamps, schema)
+        self.names: frozenset[str] | None = self.layout.names
+        self.ignored = Counter(self.layout.ignored)
+        self.rows = Rows(schema, "row", ordered=ordered)
+
+    def pieces(self) -> Iterator[Batch | Sample]:
+        """The table in order: its rows as columns, if they hold what is declared, else samples.
+
+        Raises:
+            TraceError: as going through it does.
+        """
+        return self.rows.pieces(self._batches()) if self.rows.ordered else iter(self)
+
+    def _batches(self) -> Iterator[Batch | Iterator[Row]]:
+        try:
+            yield batch_of_table(self.columns, self.layout)
+        except NotPlainError:
+            yield self._read()
+
+    def __iter__(self) -> Iterator[Sample]:
+        """Samples in order of time, equal stamps merged.
+
+        Raises:
+            TraceError: a column is none, they differ in length, or a row is wrong.
+        """
+        return self.rows.samples(self._read())
+
+    def _read(self) -> Iterator[Row]:
+        """Number from 0, ticks and values of each row."""
+        layout = self.layout
+        cells = {name: cells_of(name, self.columns[name]) for name in layout.names_read}
+        lengths = {name: len(column) for name, column in cells.items()}
+        if len(set(lengths.values())) > 1:
+            listed = ", ".join(f"`{name}` {length}" for name, length in lengths.items())
+            raise TraceError(f"columns differ in length: {listed}")
+        yield from rows_of_cells(cells.values(), layout, 0)
+
+    @property
+    def unread(self) -> list[str]:
+        """The columns that stand for nothing."""
+        return list(self.ignored)
+
+    def parts(self) -> Iterator[Batch | Sample]:
+        """As `pieces`."""
+        return self.pieces()
+
+    def doubts(self) -> list[Health]:
+        """What is odd about its stamps."""
+        return self.stamp_doubts()
+
+    def stamp_doubts(self) -> list[Health]:
+        """Whether its first stamps look like milliseconds; of a table that was read."""
+        stamps = self.layout.stamps
+        if stamps.is_stated or stamps.unit != "s":
+            return []
+        if self.rows.first:
+            return doubt_unit(self.rows.first, stamps)
+        column = self.columns[stamps.column]
+        first = cells_of(stamps.column, getattr(column, "iloc", column)[:LOOKED_AT])
+        return doubt_unit([_ticks(cell, stamps, row) for row, cell in enumerate(first)], stamps)
+
+
+def stamps_of_column(stamps: Stamps, column: Any) -> Stamps:
+    """The stamps of a column as its type says them: of dates, unless a unit is stated; durations.
+
+    Args:
+        stamps: as its name, or a person, says them.
+        column: an array, or what else has a type of its cells.
+    """
+    if not stamps.is_stated and is_of_dates(column):
+        return Stamps(stamps.column, "iso", is_stated=True)
+    if is_of_durations(column):
+        return Stamps(stamps.column, "ns", is_stated=True)
+    return stamps
+
+
+def rows_of_cells(columns: Iterable[Sequence[Any]], layout: Layout, first: int) -> Iterator[Row]:
+    """Rows of columns of values, those of stamps first; `None` is absent.
+
+    Raises:
+        TraceError: a stamp is none; rows are numbered from `first` on.
+    """
+    for row, (stamp, *cells) in enumerate(zip(*columns, strict=True), first):
+        found = zip(layout.columns, map(plain, cells), strict=True)
+        given = ((column, cell) for column, cell in found if cell is not None)
+        yield row, _ticks(stamp, layout.stamps, row), row_values(given, layout.gaps)
+
+
+def _ticks(stamp: Any, stamps: Stamps, row: int) -> int:
+    """The instant of a row; ticks may be held as floats that are whole."""
+    whole = stamps.unit == "ns" and isinstance(stamp, float) and stamp.is_integer()
+    try:
+        return ticks_of_stamp(int(stamp) if whole else stamp, stamps)
+    except TraceError as error:
+        raise TraceError(f"row {row}: {error}") from None
+
+
+def ticks_of_column(values: NDArray[Any], stamps: Stamps) -> NDArray[np.int64]:
+    """A column of stamps as ticks, each rounded once as `ticks_of_stamp` does.
+
+    Args:
+        values: int[n] or float[n]; of ticks themselves, int[n].
+        stamps: says their unit, not `iso`.
+
+    Raises:
+        TraceError: a number is not finite or out of range.
+    """
+    if not len(values):
+        return np.empty(0, np.int64)
+    if stamps.unit == "ns":
+        return ticks_in_range(values)
+    scale = TICKS_PER_UNIT[stamps.unit]
+    most = TIME_LIMIT // scale
+    if values.dtype.kind == "i":
+        _refuse(values, most, stamps)
+        return values.astype(np.int64) * scale
+    ticks = np.empty(len(values), np.int64)
+    for start in range(0, len(values), _PIECE):
+        piece = slice(start, start + _PIECE)
+        ticks[piece] = _rounded(values[piece].astype(np.float64, copy=False), stamps, scale, most)
+    return ticks_in_range(ticks)
+
+
+_PIECE = 1 << 14
+"""Instants that are worked out together, near the processor."""
+
+
+def _rounded(
+    values: NDArray[np.float64], stamps: Stamps, scale: int, most: int
+) -> NDArray[np.int64]:
+    """Instants in units of so many ticks as ticks."""
+    _refuse(values, most + 1, stamps)
+    whole = np.trunc(values)
+    parts = values - whole
+    found = np.rint(parts * float(scale))
+    sizes = np.spacing(np.abs(values))
+    if (sizes * scale > 1).any():
+        found = np.where(sizes * scale > 1, _of_fewest_digits(parts, sizes / 2, scale), found)
+    ticks = whole.astype(np.int64) * scale + found.astype(np.int64)
+    unsure = np.abs(np.abs(parts * scale - np.trunc(parts * scale)) - 0.5) < 1e-5
+    for row in np.flatnonzero(unsure & (sizes * scale <= 1)):
+        ticks[row] = ticks_of_stamp(float(values[row]), stamps)
+    return ticks
+
+
+def _of_fewest_digits(
+    parts: NDArray[np.float64], halves: NDArray[np.float64], scale: int
+) -> NDArray[np.float64]:
+    """What stands behind the point as ticks: as many digits as tell floats apart, see `exact`."""
+    power, found = float(scale), np.rint(parts * float(scale))
+    while power > 1:
+        power /= 10
+        fewer = np.rint(parts * power)
+        fits = np.abs(fewer - parts * power) <= halves * power
+        if not fits.any():
+            break
+        found = np.where(fits, fewer * (scale / power), found)
+    return found
+
+
+def ticks_in_range(ticks: NDArray[Any]) -> NDArray[np.int64]:
+    """Integers as ticks.
+
+    Only the ends are looked at: if these are in range, and whoever judges the column finds that it
+    ascends, all are. To read all of a long column costs as much as to judge it.
+
+    Raises:
+        TraceError: the first or the last is out of range.
+    """
+    made = ticks.astype(np.int64, copy=False)
+    for end in made[:: max(len(made) - 1, 1)].tolist():
+        whole_ticks(end)
+    return made
+
+
+def _refuse(values: NDArray[Any], most: int, stamps: Stamps) -> None:
+    """Refuse stamps beyond those bounds, and what is no number."""
+    if not -most <= values.min() <= values.max() <= most:
+        fine = (values >= -most) & (values <= most)
+        ticks_of_stamp(values[~fine][0].item(), stamps)
+
+
+def batch_of_table(columns: Mapping[str, Any], layout: Layout) -> Batch:
+    """A table as one batch.
+
+    Raises:
+        NotPlainError: a column holds something else, or stamps are dates; who reads rows says what.
+    """
+    try:
+        times = instants(columns[layout.stamps.column], layout.stamps)
+        cells = {
+            column: cells_of_column(
+                column.called, columns[layout.header[column.index]], column.kind, layout.gaps
+            )
+            for column in layout.columns
+        }
+    except TraceError:
+        raise NotPlainError("a column is none") from None
+    if any(len(cell.values) != len(times) for cell in cells.values()):
+        raise NotPlainError("its columns are not equally long")
+    return batch_of(times, layout, cells)
+
+
+def instants(column: Any, stamps: Stamps) -> NDArray[np.int64]:
+    """A column of stamps as ticks.
+
+    Raises:
+        NotPlainError: these are no plain numbers.
+        TraceError: one is not finite or out of range.
+    """
+    if stamps.unit == "iso":
+        raise NotPlainError("its stamps are dates")
+    kind = Kind.INT if stamps.unit == "ns" else Kind.REAL
+    if kind is Kind.REAL and _is_whole(column):
+        kind = Kind.INT
+    made = cells_of_column(stamps.column, column, kind, NO_GAPS)
+    if made.says is not None:
+        raise NotPlainError("its stamps are no plain numbers")
+    return ticks_of_column(made.values, stamps)
+
+
+def _is_whole(column: Any) -> bool:
+    """Whether a column is of whole numbers, which doubles may not hold."""
+    kind = getattr(column, "type", getattr(column, "dtype", ""))
+    return str(kind).lower().startswith(("int", "uint"))

@@ -1,0 +1,246 @@
+"""CSV text as columns, in blocks: what is odd is read by itself, and no more than that."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Callable, Generator, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rvmon.errors import TraceError
+from rvmon.native import extension
+from rvmon.native.sources import CSV_FOLDER
+from rvmon.recordings.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells
+from rvmon.recordings.cells import batch_of, cells_of_labels, kept
+from rvmon.recordings.csv_rows import Column, Layout, csv_samples, split_lines, unended
+from rvmon.recordings.csv_text import CsvText
+from rvmon.recordings.places import bounded_lines, is_short_of_memory
+from rvmon.recordings.rows import Row
+from rvmon.recordings.values import as_declared, scalar_of_text
+from rvmon.trace.schema import Kind
+from rvmon.trace.stamps import ticks_of_cell
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rvmon.native import _csv
+
+    read = _csv.read
+else:
+    read = extension("_csv", CSV_FOLDER, "the reader of CSV").read
+
+_ALL, _ROW = 0, 2
+"""That a call ended with the text, or at a row that is odd; else with its room."""
+
+_KINDS = {Kind.BOOL: 0, Kind.INT: 1, Kind.REAL: 2, Kind.LABEL: 3}
+
+_STAMPS = {"iso": 4, "s": 14, "ms": 11, "us": 8, "ns": 5}
+"""By their unit, as `csv.h` numbers them."""
+
+_ODD = 4096
+"""Cells of a call that are read one by one."""
+
+_LABELS = 2048
+"""Labels of a call that are told apart, at first: where there are more, of a later call more."""
+
+_MOST_LABELS = 1 << 16
+"""From here on not."""
+
+
+def csv_batches(
+    text: CsvText[Found],
+    layout: Layout,
+    ignoring: frozenset[str],
+    lose: Callable[[frozenset[str]], object],
+) -> Iterator[Batch | Iterator[Row]]:
+    """The rows of a text, in order.
+
+    Args:
+        text: of which the header was taken.
+        layout: what that says.
+        ignoring: the signals that take no unknown value.
+        lose: is told the names that are unknown as the last line has no end.
+
+    Raises:
+        TraceError: with the line's number; the rows above it have been given out.
+        UnicodeDecodeError: it is no text.
+    """
+    reader = _Reader(layout)
+    if not (text.is_whole or is_short_of_memory()):  # each thread reserves some
+        text.read_ahead(reader.read)
+    try:
+        while True:
+            ended, end = yield from reader.batch(text)
+            if ended == _ROW:
+                before = text.line
+                row = bounded_lines(io.StringIO(text.cut(end), newline=""))
+                yield csv_samples(split_lines(row, before), layout)
+            elif ended == _ALL and not text.read_on():
+                break
+    finally:
+        text.close()
+    if text.start < len(text.rest):
+        before = text.line
+        tail = bounded_lines(io.StringIO(text.cut(len(text.rest)), newline=""))
+        for line, t, values, lost in unended(split_lines(tail, before), layout, ignoring):
+            lose(lost)
+            yield iter([(line, t, values)])
+
+
+@dataclass(frozen=True, slots=True)
+class Found:
+    """What a call found in a text: as `csv.h` says, in arrays with room for more.
+
+    Attributes:
+        counts: how it ended, rows, where what is left begins, where an odd row ends, lines, odd
+            cells, labels.
+    """
+
+    numbers: NDArray[np.int64]
+    says: NDArray[np.uint8]
+    lines: NDArray[np.int64]
+    odd: NDArray[np.int64]
+    labels: NDArray[np.int64]
+    counts: tuple[int, ...]
+
+
+class _Reader:
+    def __init__(self, layout: Layout) -> None:
+        self.layout = layout
+        slots = [-1] * len(layout.header)
+        slots[layout.time] = 0
+        for place, column in enumerate(layout.columns, 1):
+            slots[column.index] = place
+        self._slots = np.array(slots, np.int32)
+        kinds = [_STAMPS[layout.stamps.unit], *(_KINDS[column.kind] for column in layout.columns)]
+        self._kinds = np.array(kinds, np.int32)
+        no_update = layout.gaps.no_update
+        self._absent = None if no_update is None else str(no_update).encode()
+        self._row_bytes = 2.0 * len(layout.header)
+        self._labels = max(_LABELS, len(kinds))
+
+    def read(self, text: bytes, start: int = 0, *, is_ended: bool = False) -> Found:
+        """Find rows in a text from a place on, as far as one call can."""
+        room = self._room_for(len(text) - start)
+        columns = len(self._kinds)
+        numbers = np.empty((columns, room), np.int64)
+        says = np.empty((columns, room), np.uint8)
+        lines = np.empty(room, np.int64)
+        odd = np.empty((max(_ODD, columns), 4), np.int64)
+        labels = np.empty((self._labels, 3), np.int64)
+        table = np.zeros(2 * len(labels), np.int32)
+        counts = read(
+            text, start, is_ended, csv.field_size_limit(), self._slots, self._kinds, self._absent,
+            numbers, says, lines, odd, labels, table,
+        )  # fmt: skip
+        return Found(numbers, says, lines, odd, labels, counts)
+
+    def batch(self, text: CsvText[Found]) -> Generator[Batch, None, tuple[int, int]]:
+        """Take what can be read at once.
+
+        Returns:
+            How that ended, and where an odd row ends.
+
+        Raises:
+            TraceError: a cell is none of its kind; the rows above it have been given out.
+        """
+        source = text.rest
+        if text.start == len(source):
+            return _ALL, 0
+        if text.found is not None:
+            found, text.found = text.found(), None
+        else:
+            found = self.read(source, text.start, is_ended=text.is_ended)
+        numbers, says, lines = found.numbers, found.says, found.lines
+        ended, rows, at, end, count, odd, labels = found.counts
+        lines += text.line
+        fault = None
+        for row, place, start, stop in found.odd[:odd].tolist():
+            try:
+                self._read_odd(_cell(source, start, stop), place, row, numbers, says)
+            except TraceError as error:
+                rows, fault = row, TraceError(f"line {lines[row]}: {error}")
+                break
+        if rows:
+            words = [(of, _cell(source, *ends)) for of, *ends in found.labels[:labels].tolist()]
+            cells = {
+                column: self._cells(column, numbers[place, :rows], says[place, :rows], words, place)
+                for place, column in enumerate(self.layout.columns, 1)
+            }
+            is_plain = lines[rows - 1] - lines[0] == rows - 1
+            own = None if is_plain else lines[:rows]
+            times, line = numbers[0, :rows], int(lines[0])
+            is_last = text.is_whole and at == len(source) and fault is None
+            yield batch_of(times, self.layout, cells, line, own, is_last=is_last)
+        if fault is not None:
+            raise fault
+        if rows:
+            self._row_bytes = (at - text.start) / rows
+        if labels == len(found.labels) and labels < _MOST_LABELS:
+            self._labels = 4 * labels
+        text.start = at
+        text.line += count
+        return ended, end
+
+    def _room_for(self, size: int) -> int:
+        """Rows of so many bytes, if they are as those before; for more, there is a second call."""
+        return int(1.1 * size / self._row_bytes) + 16
+
+    def _read_odd(
+        self, text: str, place: int, row: int, numbers: NDArray[Any], says: NDArray[Any]
+    ) -> None:
+        """Put down what a cell says that is read as readers of rows do."""
+        if place == 0:
+            numbers[0, row] = ticks_of_cell(text, self.layout.stamps)
+            return
+        column = self.layout.columns[place - 1]
+        if not text or text.encode() == self._absent:
+            says[place, row] = NO_UPDATE
+            return
+        try:
+            value = as_declared(scalar_of_text(text, column.kind), column.kind)
+            says[place, row] = UNKNOWN if value is None else YES
+            if column.kind is Kind.REAL:
+                numbers[place].view(np.float64)[row] = value
+            else:
+                numbers[place, row] = value or 0
+        except TraceError as error:
+            raise TraceError(f"column `{column.called}`: {error}") from None
+
+    def _cells(
+        self,
+        column: Column,
+        values: NDArray[Any],
+        says: NDArray[Any],
+        words: Sequence[tuple[int, str]],
+        place: int,
+    ) -> Cells:
+        gaps = self.layout.gaps
+        if column.kind is Kind.LABEL:
+            own = {number: label for number, (of, label) in enumerate(words) if of == place}
+            labels = {label: at for at, label in enumerate(dict.fromkeys(own.values()))}
+            renumbered = np.zeros(len(words) + 1, np.int32)
+            renumbered[list(own)] = [labels[label] for label in own.values()]
+            places = renumbered[values]
+            given = says == YES
+            if "" in labels:  # of spaces that are no ASCII
+                given &= places != labels[""]
+            return cells_of_labels(places, given, tuple(labels) or ("",), gaps)
+        made = values.view(np.float64) if column.kind is Kind.REAL else values
+        if column.kind is Kind.BOOL:
+            made = values.astype(np.bool_)
+        if gaps:
+            if gaps.nan:
+                says[says == UNKNOWN] = NO_UPDATE
+            says[~kept(made, gaps) & (says == YES)] = NO_UPDATE
+        return Cells(made, None if (says == YES).all() else says)
+
+
+def _cell(text: bytes, start: int, end: int) -> str:
+    """What a cell says; where its end is negative, quotes in it are doubled."""
+    if end >= 0:
+        return text[start:end].decode().strip()
+    return text[start:~end].decode().replace('""', '"').strip()

@@ -1,0 +1,260 @@
+"""CSV: a header, a time column, a column per signal, event or payload field."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from rvmon.errors import TraceError
+from rvmon.recordings.naming import aliases_of, stamps_among
+from rvmon.recordings.places import LONGEST_LINE
+from rvmon.recordings.values import as_declared, scalar_of_text, shorten
+from rvmon.trace.sample import Scalar, Value
+from rvmon.trace.schema import Gaps, Kind, Schema, Stamps
+from rvmon.trace.stamps import ticks_of_cell
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column that the spec reads: a signal, an event, or a payload field of an event."""
+
+    index: int
+    name: str
+    field: str | None
+    kind: Kind
+
+    @property
+    def called(self) -> str:
+        """The name in the header."""
+        return self.name if self.field is None else f"{self.name}.{self.field}"
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """What the header says, and how its rows are read.
+
+    Attributes:
+        header: names of the columns.
+        time: index of the time column.
+        stamps: what it holds.
+        signals: columns of signals.
+        events: columns of events and of their payload fields.
+        ignored: names of the columns that the spec does not declare.
+        gaps: values that stand for no update.
+    """
+
+    header: tuple[str, ...]
+    time: int
+    stamps: Stamps
+    signals: tuple[Column, ...]
+    events: tuple[Column, ...]
+    ignored: tuple[str, ...]
+    gaps: Gaps
+
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """The columns that the spec reads, without the time."""
+        return self.signals + self.events
+
+    @property
+    def names_read(self) -> list[str]:
+        """The names in the header of the time column and of those that the spec reads."""
+        return [
+            self.header[place] for place in (self.time, *(column.index for column in self.columns))
+        ]
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The declared names that have a column."""
+        return frozenset(column.name for column in self.columns)
+
+
+def read_layout(header: list[str], schema: Schema) -> Layout:
+    """Match the header's names with the declared ones.
+
+    Raises:
+        TraceError: no time column or two, or a name that stands twice.
+    """
+    seen: dict[str, int] = {}
+    for index, name in enumerate(header):
+        if name in seen:
+            raise TraceError(f"column `{shorten(name)}` stands twice in the header")
+        seen[name] = index
+    stamps = stamps_among(header, schema)
+    return layout_of(header, stamps, schema)
+
+
+def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
+    """Match names, none of which stands twice, with the declared ones.
+
+    Args:
+        header: of all columns, in order.
+        stamps: of the time column, one of them; it is no signal.
+        schema: the declared names, and what columns are called.
+    """
+    aliases = aliases_of(schema)
+    signals, events, ignored = [], [], []
+    for index, column in enumerate(header):
+        name = aliases.get(column, column)
+        event, _, field = name.rpartition(".")
+        if column == stamps.column:
+            continue
+        if name in schema.signals:
+            signals.append(Column(index, name, None, schema.signals[name]))
+        elif name in schema.events:
+            events.append(Column(index, name, None, Kind.BOOL))
+        elif field in schema.events.get(event, {}):
+            events.append(Column(index, event, field, schema.events[event][field]))
+        else:
+            ignored.append(column)
+    return Layout(
+        tuple(header),
+        header.index(stamps.column),
+        stamps,
+        tuple(signals),
+        tuple(events),
+        tuple(ignored),
+        schema.gaps,
+    )
+
+
+def split_lines(
+    lines: Iterable[str], before: int = 0, separator: str = ","
+) -> Iterator[tuple[int, list[str]]]:
+    """Split CSV text into rows with the number of the line that each ends on; blank ones are none.
+
+    Raises:
+        TraceError: the text is no CSV (a NUL character, a cell without end), or a row that quotes
+            ends of lines is longer than a line may be.
+    """
+    began, taken = 1, 0
+
+    def of_row() -> Iterator[str]:
+        nonlocal taken
+        for line in lines:
+            taken += len(line)
+            if taken > LONGEST_LINE:
+                raise TraceError(
+                    f"line {began}: a row of more than {LONGEST_LINE:,} characters begins here: "
+                    "close its quotes"
+                )
+            yield line
+
+    reader = csv.reader(of_row(), delimiter=separator, strict=True)
+    while True:
+        began, taken = before + reader.line_num + 1, 0
+        try:
+            row = next(reader)
+        except StopIteration:
+            return
+        except csv.Error as error:
+            more = f"; the row begins on line {began}: close its quotes"
+            line = before + reader.line_num
+            raise TraceError(
+                f"line {line}: not a CSV row ({error}){more if began < line else ''}"
+            ) from None
+        if row and not (len(row) == 1 and row[0].isspace()):
+            yield before + reader.line_num, [cell.strip() for cell in row]
+
+
+def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
+    """Read one row: ticks and what it updates; an empty cell is no update.
+
+    Raises:
+        TraceError: a cell is no value of its kind; the message names the column.
+    """
+    if len(row) != len(layout.header):
+        raise TraceError(f"{len(row)} cells where the header has {len(layout.header)}")
+    t = ticks_of_cell(row[layout.time], layout.stamps)
+    no_update = layout.gaps.no_update
+    absent = "" if no_update is None else str(no_update)
+    given = (
+        (column, _scalar(cell, column))
+        for column in layout.columns
+        if (cell := row[column.index]) and cell != absent
+    )
+    return t, row_values(given, layout.gaps)
+
+
+def row_values(cells: Iterable[tuple[Column, Any]], gaps: Gaps) -> dict[str, Value]:
+    """What a row says: the one reading of rows, whatever holds them.
+
+    A signal is updated by its cell. An event with a payload cell occurs unless its own cell says
+    false; one without occurs where its own cell is true.
+
+    >>> from rvmon.trace.schema import NO_GAPS
+    >>> columns = [Column(1, "pick", None, Kind.BOOL), Column(2, "pick", "id", Kind.INT)]
+    >>> [row_values(zip(columns, cells), NO_GAPS) for cells in ([True, 7.0], [False, 7], [1])]
+    [{'pick': {'id': 7}}, {'pick': False}, {'pick': True}]
+    """
+    values: dict[str, Any] = {}
+    payloads: dict[str, dict[str, Scalar]] = {}
+    has_gaps = bool(gaps)
+    for column, cell in cells:
+        if has_gaps and gaps.holds(cell):
+            continue
+        value = as_declared(cell, column.kind)
+        if column.field is None:
+            values[column.name] = value
+        else:
+            payloads.setdefault(column.name, {})[column.field] = value
+    for name, payload in payloads.items():
+        if values.get(name) is not False:
+            values[name] = payload
+    return values
+
+
+def _scalar(cell: str, column: Column) -> Scalar:
+    try:
+        return scalar_of_text(cell, column.kind)
+    except TraceError as error:
+        raise TraceError(f"column `{column.called}`: {error}") from None
+
+
+def csv_samples(
+    rows: Iterator[tuple[int, list[str]]], layout: Layout
+) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
+    """Line number, ticks and values of each row.
+
+    Raises:
+        TraceError: with the line's number.
+    """
+    for line, row in rows:
+        try:
+            t, values = read_row(row, layout)
+        except TraceError as error:
+            raise TraceError(f"line {line}: {error}") from None
+        yield line, t, values
+
+
+def unended(
+    rows: Iterator[tuple[int, list[str]]], layout: Layout, ignoring: frozenset[str]
+) -> Iterator[tuple[int, int, Mapping[str, Value], frozenset[str]]]:
+    """The same of a row that lacks the end of its line, and the names that nobody knows for it.
+
+    Its last cell may be half of one, so that what it feeds is unknown; a truth value has no half.
+    Where that cell is the stamp, all is unknown.
+
+    Raises:
+        TraceError: with the line's number; also where a signal of `ignoring` would be unknown.
+    """
+    for line, row in rows:
+        try:
+            t, values = read_row(row, layout)
+        except TraceError as error:
+            raise TraceError(f"line {line}: {error}; the file ends here: was it cut off?") from None
+        last = len(row) - 1
+        lost = frozenset(
+            column.name
+            for column in layout.columns
+            if layout.time == last
+            or (column.index == last and (column.kind is not Kind.BOOL or not row[last]))
+        )
+        for name in sorted(lost & ignoring):
+            raise TraceError(
+                f"line {line}: it has no end: if it was cut off, `{name}` was another value: end "
+                "the line, or leave it out"
+            )
+        yield line, t, {**values, **dict.fromkeys(lost)}, lost

@@ -1,0 +1,228 @@
+"""Several files of one log, as a logger leaves them that writes one for each topic."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from heapq import merge
+from itertools import takewhile
+from operator import attrgetter
+from typing import TYPE_CHECKING, Protocol
+
+from rvmon.errors import TraceError
+from rvmon.recordings.places import name_of, named_errors
+from rvmon.recordings.rows import Row, Rows
+from rvmon.trace.sample import Health, Outage, Recording, Sample
+from rvmon.trace.schema import BY_NAME, Schema
+
+if TYPE_CHECKING:
+    from rvmon.recordings.batch import Batch
+
+_FEW = 64
+"""Fewer rows are joined one by one."""
+
+
+class File(Recording, Protocol):
+    """One of the files, or tables."""
+
+    path: str
+    ignored: Counter[str]
+    rows: Rows
+
+    @property
+    def unread(self) -> Sequence[str]:
+        """The columns that nothing is declared for."""
+
+    @property
+    def outages(self) -> Sequence[Outage]:
+        """What it lost."""
+
+    def parts(self) -> Iterator[Batch | Sample]:
+        """It in order, rows as columns where it has such; there may be none."""
+
+    def doubts(self) -> list[Health]:
+        """What is odd about it."""
+
+
+class Joined:
+    """Files that are one recording: their samples in order of time, each with the names it has.
+
+    A name is that of a column, or `FILE.COLUMN`, with the file's name without what all of them
+    begin with: `status.armed` is the column `armed` of `log_17_status_0.csv`. A name lasts as long
+    as its own file says: nothing is carried into rows of others, and nothing is resampled.
+
+    Args:
+        files: of any formats, each opened by its schema of `schemas_of`; or tables in memory.
+        rows: makes samples of theirs.
+
+    Attributes:
+        names: declared names that have a file; `None`: any may come.
+        end: the last instant, ticks, if all of them say one.
+        unread: the columns that nothing is declared for.
+        ignored: the same, counted.
+        outages: what was lost, in order.
+        count: 0: nobody has counted the rows.
+
+    Raises:
+        TraceError: two files have one name.
+    """
+
+    count = 0
+
+    def __init__(self, files: Sequence[File], rows: Rows) -> None:
+        self._files = files
+        self.rows = rows
+        found: dict[str, str] = {}
+        for file in files:
+            for name in sorted(file.names or ()):
+                if name in found:
+                    raise TraceError(
+                        f"`{name}` is in {found[name]} and in {file.path}: declare "
+                        f"`FILE.{name}` of the file that is meant, or leave the column out"
+                    )
+                found[name] = file.path
+        is_known = all(file.names is not None for file in files)
+        self.names: frozenset[str] | None = frozenset(found) if is_known else None
+        ends = [file.end for file in files if file.end is not None]
+        self.end = max(ends) if len(ends) == len(files) else None
+        self.unread = [column for file in files for column in file.unread]
+        self.ignored = sum((file.ignored for file in files), Counter[str]())
+        self.outages = sorted(_outages_of(files), key=lambda outage: outage.since)
+
+    def blocks(self) -> Iterator[Batch | list[Row]]:
+        """The rows in order of time: as columns what lies between the ends of batches of files.
+
+        Raises:
+            TraceError: with file and line.
+        """
+        from rvmon.recordings.batch import outer_join
+
+        number = 1
+        heads = [head for head in map(_Head, self._files) if head.is_there]
+        while heads:
+            until = min(head.last for head in heads)
+            before = [own for head in heads if (own := head.take_before(until)) is not None]
+            count = sum(len(batch.times) for batch in before)
+            joined = outer_join(before, number) if count >= _FEW else None
+            # Each file has noted itself where two values of an instant differ.
+            apart = [batch.samples() for batch in before] if joined is None else []
+            rows = [*merge(*apart, key=attrgetter("t"))]
+            rows += [sample for head in heads for sample in head.take_at(until)]
+            if joined is not None:
+                yield joined
+                number += len(joined.times)
+            yield [(number + place, sample.t, sample.values) for place, sample in enumerate(rows)]
+            number += len(rows)
+            heads = [head for head in heads if head.is_there]
+
+    def pieces(self) -> Iterator[Batch | Sample]:
+        """The recording in order; errors are those of `blocks`."""
+        return self.rows.pieces(self.blocks())
+
+    def __iter__(self) -> Iterator[Sample]:
+        """Samples in order of time, equal stamps merged; errors are those of `blocks`."""
+        for piece in self.pieces():
+            yield from (piece,) if isinstance(piece, Sample) else piece.samples()
+
+    def stamp_doubts(self) -> list[Health]:
+        """What is odd about each file."""
+        return [doubt for file in self._files for doubt in (*file.rows.doubts(), *file.doubts())]
+
+
+class _Head:
+    """Where the reading of a file stands: a batch of which some rows are taken, or a sample."""
+
+    def __init__(self, file: File) -> None:
+        self._path, self._parts = file.path, file.parts()
+        self.is_there = True
+        self._read_on()
+
+    def _read_on(self) -> None:
+        with named_errors(self._path):
+            self._part = next(self._parts, None)
+        self.is_there = self._part is not None
+
+    @property
+    def last(self) -> int:
+        """The last instant that is at hand, ticks."""
+        part = self._part
+        assert part is not None, "it is there"
+        return part.t if isinstance(part, Sample) else int(part.times[-1])
+
+    def take_before(self, until: int) -> Batch | None:
+        """The rows of a batch before an instant, if there are any."""
+        part = self._part
+        if part is None or isinstance(part, Sample):
+            return None
+        count = int(part.times.searchsorted(until))
+        self._part = part.cut(count, len(part.times))
+        return part.cut(0, count) if count else None
+
+    def take_at(self, until: int) -> Iterator[Sample]:
+        """What there is at an instant."""
+        while self.is_there and self._first == until:
+            part = self._part
+            if isinstance(part, Sample):
+                yield part
+            elif part is not None:
+                count = int(part.times.searchsorted(until, "right"))
+                yield from part.samples(0, count)
+                self._part = part.cut(count, len(part.times))
+                if count < len(part.times):
+                    return
+            self._read_on()
+
+    @property
+    def _first(self) -> int:
+        part = self._part
+        assert part is not None, "it is there"
+        return part.t if isinstance(part, Sample) else int(part.times[0])
+
+
+def topics_of(paths: Sequence[str]) -> list[tuple[str, str]]:
+    """Of each file its name, and that without what all begin with and the number of an instance.
+
+    >>> topics_of(["log_17_odom_0.csv", "log_17_status_0.csv"])
+    [('log_17_odom_0', 'odom'), ('log_17_status_0', 'status')]
+    """
+    stems = [name_of(path).partition(".")[0] for path in paths]
+    alike = sum(1 for _ in takewhile(lambda ones: len({*ones}) == 1, zip(*stems, strict=False)))
+    cut = stems[0][:alike].rfind("_") + 1 if len(stems) > 1 else 0
+    return [(stem, re.sub(r"_0$", "", stem[cut:])) for stem in stems]
+
+
+def schemas_of(paths: Sequence[str], of_messages: Sequence[bool], schema: Schema) -> list[Schema]:
+    """What is read of each file: a name that begins with its own is that of the column behind it.
+
+    Args:
+        paths: of the files.
+        of_messages: which of them hold messages, where topics lead to names.
+        schema: the declared names, and how the files give them.
+    """
+    return [
+        replace(schema, stamps=None) if is_of_messages else _schema_of(topics, schema)
+        for is_of_messages, topics in zip(of_messages, topics_of(paths), strict=True)
+    ]
+
+
+def _schema_of(topics: tuple[str, str], schema: Schema) -> Schema:
+    fields = [f"{name}.{field}" for name, own in schema.events.items() for field in own]
+    own = {
+        name: name.removeprefix(f"{topic}.")
+        for topic in topics
+        for name in (*schema.signals, *schema.events, *fields)
+        if name.startswith(f"{topic}.")
+    }
+    for name, column in schema.columns.items():
+        leading = [topic for topic in topics if column.startswith(f"{topic}.")]
+        own[name] = column.removeprefix(f"{leading[0]}.") if leading else column
+    return replace(schema, columns=own, binding=BY_NAME)
+
+
+def _outages_of(parts: Sequence[File]) -> Iterator[Outage]:
+    """Outages of files as those of the names that they feed."""
+    for part in parts:
+        for outage in part.outages:
+            yield replace(outage, names=part.names) if outage.names is None else outage

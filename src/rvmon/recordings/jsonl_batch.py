@@ -1,0 +1,198 @@
+"""JSON lines in pieces: rows as columns where a piece is plain, else one by one."""
+
+from __future__ import annotations
+
+import io
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from itertools import chain
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import msgspec
+import numpy as np
+
+from rvmon.errors import TraceError
+from rvmon.recordings import places
+from rvmon.recordings.batch import NO, YES, Batch, NotPlainError, Occurrences
+from rvmon.recordings.cells import cells_of_values
+from rvmon.recordings.columns import ticks_of_column
+from rvmon.recordings.jsonl_rows import bound, count_of_names, jsonl_samples, names_in
+from rvmon.recordings.naming import DEFAULT_COLUMNS
+from rvmon.recordings.places import bounded_lines, whole_pieces
+from rvmon.recordings.rows import Row
+from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.stamps import stamps_of
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+_DECODER = msgspec.json.Decoder(dict[str, Any])
+
+_WITH_NAMES = {dict, list}
+_OBJECTS = {dict, msgspec.UnsetType}
+
+_MARK = b"\xef\xbb\xbf"
+
+
+def jsonl_batches(
+    file: BinaryIO, schema: Schema, ignored: Counter[str], found_stamps: Callable[[Stamps], None]
+) -> Iterator[Batch | Iterator[Row]]:
+    """The rows of a text, in order.
+
+    Args:
+        file: is read from its start.
+        schema: the declared names.
+        ignored: names that are not declared are counted here.
+        found_stamps: told what the stamps of the first line are.
+
+    Raises:
+        TraceError: with the line's number.
+    """
+    line = 0
+    for text in whole_pieces(file, places.BLOCK):
+        if not line and schema.stamps is None:
+            first = text.partition(b"\n")[0]
+            found_stamps(stamps_of("t_ns" if b'"t_ns"' in first else "t"))
+        try:
+            batch = _batch(text.removeprefix(b"" if line else _MARK), schema, ignored)
+        except NotPlainError:
+            yield _numbered(jsonl_samples(_lines(text), schema, ignored), line)
+        else:
+            yield replace(batch, first=line + 1)
+        line += text.count(b"\n")
+
+
+def _lines(text: bytes) -> Iterator[str]:
+    return bounded_lines(io.StringIO(text.decode(), newline=""))
+
+
+def _numbered(rows: Iterator[Row], before: int) -> Iterator[Row]:
+    """The rows with the numbers of their lines, of which so many stand before."""
+    try:
+        for number, t, values in rows:
+            yield number + before, t, values
+    except TraceError as error:
+        head, _, rest = str(error).partition(":")
+        line = head.removeprefix("line ")
+        if not line.isdecimal():
+            raise
+        raise type(error)(f"line {int(line) + before}:{rest}") from None
+
+
+def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:
+    """A piece as columns.
+
+    Raises:
+        NotPlainError: it has to be read line by line.
+    """
+    lines = text.count(b"\n") + (not text.endswith(b"\n"))
+    if schema.stamps is not None or schema.columns or b"\r" in text:
+        raise NotPlainError("stamps or names have another form")
+    try:
+        rows = _DECODER.decode_lines(text)
+        columns: dict[str, list[Any]] = {}
+        others: Counter[str] = Counter()
+        count = _collect(rows, "", schema, columns, others)
+    except (msgspec.DecodeError, RecursionError, UnicodeError):
+        raise NotPlainError("a line is no object of JSON") from None
+    stamps = [name for name in DEFAULT_COLUMNS if name in columns]
+    if len(rows) != lines or len(stamps) != 1 or "events" in others:
+        raise NotPlainError("its lines have not one stamp")
+    if names_in(text) != count:  # of equal names the last one is decoded
+        raise NotPlainError("a name may stand twice in a line")
+    batch = Batch(
+        instants_of(columns.pop(stamps[0]), stamps_of(stamps[0])),
+        {
+            name: cells_of_values(columns[name], kind, schema.gaps, msgspec.UNSET)
+            for name, kind in schema.signals.items()
+            if name in columns
+        },
+        {
+            name: _occurrences(columns[name], fields, schema)
+            for name, fields in schema.events.items()
+            if name in columns
+        },
+    )
+    ignored.update(others)
+    bound(ignored)
+    return batch
+
+
+def _collect(
+    objects: Sequence[Mapping[str, Any]],
+    prefix: str,
+    schema: Schema,
+    columns: dict[str, list[Any]],
+    others: Counter[str],
+) -> int:
+    """Put the values of stamps and declared names into columns, and count those of other names.
+
+    Args:
+        objects: one of each line, empty where it has none.
+        prefix: of the names in them.
+        schema: the declared names.
+        columns: by name the value of each line, `UNSET` where there is none.
+        others: how often names came that are not declared.
+
+    Returns:
+        How many names stand in the objects, those of objects within them as well.
+    """
+    count = sum(map(len, objects))
+    for key in dict.fromkeys(chain.from_iterable(objects)):
+        name = prefix + key
+        cells = [one.get(key, msgspec.UNSET) for one in objects]
+        types = set(map(type, cells))
+        if name in columns or name in others:  # `a.b` beside `b` in `a`
+            raise NotPlainError("two keys stand for one name")
+        if name in schema.signals or name in schema.events or name in DEFAULT_COLUMNS:
+            columns[name] = cells
+        elif types <= _OBJECTS and dict in types:
+            inner = [one if type(one) is dict else {} for one in cells]
+            count += _collect(inner, f"{name}.", schema, columns, others)
+            continue
+        elif dict in types:
+            raise NotPlainError("a name is an object, and something else")
+        else:
+            others[name] += len(cells) - cells.count(msgspec.UNSET)
+        if not _WITH_NAMES.isdisjoint(types):
+            count += sum(map(count_of_names, cells))
+    return count
+
+
+def instants_of(stamps: list[Any], unit: Stamps) -> NDArray[np.int64]:
+    """The ticks of some stamps.
+
+    Raises:
+        NotPlainError: they are no plain numbers, or out of range.
+    """
+    found = np.array(stamps if set(map(type, stamps)) <= {int, float} else [])
+    if len(found) != len(stamps) or found.dtype.kind not in ("i" if unit.unit == "ns" else "fi"):
+        raise NotPlainError("its stamps are no plain numbers")
+    try:
+        return ticks_of_column(found, unit)
+    except TraceError:  # whoever reads lines says in which it is
+        raise NotPlainError("some instant is out of range") from None
+
+
+def _occurrences(cells: Sequence[Any], fields: Mapping[str, Kind], schema: Schema) -> Occurrences:
+    payloads = {
+        name: cells_of_values(
+            [
+                one.get(name, msgspec.UNSET) if isinstance(one, dict) else msgspec.UNSET
+                for one in cells
+            ],
+            kind,
+            schema.gaps,
+            msgspec.UNSET,
+        )
+        for name, kind in fields.items()
+    }
+    occurs = [True if isinstance(cell, dict) else cell for cell in cells]
+    if schema.gaps.no_update is not None or any(cell == {} for cell in cells):
+        raise NotPlainError("an event is something else")
+    own = cells_of_values(occurs, Kind.BOOL, schema.gaps, msgspec.UNSET)
+    says = np.where(own.values, np.uint8(YES), np.uint8(NO))
+    if own.says is not None:
+        says = np.where(own.says == YES, says, own.says)
+    return Occurrences(says, payloads)

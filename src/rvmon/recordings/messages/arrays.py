@@ -1,0 +1,204 @@
+"""Arrays in HDF5 and MATLAB files; needs h5py, for older files of MATLAB scipy: the extra `h5`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rvmon.errors import TraceError, needed
+from rvmon.recordings.columns import ticks_of_column
+from rvmon.recordings.messages.columns import (
+    ColumnMessages,
+    ColumnTopic,
+    LateColumn,
+    distinct,
+    kind_of_type,
+    path_of,
+)
+from rvmon.recordings.messages.topic import Topic, errors_as_damage
+from rvmon.texts import did_you_mean
+from rvmon.trace.schema import Stamps
+from rvmon.trace.stamps import stamps_of, ticks_of_stamp
+from rvmon.trace.time import TICKS_PER_UNIT
+
+_FORM = "a file of arrays"
+_MAGIC = b"\x89HDF\r\n\x1a\n"
+
+_TIMES = ("t", "time", "timestamp", "timestamps", "t_ns", "time_ns", "timestamp_ns", "tout")
+"""What arrays of stamps are called."""
+
+_UNITS = {"seconds": "s", "sec": "s", "milliseconds": "ms", "microseconds": "us", "µs": "us"}
+
+
+class _Array(LateColumn):
+    """An array whose first axis is time."""
+
+    def __init__(
+        self, read: Callable[[], Any], shape: tuple[int, ...], dtype: Any, unit: str = ""
+    ) -> None:
+        # An array of a single row or column is a list.
+        is_list = len(shape) == 2 and 1 in shape
+        super().__init__(_FORM, lambda: (read().reshape(-1) if is_list else read(), None))
+        self.shape = (max(shape),) if is_list else shape
+        self.dtype, self.unit = dtype, unit
+
+
+_Tree = dict[str, Any]
+"""Arrays, and trees of them, by name."""
+
+
+def array_messages(path: Path, stamps: Stamps | None) -> ColumnMessages:
+    """Open a file: each group, or structure, that has stamps is a topic.
+
+    Args:
+        path: of it.
+        stamps: the array of stamps, as `group/name`; `None`: what is called so in each group.
+
+    Raises:
+        RvmonError: what reads it is not installed.
+        TraceError: it is no such file, a damaged one, or has no stamps.
+        OSError: it cannot be opened.
+    """
+    with open(path, "rb") as file:
+        head = file.read(520)
+    if head.startswith(_MAGIC) or head[512:].startswith(_MAGIC):
+        tree, close = _hierarchy(path)
+    elif path.suffix.lower() == ".mat" and head:
+        tree, close = _matrices(path), lambda: None
+    else:
+        raise TraceError("is no HDF5 file: it begins otherwise")
+    topics = list(_topics(tree, "", stamps))
+    if not topics:
+        close()
+        names = [name for name, _ in _listed(tree, "")]
+        if stamps is not None:
+            meant = did_you_mean(stamps.column, names, f"there are {', '.join(names[:8])}")
+            raise TraceError(f"no array of stamps `{stamps.column}`: {meant}")
+        raise TraceError(
+            f"no array is called as stamps are ({', '.join(_TIMES[:4])}, …): name it with --time "
+            f"ARRAY[:UNIT]; there are {', '.join(names[:8]) or 'none'}"
+        )
+    with errors_as_damage(_FORM):
+        end = max(int(topic.load()[0].max()) for topic in topics)
+    return ColumnMessages(topics, end, close=close)
+
+
+def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
+    """The groups of an HDF5 file; those of MATLAB have their axes the other way round."""
+    with needed("HDF5", "h5py"):
+        import h5py
+    with errors_as_damage(_FORM):
+        file = h5py.File(path, "r")
+
+    def tree_of(group: Any) -> _Tree:
+        found: _Tree = {}
+        for name, inner in group.items():
+            if isinstance(inner, h5py.Group):
+                if not name.startswith("#"):
+                    found[name] = tree_of(inner)
+            elif isinstance(inner, h5py.Dataset) and inner.shape and not inner.dtype.names:
+                turned = "MATLAB_class" in inner.attrs
+                shape = inner.shape[::-1] if turned else inner.shape
+                unit = inner.attrs.get("units", inner.attrs.get("unit", ""))
+                unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
+                found[name] = _Array(partial(_read, inner, turned), shape, inner.dtype, unit)
+        return found
+
+    with errors_as_damage(_FORM):
+        return tree_of(file), file.close
+
+
+def _read(dataset: Any, turned: bool) -> Any:
+    return dataset[()].T if turned else dataset[()]
+
+
+def _matrices(path: Path) -> _Tree:
+    """The variables of a MATLAB file before version 7.3."""
+    with needed("a file of MATLAB", "scipy"):
+        from scipy.io import loadmat
+    with errors_as_damage(_FORM):
+        content = loadmat(path, simplify_cells=True)
+
+    def tree_of(variables: Mapping[str, Any]) -> _Tree:
+        found: _Tree = {}
+        for name, value in variables.items():
+            if name.startswith("__"):
+                continue
+            if isinstance(value, dict):
+                found[name] = tree_of(value)
+            elif isinstance(value, list) and all(isinstance(one, dict) for one in value):
+                found[name] = {
+                    str(one.get("label") or f"{name}_{place}"): tree_of(one)
+                    for place, one in enumerate(value)
+                }
+            elif isinstance(value, np.ndarray) and value.ndim and value.dtype.kind in "biufOU":
+                found[name] = _Array(partial(np.asarray, value), value.shape, value.dtype)
+        return found
+
+    return tree_of(content)
+
+
+def _listed(tree: _Tree, prefix: str) -> Iterator[tuple[str, _Array]]:
+    for name, inner in tree.items():
+        if isinstance(inner, dict):
+            yield from _listed(inner, f"{prefix}{name}/")
+        else:
+            yield f"{prefix}{name}", inner
+
+
+def _topics(tree: _Tree, place: str, stamps: Stamps | None) -> Iterator[ColumnTopic]:
+    """A topic for each group with stamps; groups in it without any are part of it."""
+    own = {name: array for name, array in tree.items() if isinstance(array, _Array)}
+    for name, array in own.items():
+        is_named = stamps is not None and stamps.column.strip("/") == f"{place}{name}"
+        if len(array.shape) == 1 and (is_named or (stamps is None and name.lower() in _TIMES)):
+            yield _topic(tree, place, name, stamps)
+            break
+    for name, inner in tree.items():
+        if isinstance(inner, dict):
+            yield from _topics(inner, f"{place}{name}/", stamps)
+
+
+def _topic(tree: _Tree, place: str, time: str, stamps: Stamps | None) -> ColumnTopic:
+    array = tree[time]
+    [count] = array.shape
+    if stamps is None:
+        unit = _UNITS.get(array.unit.partition(" since ")[0], array.unit)
+        stamps = stamps_of(f"{time}:{unit}" if unit in TICKS_PER_UNIT else time)
+    found = {
+        name: one
+        for name, one in _within(tree)
+        if one is not array and one.shape[0] == count and len(one.shape) <= 2
+    }
+    paths = distinct([path_of(name) for name in found])
+    columns = dict(zip(paths, found.values(), strict=True))
+    arrays = {path + "[]" * (len(column.shape) - 1): column for path, column in columns.items()}
+    leaves = {leaf: kind_of_type(array.dtype) for leaf, array in arrays.items()}
+    units = {leaf: array.unit for leaf, array in arrays.items() if array.unit}
+    name = "/" + "/".join(path_of(step) for step in place.strip("/").split("/") if step)
+    topic = Topic(name if place else "/data", "arrays", leaves, units=units)
+    return ColumnTopic(topic, count, lambda: (_ticks(array, stamps), columns))
+
+
+def _within(tree: _Tree) -> Iterator[tuple[str, _Array]]:
+    """The arrays of a group and of groups in it that have no stamps of their own."""
+    for name, inner in tree.items():
+        if isinstance(inner, _Array):
+            yield name, inner
+        elif not any(one.lower() in _TIMES for one in inner):
+            # The values of a signal of Simulink are called `values`, all of them.
+            yield from (
+                (name if one == "values" else f"{name}_{one}", array)
+                for one, array in _within(inner)
+            )
+
+
+def _ticks(array: _Array, stamps: Stamps) -> Any:
+    values = np.asarray(array.tolist())
+    if stamps.unit == "s" and values.dtype.kind == "f":
+        return ticks_of_column(values, stamps)
+    return np.array([ticks_of_stamp(one, stamps) for one in values.tolist()], np.int64)

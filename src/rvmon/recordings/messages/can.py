@@ -1,0 +1,374 @@
+"""Logs of CAN, decoded by databases; needs python-can and cantools, the extra `can`."""
+
+from __future__ import annotations
+
+import logging
+import re
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from rvmon.errors import TraceError, needed
+from rvmon.recordings.messages.columns import path_of
+from rvmon.recordings.messages.forms import DATABASES, databases_beside
+from rvmon.recordings.messages.topic import Message, Messages, Topic, errors_as_damage
+from rvmon.recordings.values import first_line
+from rvmon.trace.sample import Outage
+from rvmon.trace.schema import Kind
+from rvmon.trace.time import ticks_of_seconds
+
+_Key = tuple[int, bool]
+_UNREAD = "there is a line that cannot be read"
+_DROPPED = "what recorded it says that frames were lost"
+_NEVER, _ALWAYS = re.compile("(?!)"), re.compile("")
+_ERROR = r"\(\S+\)\s+\S+\s+[23]"
+"""Before the rest of the identifier of an error frame of SocketCAN, as candump writes it."""
+
+_TEXTS = {
+    ".asc": (
+        re.compile(
+            r"\s*($|//|(date|base|internal|no|previous|begin|end)\b|"
+            r"\d+\.\d+\s+((?!canfd)[a-z]|\d+\s+(?!errorframe)[a-z]*[g-z]))",
+            re.IGNORECASE,
+        ),
+        _NEVER,
+        _NEVER,
+    ),
+    ".trc": (
+        re.compile(r"\s*($|;)|.*\b(Warng|Error|ST|EC|ER|EV|FFFFFFFF)\b"),
+        re.compile(r".*\b(FFFFFFFF|ST)\b.* 00 00 00 ([4-7C-F][\dA-F]|[\dA-F][2367ABEF])\b"),
+        _NEVER,
+    ),
+    ".log": (
+        _ALWAYS,
+        re.compile(rf"DROPCOUNT|{_ERROR}[\dA-F]{{6}}[4-7C-F]#[\dA-F]{{3}}[13579BDF]"),
+        re.compile(rf"DROPCOUNT|{_ERROR}[\dA-F]{{7}}#"),
+    ),
+}
+"""What lines of text are like that say something else than a frame, as the library passes over what
+it cannot read, too; that say that frames were lost, as a buffer ran over (CAN_ERR_CRTL_RX_OVERFLOW;
+OVERRUN and QOVERRUN of PCAN); that it would take for frames, or cannot pass over."""
+
+_LOST = {125: True, 126: False}
+"""By the number of an object of BLF whether frames are lost from there on, or up to there."""
+
+_PDU_2 = 240
+"""From this format on the second byte of an identifier of J1939 is no address."""
+
+
+class FrameMessages(Messages):
+    """An open log, gone through once for what is in it.
+
+    Args:
+        path: of it.
+        definitions: texts of databases by file name; without any, those beside the log count.
+
+    Attributes:
+        topics: by name, one a message of the database that the log has; the name says the channel
+            where a message comes on several, and the identifier where another has its name.
+        end: the last stamp.
+        count: of the frames of these topics.
+        outages: where lines cannot be read, and that it was cut off.
+
+    Raises:
+        RvmonError: what reads it is not installed.
+        TraceError: it is no such log, or there is no database.
+    """
+
+    def __init__(self, path: Path, definitions: Mapping[str, str]) -> None:
+        self._path = path
+        self._is_cut = _is_cut(path)
+        self._known = _messages(path, definitions)
+        self._seen: dict[_Key, Any] = {}
+        self.outages: list[Outage] = []
+        self._called = _names(self._known.values())
+        channels: dict[str, set[Any]] = {}
+        by_name: dict[str, Any] = {}
+        others = 0
+        for t, key, channel, _ in self._frames(self.outages):
+            self.end = t if self.end is None else max(self.end, t)
+            message = self._message(key)
+            if message is None:
+                others += 1
+            else:
+                name = self._called[id(message)]
+                by_name[name] = message
+                channels.setdefault(name, set()).add(channel)
+                self.count += 1
+        if not self.count:
+            raise TraceError(
+                f"no frame is of a message that the databases know, of {others:,}: name the right "
+                'one in a binding, as `definitions = ["car.dbc"]`'
+            )
+        self._several = {name for name, found in channels.items() if len(found) > 1}
+        self.topics = {
+            (topic := self._name(name, channel)): _topic(topic, by_name[name])
+            for name, found in channels.items()
+            for channel in sorted(found, key=str)
+        }
+        if self.end is not None:
+            self.end = max([self.end, *(outage.until for outage in self.outages)])
+            if self._is_cut:
+                self.outages.append(Outage(self.end, self.end + 1, "it was cut off, or not closed"))
+                self.end += 1
+
+    def _name(self, message: str, channel: Any) -> str:
+        return f"/can{channel}/{message}" if message in self._several else f"/{message}"
+
+    def _message(self, key: _Key) -> Any:
+        if key not in self._seen:
+            found = self._known.get(key)
+            self._seen[key] = self._known.get(_group(key)) if found is None and key[1] else found
+        return self._seen[key]
+
+    def _frames(
+        self, outages: list[Outage] | None = None
+    ) -> Iterator[tuple[int, _Key, Any, bytes]]:
+        """Ticks, identifier, channel and data of each frame of data; stretches that were lost."""
+        ending = self._path.suffix.lower()
+        if ending == ".mf4":
+            from rvmon.recordings.messages.mdf import mdf_frames
+
+            yield from mdf_frames(self._path)
+            return
+        held, last = None, None
+        mode: dict[str, Any] = {"mode": "rb"} if ending == ".blf" else {"errors": "replace"}
+        with open(self._path, **mode) as file, errors_as_damage("a log of CAN"):
+            frames, losing = _reading(self._path, file)
+            for frame in frames:
+                t = ticks_of_seconds(frame.timestamp)
+                if (why := losing.take()) and outages is not None:
+                    # What was lost may have had the stamp of its neighbour.
+                    outages.append(Outage(t - 1 if last is None else min(last, t), t, why))
+                last = t
+                if frame.is_error_frame or frame.is_remote_frame:
+                    continue
+                if held is not None:
+                    yield held
+                key = (frame.arbitration_id, frame.is_extended_id)
+                held = t, key, frame.channel, bytes(frame.data)
+            if losing.why and outages is not None and last is not None:
+                outages.append(Outage(last, last + 1, losing.why))
+        if held is not None and not (self._is_cut and ending != ".blf"):
+            yield held  # of a line that is cut off nobody knows what it held
+
+    def read(self, topics: Collection[str]) -> Iterator[Message]:
+        """The frames of these topics, as they were recorded."""
+        readers: dict[int, Callable[[bytes], Mapping[str, Any]]] = {}
+        for t, key, channel, data in self._frames():
+            message = self._message(key)
+            which = id(message)
+            if message is None or (name := self._name(self._called[which], channel)) not in topics:
+                continue
+            if which not in readers:
+                readers[which] = _reader(message)
+            try:
+                yield name, t, readers[which](data)
+            except Exception as error:  # noqa: BLE001 - the library has errors of its own
+                raise TraceError(
+                    f"a frame of {name} at {t} ns does not fit the database ({first_line(error)})"
+                ) from None
+
+
+class _Lines:
+    """The lines of a text, with what was lost between those that are frames.
+
+    Args:
+        file: the open text.
+        patterns: what some of its lines are like; see `_TEXTS`.
+
+    Attributes:
+        why: something was lost since the last frame; empty: nothing.
+    """
+
+    def __init__(self, file: Any, patterns: tuple[re.Pattern[str], ...]) -> None:
+        self._file = file
+        self._others, self._lost, self._hidden = patterns
+        self._line = ""
+        self.why = ""
+
+    def __iter__(self) -> _Lines:
+        return self
+
+    def __next__(self) -> str:
+        while True:
+            if self._lost.match(self._line):
+                self.why = _DROPPED
+            elif not self._others.match(self._line):
+                self.why = _UNREAD
+            self._line = next(self._file, "")
+            if not self._line:
+                raise StopIteration
+            if not self._hidden.match(self._line):
+                return self._line
+
+    def take(self) -> str:
+        """What was lost before the line that was read last, which is a frame."""
+        found, self.why, self._line = self.why, "", ""
+        return found
+
+    def close(self) -> None:
+        """The reader closes what it was given; the file is closed by who opened it."""
+
+
+def _is_cut(path: Path) -> bool:
+    """Whether a log ends before it should: a text within a line, BLF before its size."""
+    ending = path.suffix.lower()
+    with open(path, "rb") as file:
+        size = file.seek(0, 2)
+        if ending == ".blf":
+            file.seek(16)
+            return int.from_bytes(file.read(8), "little") != size
+        file.seek(max(0, size - 1))
+        return bool(ending != ".mf4" and file.read() not in (b"\n", b"\r", b""))
+
+
+def _reading(path: Path, file: Any) -> tuple[Iterable[Any], Any]:
+    """The frames of an open log, and what tells of losses between them, as `_Lines` does.
+
+    Raises:
+        RvmonError: what reads it is not installed.
+    """
+    with needed("a log of CAN", "python-can"):
+        from can import ASCReader, BLFReader, CanutilsLogReader, TRCReader
+
+    class Objects(BLFReader):
+        """Objects of BLF, of which the library passes over those that say that some were lost."""
+
+        why, is_losing = "", False
+
+        def _parse_data(self, data: bytes) -> Iterator[Any]:
+            lost = [
+                (found.start(), _LOST[kind])
+                for found in re.finditer(rb"LOBJ.{8}(....)", data, re.DOTALL)
+                if (kind := int.from_bytes(found[1], "little")) in _LOST
+            ]
+
+            def come_to(place: int) -> None:
+                while lost and lost[0][0] <= place:
+                    self.is_losing = lost.pop(0)[1]
+                    self.why = _DROPPED
+
+            for frame in super()._parse_data(data):
+                come_to(self._pos)
+                yield frame
+            come_to(self._pos - 1)
+
+        def take(self) -> str:
+            found, self.why = self.why, _DROPPED if self.is_losing else ""
+            return found
+
+    ending = path.suffix.lower()
+    if ending == ".blf":
+        objects = Objects(file)
+        return objects, objects
+    lines = _Lines(file, _TEXTS[ending])
+    readers = {".asc": ASCReader, ".log": CanutilsLogReader, ".trc": TRCReader}
+    return readers[ending](lines), lines
+
+
+def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
+    """The messages of all databases by identifier; those of J1939 by their group as well."""
+    with needed("a database of CAN", "cantools"):
+        from cantools import database
+    logging.getLogger("cantools").setLevel(logging.CRITICAL)
+    texts = {name: text for name, text in definitions.items() if name.lower().endswith(DATABASES)}
+    beside = databases_beside(path)
+    if not texts and not beside:
+        raise TraceError(
+            "holds frames of CAN, and nobody says what is in them: put the database (.dbc) beside "
+            'it, or name it in a binding, as `definitions = ["car.dbc"]`'
+        )
+    found: dict[_Key, Any] = {}
+    for name in texts or beside:
+        try:
+            if texts:
+                form = name.rpartition(".")[2].lower()
+                loaded = database.load_string(texts[name], database_format=form, strict=False)
+            else:
+                loaded = database.load_file(name, strict=False)
+        except Exception as error:  # noqa: BLE001 - each form of database has errors of its own
+            raise TraceError(
+                f"{name} cannot be read as a database of CAN ({first_line(error)})"
+            ) from None
+        for message in getattr(loaded, "messages", ()):
+            key = (message.frame_id, message.is_extended_frame)
+            found.setdefault(key, message)
+            if message.protocol == "j1939" and message.is_extended_frame:
+                found.setdefault(_group(key), message)
+    return found
+
+
+def _names(messages: Iterable[Any]) -> Mapping[int, str]:
+    """What messages are called, by identity: by their identifier, too, where two have one name."""
+    known = {id(message): message for message in messages}
+    counts = Counter(message.name for message in known.values())
+    digits = {
+        which: f"{message.frame_id:0{8 if message.is_extended_frame else 3}X}"
+        for which, message in known.items()
+    }
+    return {
+        which: message.name if counts[message.name] == 1 else f"{message.name}_{digits[which]}"
+        for which, message in known.items()
+    }
+
+
+def _group(key: _Key) -> _Key:
+    """The group of an identifier of J1939, which no identifier is equal to."""
+    form, specific = key[0] >> 16 & 0xFF, key[0] >> 8 & 0xFF
+    page = key[0] >> 24 & 3
+    return -(page << 16 | form << 8 | (specific if form >= _PDU_2 else 0)) - 1, True
+
+
+def _topic(name: str, message: Any) -> Topic:
+    leaves, units = {}, {}
+    for signal in message.signals:
+        path = path_of(signal.name)
+        leaves[path] = _kind(signal)
+        if signal.unit:
+            units[path] = signal.unit
+    return Topic(name, message.name, leaves, units=units)
+
+
+def _is_named(signal: Any) -> bool:
+    """Whether the values of a signal have names that are its values: states, and no number."""
+    if not signal.choices or len(signal.choices) < 2 or signal.unit:
+        return False
+    return bool(signal.conversion.scale == 1 and signal.conversion.offset == 0)
+
+
+def _kind(signal: Any) -> Kind:
+    if _is_named(signal):
+        return Kind.LABEL
+    if signal.conversion.is_float or signal.conversion.scale != int(signal.conversion.scale):
+        return Kind.REAL
+    if signal.conversion.offset != int(signal.conversion.offset):
+        return Kind.REAL
+    return Kind.BOOL if signal.length == 1 else Kind.INT
+
+
+def _reader(message: Any) -> Callable[[bytes], Mapping[str, Any]]:
+    """What gives the values of a frame; one that has a name and should be a number is unknown."""
+    named = {signal.name: signal.choices for signal in message.signals if _is_named(signal)}
+    special = {
+        signal.name: {
+            signal.conversion.raw_to_scaled(raw, decode_choices=False) for raw in signal.choices
+        }
+        for signal in message.signals
+        if signal.choices and signal.name not in named
+    }
+    bits = {signal.name for signal in message.signals if _kind(signal) is Kind.BOOL}
+
+    def value(name: str, number: Any) -> Any:
+        if name in named:
+            return str(named[name].get(number, number))
+        if name in special and number in special[name]:
+            return None
+        return bool(number) if name in bits else number
+
+    def read(data: bytes) -> Mapping[str, Any]:
+        decoded = message.decode(data, decode_choices=False, allow_truncated=False)
+        return {path_of(name): value(name, number) for name, number in decoded.items()}
+
+    return read

@@ -1,0 +1,204 @@
+"""Topics whose messages are rows of columns, as logs have them that are read topic by topic."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rvmon.recordings.messages.topic import Message, Messages, Topic, errors_as_damage
+from rvmon.trace.sample import Outage
+from rvmon.trace.schema import Kind
+
+Columns = Mapping[str, Any]
+"""Arrays by the path of the field: of one value a row, or of several; masked where it has none."""
+
+
+@dataclass(frozen=True, slots=True)
+class ColumnTopic:
+    """A topic and what is in it.
+
+    Attributes:
+        topic: what is said of it.
+        count: of its rows.
+        load: gives their stamps (int64, ticks), in any order, and their columns.
+    """
+
+    topic: Topic
+    count: int
+    load: Callable[[], tuple[Any, Columns]]
+
+
+class ColumnMessages(Messages):
+    """An open recording of such topics.
+
+    Args:
+        topics: in order.
+        end: the last instant of all, ticks.
+        outages: what was lost, in order.
+        close: closes the file.
+    """
+
+    def __init__(
+        self,
+        topics: Sequence[ColumnTopic],
+        end: int | None,
+        outages: Sequence[Outage] = (),
+        close: Callable[[], object] = lambda: None,
+    ) -> None:
+        self._topics = {topic.topic.name: topic for topic in topics}
+        self.topics = {topic.topic.name: topic.topic for topic in topics}
+        self.count = sum(topic.count for topic in topics)
+        self.end = end
+        self.outages = outages
+        self._close = close
+
+    def close(self) -> None:
+        """Close the file."""
+        self._close()
+
+    def read(self, topics: Collection[str]) -> Iterator[Message]:
+        """The rows of these topics by time, those of one instant as the topics are listed."""
+        names = [name for name in self._topics if name in topics]
+        loaded = [self._topics[name].load() for name in names]
+        if not loaded:
+            return
+        times = np.concatenate([own for own, _ in loaded])
+        sources = np.repeat(np.arange(len(loaded)), [len(own) for own, _ in loaded])
+        places = np.concatenate([np.arange(len(own)) for own, _ in loaded])
+        order = np.argsort(times, kind="stable")
+        trees = [_tree(columns) for _, columns in loaded]
+        for t, source, place in zip(
+            times[order].tolist(), sources[order].tolist(), places[order].tolist(), strict=True
+        ):
+            yield names[source], t, _Row(trees[source], place)
+
+
+class LateColumn:
+    """A column that is read when it is first asked for.
+
+    Args:
+        form: of the file, for people.
+        read: gives its values, and where they are invalid, if somewhere.
+    """
+
+    def __init__(self, form: str, read: Callable[[], tuple[Any, Any]]) -> None:
+        self._form = form
+        self._read = read
+
+    def tolist(self) -> list[Any]:
+        """Its values, bytes as texts; `None` where the file says that one is invalid."""
+        with errors_as_damage(self._form):
+            values, invalid = self._read()
+        cells: list[Any] = values.tolist()
+        if values.dtype.kind in "SO":
+            cells = [
+                cell.decode("utf-8", "replace") if isinstance(cell, bytes) else cell
+                for cell in cells
+            ]
+        if invalid is not None:
+            cells = [None if wrong else one for one, wrong in zip(cells, invalid, strict=True)]
+        return cells
+
+
+class _Row(Mapping[str, Any]):
+    """A row as the content of a message; columns become lists when they are first asked for."""
+
+    __slots__ = ("_place", "_tree")
+
+    def __init__(self, tree: dict[str, Any], place: int) -> None:
+        self._tree = tree
+        self._place = place
+
+    def __getitem__(self, name: str) -> Any:
+        inner = self._tree[name]
+        if type(inner) is list:
+            return inner[self._place]
+        if type(inner) is dict:
+            if all(isinstance(key, int) for key in inner):
+                return [_Row(inner[key], self._place) for key in sorted(inner)]
+            return _Row(inner, self._place)
+        self._tree[name] = made = inner.tolist()
+        return made[self._place]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._tree)
+
+    def __len__(self) -> int:
+        return len(self._tree)
+
+
+def _tree(columns: Columns) -> dict[str, Any]:
+    """Columns by the steps of their paths; `esc[0].rpm` is in the element 0 of `esc`."""
+    tree: dict[str, Any] = {}
+    for path, column in columns.items():
+        *above, last = _steps(path)
+        inner = tree
+        for step in above:
+            inner = inner.setdefault(step, {})
+        inner[last] = column
+    return tree
+
+
+def _steps(path: str) -> list[Any]:
+    return [int(step) if step.isdigit() else step for step in re.findall(r"[^.\[\]]+", path)]
+
+
+def leaves_of(columns: Columns) -> dict[str, Kind]:
+    """The fields of columns with their kinds; those of several values a row are arrays."""
+    found: dict[str, Kind] = {}
+    for path, column in columns.items():
+        leaf = re.sub(r"\[\d+\]", "[]", path) + "[]" * (column.ndim - 1)
+        found[leaf] = kind_of_type(column.dtype)
+    return found
+
+
+def kind_of_type(dtype: Any) -> Kind:
+    """The kind of the values of an array.
+
+    >>> kind_of_type(np.dtype("float32")), kind_of_type(np.dtype("uint8"))
+    (<Kind.REAL: 'real'>, <Kind.INT: 'int'>)
+    """
+    kinds = {"b": Kind.BOOL, "i": Kind.INT, "u": Kind.INT, "f": Kind.REAL}
+    return kinds.get(dtype.kind, Kind.LABEL)
+
+
+def joined(columns: Mapping[str, Any]) -> dict[str, Any]:
+    """Columns with the elements of an array, `q[0]` and `q[1]`, as one."""
+    found: dict[str, Any] = {}
+    arrays: dict[str, list[Any]] = {}
+    for path, column in columns.items():
+        array, is_element, place = path.removesuffix("]").rpartition("[")
+        if is_element and path.endswith("]") and place == str(len(arrays.get(array, ()))):
+            arrays.setdefault(array, []).append(column)
+        else:
+            found[path] = column
+    return found | {array: np.stack(parts, axis=1) for array, parts in arrays.items()}
+
+
+def path_of(name: str) -> str:
+    """A name of a channel as the path of a field.
+
+    >>> path_of("Engine.Speed [rpm]"), path_of("2nd gear")
+    ('Engine_Speed_rpm', '_2nd_gear')
+    """
+    path = re.sub(r"\W+", "_", name).strip("_") or "_"
+    return f"_{path}" if path[0].isdigit() else path
+
+
+def distinct(names: Sequence[str]) -> list[str]:
+    """Names of which those that were there before end in a number.
+
+    >>> distinct(["a", "b", "a"])
+    ['a', 'b', 'a_2']
+    """
+    found: dict[str, None] = {}
+    for name in names:
+        number, made = 2, name
+        while made in found:
+            number, made = number + 1, f"{name}_{number}"
+        found[made] = None
+    return list(found)

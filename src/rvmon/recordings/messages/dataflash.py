@@ -1,0 +1,185 @@
+"""Logs of ArduPilot (DataFlash, `.BIN`); needs pymavlink, the extra `mavlink`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from contextlib import redirect_stderr, redirect_stdout
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rvmon.errors import TraceError, needed
+from rvmon.recordings.messages.columns import ColumnMessages, Columns, ColumnTopic, leaves_of
+from rvmon.recordings.messages.topic import Topic, errors_as_damage
+from rvmon.trace.sample import Outage
+
+_TYPES: dict[str, Any] = {
+    "a": ("<i2", (32,)),
+    "b": "i1",
+    "B": "u1",
+    "g": "<f2",
+    "h": "<i2",
+    "H": "<u2",
+    "i": "<i4",
+    "I": "<u4",
+    "f": "<f4",
+    "n": "S4",
+    "N": "S16",
+    "Z": "S64",
+    "c": "<i2",
+    "C": "<u2",
+    "e": "<i4",
+    "E": "<u4",
+    "L": "<i4",
+    "d": "<f8",
+    "M": "u1",
+    "q": "<i8",
+    "Q": "<u8",
+}
+"""Types of NumPy by the letters of a format."""
+
+_MAGIC = b"\xa3\x95"
+_HEAD = 3
+_PAGE = 528
+"""Bytes behind the last message of a log that is written in pages."""
+
+_ERASED = 0xFF
+
+_STAMPS = {"T": 1_000_000, "TimeUS": 1_000, "TimeMS": 1_000_000}
+"""Ticks by the field that says when a message was written; `T` where `TimeMS` is of satellites."""
+
+_OF_THE_LOG = frozenset({"FMT", "FMTU", "UNIT", "MULT"})
+"""Messages that say how the others are written."""
+
+
+def dataflash_messages(path: Path) -> ColumnMessages:
+    """Open a log.
+
+    Raises:
+        RvmonError: pymavlink is not installed.
+        TraceError: it is no such log, or a damaged one.
+        OSError: it cannot be opened.
+    """
+    with needed("DataFlash", "pymavlink"):
+        from pymavlink.DFReader import DFReader_binary
+    with open(path, "rb") as file:
+        if file.read(2) != _MAGIC:
+            raise TraceError("is no DataFlash log: it begins otherwise")
+    quiet = StringIO()
+    with redirect_stdout(quiet), redirect_stderr(quiet), errors_as_damage("DataFlash"):
+        log = DFReader_binary(str(path))
+    data = np.frombuffer(log.data_map, np.uint8)
+    starts = {one: np.asarray(log.offsets[one], np.int64) for one in log.formats}
+    topics = [
+        topic
+        for number, form in log.formats.items()
+        if len(starts[number]) and form.name not in _OF_THE_LOG
+        for topic in _topics(form, data, starts[number])
+    ]
+    loaded = [topic.load()[0] for topic in topics]
+    end = max((int(times.max()) for times in loaded if len(times)), default=0)
+    outages = _damage(log, data, starts, end)
+    last = max((outage.until for outage in outages), default=end)
+    return ColumnMessages(topics, max(end, last), outages, log.filehandle.close)
+
+
+def _rows(form: Any, data: Any, starts: Any) -> Any:
+    """The messages of a format that begin at those places, as they are written."""
+    letters = list(form.msg_fmts)
+    if len(letters) != len(form.columns):
+        raise TraceError(f"its format of {form.name} names fields without a type: copy it again")
+    layout = np.dtype(
+        [(name, _TYPES[letter]) for name, letter in zip(form.columns, letters, strict=True)]
+    )
+    if layout.itemsize != form.len - _HEAD:
+        raise TraceError(f"its format of {form.name} contradicts its length: copy it again")
+    bodies = data[starts[:, None] + np.arange(_HEAD, form.len)]
+    return np.ascontiguousarray(bodies).view(layout).reshape(-1)
+
+
+def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
+    """What a log has of a message; each instance is a topic of its own."""
+    rows = _rows(form, data, starts[starts + form.len <= len(data)])
+    stamp = _stamp_of(form)
+    if stamp is None or not len(rows):
+        return []
+    times = rows[stamp].astype(np.int64) * _STAMPS[stamp]
+    scales = dict(zip(form.columns, form.msg_mults, strict=True))
+    units = dict(zip(form.columns, form.units or [""] * len(form.columns), strict=False))
+    instance = form.instance_field
+    numbers = [None] if instance is None else np.unique(rows[instance]).tolist()
+    found = []
+    for number in numbers:
+        own = rows if number is None else rows[rows[instance] == number]
+        own_times = times if number is None else times[rows[instance] == number]
+        columns = {
+            name: _cells(own[name], scales[name])
+            for name in form.columns
+            if name not in (stamp, instance)
+        }
+        shown = number.decode("utf-8", "replace") if isinstance(number, bytes) else number
+        name = f"/{form.name}" if number is None else f"/{form.name}_{shown}"
+        stated = {field: unit for field, unit in units.items() if field in columns}
+        stated = {field: unit for field, unit in stated.items() if unit not in ("", "UNKNOWN")}
+        topic = Topic(name, form.name, leaves_of(columns), units=stated)
+
+        def load(loaded: tuple[Any, Columns] = (own_times, columns)) -> tuple[Any, Columns]:
+            return loaded
+
+        found.append(ColumnTopic(topic, len(own), load))
+    return found
+
+
+def _stamp_of(form: Any) -> str | None:
+    """The field of a message that says when it was written."""
+    is_of_satellites = form.name.startswith("GPS")
+    return next(
+        (name for name in _STAMPS if name in form.columns and (name != "T" or is_of_satellites)),
+        None,
+    )
+
+
+def _cells(column: Any, scale: float | None) -> Any:
+    """Values as they are meant: texts without filling, numbers to scale."""
+    if column.dtype.kind == "S":
+        texts = [one.partition(b"\0")[0].decode("utf-8", "replace") for one in column.tolist()]
+        return np.array(texts, object)
+    if scale is None:
+        return column
+    # The double nearest to 337.09 is 33709 / 100, and not 33709 * 0.01.
+    wide = column.astype(np.float64)
+    return wide / (1 / scale) if 0 < scale < 1 else wide * scale
+
+
+def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Outage]:
+    """The stretches in which something stands that is no message."""
+    places = np.concatenate([*starts.values()])
+    lengths = np.concatenate(
+        [np.full(len(own), log.formats[number].len) for number, own in starts.items()]
+    )
+    order = np.argsort(places, kind="stable")
+    places, lengths = places[order], lengths[order]
+    behind = places + lengths
+    times = np.full(len(places), -1, np.int64)
+    for number, own in starts.items():
+        form = log.formats[number]
+        stamp = _stamp_of(form)
+        if stamp is not None and len(own):
+            inside = own[own + form.len <= len(data)]
+            stamped = _rows(form, data, inside)[stamp].astype(np.int64)
+            times[np.searchsorted(places, inside)] = stamped * _STAMPS[stamp]
+    found = []
+    for gap in np.flatnonzero(behind[:-1] != places[1:]).tolist():
+        before, after = times[: gap + 1], times[gap + 1 :]
+        since = int(before.max())  # what was lost may have had the stamp of its neighbour
+        known = after[after >= 0]
+        until = int(known[0]) if len(known) else max(end, since)
+        why = f"there is no message at byte {int(behind[gap]):,}"
+        found.append(Outage(since, max(since, until), why))
+    rest = data[int(behind[-1]) :] if len(behind) else data
+    is_filling = len(rest) < _PAGE and bool((rest == 0).all() or (rest == _ERASED).all())
+    if len(places) and (behind[-1] > len(data) or not is_filling):
+        found.append(Outage(end, end + 1, "it ends within a message"))
+    return sorted(found, key=lambda outage: outage.since)

@@ -1,0 +1,174 @@
+"""Fields of messages: how they are written, found and read."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from math import inf
+from operator import attrgetter
+from typing import Any, assert_never
+
+from rvmon.errors import TraceError
+from rvmon.recordings.messages.by_names import Get, by_names
+from rvmon.recordings.messages.topic import Topic
+from rvmon.recordings.values import plain, shorten
+from rvmon.texts import nearest
+from rvmon.trace.sample import calculated
+from rvmon.trace.schema import Applied, Constant, Elements, Field, Kind, Named, Step, Term
+
+_STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]|\[([^\[\]\s](?:[^\[\]]*[^\[\]\s])?)\]")
+
+_SHOWN = 6
+"""Fields that a message lists."""
+
+_STAMPS = ("header.stamp", "stamp", "timestamp")
+_PARTS = (("sec", "nanosec"), ("sec", "nsec"), ("secs", "nsecs"), ("seconds", "nanos"))
+
+
+def field_of(text: str) -> Field | None:
+    """Read a path such as `pose.position.x`, `ranges[0]`, `position[elbow]`; `None` if it is none.
+
+    >>> field_of("poses[0].x"), field_of("2x"), str(field_of("values[Battery level].value"))
+    (Field(path=('poses', 0, 'x')), None, 'values[Battery level].value')
+    """
+    steps: list[Step] = []
+    place = 0
+    while place < len(text):
+        found = _STEP.match(text, place)
+        if found is None or (text[place] == ".") != (place > 0 and text[place] != "["):
+            return None
+        steps.append(found[1] or (int(found[2]) if found[2] else Named(found[3])))
+        place = found.end()
+    return Field(tuple(steps)) if steps and isinstance(steps[0], str) else None
+
+
+def _fields_in(term: Term, sign: str = "") -> Iterator[tuple[Field | Elements, bool]]:
+    """The fields that a term reads, and whether the text of each is read as a number."""
+    if isinstance(term, Field | Elements):
+        yield term, sign == "number"
+    elif isinstance(term, Applied):
+        for arg in term.args:
+            yield from _fields_in(arg, term.sign)
+
+
+def kind_of(field: Field | Elements, topic: Topic) -> Kind | None:
+    """The kind of the values of a field; `None` if nobody knows.
+
+    Raises:
+        TraceError: the topic has no such field, or it is a message or an array itself.
+    """
+    path = re.sub(r"\[[^\[\]]*\]", "[]", str(field))
+    if not topic.leaves or path in topic.leaves:
+        return None if path in topic.doubtful else topic.leaves.get(path)
+    where = f"topic {topic.name} ({topic.type})"
+    if f"{path}[]" in topic.leaves:
+        raise TraceError(f"{where}: `{field}` is an array: name an element, such as `{field}[0]`")
+    inner = [leaf for leaf in topic.leaves if leaf.startswith((f"{path}.", f"{path}[]."))]
+    if inner:
+        raise TraceError(f"{where}: `{field}` is a message: name a field of it: {_listed(inner)}")
+    ends = [leaf for leaf in topic.leaves if leaf.endswith(f".{path}")]
+    close = ends[0] if ends else nearest(path, topic.leaves)
+    meant = f"did you mean `{close}`?" if close else f"there are {_listed(list(topic.leaves))}"
+    raise TraceError(f"{where} has no field `{field}`: {meant}")
+
+
+def _listed(leaves: list[str]) -> str:
+    more = f" and {len(leaves) - _SHOWN} more" if len(leaves) > _SHOWN else ""
+    return ", ".join(f"`{leaf}`" for leaf in leaves[:_SHOWN]) + more
+
+
+def expect_kinds(
+    name: str, kind: Kind, term: Term, labels: Mapping[str, str], topic: Topic
+) -> None:
+    """See that the fields of a term can give values of a kind.
+
+    Raises:
+        TraceError: a field is not there, or holds something else.
+    """
+    for field, is_text in _fields_in(term):
+        found = kind_of(field, topic)
+        if found is None or (is_text and found is Kind.LABEL):
+            continue
+        if is_text:
+            raise TraceError(
+                f"`{name}`: `{field}` of topic {topic.name} ({topic.type}) is no text, and "
+                "`number` reads one: leave it out"
+            )
+        fix = ""
+        if kind is Kind.LABEL and isinstance(term, Field):
+            fits = bool(labels) or found is Kind.LABEL
+            fix = ": name in a binding which `labels` its values stand for"
+        else:
+            fits = found is not Kind.LABEL
+        if kind is Kind.BOOL and found is Kind.REAL and isinstance(term, Field):
+            fits, fix = False, f": compare it in a binding, as `{field} > 0`"
+        if not fits:
+            holds = {Kind.LABEL: "text", Kind.REAL: "numbers"}.get(found, "whole numbers")
+            raise TraceError(
+                f"`{name}` is declared {kind}, and `{field}` of topic {topic.name} "
+                f"({topic.type}) holds {holds}{fix}"
+            )
+
+
+def getter(term: Term) -> Get:
+    """A function that gives the value of a term for the content of a message.
+
+    A content is an object with attributes, or a mapping. The function raises `KeyError` where one
+    lacks a field; an element behind the end of an array, and what is calculated with it, is `None`,
+    which is unknown.
+    """
+    match term:
+        case Constant(value=value):
+            return lambda _: value
+        case Field(path=path):
+            step_by_step = by_names(path)
+            if not all(isinstance(step, str) for step in path):
+                return step_by_step
+            at_once = attrgetter(".".join(map(str, path)))
+            return lambda content: (
+                step_by_step(content) if isinstance(content, Mapping) else at_once(content)
+            )
+        case Elements(array=array):
+            return getter(array)
+        case Applied(operation=operation, args=(Field() | Elements() as read_from,), sign=sign) if (
+            sign == "number" or isinstance(read_from, Elements)
+        ):
+            value_of = getter(read_from)
+            return lambda content: None if (one := value_of(content)) is None else operation(one)
+        case Applied(operation=operation, args=args):
+            read = [getter(arg) for arg in args]
+            return lambda content: _calculated(operation, [one(content) for one in read])
+        case _:
+            assert_never(term)
+
+
+def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
+    known = [plain(value) for value in values]
+    for value in known:
+        if isinstance(value, str):
+            raise TraceError(f"`{shorten(value)}` is no number to calculate with")
+        if value != value:
+            return None
+    if inf in known or -inf in known:  # as sensors say that nothing is in range
+        with suppress(ValueError):
+            result = operation(*known)
+            return None if result != result else result
+    return calculated(operation, *known)
+
+
+def stamp_getter(topic: Topic) -> Callable[[Any], int]:
+    """A function that gives the ticks that the header of a message says.
+
+    Raises:
+        TraceError: the messages have no header.
+    """
+    for prefix in _STAMPS:
+        for seconds, parts in _PARTS:
+            if {f"{prefix}.{seconds}", f"{prefix}.{parts}"} <= topic.leaves.keys():
+                read = [getter(Field((*prefix.split("."), one))) for one in (seconds, parts)]
+                return lambda content: int(read[0](content)) * 1_000_000_000 + int(read[1](content))
+    raise TraceError(
+        f"topic {topic.name} ({topic.type}) has no header whose stamp could count: "
+        'bind what it feeds with `clock = "log"`'
+    )

@@ -1,0 +1,189 @@
+"""Measurements of vehicles (MDF 4, `.mf4`); needs asammdf, the extra `mdf`."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import partial
+from heapq import merge
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from rvmon.errors import TraceError, needed
+from rvmon.recordings.columns import ticks_of_column
+from rvmon.recordings.messages.columns import (
+    ColumnMessages,
+    ColumnTopic,
+    LateColumn,
+    distinct,
+    kind_of_type,
+    path_of,
+)
+from rvmon.recordings.messages.topic import Topic, errors_as_damage
+from rvmon.trace.schema import Stamps
+
+_STAMPS = Stamps("its time", "s", is_stated=True)
+
+_IN_TIME = 1
+"""How a master channel that counts seconds is marked."""
+
+_FRAMES = "CAN_DataFrame"
+"""The channel of a group that holds frames as they were on the bus."""
+
+_LAST_STANDARD = 0x7FF
+_IDENTIFIER = 0x1FFFFFFF
+
+
+def open_measurement(path: Path) -> Any:
+    """Open a file with the library.
+
+    Raises:
+        RvmonError: asammdf is not installed.
+        TraceError: it is no such file, or a damaged one.
+        OSError: it cannot be opened.
+    """
+    with needed("MDF", "asammdf"):
+        from asammdf import MDF
+    with open(path, "rb") as file:
+        if not file.read(8).startswith((b"MDF", b"UnFinMF")):
+            raise TraceError("is no MDF file: it begins otherwise")
+    logging.getLogger("asammdf").setLevel(logging.CRITICAL)
+    with errors_as_damage("MDF"), _quietly_freed():
+        return MDF(path)
+
+
+def mdf_messages(path: Path) -> ColumnMessages | None:
+    """Open a measurement; `None` if it holds frames of CAN and no signals.
+
+    Stamps are those of the file, which count from its start. Errors are those of
+    `open_measurement`.
+    """
+    file = open_measurement(path)
+    with errors_as_damage("MDF"):
+        groups = [one for one, group in enumerate(file.groups) if group.channel_group.cycles_nr]
+        kept = [group for group in groups if not _holds_frames(file.groups[group])]
+        if groups and not kept:
+            file.close()
+            return None
+        names = distinct([_name(file.groups[one], one) for one in kept])
+        topics = [_topic(file, name, one) for name, one in zip(names, kept, strict=True)]
+        ends = [int(_times(file, one).max()) for one in kept if _counts_time(file, one)]
+    return ColumnMessages(topics, max(ends, default=None), close=file.close)
+
+
+def _holds_frames(group: Any) -> bool:
+    return any(channel.name == _FRAMES for channel in group.channels)
+
+
+def mdf_frames(path: Path) -> Iterator[tuple[int, tuple[int, bool], int, bytes]]:
+    """Ticks, identifier, channel and data of the frames of CAN in a measurement, by time.
+
+    Errors are those of `open_measurement`.
+    """
+    file = open_measurement(path)
+    try:
+        found = []
+        for number, group in enumerate(file.groups):
+            if not (group.channel_group.cycles_nr and _holds_frames(group)):
+                continue
+            times = _times(file, number)
+            columns = {
+                channel.name.removeprefix(f"{_FRAMES}."): place
+                for place, channel in enumerate(group.channels)
+            }
+
+            def of(name: str, number: int = number, columns: Any = columns) -> Any:
+                with errors_as_damage("MDF"):
+                    return file.get(group=number, index=columns[name]).samples
+
+            length = of("DataLength" if "DataLength" in columns else "DLC")
+            identifier = of("ID").astype(np.int64)
+            is_extended = of("IDE") if "IDE" in columns else identifier > _LAST_STANDARD
+            channel = of("BusChannel") if "BusChannel" in columns else np.zeros(len(times))
+            whole = [one.astype(np.int64) for one in (times, identifier, channel, length)]
+            parts = [one.tolist() for one in (*whole, is_extended.astype(bool))]
+            found.append((*parts, of("DataBytes")))
+        rows = (zip(*group, strict=True) for group in found)
+        for t, identifier, channel, length, is_extended, data in merge(*rows, key=itemgetter(0)):
+            yield t, (identifier & _IDENTIFIER, is_extended), channel, bytes(data[:length])
+    finally:
+        file.close()
+
+
+@contextmanager
+def _quietly_freed() -> Iterator[None]:
+    """What could not be opened is closed by the library, and yet again when it is freed."""
+    try:
+        yield
+    except Exception as error:
+        trace = error.__traceback__
+        while trace is not None:
+            owner: Any = trace.tb_frame.f_locals.get("self")
+            if type(owner).__name__ == "MDF4":
+                owner.close = int
+                if temporary := getattr(owner, "_tempfile", None):
+                    temporary.close()
+            trace = trace.tb_next
+        raise
+
+
+def _name(group: Any, number: int) -> str:
+    called = group.channel_group.acq_name or group.channel_group.comment or f"group_{number}"
+    return f"/{path_of(called.partition(chr(10))[0])}"
+
+
+def _counts_time(file: Any, group: int) -> bool:
+    master = file.masters_db.get(group)
+    return master is not None and file.groups[group].channels[master].sync_type == _IN_TIME
+
+
+def _times(file: Any, group: int) -> Any:
+    with errors_as_damage("MDF"):
+        times = ticks_of_column(np.asarray(file.get_master(group), np.float64), _STAMPS)
+    counted = file.groups[group].channel_group.cycles_nr
+    if len(times) != counted:
+        raise TraceError(
+            f"holds {len(times):,} records of a group, and says itself that it has {counted:,}: "
+            "copy it again"
+        )
+    return times
+
+
+def _channel(file: Any, group: int, index: int) -> tuple[Any, Any]:
+    signal = file.get(group=group, index=index)
+    values, invalid = signal.samples, signal.invalidation_bits
+    if values.dtype.kind == "S":
+        values = np.char.rstrip(values, b"\0 ")
+    return values, None if invalid is None else invalid.tolist()
+
+
+def _topic(file: Any, name: str, group: int) -> ColumnTopic:
+    """A group of channels with one clock."""
+    counted = file.groups[group].channel_group.cycles_nr
+    kind = file.groups[group].channel_group.acq_source
+    type_name = kind.name if kind is not None and kind.name else "MDF"
+    if not _counts_time(file, group):
+        topic = Topic(name, type_name, {}, "its channels do not count by time")
+        return ColumnTopic(topic, counted, lambda: (np.zeros(0, np.int64), {}))
+    listed = [
+        (place, channel)
+        for place, channel in enumerate(file.groups[group].channels)
+        if place != file.masters_db[group]
+    ]
+    paths = distinct([path_of(channel.name) for _, channel in listed])
+    columns, leaves, units = {}, {}, {}
+    for path, (place, _) in zip(paths, listed, strict=True):
+        first = file.get(group=group, index=place, record_count=1)
+        if first.samples.dtype.names:
+            continue  # a structure, whose members are channels as well
+        columns[path] = LateColumn("MDF", partial(_channel, file, group, place))
+        leaf = path + "[]" * (first.samples.ndim - 1)
+        leaves[leaf] = kind_of_type(first.samples.dtype)
+        if first.unit:
+            units[leaf] = first.unit.strip()
+    topic = Topic(name, type_name, leaves, units=units)
+    return ColumnTopic(topic, counted, lambda: (_times(file, group), columns))

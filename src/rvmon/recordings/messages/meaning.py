@@ -1,0 +1,294 @@
+"""What the fields of messages mean: facts about the packages that many robots use.
+
+The tables are in `meanings`, a file per package: its messages in brackets, below each of them a
+field a line, what it is, and words that people use for it. What a field is:
+
+    m/s       measured in this unit; of a field that is a message: all that is inside
+    rad|m     in one of these: of a joint that turns, or slides
+    ~deg      in another scale of this unit
+    1         a plain number, such as a ratio
+    #         what counts or stands for something: a code, a text, a truth value
+    q         a part of a quaternion
+    ?         decided by whoever sends it
+    -         of no interest: covariances, gains, bytes
+    @p/Type   a message, whose fields are listed there
+
+`xyz` among the words says that the elements of an array are along these axes.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from enum import Enum
+from functools import cache, reduce
+from importlib import resources
+
+from rvmon.errors import TraceError
+from rvmon.recordings.messages.comments import is_vector, spoken_unit, unit_in_comment
+from rvmon.recordings.messages.topic import Topic
+from rvmon.trace.schema import (
+    TURNS,
+    Applied,
+    Bound,
+    Constant,
+    Elements,
+    Field,
+    Kind,
+    Schema,
+    Term,
+)
+from rvmon.units import PLAIN, Unit, parse_unit
+
+
+class Sort(Enum):
+    """What a field is."""
+
+    MEASURED = "measured"
+    CODE = "#"
+    QUATERNION = "q"
+    OPEN = "?"
+    ODD = "-"
+
+
+@dataclass(frozen=True, slots=True)
+class Meaning:
+    """What is known of a field.
+
+    Attributes:
+        sort: what it is.
+        units: in one of which it is measured; empty if it is not, or nobody knows.
+        is_scaled: whether it is in another scale of the unit.
+        words: that people use for it.
+        is_prose: whether a comment says it, which may mean something else.
+    """
+
+    sort: Sort
+    units: tuple[Unit, ...] = ()
+    is_scaled: bool = False
+    words: tuple[str, ...] = ()
+    is_prose: bool = False
+
+
+UNKNOWN = Meaning(Sort.OPEN)
+"""Of fields that stand in no table."""
+
+_OF_OTHERS = Meaning(Sort.OPEN, is_scaled=True)
+"""Of a field whose unit the recording says, and it is none that is known here."""
+
+
+def meaning_of(path: str, topic: Topic) -> Meaning:
+    """What a field of the messages of a topic means.
+
+    >>> one = meaning_of("twist.linear.x", Topic("/v", "geometry_msgs/msg/TwistStamped", {}))
+    >>> one.units[0].symbol, one.words
+    ('m/s', ('velocity', 'speed'))
+    """
+    # Names of elements may have dots.
+    plain = re.sub(r"\[[^\[\]]*\]", "[]", path)
+    steps = plain.split(".")
+    type_name = plain_type(topic.type)
+    found = UNKNOWN
+    for place, step in enumerate(steps, 1):
+        entry = _table(type_name).get(step.removesuffix("[]"), "?")
+        if not entry.startswith("@"):
+            inner = _read(entry)
+            # What is said of a vector is said of all that is inside it.
+            found = inner if found.sort is Sort.OPEN else found
+        way = ".".join(steps[:place])
+        if found.sort is Sort.OPEN:
+            found = _told(way, topic)
+        stated = entry.removeprefix("@") if entry.startswith("@") else topic.messages.get(way, "")
+        type_name = plain_type(stated)
+    return found
+
+
+def is_listed(type_name: str) -> bool:
+    """Whether the fields of a type of messages are in the tables."""
+    return bool(_table(plain_type(type_name)))
+
+
+def plain_type(type_name: str) -> str:
+    """A type as the tables have it.
+
+    >>> plain_type("sensor_msgs/msg/Imu"), plain_type("sensor_msgs/Imu")
+    ('sensor_msgs/Imu', 'sensor_msgs/Imu')
+    """
+    return re.sub(r"[/.]msg[/.]", "/", type_name)
+
+
+def _told(path: str, topic: Topic) -> Meaning:
+    """What a recording says of a field, itself or by a comment on a number or a vector."""
+    said = topic.units.get(path, "")
+    unit = "1" if said in ("1", "-") else spoken_unit(said)
+    is_number = topic.leaves.get(path) in (Kind.REAL, Kind.INT)
+    if said and not unit:
+        return _OF_OTHERS
+    comment = topic.comments.get(path)
+    if not said and comment and (is_number or is_vector(topic.messages.get(path, ""))):
+        unit = unit_in_comment(comment)
+    is_prose = path not in topic.units
+    return replace(_read(unit), is_prose=is_prose) if unit else UNKNOWN
+
+
+@cache
+def _read(entry: str) -> Meaning:
+    what, *words = entry.split()
+    if what in ("#", "q", "?", "-"):
+        return Meaning(Sort(what), words=tuple(words))
+    units = tuple(parse_unit(unit) for unit in what.removeprefix("~").split("|"))
+    return Meaning(Sort.MEASURED, units, what.startswith("~"), tuple(words))
+
+
+def _table(type_name: str) -> Mapping[str, str]:
+    """The entry of each field of a type; empty if it is in no table."""
+    package, _, name = type_name.partition("/")
+    return _package(package).get(name, {}) if name else {}
+
+
+@cache
+def _package(name: str) -> Mapping[str, Mapping[str, str]]:
+    place = resources.files("rvmon.recordings.messages") / "meanings" / f"{name}.txt"
+    if not re.fullmatch(r"\w+", name) or not place.is_file():
+        return {}
+    found: dict[str, dict[str, str]] = {}
+    own: dict[str, str] = {}
+    for line in place.read_text("utf-8").splitlines():
+        if line.startswith("["):
+            own = found.setdefault(line.strip("[]"), {})
+        else:
+            field, _, entry = line.partition(" ")
+            own[field] = entry
+    return found
+
+
+_ALIKE = frozenset({"+", "-", "min", "max", "hypot", "<", "<=", ">", ">=", "==", "!="})
+"""Operations whose arguments are in one unit."""
+
+_TRUTHS = frozenset({"<", "<=", ">", ">=", "==", "!=", "and", "or", "xor", "not", "any", "all"})
+
+
+@dataclass(frozen=True, slots=True)
+class Measure:
+    """A unit of a value.
+
+    Attributes:
+        unit: of it, at least of the same kind.
+        is_exact: whether the scale is known as well.
+        is_prose: whether a comment says it.
+    """
+
+    unit: Unit
+    is_exact: bool = True
+    is_prose: bool = False
+
+
+def measures_of(term: Term, topic: Topic) -> tuple[Measure, ...]:
+    """In which units a value may be; none if nobody knows, or if it is a constant.
+
+    Raises:
+        TraceError: the units of what is added or compared contradict each other.
+    """
+    match term:
+        case Constant():
+            return ()
+        case Field() | Elements():
+            meaning = meaning_of(str(term), topic)
+            if meaning.sort is Sort.QUATERNION:
+                return (Measure(PLAIN),)
+            is_exact, is_prose = not meaning.is_scaled, meaning.is_prose
+            return tuple(Measure(unit, is_exact, is_prose) for unit in meaning.units)
+        case Applied(sign=turn) if turn in TURNS:
+            return (Measure(parse_unit("rad")),)
+        case Applied(args=(value, _), sign=""):
+            return measures_of(value, topic)
+        case Applied(args=args, sign=sign):
+            inner = [measures_of(arg, topic) for arg in args]
+            if sign in _ALIKE:
+                _expect_alike(term, inner, topic)
+            return () if sign in _TRUTHS else _combined(sign, args, inner)
+
+
+def _combined(
+    sign: str, args: tuple[Term, ...], inner: list[tuple[Measure, ...]]
+) -> tuple[Measure, ...]:
+    """The units of a result, where those of all arguments but constants are known."""
+    known = [(arg, own) for arg, own in zip(args, inner, strict=True) if own]
+    if any(not own and not isinstance(arg, Constant) for arg, own in zip(args, inner, strict=True)):
+        return ()
+    if not known or (sign in ("*", "/") and len(known) == 2) or sign == "sqrt":
+        return ()  # products of fields are rare: that nothing is known of them does no harm
+    if sign == "/" and not inner[0]:
+        return ()
+    # A number that is not a field may change the scale: thousandths of metres become metres.
+    keeps = sign not in ("*", "/")
+    return tuple(replace(measure, is_exact=measure.is_exact and keeps) for measure in known[0][1])
+
+
+def _expect_alike(term: Applied, inner: list[tuple[Measure, ...]], topic: Topic) -> None:
+    dimensions = [{measure.unit.dimension for measure in own} for own in inner if own]
+    if dimensions and not reduce(set.intersection, dimensions):
+        listed = " and ".join(
+            f"`{arg}` in {_written(own)}" for arg, own in zip(term.args, inner, strict=True) if own
+        )
+        raise TraceError(
+            f"`{term}` of topic {topic.name} ({topic.type}): {listed} cannot be added or compared"
+        )
+
+
+def expect_units(name: str, bound: Bound, schema: Schema, topic: Topic) -> None:
+    """See that values that feed a name are in its unit, as far as the messages say it.
+
+    Raises:
+        TraceError: they are not, or units in a value contradict each other.
+    """
+    if bound.value is not None:
+        _expect(name, bound.value, schema.units.get(name, ""), bound.unit, topic)
+    for field, term in bound.fields.items():
+        full = f"{name}.{field}"
+        _expect(full, term, schema.units.get(full, ""), "", topic)
+
+
+def _expect(name: str, term: Term, declared: str, given: str, topic: Topic) -> None:
+    found = measures_of(term, topic)
+    is_prose = bool(found) and all(measure.is_prose for measure in found)
+    if not found or not declared or (is_prose and given):
+        return  # who writes the unit of a field has read what its comment means
+    target = parse_unit(given or declared)
+    alike = [measure for measure in found if measure.unit.dimension == target.dimension]
+    where = f"topic {topic.name} ({topic.type})" if topic.type else f"topic {topic.name}"
+    is_so = f"`{term}` of {where} is {_written(found)}{', as a comment says' if is_prose else ''}"
+    wanted = f"`{name}` is declared [{declared}]"
+    if not alike:
+        otherwise = f', or write `unit = "{declared}"` in a binding if it is' if is_prose else ""
+        raise TraceError(
+            f"{wanted}, and {is_so}: bind what is in [{declared}]{_such(target, topic)}{otherwise}"
+        )
+    if any(not measure.is_exact or measure.unit.factor == target.factor for measure in alike):
+        return
+    says = f"and `unit` says [{given}]" if given else "in which it would be judged as it is"
+    fix = f'write `unit = "{alike[0].unit.symbol or 1}"` in a binding, and it is converted'
+    raise TraceError(f"{is_so}; {wanted}, {says}: {fix}")
+
+
+def _such(target: Unit, topic: Topic) -> str:
+    fields = [
+        f"`{leaf}`"
+        for leaf in topic.leaves
+        if any(unit.dimension == target.dimension for unit in meaning_of(leaf, topic).units)
+    ]
+    return f", such as {' or '.join(fields[:3])}" if fields and target.dimension else ""
+
+
+def _written(found: Iterable[Measure]) -> str:
+    """Units as a person reads them.
+
+    >>> _written([Measure(parse_unit("rad")), Measure(PLAIN)])
+    'in [rad] or a plain number'
+    """
+    listed = [
+        f"in [{measure.unit.symbol}]" if measure.unit.dimension else "a plain number"
+        for measure in found
+    ]
+    return " or ".join(dict.fromkeys(listed))

@@ -1,0 +1,173 @@
+"""Messages as rows: what each of them says of the declared names."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from rvmon.errors import TraceError
+from rvmon.recordings.messages.fields import getter, stamp_getter
+from rvmon.recordings.messages.skew import Skew
+from rvmon.recordings.messages.topic import Messages, Topic
+from rvmon.recordings.rows import Row
+from rvmon.recordings.values import DESCRIPTION, as_declared, fits, plain, shorten
+from rvmon.trace.sample import Value
+from rvmon.trace.schema import Bound, Clock, Gaps, Kind, Schema, Term
+from rvmon.trace.time import whole_ticks
+
+_ABSENT = object()
+
+Take = Callable[[Any, dict[str, Value]], object]
+"""Puts what a content says of a name among the values."""
+
+
+def message_rows(
+    source: Messages, bounds: Mapping[str, Bound], schema: Schema, skew: Skew, *, ordered: bool
+) -> Iterator[Row]:
+    """Number of the message, ticks and values of each message that is read.
+
+    Where stamps of headers count, messages are sorted by time in memory, unless they may be late.
+
+    Raises:
+        TraceError: with the number of the message among those of its topic.
+    """
+    rows = _rows(source, bounds, schema, skew)
+    clock = schema.binding.clock
+    if ordered and any((bound.clock or clock) is Clock.HEADER for bound in bounds.values()):
+        return iter(sorted(rows, key=lambda row: row[1]))
+    return rows
+
+
+def _rows(
+    source: Messages, bounds: Mapping[str, Bound], schema: Schema, skew: Skew
+) -> Iterator[Row]:
+    readers = MessageReaders(bounds, schema)
+    counts: dict[str, int] = defaultdict(int)
+    number = 0
+    for topic, logged, content in source.read({bound.topic for bound in bounds.values()}):
+        counts[topic] += 1
+        try:
+            skew.note(source.topics[topic], logged, content)
+            for t, values in readers.take(source.topics[topic], logged, content):
+                number += 1
+                yield number, t, values
+        except TraceError as error:
+            raise TraceError(f"message {counts[topic]} of {topic}: {error}") from None
+
+
+class MessageReaders:
+    """What reads the messages, by topic: made for the first one of each."""
+
+    def __init__(self, bounds: Mapping[str, Bound], schema: Schema) -> None:
+        self._schema = schema
+        self._by_topic: dict[str, list[tuple[str, Bound]]] = defaultdict(list)
+        for name, bound in bounds.items():
+            self._by_topic[bound.topic].append((name, bound))
+        self._made: dict[str, list[tuple[Callable[[Any], int] | None, list[Take]]]] = {}
+
+    def take(
+        self, topic: Topic, logged: int, content: Any
+    ) -> Iterator[tuple[int, dict[str, Value]]]:
+        """What a message says, and when: of each clock that is asked for.
+
+        Args:
+            topic: of the message.
+            logged: ticks at which it came, or was recorded.
+            content: an object with attributes, or a mapping.
+
+        Raises:
+            TraceError: it does not fit what is declared.
+        """
+        made = self._made.get(topic.name)
+        if made is None:
+            made = self._made[topic.name] = self._make(topic)
+        for stamp, takes in made:
+            values: dict[str, Value] = {}
+            for take in takes:
+                take(content, values)
+            yield whole_ticks(logged if stamp is None else stamp(content)), values
+
+    def _make(self, topic: Topic) -> list[tuple[Callable[[Any], int] | None, list[Take]]]:
+        takes: dict[Clock, list[Take]] = defaultdict(list)
+        for name, bound in self._by_topic[topic.name]:
+            make = _signal if name in self._schema.signals else _event
+            clock = bound.clock or self._schema.binding.clock
+            takes[clock].append(make(name, bound, self._schema))
+        return [
+            (stamp_getter(topic) if clock is Clock.HEADER else None, own)
+            for clock, own in takes.items()
+        ]
+
+
+def _signal(name: str, bound: Bound, schema: Schema) -> Take:
+    assert bound.value is not None, "a signal has a value"
+    read = _reader(name, bound.value, schema.signals[name], bound.labels, schema.gaps)
+    before: list[Any] = [_ABSENT]
+
+    def take(content: Any, values: dict[str, Value]) -> None:
+        value = read(content)
+        if value is _ABSENT or (bound.on_change and _is_same(before[0], value)):
+            return
+        before[0] = values[name] = value
+
+    return take
+
+
+def _is_same(first: Any, second: Any) -> bool:
+    return first is second or first == second or (first != first and second != second)
+
+
+def _event(name: str, bound: Bound, schema: Schema) -> Take:
+    kinds, gaps, occurs = schema.events[name], schema.gaps, None
+    fields = {
+        field: _reader(f"{name}.{field}", term, kinds[field], {}, gaps)
+        for field, term in bound.fields.items()
+    }
+    if bound.value is not None:
+        occurs = _reader(name, bound.value, Kind.BOOL, {}, gaps)
+    before: list[Any] = [_ABSENT]
+
+    def take(content: Any, values: dict[str, Value]) -> None:
+        happened: Any = True if occurs is None else occurs(content)
+        if happened is _ABSENT:
+            return
+        payload = {}
+        if happened and fields:
+            payload = {field: read(content) for field, read in fields.items()}
+            payload = {field: one for field, one in payload.items() if one is not _ABSENT}
+        value = payload or happened
+        if bound.on_change:
+            if _is_same(before[0], value):
+                value = False
+            else:
+                before[0] = value
+        values[name] = value
+
+    return take
+
+
+def _reader(
+    name: str, term: Term, kind: Kind, labels: Mapping[str, str], gaps: Gaps
+) -> Callable[[Any], Any]:
+    """What gives a value of the kind, `None` where it is unknown, or `_ABSENT`."""
+    get = getter(term)
+
+    def read(content: Any) -> Any:
+        try:
+            value = plain(get(content))
+        except KeyError:
+            return _ABSENT
+        if gaps and gaps.holds(value):
+            return _ABSENT
+        if labels and value is not None:
+            key = str(value)
+            if key not in labels:
+                raise TraceError(f"`{name}`: no label is bound to `{shorten(key)}`: add it")
+            return labels[key]
+        value = as_declared(value, kind)
+        if not fits(value, kind):
+            raise TraceError(f"`{name}`: `{shorten(str(value))}` is not {DESCRIPTION[kind]}")
+        return value
+
+    return read

@@ -1,0 +1,239 @@
+"""A folder of tables that are one recording: a CSV file per topic, joined by time.
+
+A file `topics.toml` in it says so; it may be empty.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from heapq import merge
+from io import TextIOWrapper
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from rvmon.errors import TraceError
+from rvmon.recordings.csv_dialect import opened_as_csv
+from rvmon.recordings.csv_rows import read_layout, split_lines
+from rvmon.recordings.messages.forms import TOPICS
+from rvmon.recordings.messages.topic import Message, Messages, Topic
+from rvmon.recordings.places import bounded_lines, endings_of, named_errors
+from rvmon.recordings.values import FALSE_WORDS, TRUE_WORDS, double_of
+from rvmon.texts import did_you_mean, text_of_file
+from rvmon.trace.schema import Kind, Schema, Stamps
+from rvmon.trace.stamps import stamps_of, ticks_of_cell
+from rvmon.trace.time import format_ticks
+
+_LOOKED_AT = 1000
+"""Rows that say of which kind the columns are."""
+
+_WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
+_PATH = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*(\[\d{1,4}\])?")
+
+
+@dataclass(frozen=True, slots=True)
+class _Table:
+    """A file: what it holds, and of which kind the columns are that are no stamps, if known."""
+
+    path: Path
+    type: str
+    stamps: Stamps | None
+    kinds: Mapping[str, Kind | None]
+
+
+class TableMessages(Messages):
+    """An open folder.
+
+    Attributes:
+        topics: by name, one of each file.
+
+    Raises:
+        TraceError: a file cannot be read, or `topics.toml` says something else.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._tables = {name: _looked_over(table) for name, table in _tables(folder)}
+        self.topics = {
+            name: Topic(
+                name,
+                table.type,
+                {_leaf(column): kind or Kind.REAL for column, kind in table.kinds.items()},
+                doubtful=frozenset(_leaf(one) for one, kind in table.kinds.items() if kind is None),
+            )
+            for name, table in self._tables.items()
+        }
+
+    def read(self, topics: Collection[str]) -> Iterator[Message]:
+        """The rows of these files, by time; those of one instant as the files are called.
+
+        Raises:
+            TraceError: a row is wrong, or before the one above it.
+        """
+        rows = [_rows(name, table) for name, table in self._tables.items() if name in topics]
+        yield from merge(*rows, key=lambda row: row[1])
+
+
+def _tables(folder: Path) -> Iterator[tuple[str, _Table]]:
+    """The files by topic, as `topics.toml` says, or all of them."""
+    place = folder / TOPICS
+    try:
+        content = tomllib.loads(text_of_file(place))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise TraceError(f"{place}: no TOML: {error}") from None
+    _expect(content, ("time", "topics"), place)
+    listed = content.get("topics") or {
+        path.name.partition(".")[0]: path.name
+        for path in sorted(folder.iterdir())
+        if endings_of(path.name)[0] == ".csv"
+    }
+    if not isinstance(listed, dict) or not listed:
+        raise TraceError(f"{folder}: there is no table: put .csv files beside {TOPICS}")
+    for name, entry in listed.items():
+        table = {"file": entry} if isinstance(entry, str) else entry
+        if not isinstance(table, dict) or not isinstance(table.get("file"), str):
+            raise TraceError(f'{place}: which file is `{name}`? {name} = "{name}.csv"')
+        _expect(table, ("file", "time", "type"), place)
+        time = table.get("time", content.get("time"))
+        stamps = None if time is None else stamps_of(str(time))
+        kind = str(table.get("type", "CSV"))
+        yield f"/{name.strip('/')}", _Table(folder / table["file"], kind, stamps, {})
+
+
+def _expect(table: Mapping[str, Any], known: Sequence[str], place: Path) -> None:
+    for key in table:
+        if key not in known:
+            meant = did_you_mean(key, known, f"there are {', '.join(known)}")
+            raise TraceError(f"{place}: no key `{key}`: {meant}")
+
+
+@contextmanager
+def _lines(table: _Table) -> Iterator[Iterator[tuple[int, list[str]]]]:
+    """The lines of a file, split, up to one that has no end; errors inside name it."""
+    with (
+        named_errors(table.path),
+        opened_as_csv(table.path, table.stamps) as (plain, _),
+        TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
+    ):
+        yield _ended(bounded_lines(text))
+
+
+def _ended(lines: Iterator[str]) -> Iterator[tuple[int, list[str]]]:
+    """The lines, split: what lacks its end may be half a line."""
+    last = ""
+
+    def taken() -> Iterator[str]:
+        nonlocal last
+        for line in lines:
+            last = line
+            yield line
+
+    for line, row in split_lines(taken()):
+        if not last.endswith(("\n", "\r")):
+            raise TraceError(f"line {line}: it has no end: was it cut off? If not, end the line")
+        yield line, row
+
+
+def _header(table: _Table, rows: Iterator[tuple[int, list[str]]]) -> tuple[Sequence[str], Stamps]:
+    _, header = next(rows, (0, []))
+    layout = read_layout(header, Schema({}, {}, stamps=table.stamps))
+    return layout.header, layout.stamps
+
+
+def _looked_over(table: _Table) -> _Table:
+    with _lines(table) as rows:
+        header, stamps = _header(table, rows)
+        cells: dict[str, list[str]] = {name: [] for name in header}
+        for _, row in islice(rows, _LOOKED_AT):
+            for name, cell in zip(header, row, strict=False):
+                if cell:
+                    cells[name].append(cell)
+        kinds = {
+            name: _kind(own)
+            for name, own in cells.items()
+            if name != stamps.column and _PATH.fullmatch(name)
+        }
+    return replace(table, kinds=kinds)
+
+
+def _kind(cells: Sequence[str]) -> Kind | None:
+    if not cells:
+        return None
+    if all(_WHOLE.fullmatch(cell) for cell in cells):
+        return Kind.INT
+    if all(cell in TRUE_WORDS or cell in FALSE_WORDS for cell in cells):
+        return Kind.BOOL
+    return Kind.REAL if all(_number(cell) is not None for cell in cells) else Kind.LABEL
+
+
+def _number(cell: str) -> float | None:
+    try:
+        return int(cell) if _WHOLE.fullmatch(cell) else double_of(cell.replace("_", "?"))
+    except TraceError:  # it is too large for one
+        raise
+    except ValueError:
+        return None
+
+
+def _leaf(column: str) -> str:
+    """The path of a column; `q[0]` is an element of the array `q`."""
+    return re.sub(r"\[\d+\]$", "[]", column)
+
+
+def _rows(name: str, table: _Table) -> Iterator[Message]:
+    """The rows of a file as messages: what a row leaves empty is not in it."""
+    with _lines(table) as rows:
+        header, stamps = _header(table, rows)
+        time = header.index(stamps.column)
+        places = [
+            (place, column.partition("[")[0].split("."), _element(column), table.kinds[column])
+            for place, column in enumerate(header)
+            if column in table.kinds
+        ]
+        last: int | None = None
+        for line, row in rows:
+            if len(row) != len(header):
+                raise TraceError(f"line {line}: {len(row)} cells, and the header has {len(header)}")
+            try:
+                t = ticks_of_cell(row[time], stamps)
+            except TraceError as error:
+                raise TraceError(f"line {line}: {error}") from None
+            if last is not None and t < last:
+                back = f"from {format_ticks(last)} to {format_ticks(t)}"
+                raise TraceError(f"line {line}: time goes backwards, {back}: sort the file by time")
+            last = t
+            content: dict[str, Any] = {}
+            for place, steps, element, kind in places:
+                if row[place]:
+                    _put(content, steps, element, _value(row[place], kind))
+            yield name, t, content
+
+
+def _element(column: str) -> int | None:
+    found = re.search(r"\[(\d+)\]$", column)
+    return int(found[1]) if found else None
+
+
+def _put(content: dict[str, Any], steps: Sequence[str], element: int | None, value: Any) -> None:
+    inner = content
+    for step in steps[:-1]:
+        inner = inner.setdefault(step, {})
+    if element is None:
+        inner[steps[-1]] = value
+        return
+    array: list[Any] = inner.setdefault(steps[-1], [])
+    array += [math.nan] * (element + 1 - len(array))  # of an array that is there all are given
+    array[element] = value
+
+
+def _value(cell: str, kind: Kind | None) -> Any:
+    if kind is Kind.LABEL:
+        return cell
+    if kind is Kind.BOOL and (cell in TRUE_WORDS or cell in FALSE_WORDS):
+        return cell in TRUE_WORDS
+    number = _number(cell)
+    return cell if number is None else number

@@ -1,0 +1,176 @@
+"""Where one frame is in another, composed of the transforms that a robot sends."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from rvmon.recordings.messages.topic import Message, Messages, Topic
+from rvmon.trace.schema import Kind
+
+SOURCES = ("/tf", "/tf_static")
+_SENT = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
+
+_TYPE = "geometry_msgs/msg/Transform"
+_LEAVES = {
+    **{f"translation.{axis}": Kind.REAL for axis in "xyz"},
+    **{f"rotation.{axis}": Kind.REAL for axis in "xyzw"},
+}
+
+_Vector = tuple[float, float, float]
+_Quaternion = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Transform:
+    """A turn, then a shift.
+
+    Attributes:
+        shift: x, y, z.
+        turn: a quaternion of length 1: x, y, z, w.
+    """
+
+    shift: _Vector = (0.0, 0.0, 0.0)
+    turn: _Quaternion = (0.0, 0.0, 0.0, 1.0)
+
+    def then(self, inner: Transform) -> Transform:
+        """A transform within this one, seen from outside."""
+        x, y, z = self._turned(inner.shift)
+        shift = (self.shift[0] + x, self.shift[1] + y, self.shift[2] + z)
+        return Transform(shift, _product(self.turn, inner.turn))
+
+    def back(self) -> Transform:
+        """The way back.
+
+        >>> Transform((1.0, 2.0, 0.0)).back().shift
+        (-1.0, -2.0, -0.0)
+        """
+        x, y, z, w = self.turn
+        turned = Transform(turn=(-x, -y, -z, w))
+        back = turned._turned(self.shift)
+        return Transform((-back[0], -back[1], -back[2]), turned.turn)
+
+    def _turned(self, vector: _Vector) -> _Vector:
+        x, y, z, w = self.turn
+        a, b, c = vector
+        # Twice the cross product of the axis and the vector.
+        p, q, r = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
+        return (
+            a + w * p + y * r - z * q,
+            b + w * q + z * p - x * r,
+            c + w * r + x * q - y * p,
+        )
+
+
+def _product(a: _Quaternion, b: _Quaternion) -> _Quaternion:
+    ax, ay, az, aw = a
+    bx, by, bz, bw = b
+    return (
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+        aw * bw - ax * bx - ay * by - az * bz,
+    )
+
+
+class WithTransforms(Messages):
+    """A recording with a topic more for each pair of frames that somebody asks for.
+
+    `/tf/map/base_link` says where `base_link` is in `map`, with each message that changes a part
+    of the way between them, by what was last heard of the others.
+    """
+
+    def __init__(self, source: Messages, pairs: Iterable[tuple[str, str]]) -> None:
+        self._source = source
+        self._pairs = {f"/tf/{outer}/{inner}": (outer, inner) for outer, inner in pairs}
+        made = {name: Topic(name, _TYPE, _LEAVES) for name in self._pairs}
+        self.topics = {**source.topics, **made}
+        self.end, self.count, self.outages = source.end, source.count, source.outages
+
+    def read(self, topics: Collection[str]) -> Iterator[Message]:
+        """The messages of these topics, as they were recorded."""
+        pairs = {name: pair for name, pair in self._pairs.items() if name in topics}
+        wanted = {name for name in topics if name not in pairs}
+        frames: dict[str, tuple[str, Transform]] = {}
+        for name, t, content in self._source.read({*wanted, *SOURCES} if pairs else wanted):
+            if name in wanted:
+                yield name, t, content
+            if not pairs or name not in SOURCES:
+                continue
+            heard = {_take(transform, frames) for transform in content.transforms}
+            for made, (outer, inner) in pairs.items():
+                way = _way(outer, inner, frames)
+                if way is not None and not heard.isdisjoint(way[1]):
+                    yield made, t, _content(way[0])
+
+    def close(self) -> None:
+        """Close the files."""
+        self._source.close()
+
+
+def _take(message: Any, frames: dict[str, tuple[str, Transform]]) -> str:
+    """Note what a message says of a frame; gives the frame."""
+    own, outer = message.child_frame_id.lstrip("/"), message.header.frame_id.lstrip("/")
+    shift, turn = message.transform.translation, message.transform.rotation
+    frames[own] = (
+        outer,
+        Transform((shift.x, shift.y, shift.z), (turn.x, turn.y, turn.z, turn.w)),
+    )
+    return str(own)
+
+
+def _way(
+    outer: str, inner: str, frames: Mapping[str, tuple[str, Transform]]
+) -> tuple[Transform, frozenset[str]] | None:
+    """Where a frame is in another, and the frames whose transforms say it; `None`: unknown."""
+    above = _above(outer, frames)
+    below = _above(inner, frames)
+    common = next((frame for frame in below if frame in above), None)
+    if common is None:
+        return None
+    found = above[common][0].back().then(below[common][0])
+    return found, frozenset({*above[common][1], *below[common][1]})
+
+
+def _above(
+    frame: str, frames: Mapping[str, tuple[str, Transform]]
+) -> dict[str, tuple[Transform, tuple[str, ...]]]:
+    """The frames that one is in, from itself upwards: where it is in each, and by which frames."""
+    found: dict[str, tuple[Transform, tuple[str, ...]]] = {frame: (Transform(), ())}
+    way, here = Transform(), frame
+    names: tuple[str, ...] = ()
+    while here in frames:
+        outer, own = frames[here]
+        if outer in found:
+            break  # a circle: nothing is further up
+        way, names = own.then(way), (*names, here)
+        found[outer] = way, names
+        here = outer
+    return found
+
+
+def _content(transform: Transform) -> Mapping[str, Any]:
+    return {
+        "translation": dict(zip("xyz", transform.shift, strict=True)),
+        "rotation": dict(zip("xyzw", transform.turn, strict=True)),
+    }
+
+
+def sends_transforms(topics: Mapping[str, Topic]) -> bool:
+    """Whether a recording holds transforms of frames."""
+    return any(name in topics and topics[name].type in _SENT for name in SOURCES)
+
+
+def pairs_asked(names: Iterable[str]) -> list[tuple[str, str]]:
+    """The pairs of frames that topics and names speak of.
+
+    >>> pairs_asked(["/tf/map/base", "tf.map.base.translation.x", "/odom"])
+    [('map', 'base')]
+    """
+    found: dict[tuple[str, str], None] = {}
+    for name in names:
+        parts = name.strip("/").replace("/", ".").split(".")
+        if len(parts) >= 3 and parts[0] == "tf":
+            found[parts[1], parts[2]] = None
+    return list(found)

@@ -1,0 +1,124 @@
+"""Logs of PX4 (ULog); needs pyulog, the extra `px4`."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from contextlib import redirect_stdout
+from io import StringIO
+from pathlib import Path
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from rvmon.errors import TraceError, needed
+from rvmon.recordings.messages.columns import ColumnMessages, ColumnTopic, joined, leaves_of
+from rvmon.recordings.messages.topic import Topic, errors_as_damage
+from rvmon.trace.sample import Outage
+from rvmon.trace.time import TIME_LIMIT
+
+_PER_STAMP = 1_000
+_PER_DURATION = 1_000_000
+"""Ticks in a microsecond, as stamps count, and in a millisecond, as the lengths of dropouts do."""
+
+_HEADER = 3
+"""Bytes before each message: its length and its type."""
+
+
+class _Watched:
+    """A file that notes whether it ended within a message; the library passes that over."""
+
+    def __init__(self, file: BinaryIO) -> None:
+        self._file = file
+        self.is_cut = False
+
+    def read(self, size: int) -> bytes:
+        data = self._file.read(size)
+        self.is_cut = len(data) < size and not (size == _HEADER and not data)
+        return data
+
+    def seek(self, *place: int) -> int:
+        return self._file.seek(*place)
+
+    def tell(self) -> int:
+        return self._file.tell()
+
+    def close(self) -> None:
+        self._file.close()
+
+
+def ulog_messages(path: Path) -> ColumnMessages:
+    """Open a log.
+
+    Raises:
+        RvmonError: pyulog is not installed.
+        TraceError: it is no such log, or a damaged one.
+        OSError: it cannot be opened.
+    """
+    with needed("ULog", "pyulog"):
+        from pyulog import ULog
+    with open(path, "rb") as file, redirect_stdout(StringIO()):
+        watched = _Watched(file)
+        with errors_as_damage("ULog"):
+            log = ULog(watched)
+    if log.file_corruption:
+        raise TraceError("is damaged: parts of it are no messages of ULog: copy it again")
+    start = log.start_timestamp * _PER_STAMP
+    read = [_topic(data, start) for data in log.data_list]
+    end = max((int(one.data["timestamp"].max()) for one in log.data_list), default=0) * _PER_STAMP
+    outages = [outage for _, outage in read if outage is not None]
+    outages += [
+        Outage(
+            dropout.timestamp * _PER_STAMP,
+            dropout.timestamp * _PER_STAMP + max(1, dropout.duration) * _PER_DURATION,
+            "the logger dropped messages",
+        )
+        for dropout in log.dropouts
+    ]
+    if watched.is_cut:
+        outages.append(Outage(end, end + 1, "it ends within a message"))
+    return ColumnMessages([topic for topic, _ in read], end + watched.is_cut, outages)
+
+
+def _topic(data: Any, start: int) -> tuple[ColumnTopic, Outage | None]:
+    """What a log has of a topic; the instances behind the first one are numbered.
+
+    Messages that were sent without a stamp, as 0, came nobody knows when: up to the first that has
+    one the topic is lost.
+    """
+    name = f"/{data.name}_{data.multi_id}" if data.multi_id else f"/{data.name}"
+    camel = "".join(part.capitalize() for part in re.split(r"[/_]", data.name))
+    columns = joined(_texts(data))
+    times = data.data["timestamp"].astype(np.int64) * _PER_STAMP
+    topic = Topic(name, f"px4_msgs/msg/{camel}", leaves_of(columns))
+    is_stamped = times > 0
+    outage = None
+    if not is_stamped.all():
+        times, columns = (
+            times[is_stamped],
+            {path: column[is_stamped] for path, column in columns.items()},
+        )
+        until = int(times.min()) - 1 if len(times) else TIME_LIMIT - 1
+        lost = frozenset({name})
+        outage = Outage(start, max(start, until), "messages have no stamp", lost)
+    return ColumnTopic(topic, len(times), lambda: (times, columns)), outage
+
+
+def _texts(data: Any) -> Mapping[str, Any]:
+    """The columns of a topic: characters as texts, truth values as such."""
+    found: dict[str, Any] = {}
+    texts: dict[str, list[Any]] = {}
+    for field in data.field_data:
+        path, column = field.field_name, data.data[field.field_name]
+        if path == "timestamp" or path.rpartition(".")[2].startswith("_padding"):
+            continue
+        if field.type_str == "char":
+            texts.setdefault(re.sub(r"\[\d+\]$", "", path), []).append(column)
+        else:
+            found[path] = column.astype(bool) if field.type_str == "bool" else column
+    for path, parts in texts.items():
+        rows = np.stack(parts, axis=1).astype(np.uint8)
+        found[path] = np.array(
+            [bytes(row).partition(b"\0")[0].decode("utf-8", "replace") for row in rows], object
+        )
+    return found

@@ -1,0 +1,74 @@
+/* CSV text to columns: rows are split, and cells read exactly, as rvmon.recordings.csv_rows reads them.
+
+   The text is cut where it has to be: a call ends with the text, where some room is used up, or at a
+   row that is for Python, which says what is wrong with it. A cell that is no plain value is put down
+   as odd, and is for Python, too; its row stays. */
+#ifndef RVMON_CSV_H
+#define RVMON_CSV_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+/* What cells of a column are. Stamps of a unit with so many digits behind the point are CSV_STAMP and
+   these digits: 9 of seconds, 0 of ticks. */
+enum { CSV_BOOL, CSV_INT, CSV_REAL, CSV_LABEL, CSV_DATE, CSV_STAMP };
+
+/* What a cell says: as in rvmon.recordings.batch; CSV_ODD is for Python to read. */
+enum { CSV_UNKNOWN = 1, CSV_YES = 2, CSV_ODD = 3, CSV_NO_UPDATE = 255 };
+
+typedef enum { CSV_ALL, CSV_FULL, CSV_ROW } csv_end;
+
+typedef union {
+    double real;
+    int64_t whole;
+} csv_number;
+
+/* A number that is no exact whole times or through an exact power of ten; NaN: none. */
+typedef double (*csv_slow)(void *taken, const char *text);
+
+typedef struct {
+    const char *text;
+    int64_t size;
+    bool is_last;         /* no text follows */
+    int64_t longest;      /* bytes of a cell; a longer one is for Python */
+    const int32_t *slots; /* of each place in a row: its column, or -1 */
+    int32_t width;
+    const int32_t *kinds; /* of each column; the first is the stamp */
+    int32_t columns;
+    const char *absent;   /* the text that stands for no update; NULL: none */
+    int64_t absent_size;
+    csv_slow slow;
+    void *taken; /* what it is given */
+
+    int64_t room; /* for rows */
+    csv_number *numbers; /* of each column, `room` of them; of labels places in `labels` */
+    uint8_t *says;       /* likewise */
+    int64_t *lines;      /* of each row the line that it ends on, from 1 at the text's begin */
+    int64_t *odd;        /* row, column, start and end of each odd cell */
+    int64_t odd_room;
+    int64_t *labels;     /* column, start and end of each; ~end: a quote in it is doubled */
+    int64_t label_room;
+    int32_t *table; /* finds labels: twice as many as there is room for, all 0 at first */
+
+    int64_t at; /* the first byte that is not read yet; of CSV_ROW where the row begins, */
+    int64_t end; /* and ends */
+    int64_t rows;
+    int64_t line;
+    int64_t odd_count;
+    int64_t label_count;
+} csv_reader;
+
+/* Read rows until it ends; `at`, `rows`, `line` and counts are 0 at first. */
+csv_end csv_read(csv_reader *r);
+
+/* A cell that is trimmed and not empty, as a value of its kind: what it says. */
+int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *to, csv_number *made);
+
+/* What all digits are above. */
+static inline bool csv_ends_cell(char c)
+{
+    return ((uint8_t)c <= ',') && ((c == ',') || (c == '\n') || (c == '\r'));
+}
+
+#endif

@@ -1,0 +1,131 @@
+"""Parquet: a time column, a column per signal, event or payload field, as in CSV.
+
+Needs pyarrow, the extra `arrow`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rvmon.errors import TraceError, needed
+from rvmon.recordings.batch import NotPlainError
+from rvmon.recordings.columns import batch_of_table, rows_of_cells, stamps_of_column
+from rvmon.recordings.csv_rows import Layout, read_layout
+from rvmon.recordings.places import is_short_of_memory
+from rvmon.recordings.rows import Row
+from rvmon.recordings.tables import arrow_cells, is_of_durations, nanoseconds_of
+from rvmon.recordings.values import first_line
+from rvmon.trace.schema import Schema
+
+if TYPE_CHECKING:
+    from rvmon.recordings.batch import Batch
+
+ROWS = 1 << 16
+"""Rows that are in memory at a time."""
+
+
+def parquet_file(path: str | Path) -> Any:
+    """The open file, as pyarrow has it.
+
+    Raises:
+        RvmonError: there is no pyarrow.
+        TraceError: it is no Parquet file, or a damaged one.
+    """
+    with needed("Parquet", "pyarrow"):
+        import pyarrow
+        import pyarrow.parquet
+    try:
+        return pyarrow.parquet.ParquetFile(path, page_checksum_verification=True)
+    except MemoryError:  # of Arrow, too: the file may be as it should be
+        raise
+    except pyarrow.ArrowException as error:
+        raise TraceError(f"not a Parquet file ({first_line(error)})") from None
+    except OSError as error:
+        if error.errno is not None:  # the system says why it cannot be opened
+            raise
+        raise _damage(error) from None
+
+
+def parquet_cells(path: str | Path) -> Iterator[Mapping[str, list[Any]]]:
+    """The cells of all columns by name, rows by rows.
+
+    Raises:
+        RvmonError: there is no pyarrow.
+        TraceError: it is no Parquet file, or cannot be read to its end.
+    """
+    names = list(parquet_file(path).schema_arrow.names)
+    for arrays in parquet_batches(path, names):
+        yield dict(zip(names, map(arrow_cells, arrays), strict=True))
+
+
+def parquet_batches(path: str | Path, names: list[str]) -> Iterator[list[Any]]:
+    """These columns, rows by rows.
+
+    Raises:
+        TraceError: it cannot be read to its end.
+    """
+    file = parquet_file(path)
+    import pyarrow
+
+    threads = not is_short_of_memory()
+    batches = file.iter_batches(ROWS, columns=names, use_threads=threads)
+    while True:
+        try:
+            batch = next(batches)
+        except StopIteration:
+            return
+        except MemoryError:
+            raise
+        except (pyarrow.ArrowException, OSError) as error:
+            raise _damage(error) from None
+        yield [batch.column(name) for name in names]
+
+
+def _damage(error: Exception) -> TraceError:
+    if "launch worker thread" in str(error):  # its stack needs memory, too
+        raise MemoryError
+    return TraceError(f"damaged Parquet file ({first_line(error)}): write or copy it again")
+
+
+def parquet_layout(path: str | Path, schema: Schema) -> Layout:
+    """What the file's columns are.
+
+    Raises:
+        RvmonError: there is no pyarrow.
+        TraceError: it is no Parquet file, or has no time column or two.
+    """
+    fields = parquet_file(path).schema_arrow
+    layout = read_layout(list(fields.names), schema)
+    field = fields.field(layout.stamps.column)
+    return replace(layout, stamps=stamps_of_column(layout.stamps, field))
+
+
+def numbers_of_durations(column: Any) -> Any:
+    """A column of stamps; durations in it as nanoseconds, which `parquet_layout` takes them for."""
+    import pyarrow
+
+    if not is_of_durations(column):
+        return column
+    return pyarrow.array(nanoseconds_of(column), pyarrow.int64())
+
+
+def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Iterator[Row]]:
+    """The rows of a file in order: as columns, if they hold what is declared, else one by one.
+
+    Raises:
+        RvmonError: there is no pyarrow.
+        TraceError: with the row's number, or it is damaged.
+    """
+    layout = parquet_layout(path, schema)
+    row = 1
+    for given, *others in parquet_batches(path, layout.names_read):
+        arrays = [numbers_of_durations(given), *others]
+        try:
+            columns = dict(zip(layout.names_read, arrays, strict=True))
+            yield replace(batch_of_table(columns, layout), first=row)
+        except NotPlainError:
+            yield rows_of_cells(map(arrow_cells, arrays), layout, row)
+        row += len(given)

@@ -1,0 +1,281 @@
+"""Where recordings lie: files, packed ones, and addresses, of which a copy is read."""
+
+from __future__ import annotations
+
+import os
+import re
+import weakref
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from functools import lru_cache, partial
+from pathlib import Path
+from typing import Any, BinaryIO, TextIO
+
+from rvmon.errors import RvmonError, TraceError, needed
+from rvmon.recordings.values import first_line
+from rvmon.texts import cannot_read
+
+PACKED = (".gz", ".zst")
+"""Endings of text that is packed."""
+
+JOINT = " + "
+"""Between the paths, of files and of folders of files, that are one recording; also behind one."""
+
+_ADDRESS = re.compile(r"[A-Za-z][A-Za-z0-9+.-]+://")
+
+
+def is_address(path: str) -> bool:
+    """Whether it is an address such as `https://…` or `s3://…`, and no path.
+
+    >>> is_address("s3://runs/monday.csv"), is_address("C:/runs/monday.csv")
+    (True, False)
+    """
+    return _ADDRESS.match(path) is not None
+
+
+def endings_of(path: str) -> tuple[str, str]:
+    """The ending that says the format, and that of a packed file; each empty if there is none.
+
+    >>> endings_of("runs/Monday.CSV.gz"), endings_of("https://host/a.mcap?version=3")
+    (('.csv', '.gz'), ('.mcap', ''))
+    """
+    stem, packed = os.path.splitext(_path_in(path) if is_address(path) else path)
+    if packed.lower() not in PACKED:
+        return packed.lower(), ""
+    return os.path.splitext(stem)[1].lower(), packed.lower()
+
+
+def name_of(path: str) -> str:
+    """The name of a file or folder at a path or address.
+
+    >>> name_of("runs/monday.csv"), name_of("https://host/a.mcap?version=3")
+    ('monday.csv', 'a.mcap')
+    """
+    return Path(_path_in(path) if is_address(path) else path).name or "recording"
+
+
+def _path_in(address: str) -> str:
+    from urllib.parse import urlsplit
+
+    return urlsplit(address).path
+
+
+@contextmanager
+def opened(path: str | Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
+    """The bytes of a file or address, unpacked, and the file as it lies there.
+
+    Raises:
+        TraceError: an address cannot be read; or, while it is read, what is packed is damaged.
+        RvmonError: a package is not installed.
+        OSError: a file cannot be opened.
+    """
+    path = str(path)
+    with open(local_path(path) if is_address(path) else path, "rb") as raw:
+        packed = endings_of(path)[1]
+        if not packed:
+            yield raw, raw
+            return
+        open_packed, damage = _packing(packed)
+        try:
+            with open_packed(raw, "rb") as plain:
+                yield plain, raw
+        except damage as error:
+            cut = isinstance(error, EOFError)
+            fix = "was it cut off? Copy it again" if cut else "is it packed as its ending says?"
+            raise TraceError(f"cannot be unpacked ({first_line(error)}): {fix}") from None
+
+
+@contextmanager
+def named_errors(path: str | Path) -> Iterator[None]:
+    """Errors inside are given the name of a file.
+
+    Raises:
+        TraceError: one happened; also if it cannot be opened, or is no text.
+    """
+    try:
+        yield
+    except UnicodeDecodeError as error:
+        raise TraceError(
+            f"{path}: not UTF-8 text ({error.reason} at byte {error.start}): is this a binary file?"
+            " A text in another encoding has to be translated: `iconv -f latin1 -t utf-8`"
+        ) from None
+    except TraceError as error:
+        message = str(error)
+        beginnings = tuple(filter(None, str(path).split(JOINT)))
+        placed = message if message.startswith(beginnings) else f"{path}: {message}"
+        raise type(error)(placed) from None
+    except OSError as error:
+        raise TraceError(cannot_read(path, error)) from None
+
+
+@contextmanager
+def created(path: Path) -> Iterator[BinaryIO]:
+    """A new file to write; it is packed as its ending says.
+
+    Raises:
+        RvmonError: a package is not installed.
+        OSError: it cannot be written.
+    """
+    packed = endings_of(str(path))[1]
+    with open(path, "wb") as raw:
+        if not packed:
+            yield raw
+        else:
+            with _packing(packed)[0](raw, "wb") as file:
+                yield file
+
+
+def _packing(packed: str) -> tuple[Callable[[BinaryIO, str], Any], tuple[type[Exception], ...]]:
+    """What opens a file that is packed in that way, and what it raises where one is damaged."""
+    if packed == ".gz":
+        import gzip
+        import zlib
+
+        return gzip.open, (EOFError, gzip.BadGzipFile, zlib.error)
+    try:
+        from compression import zstd  # of Python from 3.14 on
+    except ImportError:
+        with needed("Zstandard", "backports.zstd"):
+            from backports import zstd
+    return zstd.open, (EOFError, zstd.ZstdError)
+
+
+def local_path(path: str) -> Path:
+    """Where a file lies; of an address, its copy, which lasts while no other one is asked for.
+
+    Raises:
+        TraceError: the address cannot be read.
+        RvmonError: a package is not installed.
+    """
+    if not is_address(path):
+        return Path(path)
+    with _remote_errors(path):
+        system, inner = _system(path)
+        info = system.info(inner)
+        # What was read must not pass for what has been put there since.
+        state = repr(sorted((key, str(value)) for key, value in info.items()))
+        return _copy(path, state).path
+
+
+@contextmanager
+def without_copies() -> Iterator[None]:
+    """Leave no copy of an address behind."""
+    try:
+        yield
+    finally:
+        _copy.cache_clear()
+
+
+class _Copy:
+    """A file that goes with its last user, but not with a copy of the process."""
+
+    def __init__(self, name: str) -> None:
+        from tempfile import mkdtemp
+
+        folder = mkdtemp(prefix="rvmon-")
+        weakref.finalize(self, _remove, folder, os.getpid())
+        self.path = Path(folder, name)
+
+
+def _remove(folder: str, process: int) -> None:
+    if os.getpid() == process:
+        import shutil
+
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@lru_cache(maxsize=1)
+def _copy(address: str, _state: str) -> _Copy:
+    """A copy of a file; a folder is copied whole."""
+    system, inner = _system(address)
+    made = _Copy(name_of(address))
+    system.get(inner, str(made.path), recursive=system.isdir(inner))
+    return made
+
+
+def matching_addresses(pattern: str) -> list[str]:
+    """The addresses that a pattern with `*` stands for, sorted.
+
+    Raises:
+        TraceError: the place cannot be read.
+        RvmonError: a package is not installed.
+    """
+    with _remote_errors(pattern):
+        system, inner = _system(pattern)
+        return sorted(system.unstrip_protocol(name) for name in system.glob(inner))
+
+
+def _system(address: str) -> tuple[Any, str]:
+    with needed("an address", "fsspec"):
+        from fsspec.core import url_to_fs
+    system, inner = url_to_fs(address)
+    return system, str(inner)
+
+
+@contextmanager
+def _remote_errors(address: str) -> Iterator[None]:
+    try:
+        yield
+    except (RvmonError, MemoryError):
+        raise
+    except FileNotFoundError:
+        raise TraceError(f"{address}: there is nothing at this address") from None
+    except ImportError as error:
+        extra = {"s3": "s3", "http": "remote", "https": "remote"}.get(address.partition(":")[0])
+        how = f": pip install 'rvmon[{extra}]'" if extra else ""
+        raise RvmonError(f"{address}: {first_line(error)}{how}") from None
+    except Exception as error:  # noqa: BLE001 - each kind of place has errors of its own
+        raise TraceError(f"{address}: cannot be read ({first_line(error)})") from None
+
+
+BLOCK = 1 << 20
+"""Bytes of a piece."""
+
+
+LONGEST_LINE = 1 << 26
+"""Characters of a line; longer ones are refused."""
+
+
+def bounded_lines(text: TextIO) -> Iterator[str]:
+    """The lines of a text, which never fill the memory.
+
+    Raises:
+        TraceError: a line is too long.
+    """
+    for number, line in enumerate(iter(partial(text.readline, LONGEST_LINE + 1), ""), 1):
+        if len(line) > LONGEST_LINE:
+            raise TraceError(
+                f"line {number}: longer than {LONGEST_LINE:,} characters: is this a recording? "
+                "Put each sample on a line of its own"
+            )
+        yield line
+
+
+def whole_pieces(file: BinaryIO, size: int) -> Iterator[bytes]:
+    r"""A file in pieces of whole lines; the last line may lack its end.
+
+    What follows a line that is too long is not read: who reads the line refuses it.
+    """
+    parts: list[bytes] = []
+    length = 0
+    while length <= LONGEST_LINE and (piece := file.read(size)):
+        whole, newline, tail = piece.rpartition(b"\n")
+        if newline:
+            yield b"".join([*parts, whole, newline])
+            parts, length = [], 0
+        parts.append(tail)
+        length += len(tail)
+    if length:
+        yield b"".join(parts)
+
+
+def is_short_of_memory() -> bool:
+    """Whether addresses are limited (`--max-memory`): Arrow reserves many more than it uses.
+
+    A thread of it that gets none may end the process.
+    """
+    try:
+        import resource
+    except ImportError:
+        return False
+    return resource.getrlimit(resource.RLIMIT_AS)[0] != resource.RLIM_INFINITY

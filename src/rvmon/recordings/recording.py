@@ -1,0 +1,351 @@
+"""A recording on disk as a sequence of samples, whatever its format."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections import Counter, deque
+from collections.abc import Generator, Iterator, Sequence
+from contextlib import AbstractContextManager, closing, nullcontext
+from dataclasses import replace
+from errno import ENOENT
+from itertools import islice
+from math import inf
+from pathlib import Path
+from stat import S_ISFIFO
+from typing import TYPE_CHECKING, BinaryIO
+
+from rvmon.errors import TraceError
+from rvmon.recordings.csv_dialect import bare_names, opened_as_csv
+from rvmon.recordings.csv_rows import Layout, read_layout, split_lines
+from rvmon.recordings.csv_text import CsvText
+from rvmon.recordings.found import files_of
+from rvmon.recordings.joined import Joined, schemas_of
+from rvmon.recordings.messages.forms import (
+    ARRAYS,
+    FORMATS,
+    MESSAGE_FORMS,
+    form_of_folder,
+)
+from rvmon.recordings.places import (
+    JOINT,
+    endings_of,
+    is_address,
+    local_path,
+    named_errors,
+    opened,
+)
+from rvmon.recordings.rows import LOOKED_AT, Row, Rows, doubt_unit
+from rvmon.texts import cannot_read
+from rvmon.trace.sample import Health, HealthKind, Outage, Sample
+from rvmon.trace.schema import BY_NAME, Schema, Stamps
+from rvmon.trace.stamps import stamps_of
+
+if TYPE_CHECKING:
+    from rvmon.recordings.batch import Batch
+    from rvmon.recordings.csv_batch import Found
+    from rvmon.recordings.messages.file import MessageFile
+
+JOINED = "joined"
+"""The format of several files that are one recording: `odom.csv + status.csv`."""
+
+
+class FileRecording:
+    """A recording, read as a stream: memory does not grow with its length.
+
+    Attributes:
+        path: the file, `-` for standard input.
+        names: declared names that have a column; `None` for JSON lines, where any may come.
+        end: of messages the last instant of the recording, ticks; `None`: its last sample.
+        ignored: the names that are not declared, counted as they are read; not of messages, which
+            are recorded for more than one purpose.
+        can_be_read_again: whether it is no stream, which is gone when it was read.
+        rows: what makes samples of it.
+    """
+
+    def __init__(self, path: str | Path, schema: Schema, *, ordered: bool = True) -> None:
+        """Open the recording and read its header.
+
+        Args:
+            path: a `.csv`, `.jsonl`, `.ndjson` or `.parquet` file, or `-`; text may be packed
+                (`.csv.gz`, `.jsonl.zst`), and any may be an address.
+            schema: the names that the spec declares, and how the recording gives them.
+            ordered: whether a stamp before the one above it is an error. Under `max delay` rows are
+                put in order instead.
+
+        Raises:
+            TraceError: the file cannot be opened, its ending is unknown or its header wrong.
+        """
+        self.path = str(path)
+        self._schema = schema
+        self._ordered = ordered
+        self.ignored: Counter[str] = Counter()
+        self._format = format_of(self.path)
+        brings_stamps = self.is_of_messages and self._format not in ARRAYS
+        if brings_stamps and schema.stamps is not None:
+            raise TraceError(f"{self.path}: messages bring their stamps along: use --clock")
+        if self._format not in (*MESSAGE_FORMS, JOINED) and schema.binding != BY_NAME:
+            message = "a binding or clock is of messages, which bags and MCAP files hold: use --map"
+            raise TraceError(f"{self.path}: {message}")
+        self.can_be_read_again = can_be_read_again(self.path)
+        if not self.can_be_read_again and self._format in ("csv", "parquet"):
+            message = "is a pipe: pipes hold JSON lines; keep other recordings in a file"
+            raise TraceError(f"{self.path}: {message}")
+        unit = "message" if self.is_of_messages else "row" if self._format == "parquet" else "line"
+        self.rows = Rows(schema, unit, ordered=ordered)
+        self._open_file: BinaryIO | None = None
+        self._stamps = schema.stamps or stamps_of("t")
+        self.names: frozenset[str] | None = None
+        self.end: int | None = None
+        self._messages: MessageFile | None = None
+        self._joined: Joined | None = None
+        self._begun: tuple[CsvText[Found], Layout] | None = None
+        self._unended: frozenset[str] = frozenset()
+        if self._format == "csv":
+            with named_errors(self.path), opened_as_csv(self.path, schema.stamps) as (plain, _):
+                text: CsvText[Found] = CsvText(plain)
+                layout = self._layout(text)
+            self._take_names(layout)
+            self._begun = (text, layout) if text.is_whole else None
+        elif self._format == "parquet":
+            from rvmon.recordings.parquet import parquet_layout
+
+            with named_errors(self.path):
+                self._take_names(parquet_layout(local_path(self.path), schema))
+        elif self.is_of_messages:
+            from rvmon.recordings.messages.file import MessageFile
+
+            with named_errors(self.path):
+                self._messages = MessageFile(self.path, self._format, schema)
+            self.names, self.end = self._messages.names, self._messages.end
+        elif self._format == JOINED:
+            paths = files_of(self.path)
+            of_messages = [format_of(path) in MESSAGE_FORMS for path in paths]
+            files = zip(paths, schemas_of(paths, of_messages, schema), strict=True)
+            parts = [FileRecording(*file, ordered=ordered) for file in files]
+            self._joined = Joined(parts, self.rows)
+            self.ignored, self.names = self._joined.ignored, self._joined.names
+            self.end = self._joined.end
+
+    @property
+    def is_of_messages(self) -> bool:
+        """Whether it holds messages of topics, and no columns."""
+        return self._format in MESSAGE_FORMS
+
+    @property
+    def unread(self) -> Sequence[str]:
+        """The columns, or topics and fields, that nothing is declared for."""
+        held = self._messages or self._joined
+        return list(self.ignored) if held is None else held.unread
+
+    @property
+    def outages(self) -> Sequence[Outage]:
+        """What it lost, in order; text is whole, or an error."""
+        held = self._messages or self._joined
+        return () if held is None else held.outages
+
+    def _take_names(self, layout: Layout) -> None:
+        self.names = layout.names
+        self._stamps = layout.stamps
+        self.ignored.update(dict.fromkeys(layout.ignored, 1))
+
+    def __iter__(self) -> Iterator[Sample]:
+        """Samples in order of time, equal stamps merged.
+
+        Raises:
+            TraceError: with file and line; the samples before it have been given out.
+        """
+        with named_errors(self.path):
+            yield from self.samples()
+            if not self.rows.count:
+                raise TraceError("holds no sample")
+
+    def samples(self) -> Iterator[Sample]:
+        """The same, of which there may be none; its errors do not name the file."""
+        if self._joined is not None:
+            yield from self._joined
+        else:
+            with closing(self._each_row()) as rows:  # also where a row is wrong
+                yield from self.rows.samples(rows)
+
+    def _each_row(self) -> Generator[Row]:
+        if self._messages is not None:
+            yield from self._messages.rows(ordered=self._ordered)
+        else:
+            for piece in self._batches():
+                yield from piece.numbered() if hasattr(piece, "numbered") else piece
+
+    def pieces(self) -> Iterator[Batch | Sample]:
+        """The recording in order: rows as columns where it has such, else samples; see `__iter__`.
+
+        Raises:
+            TraceError: with file and line.
+        """
+        with named_errors(self.path):
+            yield from self.parts()
+            if not self.rows.count:
+                raise TraceError("holds no sample")
+
+    def parts(self) -> Iterator[Batch | Sample]:
+        """The same, of which there may be none; its errors do not name the file."""
+        if self._joined is not None:
+            yield from self._joined.pieces()
+        elif self._messages is None and self.can_be_read_again and self._ordered:
+            with closing(self._batches()) as batches:
+                yield from self.rows.pieces(batches)
+        else:
+            yield from self.samples()
+
+    def _batches(self) -> Generator[Batch | Iterator[Row]]:
+        if self._format == "parquet":
+            from rvmon.recordings.parquet import parquet_batches_of
+
+            yield from parquet_batches_of(local_path(self.path), self._schema)
+            return
+        if self._begun is not None:
+            begun, self._begun = self._begun, None
+            yield from self._csv_batches(*begun)
+            return
+        with self._opened() as (plain, raw):
+            self._open_file = raw if self.can_be_read_again else None
+            if self._format == "csv":
+                text: CsvText[Found] = CsvText(plain)
+                yield from self._csv_batches(text, self._layout(text))
+            else:
+                from rvmon.recordings.jsonl_batch import jsonl_batches
+
+                yield from jsonl_batches(plain, self._schema, self.ignored, self._take_stamps)
+
+    def _csv_batches(self, text: CsvText[Found], layout: Layout) -> Iterator[Batch | Iterator[Row]]:
+        from rvmon.recordings.csv_batch import csv_batches
+
+        self._lose(frozenset())
+        yield from csv_batches(text, layout, self._schema.ignoring, self._lose)
+
+    def _lose(self, names: frozenset[str]) -> None:
+        self._unended = names
+
+    def _take_stamps(self, stamps: Stamps) -> None:
+        self._stamps = stamps
+
+    @property
+    def fraction_read(self) -> float:
+        """How much of the file has been read, 0 to 1; 0 where that is not known."""
+        if self._messages is not None:
+            return min(1.0, self.rows.count / (self._messages.count or inf))
+        if self._open_file is None or self._open_file.closed:
+            return 0.0
+        return self._open_file.tell() / max(1, os.fstat(self._open_file.fileno()).st_size)
+
+    def stamp_doubts(self) -> list[Health]:
+        """What is odd about its stamps.
+
+        Those of columns look like milliseconds, by the first ones, which are read if they were not
+        yet; of messages that were read the headers say otherwise than the log.
+        """
+        if self._messages is not None:
+            return self._messages.skew.doubts()
+        if self._joined is not None:
+            return self._joined.stamp_doubts()
+        first = self.rows.first
+        if not first and self._stamps.unit == "s" and self.path != "-":
+            bare = replace(self._schema, signals={}, events={})
+            again = FileRecording(self.path, bare, ordered=self._ordered)
+            with named_errors(self.path):
+                deque(islice(again.samples(), LOOKED_AT), 0)
+            first, self._stamps = again.rows.first, again._stamps
+        return doubt_unit(first, self._stamps)
+
+    def health(self) -> list[Health]:
+        """What was noticed while reading: undeclared names, conflicts, a doubtful unit of time."""
+        ignored = [
+            Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
+            for name, count in self.ignored.items()
+        ]
+        return ignored + self.rows.doubts() + self.doubts()
+
+    def doubts(self) -> list[Health]:
+        """What is odd about its stamps and its end."""
+        return self.stamp_doubts() + self._cut_off()
+
+    def _cut_off(self) -> list[Health]:
+        """That nobody knows what the last cell said: the end of a line alone says that it ends."""
+        if not self._unended:
+            return []
+        names = ", ".join(f"`{name}`" for name in sorted(self._unended))
+        remark = (
+            f"it has no end: if it was cut off, {names} was another value, so it is unknown; "
+            "if not, end the line"
+        )
+        return [Health(HealthKind.CUT, "the last line", remark=remark)]
+
+    def _layout(self, text: CsvText[Found]) -> Layout:
+        try:
+            _, header = next(split_lines(text.lines()))
+        except StopIteration:
+            raise TraceError("is empty: expected a header with a time column `t`") from None
+        known, key = self._schema.layouts, tuple(header)
+        if key not in known:
+            layout = read_layout(*bare_names(header, self._schema))
+            known.clear()
+            known[key] = layout
+        found: Layout = known[key]
+        return found
+
+    def _opened(self) -> AbstractContextManager[tuple[BinaryIO, BinaryIO]]:
+        """The text, and the file as it lies there."""
+        if self.path == "-":
+            return nullcontext((sys.stdin.buffer, sys.stdin.buffer))
+        if self._format == "csv":
+            return opened_as_csv(self.path, self._schema.stamps)
+        return opened(self.path)
+
+
+def messages_of(path: str) -> MessageFile:
+    """A recording of messages, looked at.
+
+    Raises:
+        TraceError: it cannot be read, or holds no messages.
+    """
+    recording = FileRecording(path, Schema({}, {}))
+    if recording._joined is not None:
+        raise TraceError(f"{path}: of several files bindings are proposed one by one: name each")
+    if recording._messages is None:
+        raise TraceError(f"{path}: has columns and no topics: use --map")
+    return recording._messages
+
+
+def can_be_read_again(path: str) -> bool:
+    """Whether a recording is a file, and not a stream that is gone when it was read."""
+    if path == "-" or is_address(path):
+        return path != "-"
+    try:
+        return not S_ISFIFO(os.stat(path).st_mode)
+    except OSError:
+        return True
+
+
+def format_of(path: str) -> str:
+    """The format that a name stands for.
+
+    Raises:
+        TraceError: it stands for none.
+    """
+    if path == "-":
+        return "jsonl"
+    if JOINT in path and not os.path.lexists(path):
+        return JOINED
+    if not is_address(path) and (form := form_of_folder(path)):
+        return form
+    if is_address(path) and path.endswith("/"):
+        return "ros2"
+    suffix, packed = endings_of(path)
+    if suffix not in FORMATS and not (is_address(path) or Path(path).exists()):
+        raise TraceError(cannot_read(path, FileNotFoundError(ENOENT, os.strerror(ENOENT))))
+    if suffix not in FORMATS:
+        known = ", ".join(FORMATS)
+        ending = f"the ending `{suffix}` is no known format" if suffix else "the name has no ending"
+        raise TraceError(f"{path}: {ending}: use one of {known}")
+    if packed and FORMATS[suffix] not in ("csv", "jsonl"):
+        raise TraceError(f"{path}: only text is read packed: unpack it first")
+    return FORMATS[suffix]

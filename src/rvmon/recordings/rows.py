@@ -1,0 +1,260 @@
+"""Rows of any source as samples: in order, equal stamps merged."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from heapq import heappop, heappush
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+from rvmon.errors import TimeOrderError, TraceError
+from rvmon.recordings.coalesce import Alternations, Conflicts, merged, updates_in
+from rvmon.trace.sample import Health, HealthKind, Sample, Value
+from rvmon.trace.schema import Schema, Stamps
+from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
+
+if TYPE_CHECKING:
+    from rvmon.recordings.batch import Batch
+
+LOOKED_AT = 1_000
+"""So many of the first stamps of a recording are looked at."""
+
+FEWEST = 10
+"""Of fewer stamps nothing is reported."""
+
+LONG_STEP = 5
+"""Seconds of a median step from which on seconds may be milliseconds."""
+
+
+def median_step(times: Sequence[float]) -> float:
+    """The median of the steps forward; 0 if there are none.
+
+    >>> median_step([0, 1, 1, 3, 6])
+    2
+    """
+    steps = sorted(then - now for now, then in pairwise(times) if then > now)
+    return steps[len(steps) // 2] if steps else 0
+
+
+_LONG = 10_000 * TICKS_PER_SECOND
+
+
+def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
+    """A remark if stamps look like milliseconds.
+
+    They do if their median step would be 5 s or more, and either all are whole numbers or a
+    thousand of them would take 10,000 s or more. A unit that a person has named is not doubted.
+
+    Args:
+        times: the first `LOOKED_AT` instants of a recording in ticks, or all.
+        stamps: as which they were read.
+
+    >>> doubt_unit([20 * TICKS_PER_SECOND * k for k in range(10)], Stamps("t", "s"))[0].remark
+    'from stamp to stamp it is 20 s: are these milliseconds? `--time t:ms` (if not: `--time t:s`)'
+    """
+    if stamps.is_stated or stamps.unit != "s" or len(times) < FEWEST:
+        return []
+    step = median_step(times)
+    whole = all(t % TICKS_PER_SECOND == 0 for t in times)
+    long = len(times) >= LOOKED_AT and times[-1] - times[0] >= _LONG
+    if step < LONG_STEP * TICKS_PER_SECOND or not (whole or long):
+        return []
+    column = stamps.column
+    remark = (
+        f"from stamp to stamp it is {format_ticks(int(step))}: are these milliseconds? "
+        f"`--time {column}:ms` (if not: `--time {column}:s`)"
+    )
+    return [Health(HealthKind.UNIT, column, 1, times[0], remark=remark)]
+
+
+ROOM = 65_536
+"""So many rows wait at most for those that are late."""
+
+LEAP = 365 * 86_400 * TICKS_PER_SECOND
+"""Ticks of a year, for which no recording is silent: one of the two stamps is of another clock."""
+
+Row = tuple[int, int, Mapping[str, Value]]
+"""Number, ticks, what it updates."""
+
+
+class Rows:
+    """Makes samples of rows, and notes what is odd about them.
+
+    Args:
+        schema: the declared names.
+        unit: what a row is called.
+        ordered: whether a stamp before the one above it is an error. Under `max delay` rows are put
+            in order instead.
+
+    Attributes:
+        ordered: as given.
+        count: of the rows that were read.
+        first: the instants of the first rows, ticks.
+        lateness: how far time goes backwards at most, ticks; not looked at where that is an error.
+        alternations: how known and unknown values follow each other.
+    """
+
+    def __init__(self, schema: Schema, unit: str, *, ordered: bool) -> None:
+        self._schema = schema
+        self._unit = unit
+        self.ordered = ordered
+        self._begin()
+
+    def samples(self, rows: Iterable[Row]) -> Iterator[Sample]:
+        """The samples of a source that is read from its start.
+
+        Raises:
+            TimeOrderError: a row is before the one above it, or late by more than `ROOM` rows.
+        """
+        return self.pieces([rows])  # type: ignore[return-value]  # rows become no batches
+
+    def pieces(self, pieces: Iterable[Batch | Iterable[Row]]) -> Iterator[Batch | Sample]:
+        """The same of a source of which some rows come as columns; so they are given out.
+
+        What ends a batch comes as a sample: rows of its instant may follow, but for the last batch.
+
+        Raises:
+            TimeOrderError: a row is before the one above it; those of columns are never sorted.
+        """
+        from rvmon.recordings.batch import Batch, note_batch, without_ignored
+
+        self._begin()
+        held: Sample | None = None
+        for piece in pieces:
+            rows: Iterable[Sample]
+            if isinstance(piece, Batch):
+                whole = without_ignored(piece, self._schema.ignoring)
+                batch = self._note_times(whole)
+                times, count = batch.times, len(batch.times)
+                start = 0 if held is None else int(times.searchsorted(held.t, "right"))
+                stop = count
+                if count and not batch.is_last:
+                    stop = max(start, int(times.searchsorted(times[-1])))
+                for sample in batch.rows(0, start):
+                    held = self._merged(held or sample, sample)
+                if start < stop:
+                    if held is not None:
+                        yield self._noted(held)
+                        held = None
+                    middle = batch.cut(start, stop) if stop - start < count else batch
+                    note_batch(middle, self.alternations, self._conflicts)
+                    yield middle
+                rows = self._then_backwards(batch.rows(stop, count), whole, count)
+            else:
+                rows = self._in_order(piece)
+            for sample in rows:
+                if held is None:
+                    held = sample
+                elif sample.t == held.t:
+                    held = self._merged(held, sample)
+                else:
+                    yield self._noted(held)
+                    held = sample
+        if held is not None:
+            yield self._noted(held)
+
+    def _begin(self) -> None:
+        self._conflicts, self.alternations = Conflicts(), Alternations()
+        self.count = self.lateness = 0
+        self.first: list[int] = []
+        self._last: int | None = None
+        self._leaps: list[tuple[int, int]] = []
+
+    def _noted(self, sample: Sample) -> Sample:
+        self.alternations.note(sample.values)
+        return sample
+
+    def _merged(self, held: Sample, sample: Sample) -> Sample:
+        return Sample(held.t, merged(held, sample.values, self._schema.events, self._conflicts))
+
+    def _note_times(self, batch: Batch) -> Batch:
+        """The rows that are in order, whose first instants are noted."""
+        times = batch.times
+        if not len(times):
+            return batch
+        if self._last is not None and times[0] < self._last:
+            raise self._backwards(batch.number_of(0), self._last, int(times[0]))
+        back = times[1:] < times[:-1]
+        if back.any():
+            batch = batch.cut(0, int(back.argmax()) + 1)
+            times = batch.times
+        ends = self._last if self._last is not None else int(times[0]), int(times[-1])
+        if ends[1] - ends[0] > LEAP:
+            every = [ends[0], *times.tolist()]
+            self._leaps += [one for one in pairwise(every) if one[1] - one[0] > LEAP]
+        self._last = ends[1]
+        self.count += len(times)
+        if len(self.first) < LOOKED_AT:
+            self.first += times[: LOOKED_AT - len(self.first)].tolist()
+        return batch
+
+    def _then_backwards(self, rows: Iterator[Sample], batch: Batch, row: int) -> Iterator[Sample]:
+        """The same; then it is an error if the batch has a further row, which is out of order."""
+        yield from rows
+        if row < len(batch.times):
+            times = batch.times
+            raise self._backwards(batch.number_of(row), int(times[row - 1]), int(times[row]))
+
+    def _backwards(self, number: int, last: int, t: int) -> TimeOrderError:
+        return TimeOrderError(
+            f"{self._unit} {number}: time goes backwards, from {format_ticks(last)} to "
+            f"{format_ticks(t)}: sort the recording by time, or allow for late samples "
+            "with `max delay` in the spec"
+        )
+
+    def _in_order(self, rows: Iterable[Row]) -> Iterator[Sample]:
+        for number, t, values in rows if self.ordered else self._sorted(rows):
+            if self._last is not None and not 0 <= t - self._last <= LEAP:
+                if t < self._last:
+                    raise self._backwards(number, self._last, t)
+                self._leaps.append((self._last, t))
+            self._last = t
+            self.count += 1
+            if len(self.first) < LOOKED_AT:
+                self.first.append(t)
+            # Before equal stamps are merged: what is no update is no other value, either.
+            yield Sample(t, updates_in(values, self._schema.ignoring))
+
+    def _sorted(self, rows: Iterable[Row]) -> Iterator[Row]:
+        """Rows by time, those of one instant as they come."""
+        latest = None
+        waiting: list[tuple[int, int, Row]] = []
+        fault = None
+        try:
+            for place, row in enumerate(rows):
+                number, t, _ = row
+                latest = t if latest is None else max(latest, t)
+                self.lateness = max(self.lateness, latest - t)
+                if self._last is not None and t < self._last:
+                    raise TimeOrderError(
+                        f"{self._unit} {number}: {format_ticks(t)} comes more than {ROOM:,} "
+                        f"{self._unit}s late: sort the recording by time"
+                    )
+                heappush(waiting, (t, place, row))
+                if len(waiting) > ROOM:
+                    yield heappop(waiting)[2]
+        except TraceError as error:
+            fault = error
+        while waiting:
+            yield heappop(waiting)[2]
+        if fault is not None:
+            try:
+                raise fault
+            finally:
+                del fault  # its traceback holds this frame, and with it an open file
+
+    def doubts(self) -> list[Health]:
+        """What is odd: signals that got two values at one stamp, stamps of another clock."""
+        found = self._conflicts.health()
+        if self._leaps:
+            last, t = self._leaps[0]
+            remark = (
+                f"from {format_ticks(last)} to {format_ticks(t)} there are "
+                f"{(t - last) / LEAP:.1f} years: is one of them of another clock?"
+            )
+            found.append(Health(HealthKind.CLOCK, "stamps", len(self._leaps), t, remark=remark))
+        return found
+
+    def with_findings(self, health: Sequence[Health]) -> tuple[Health, ...]:
+        """What a monitor found about these samples, with what was noted here."""
+        return (*self.alternations.remarked(health), *self.doubts())

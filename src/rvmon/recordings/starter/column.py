@@ -1,0 +1,331 @@
+"""What a recording holds under one name, and how that goes over time."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from math import inf, isfinite
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rvmon.recordings.batch import NO_UPDATE, YES, Cells
+from rvmon.trace.sample import Outage
+from rvmon.trace.schema import Kind
+from rvmon.trace.time import TICKS_PER_SECOND
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+FEW = 5
+"""Of fewer occurrences nobody knows whether they are regular."""
+
+STEADY = 3
+"""What keeps coming has no gap of more than so many times the mean one."""
+
+MOST_INSTANTS = 10_000
+"""Occurrences that are kept of one name."""
+
+EVENT_SHARE = 0.1
+"""Truth values that are true in single samples only, and in at most this share, are events."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shape:
+    """What the values of one name look like, before time is looked at.
+
+    Attributes:
+        kind: of a signal; `None` for an event.
+        labels: the values of a label signal, in order of appearance.
+        fields: of an event with payload.
+        unit: of a number, as the messages say it; empty if they do not.
+        source: the topic; empty of columns.
+        is_part: whether it comes with other fields, in each message of its topic.
+    """
+
+    kind: Kind | None
+    labels: tuple[str, ...] = ()
+    fields: Mapping[str, Kind] = field(default_factory=dict)
+    unit: str = ""
+    source: str = ""
+    is_part: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Shapes:
+    """The names of a recording that a specification can declare, and those that it cannot."""
+
+    declared: Mapping[str, Shape]
+    left_out: Mapping[str, str]
+
+
+def reasons_of(left_out: Mapping[str, str], most: int) -> Iterator[str]:
+    """Why names are left out: each reason behind its names, of which at most so many are listed.
+
+    >>> list(reasons_of({"a": "lists", "b": "no value", "c": "lists"}, 1))
+    ['a and 1 more: lists', 'b: no value']
+    """
+    by_reason: dict[str, list[str]] = {}
+    for name, why in left_out.items():
+        by_reason.setdefault(why, []).append(name)
+    for why, names in by_reason.items():
+        more = f" and {len(names) - most} more" if len(names) > most else ""
+        yield f"{', '.join(names[:most])}{more}: {why}"
+
+
+MOST = 160
+"""Stretches of a course."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """What was said in a stretch of time.
+
+    Attributes:
+        updates: how often; of an event its occurrences.
+        low: least number; `None` if there is none.
+        high: greatest number.
+    """
+
+    updates: int
+    low: float | None
+    high: float | None
+
+
+class Course:
+    """The stretches from the first instant on, all of one length, which doubles as time goes on.
+
+    Attributes:
+        start: the first instant, ticks.
+        length: of a stretch, ticks.
+        labels: the number that each label is drawn at.
+    """
+
+    def __init__(self) -> None:
+        self.start = 0
+        self.length = 1 << 16
+        self.labels: dict[str, int] = {}
+        self._updates = np.zeros(MOST, np.int64)
+        self._lows = np.full(MOST, inf)
+        self._highs = np.full(MOST, -inf)
+
+    def note(self, times: NDArray[np.int64], numbers: NDArray[Any]) -> None:
+        """Take updates; of an event also that nothing happened.
+
+        Args:
+            times: int64[n] ticks, ascending, not before the start.
+            numbers: [n] what was said; what is not finite is not drawn.
+        """
+        self._reach(int(times[-1]))
+        places = (times - self.start) // self.length
+        self._updates += np.bincount(places, minlength=MOST)
+        drawn = np.isfinite(numbers)
+        np.minimum.at(self._lows, places[drawn], numbers[drawn])
+        np.maximum.at(self._highs, places[drawn], numbers[drawn])
+
+    def _reach(self, t: int) -> None:
+        """Make the stretches so long that they go on to an instant."""
+        while (t - self.start) // self.length >= MOST:
+            self._updates = _halved(np.add, self._updates, 0)
+            self._lows = _halved(np.minimum, self._lows, inf)
+            self._highs = _halved(np.maximum, self._highs, -inf)
+            self.length *= 2
+
+    @property
+    def extremes(self) -> set[float]:
+        """The least and the greatest numbers of the stretches."""
+        return {*self._lows.tolist(), *self._highs.tolist()} - {-inf, inf}
+
+    def until(self, end: int) -> list[Stretch]:
+        """The stretches up to an instant, however much later it is than what was said last."""
+        self._reach(end)
+        count = max(1, -(-(end - self.start + 1) // self.length))
+        stretches = zip(
+            *(one[:count].tolist() for one in (self._updates, self._lows, self._highs)), strict=True
+        )
+        return [
+            Stretch(updates, low, high) if low <= high else Stretch(updates, None, None)
+            for updates, low, high in stretches
+        ]
+
+
+def _halved(join: np.ufunc, values: NDArray[Any], nothing: float) -> NDArray[Any]:
+    """Of two stretches one, and behind them as many in which nothing was said."""
+    joined = join(values[::2], values[1::2])
+    return np.concatenate((joined, np.full_like(joined, nothing)))
+
+
+Updates = tuple["NDArray[np.int64]", "NDArray[Any]", "NDArray[np.bool_]"]
+"""As `Column.take` has them."""
+
+
+@dataclass(slots=True)
+class Column:
+    """One name of a recording, followed over time.
+
+    Attributes:
+        name: as in the recording.
+        shape: what its values look like; of a guessed event without a kind.
+        guessed_event: whether its truth values were taken for an event.
+        updates: how often it was updated, or occurred.
+        low: least number seen; `None` if it is no number.
+        high: greatest number seen.
+        rate: updates per second; 0 if there were too few.
+        longest_gap: between two updates, ticks.
+        longest_silence: the same, or from the last update to the end.
+        first: the instant of the first update, ticks; `None` if there was none.
+        gaps_in_value: whether it is unknown somewhere: at the first sample, or by a value.
+        instants: of an event its occurrences, of a truth value where it became true; ticks.
+        course: how it goes over time.
+    """
+
+    name: str
+    shape: Shape
+    guessed_event: bool = False
+    updates: int = 0
+    low: float | None = None
+    high: float | None = None
+    rate: float = 0.0
+    longest_gap: int = 0
+    longest_silence: int = 0
+    first: int | None = None
+    gaps_in_value: bool = False
+    instants: list[int] = field(default_factory=list)
+    course: Course = field(default_factory=Course)
+    _last: int = 0
+    _trues: int = 0
+    _falses: int = 0
+    _before: bool = False
+    _runs_are_single: bool = True
+
+    @property
+    def is_finite(self) -> bool:
+        """Whether it is a number, and nowhere an infinite one."""
+        return self.low is not None and self.high is not None and isfinite(self.high - self.low)
+
+    @property
+    def changes(self) -> bool:
+        """Whether it is such a number, and not always the same."""
+        return self.is_finite and self.low != self.high
+
+    @property
+    def is_event(self) -> bool:
+        """Whether it is declared as an event."""
+        return self.shape.kind is None
+
+    def updates_in(self, times: NDArray[np.int64], cells: Cells) -> Updates:
+        """What rows say of a signal.
+
+        Args:
+            times: int64[n] ticks, of the rows.
+            cells: n of them.
+        """
+        values: NDArray[Any] = cells.values
+        if cells.labels is not None:
+            numbers = self.course.labels
+            first_seen = dict.fromkeys(values.tolist())
+            places = [0] * (max(first_seen, default=0) + 1)
+            for place in first_seen:
+                places[place] = numbers.setdefault(cells.labels[place], len(numbers))
+            values = np.array(places)[values]
+        known = values == values
+        if cells.says is None:
+            return times, values, known
+        said = cells.says != NO_UPDATE
+        return times[said], values[said], (known & (cells.says == YES))[said]
+
+    def take(
+        self, times: NDArray[np.int64], values: NDArray[Any], known: NDArray[np.bool_]
+    ) -> None:
+        """Take updates.
+
+        Args:
+            times: int64[n] ticks, ascending.
+            values: [n] numbers, truth values, the places of labels; of an event 1 where it occurs,
+                0 where it does not, NaN where it occurs with a payload.
+            known: bool[n] of which the value is.
+        """
+        if not len(times):
+            return
+        if self.first is None:
+            self.first = self._last = int(times[0])
+        self.longest_gap = max(self.longest_gap, int(np.diff(times, prepend=self._last).max()))
+        self._last = int(times[-1])
+        self.updates += len(times)
+        self.gaps_in_value |= not known.all()
+        self.course.note(times, np.where(known, values, np.nan))
+        times, values = times[known], values[known]
+        match self.shape.kind:
+            case None:
+                self._occurred(times[values != 0])
+            case Kind.BOOL:
+                self._truths(times, values.astype(np.bool_))
+            case Kind.INT | Kind.REAL if len(values):
+                low, high = values.min().item(), values.max().item()
+                self.low = low if self.low is None else min(self.low, low)
+                self.high = high if self.high is None else max(self.high, high)
+            case _:
+                pass
+
+    def _truths(self, times: NDArray[np.int64], values: NDArray[np.bool_]) -> None:
+        before = np.concatenate(([self._before], values))[:-1]
+        never_false = np.cumsum(~values) + self._falses == 0
+        self._occurred(times[values & (~before | never_false)])
+        self._runs_are_single &= not (values & before).any()
+        self._trues += int(values.sum())
+        self._falses += int((~values).sum())
+        self._before = bool(values[-1]) if len(values) else self._before
+
+    def _occurred(self, times: NDArray[np.int64]) -> None:
+        self.instants += times[: MOST_INSTANTS - len(self.instants)].tolist()
+
+    def end(self, start: int, end: int, samples: int) -> None:
+        """Take in between which instants the recording was, and of how many samples."""
+        self.gaps_in_value |= self.first != start
+        if self.first is None:
+            return
+        span = self._last - self.first
+        self.rate = (self.updates - 1) * TICKS_PER_SECOND / span if span > 0 else 0.0
+        self.longest_silence = max(self.longest_gap, end - self._last)
+        if self._is_like_event(start, end, samples - self.updates):
+            self.shape = replace(self.shape, kind=None)
+            self.guessed_event, self.updates = True, self._trues
+
+    def _is_like_event(self, start: int, end: int, silent: int) -> bool:
+        if self.shape.kind is not Kind.BOOL or not self._trues:
+            return False
+        if self._falses:
+            most = EVENT_SHARE * (self._trues + self._falses)
+            return self._runs_are_single and self._trues <= most
+        # It is only ever reported when true: what keeps coming is always true, and no event; nor is
+        # what others bring along.
+        if self.shape.is_part:
+            return False
+        longest = max(self.longest_silence, (self.first or start) - start)
+        keeps_coming = self._trues >= FEW and longest <= STEADY * (end - start) / self._trues
+        return silent > self._trues and not keeps_coming
+
+
+@dataclass(frozen=True, slots=True)
+class Profile:
+    """A recording, looked over.
+
+    Attributes:
+        path: of the recording.
+        columns: that are declared, in order.
+        left_out: by name, why.
+        start: the first instant, ticks.
+        end: the last instant, ticks.
+        samples: how many.
+        lateness: how far its time goes backwards at most, ticks; 0 if it is in order.
+        outages: what it lost, as far as it says so.
+    """
+
+    path: str
+    columns: tuple[Column, ...]
+    left_out: Mapping[str, str]
+    start: int
+    end: int
+    samples: int
+    lateness: int
+    outages: tuple[Outage, ...] = ()

@@ -1,0 +1,194 @@
+"""What Foxglove shows: the layout of verdicts (states, numbers, attempts), and scenes."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from typing import Any
+
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.report.scene import Outline, Scene
+from rvmon.report.tracks import thresholds
+from rvmon.trace.schema import Kind
+from rvmon.trace.time import TICKS_PER_SECOND
+
+SCENE = "/rvmon/scene"
+"""Its topic."""
+
+_THIN = 0.006
+"""Metres: how thick the line about a polygon is at least."""
+
+_LINE_STRIP, _LINE_LOOP = 0, 1
+
+_COLOURS = {
+    "link": (0.35, 0.5, 0.75),
+    "gripper": (0.2, 0.3, 0.55),
+    "piece": (0.95, 0.6, 0.1),
+    "person": (0.85, 0.55, 0.45),
+    "gaze": (0.9, 0.85, 0.3),
+}
+"""By role; what has none is grey."""
+
+
+def scene_updates(scene: Scene) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Ticks and content of a message for each frame."""
+    places = {name: place for place, name in enumerate(scene.bodies)}
+    for t, flat in scene.frames:
+        poses = {name: flat[3 * place : 3 * place + 3] for name, place in places.items()}
+        found: dict[str, list[dict[str, Any]]] = {"lines": [], "spheres": []}
+        for outline in scene.outlines:
+            pose = _pose(*poses.get(outline.body, (0.0, 0.0, 0.0)))
+            kind, drawn = _drawn(outline)
+            found[kind].append({"pose": pose, "color": _colour(outline.role), **drawn})
+        entity = {
+            "timestamp": seconds_and_rest(t),
+            "frame_id": "world",
+            "id": "scene",
+            "lifetime": seconds_and_rest(0),
+            "frame_locked": False,
+            **found,
+        }
+        yield t, {"deletions": [], "entities": [entity]}
+
+
+def seconds_and_rest(ticks: int) -> dict[str, int]:
+    """An instant as Foxglove's messages write it.
+
+    >>> seconds_and_rest(1_500_000_000)
+    {'sec': 1, 'nsec': 500000000}
+    """
+    seconds, rest = divmod(ticks, TICKS_PER_SECOND)
+    return {"sec": seconds, "nsec": rest}
+
+
+def _pose(x: float, z: float, angle: float) -> dict[str, Any]:
+    """A body in the upright plane: its angle turns x to z."""
+    turned = {"x": 0.0, "y": -math.sin(angle / 2), "z": 0.0, "w": math.cos(angle / 2)}
+    return {"position": {"x": x, "y": 0.0, "z": z}, "orientation": turned}
+
+
+def _drawn(outline: Outline) -> tuple[str, Mapping[str, Any]]:
+    """A disc as a sphere, a bar and a polygon as lines."""
+    if len(outline.corners) == 1:
+        return "spheres", {"size": dict.fromkeys("xyz", 2 * outline.radius)}
+    return "lines", {
+        "type": _LINE_STRIP if len(outline.corners) == 2 else _LINE_LOOP,
+        "thickness": max(2 * outline.radius, _THIN),
+        "scale_invariant": False,
+        "points": [{"x": x, "y": 0.0, "z": z} for x, z in outline.corners],
+        "colors": [],
+        "indices": [],
+    }
+
+
+def _colour(role: str) -> dict[str, float]:
+    return dict(zip("rgba", (*_COLOURS.get(role, (0.6, 0.6, 0.6)), 1.0), strict=True))
+
+
+ATTEMPTS = "/rvmon/attempts"
+"""The topic of attempts, for the panel of logs."""
+
+_PLAIN = re.compile(r"[\w/-]+", re.ASCII)
+_NUMBERS = (Kind.INT, Kind.REAL)
+
+
+def topic_of(kind: str, name: str) -> str:
+    """The topic of a requirement or a signal.
+
+    >>> topic_of("signals", "hand.distance")
+    '/rvmon/signals/hand/distance'
+    """
+    return f"/rvmon/{kind}/{name.replace('.', '/')}"
+
+
+def foxglove_layout(
+    spec: CheckedSpec,
+    requirements: Iterable[str],
+    names: Collection[str],
+    scene: Scene | None,
+) -> dict[str, Any]:
+    """The states of requirements above the numbers that they read above the log of attempts."""
+    judged = list(requirements)
+    states = [_path("requirements", name, "state", f"{name} {spec.requirements[name].text}")
+              for name in judged]  # fmt: skip
+    states += [
+        _path("signals", name, "value", name)
+        for name, signal in spec.signals.items()
+        if name in names and signal.type.kind not in _NUMBERS
+    ]
+    panels: dict[str, Any] = {
+        "StateTransitions!verdicts": {"title": "Verdicts", "isSynced": True, "paths": states},
+        "Plot!values": {
+            "title": "Values and what they are compared with",
+            "isSynced": True,
+            "paths": list(_numbers(spec, judged, names)),
+            "xAxisVal": "timestamp",
+            "showXAxisLabels": True,
+            "showYAxisLabels": True,
+            "showLegend": True,
+            "legendDisplay": "left",
+            "showPlotValuesInLegend": True,
+        },
+        "Log!attempts": {"topicToRender": ATTEMPTS, "minLogLevel": 1, "searchTerms": []},
+    }
+    top, middle, bottom = panels
+    below = {"direction": "column", "first": middle, "second": bottom, "splitPercentage": 60}
+    left = {"direction": "column", "first": top, "second": below, "splitPercentage": 35}
+    whole: dict[str, Any] = left
+    if scene is not None:
+        panels["3D!scene"] = _view(scene)
+        whole = {"direction": "row", "first": left, "second": "3D!scene", "splitPercentage": 60}
+    return {
+        "configById": panels,
+        "globalVariables": {},
+        "userNodes": {},
+        "playbackConfig": {"speed": 1},
+        "layout": whole,
+    }
+
+
+def _view(scene: Scene) -> dict[str, Any]:
+    """A panel that looks at the scene's plane from the side."""
+    left, bottom, right, top = scene.view
+    return {
+        "topics": {SCENE: {"visible": True}},
+        "fixedFrame": "world",
+        "followMode": "follow-none",
+        "cameraState": {
+            "perspective": False,
+            "phi": 90,
+            "thetaOffset": 0,
+            "distance": 2 * max(right - left, top - bottom),
+            "targetOffset": [(left + right) / 2, 0, (bottom + top) / 2],
+        },
+    }
+
+
+def _numbers(
+    spec: CheckedSpec, requirements: Iterable[str], names: Collection[str]
+) -> Iterator[dict[str, Any]]:
+    """The numbers, and as lines what requirements compare them with."""
+    judged = [spec.requirements[name] for name in requirements]
+    for name, signal in spec.signals.items():
+        if name in names and signal.type.kind in _NUMBERS:
+            unit = f" [{signal.type.unit}]" if signal.type.unit else ""
+            yield _path("signals", name, "value", f"{name}{unit}")
+            found = dict.fromkeys(
+                threshold for each in judged for threshold in thresholds(each, name)
+            )
+            for threshold in found:
+                yield {
+                    "value": str(threshold.value),
+                    "label": f"{name} {threshold.op} {threshold.value:g}",
+                    **_SHOWN,
+                }
+
+
+_SHOWN = {"enabled": True, "timestampMethod": "receiveTime"}
+
+
+def _path(kind: str, name: str, field: str, label: str) -> dict[str, Any]:
+    topic = topic_of(kind, name)
+    quoted = topic if _PLAIN.fullmatch(topic) else f'"{topic}"'
+    return {"value": f"{quoted}.{field}", "label": label.rstrip(), **_SHOWN}

@@ -1,0 +1,176 @@
+"""The trace matrix: by requirement and source, the recordings or tests that show it."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+from typing import NamedTuple
+
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.report.pages import render
+from rvmon.report.style import MARKS
+from rvmon.report.table import plain
+from rvmon.report.terminal import in_short
+from rvmon.verdicts import Verdict, fold
+from rvmon.verdicts.rows import VerdictRow
+from rvmon.verdicts.table_file import csv_table
+
+LISTED = 100
+"""The most recordings or tests per verdict named on the page; the table has all."""
+
+Row = Mapping[str, str]
+"""A row of the verdicts, by column."""
+
+
+class Traced(NamedTuple):
+    """The verdict on one requirement by one recording or test.
+
+    Attributes:
+        robot: the robot of a campaign; else "".
+        requirement: its id; `illegal` for hits of illegal bins.
+        text: the text of the requirement.
+        source: the clause it comes from.
+        by: the recording, or robot and test; "" if nothing judges the requirement.
+        verdict: its letter; "" if there is none.
+        reason: the reason of the first failure, or the error of the recording or test.
+        planted_fault: the fault planted in the robot for this test; else "".
+    """
+
+    robot: str
+    requirement: str
+    text: str
+    source: str
+    by: str = ""
+    verdict: str = ""
+    reason: str = ""
+    planted_fault: str = ""
+
+
+def rows_by_item(verdicts: bytes) -> dict[str, list[Row]]:
+    """The rows of a CSV file of verdicts, by recording, or by robot and test of a campaign.
+
+    Raises:
+        ValueError, csv.Error: the bytes are no such file.
+    """
+    rows = csv.reader(io.StringIO(verdicts.decode("utf-8"), newline=""), strict=True)
+    if tuple(next(rows, ())) != VerdictRow._fields:
+        raise ValueError("the columns of the verdicts are others")
+    found: dict[str, list[Row]] = {}
+    for row in rows:
+        found.setdefault(row[0], []).append(dict(zip(VerdictRow._fields, row, strict=True)))
+    return found
+
+
+def trace_matrix(
+    specs: Mapping[str, CheckedSpec],
+    items: Mapping[str, Sequence[Row]],
+    planted: Mapping[str, str],
+) -> list[Traced]:
+    """What shows each requirement, in the order of the specification.
+
+    Args:
+        specs: by robot; of recordings by an empty name.
+        items: what `rows_by_item` gives.
+        planted: the faults of tests on a robot that had one, by robot and test.
+
+    Raises:
+        ValueError: a verdict is none.
+    """
+    matrix: list[Traced] = []
+    for robot, spec in specs.items():
+        own = [item for item in items if not robot or item.partition("/")[0] == robot]
+        by_requirement: dict[str, dict[str, list[Row]]] = {}
+        for item in own:
+            for row in items[item]:
+                by_requirement.setdefault(row["requirement"], {}).setdefault(item, []).append(row)
+        # Without a requirement a row says that there are no verdicts, or what was hit and must not.
+        other = by_requirement.get("", {})
+        broken = {item for item, rows in other.items() if not all(row["verdict"] for row in rows)}
+        for name, requirement in spec.requirements.items():
+            heading = (robot, name, requirement.text, requirement.source)
+            shown = by_requirement.get(name, {})
+            traced = [
+                Traced(
+                    *heading, item, *_folded(shown.get(item, ()), item in broken, items[item][0])
+                )
+                for item in own
+                if item in broken or item in shown
+            ]
+            matrix += traced or [Traced(*heading)]
+        for item, rows in other.items():
+            hits = [row["reason"] for row in rows if row["verdict"]]
+            matrix += [Traced(robot, "illegal", "", "", item, "F", hit) for hit in hits]
+    return [traced._replace(planted_fault=planted.get(traced.by, "")) for traced in matrix]
+
+
+def _folded(rows: Sequence[Row], is_broken: bool, first: Row) -> tuple[str, str]:
+    """The folded verdict of rows, and the reason of a failure or the error."""
+    verdict = "" if is_broken else fold(Verdict(row["verdict"]) for row in rows).value
+    failed = next((row["reason"] for row in rows if row["verdict"] == "F"), "")
+    return verdict, failed or first["error"]
+
+
+def matrix_csv(matrix: Sequence[Traced]) -> bytes:
+    """The matrix as CSV, a row per requirement and recording or test."""
+    return csv_table(Traced._fields, (list(map(plain, row)) for row in matrix))
+
+
+def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) -> bytes:
+    """The matrix as a page that needs nothing but itself.
+
+    Args:
+        title: of the page.
+        facts: that it says first; one that is empty is left out.
+        matrix: what it shows.
+    """
+    sections: dict[str, list[_Row]] = {}
+    for (robot, _), rows in groupby(matrix, key=lambda one: (one.robot, one.requirement)):
+        sections.setdefault(robot, []).append(_row(list(rows)))
+    known = [(name, fact) for name, fact in facts.items() if fact]
+    counted = "Recordings, or tests"
+    if any(traced.planted_fault for traced in matrix):
+        counted += ", without a planted fault"
+    page = render("matrix.html", title=title, facts=known, sections=sections, counted=counted)
+    return page.encode("utf-8")
+
+
+class _Lines(NamedTuple):
+    """The recordings or tests with one verdict: their number, and the first of them."""
+
+    heading: str
+    size: int
+    lines: Sequence[str]
+    is_open: bool
+
+
+class _Row(NamedTuple):
+    """A requirement with all recordings or tests that judge it; failures are unfolded."""
+
+    first: Traced
+    counts: Sequence[tuple[Verdict, int]]
+    lists: Sequence[_Lines]
+
+
+def _row(rows: Sequence[Traced]) -> _Row:
+    own = [traced for traced in rows if traced.by and not traced.planted_fault]
+    found = {verdict: [one for one in own if one.verdict == verdict] for verdict in MARKS}
+    lists = [
+        _list(f"{mark.sign} {mark.word}", found[verdict], is_open=verdict is Verdict.FAIL)
+        for verdict, mark in MARKS.items()
+    ]
+    lists.append(_list("not evaluated", [one for one in own if not one.verdict], is_open=True))
+    lists.append(_list("with a planted fault", [traced for traced in rows if traced.planted_fault]))
+    counts = [(verdict, len(some)) for verdict, some in found.items()]
+    return _Row(rows[0], counts, [one for one in lists if one.size])
+
+
+def _list(heading: str, found: Sequence[Traced], *, is_open: bool = False) -> _Lines:
+    return _Lines(heading, len(found), [_line(traced) for traced in found[:LISTED]], is_open)
+
+
+def _line(traced: Traced) -> str:
+    fault = f"{traced.planted_fault}, {traced.verdict}" if traced.planted_fault else ""
+    name = traced.by.removeprefix(f"{traced.robot}/") if traced.robot else traced.by
+    return ": ".join(part for part in (name, fault, in_short(traced.reason)) if part)

@@ -1,0 +1,253 @@
+"""Verdicts on a recording as an MCAP file, with a layout by which Foxglove shows it.
+
+Source: the MCAP specification, https://mcap.dev/spec; the schema `foxglove.Log`,
+https://docs.foxglove.dev/docs/visualization/message-schemas/log.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from heapq import merge
+from importlib.util import find_spec
+from operator import itemgetter
+from pathlib import Path
+from typing import Any
+
+import msgspec
+
+from rvmon.errors import RvmonError, not_installed, writing
+from rvmon.files import beside, write_whole
+from rvmon.language.checked.specification import CheckedSpec
+from rvmon.report.foxglove_layout import (
+    ATTEMPTS,
+    SCENE,
+    foxglove_layout,
+    scene_updates,
+    seconds_and_rest,
+    topic_of,
+)
+from rvmon.report.scene import Scene
+from rvmon.report.tracks import concerned_names
+from rvmon.trace.sample import Sample
+from rvmon.trace.schema import Kind
+from rvmon.verdicts import LAW, Verdict
+from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.report import Report
+
+_LEVELS = {Verdict.PASS: 2, Verdict.INCONCLUSIVE: 3, Verdict.FAIL: 4}
+"""As of `foxglove.Log`: information, warning, error."""
+
+_TYPES = {Kind.BOOL: "boolean", Kind.INT: "integer", Kind.REAL: "number", Kind.LABEL: "string"}
+
+_STATE = {
+    "state": "string",
+    "open": "integer",
+    "passed": "integer",
+    "failed": "integer",
+    "undecided": "integer",
+}
+_ATTEMPT = {
+    "level": "integer",
+    "message": "string",
+    "name": "string",
+    "file": "string",
+    "line": "integer",
+    "verdict": "string",
+    "reason": "string",
+    "triggered": "integer",
+    "decided": "integer",
+}
+
+_Message = tuple[int, str, Mapping[str, Any]]
+"""Ticks, topic, content."""
+
+
+def refuse_mcap(path: str) -> None:
+    """Say, before anything is judged, that verdicts cannot be written as MCAP.
+
+    Raises:
+        RvmonError: the name has another ending, or a package is missing.
+    """
+    if not path.endswith(".mcap"):
+        raise RvmonError(f"cannot write {path}: the name of an MCAP file ends in .mcap")
+    if find_spec("mcap") is None:
+        raise not_installed("MCAP", "mcap")
+
+
+def layout_path(path: str) -> str:
+    """The file of the layout beside that of the verdicts."""
+    return f"{path}.layout.json"
+
+
+def write_verdicts(
+    path: str,
+    spec: CheckedSpec,
+    report: Report,
+    samples: Iterable[Sample],
+    scene: Scene | None = None,
+) -> None:
+    """Write states of requirements, attempts and values over time, and the layout beside.
+
+    Args:
+        path: of the MCAP file.
+        spec: that judged.
+        report: of the recording.
+        samples: of the recording, up to its end, in order; none: the values are left out.
+        scene: what happened, if it is known.
+
+    Raises:
+        RvmonError: a file cannot be written, or an instant is before 1970.
+    """
+    recorded = list(samples)
+    instants = [sample.t for sample in recorded[:1]] or [
+        attempt.triggered for attempt in report.attempts
+    ]
+    begin = min(instants, default=report.end or 0)
+    if begin < 0:
+        raise RvmonError(f"cannot write {path}: MCAP has no instants before 0 s")
+    names = {
+        name for verdict in report.verdicts for name in concerned_names(spec.requirements[verdict])
+    }
+    states = sorted(_states(report, begin), key=itemgetter(0))
+    frames = [] if scene is None else [(t, SCENE, one) for t, one in scene_updates(scene)]
+    values = _values(spec, recorded, names)
+    messages = merge(states, _attempts(spec, report), values, frames, key=itemgetter(0))
+    schemas = {**_state_schemas(report), **(_value_schemas(spec, names) if recorded else {})}
+    if scene is not None:
+        schemas[SCENE] = "foxglove.SceneUpdate", {"deletions": "array", "entities": "array"}
+    layout = foxglove_layout(spec, report.verdicts, names if recorded else (), scene)
+    with writing(path):
+        with beside(path) as place:
+            _write(place, schemas, messages)
+        write_whole(layout_path(path), msgspec.json.format(msgspec.json.encode(layout)))
+
+
+def _state_schemas(report: Report) -> dict[str, tuple[str, Mapping[str, str]]]:
+    """By topic the name of its schema, and the types of its fields."""
+    found: dict[str, tuple[str, Mapping[str, str]]] = {ATTEMPTS: ("foxglove.Log", _ATTEMPT)}
+    for name in report.verdicts:
+        found[topic_of("requirements", name)] = "rvmon.Requirement", _STATE
+    return found
+
+
+def _value_schemas(
+    spec: CheckedSpec, names: Iterable[str]
+) -> dict[str, tuple[str, Mapping[str, str]]]:
+    found: dict[str, tuple[str, Mapping[str, str]]] = {}
+    for name in sorted(names):
+        if name in spec.signals:
+            kind = _TYPES[spec.signals[name].type.kind]
+            found[topic_of("signals", name)] = f"rvmon.{kind}", {"known": "boolean", "value": kind}
+        else:
+            fields = {field: _TYPES[one.kind] for field, one in spec.events[name].fields.items()}
+            found[topic_of("events", name)] = f"rvmon.event.{name}", {"occurs": "boolean", **fields}
+    return found
+
+
+def _states(report: Report, begin: int) -> Iterator[_Message]:
+    """What each requirement is: at the beginning, and whenever that changes."""
+    changes: dict[str, dict[int, list[tuple[int, Verdict | None]]]] = {}
+    end = report.end or 0
+    for attempt in report.attempts:
+        own = changes.setdefault(attempt.requirement, {})
+        own.setdefault(attempt.triggered, []).append((1, None))
+        own.setdefault(_settled(attempt, end), []).append((-1, attempt.verdict))
+    for name in report.verdicts:
+        still_open, last, counts = 0, Verdict.NOT_TRIGGERED, Counter[Verdict]()
+        for t, steps in sorted({begin: [], **changes.get(name, {})}.items()):
+            for step, verdict in steps:
+                still_open += step
+                if verdict is not None:
+                    counts[verdict] += 1
+                    last = verdict
+            content = {
+                "state": "open" if still_open else last.value,
+                "open": still_open,
+                "passed": counts[Verdict.PASS],
+                "failed": counts[Verdict.FAIL],
+                "undecided": counts[Verdict.INCONCLUSIVE],
+            }
+            yield t, topic_of("requirements", name), content
+
+
+def _settled(attempt: Attempt, end: int) -> int:
+    """When it was decided, or the recording ended; whatever its trigger is, not before that."""
+    return max(attempt.triggered, end if attempt.decided is None else attempt.decided)
+
+
+def _attempts(spec: CheckedSpec, report: Report) -> list[_Message]:
+    """An entry of the log for each attempt, when it was decided."""
+    found: list[_Message] = []
+    for attempt in report.attempts:
+        span = spec.requirements[attempt.requirement].span
+        t = _settled(attempt, report.end or 0)
+        content = {
+            "timestamp": seconds_and_rest(t),
+            "level": _LEVELS[attempt.verdict],
+            "message": f"{attempt.verdict} {attempt.reason}".rstrip(),
+            "name": attempt.name,
+            "file": "" if span is None else span.source.name,
+            "line": 0 if span is None else span.line,
+            "verdict": attempt.verdict.value,
+            "reason": attempt.reason,
+            "triggered": attempt.triggered,
+        }
+        if attempt.decided is not None:
+            content["decided"] = attempt.decided
+        found.append((t, ATTEMPTS, content))
+    return sorted(found, key=itemgetter(0))
+
+
+def _values(
+    spec: CheckedSpec, samples: Iterable[Sample], names: Collection[str]
+) -> Iterator[_Message]:
+    """The values of what requirements read."""
+    for sample in samples:
+        for name, value in sample.values.items():
+            if name not in names:
+                continue
+            if name in spec.signals:
+                yield sample.t, topic_of("signals", name), _value_message(value)
+            elif value:
+                for payload in value if isinstance(value, tuple) else (value,):
+                    fields = payload if isinstance(payload, Mapping) else {}
+                    yield sample.t, topic_of("events", name), {"occurs": True, **fields}
+
+
+def _value_message(value: object) -> dict[str, object]:
+    """A value of a signal; JSON has no NaN, and no infinity."""
+    if value is None or value != value:
+        return {"known": False}
+    finite = not isinstance(value, float) or math.isfinite(value)
+    return {"known": True, "value": value} if finite else {"known": True}
+
+
+def _write(
+    path: Path, schemas: Mapping[str, tuple[str, Mapping[str, str]]], messages: Iterable[_Message]
+) -> None:
+    from mcap.writer import Writer
+
+    with open(path, "wb") as file:
+        writer: Any = Writer(file)
+        writer.start(library=f"rvmon, law {LAW}")
+        channels = {}
+        for topic, (name, fields) in schemas.items():
+            schema = writer.register_schema(name, "jsonschema", _json_schema(fields, name))
+            channels[topic] = writer.register_channel(topic, "json", schema)
+        for t, topic, content in messages:
+            channel = channels[topic]
+            writer.add_message(channel, t, msgspec.json.encode(content), t)
+        writer.finish()
+
+
+def _json_schema(fields: Mapping[str, str], title: str) -> bytes:
+    properties: dict[str, Any] = {name: {"type": kind} for name, kind in fields.items()}
+    for own in properties.values():
+        if own["type"] == "array":
+            own["items"] = {"type": "object", "properties": {}}
+    if title == "foxglove.Log":
+        parts = {part: {"type": "integer"} for part in ("sec", "nsec")}
+        properties["timestamp"] = {"type": "object", "title": "time", "properties": parts}
+    return msgspec.json.encode({"title": title, "type": "object", "properties": properties})

@@ -1,1 +1,0 @@
-"""Recorded runs, held against a network."""

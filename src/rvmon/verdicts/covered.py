@@ -1,0 +1,74 @@
+"""The coverage of one run: the hits of coverpoints and crosses, and illegal hits, as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rvmon.language.checked.goals import BinKind
+from rvmon.trace.time import format_stamped
+
+
+@dataclass(frozen=True, slots=True)
+class CoveredBin:
+    """A bin of a coverpoint, or a combination of a cross, on one run.
+
+    Attributes:
+        name: of the bin or combination.
+        kind: goal, ignored or illegal.
+        goal: the hits it needs.
+        hits: the number of hits.
+        first: the instant of the first hit, ticks; `None` without one.
+    """
+
+    name: str
+    kind: BinKind
+    goal: int
+    hits: int
+    first: int | None = None
+
+    @property
+    def is_hole(self) -> bool:
+        """Whether it has fewer hits than its goal."""
+        return self.kind is BinKind.GOAL and self.hits < self.goal
+
+
+@dataclass(frozen=True, slots=True)
+class CoveredGroup:
+    """A coverpoint or a cross on one run.
+
+    Attributes:
+        name: of the coverpoint or cross.
+        subject: `coverpoint` or `cross`.
+        bins: all bins or combinations, in the order of the specification.
+    """
+
+    name: str
+    subject: str
+    bins: tuple[CoveredBin, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class IllegalHit:
+    """An illegal bin of a coverpoint, or an illegal combination of a cross, that was hit.
+
+    Attributes:
+        group: the coverpoint or cross.
+        item: the bin or combination.
+        count: the number of hits.
+        first: the instant of the first hit, ticks.
+    """
+
+    group: str
+    item: str
+    count: int
+    first: int
+
+    def sentence(self, origin: int) -> str:
+        """One sentence; `origin` is the instant shown as 0 s, ticks.
+
+        >>> print(IllegalHit("phase", "back", 2, 3 * 10**9).sentence(0))
+        illegal: `back` of `phase` was hit at 3 s, 2 times in all
+        """
+        often = f", {self.count} times in all" if self.count > 1 else ""
+        when = format_stamped(self.first, origin)
+        return f"illegal: `{self.item}` of `{self.group}` was hit at {when}{often}"

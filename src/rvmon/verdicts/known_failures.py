@@ -1,0 +1,133 @@
+"""Known failures: a file lists which failures are accepted, why, and until when."""
+
+from __future__ import annotations
+
+import datetime
+import tomllib
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass, field
+from fnmatch import fnmatchcase
+from pathlib import Path, PurePath
+
+import msgspec
+
+from rvmon.errors import RvmonError
+from rvmon.texts import did_you_mean
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.report import Report
+
+
+class KnownFailure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A requirement that is accepted to fail.
+
+    Attributes:
+        requirement: its id.
+        reason: why the failure is accepted.
+        until: the last day on which it is accepted.
+        recording: pattern of the recordings, such as `monday/*.csv`, matched against the whole name
+            or its last segments; `*` stands for any characters.
+    """
+
+    requirement: str
+    reason: str
+    until: datetime.date
+    recording: str = "*"
+
+    def is_about(self, recording: str, requirement: str) -> bool:
+        """Whether it concerns a requirement in a recording, regardless of `until`.
+
+        >>> known = KnownFailure("R1", "worn", datetime.date(2030, 1, 31), "monday/*.csv")
+        >>> known.is_about("logs/monday/3.csv", "R1"), known.is_about("logs/tuesday/3.csv", "R1")
+        (True, False)
+        """
+        if requirement != self.requirement:
+            return False
+        parts = PurePath(recording).parts
+        ends = ["/".join(parts[start:]) for start in range(len(parts))]
+        return any(fnmatchcase(one, self.recording) for one in (recording, *ends))
+
+
+@dataclass(frozen=True, slots=True)
+class KnownFailures:
+    """The failures accepted on a day.
+
+    Attributes:
+        known: in the order of the file.
+        today: the day; an entry whose `until` is earlier accepts nothing.
+    """
+
+    known: Sequence[KnownFailure] = ()
+    today: datetime.date = field(default_factory=datetime.date.today)
+
+    def accepting(self, recording: str, requirement: str) -> KnownFailure | None:
+        """The entry that accepts a failure of a requirement in a recording; `None` if none."""
+        about = (failure for failure in self.known if failure.is_about(recording, requirement))
+        return next((failure for failure in about if self.today <= failure.until), None)
+
+    def failures(self, report: Report) -> list[str]:
+        """The requirements whose failure in a recording is not accepted."""
+        return [
+            name
+            for name, verdict in report.verdicts.items()
+            if verdict is Verdict.FAIL and self.accepting(report.trace, name) is None
+        ]
+
+    def expected(self, report: Report) -> dict[str, str]:
+        """The requirements whose failure in a recording would be accepted, with reason and day."""
+        found = ((name, self.accepting(report.trace, name)) for name in report.verdicts)
+        return {
+            name: f"{failure.reason} (until {failure.until})"
+            for name, failure in found
+            if failure is not None
+        }
+
+    def remarks(self, reports: Sequence[Report]) -> Iterator[str]:
+        """Remarks on entries that have expired but still fail, and on those that no longer fail."""
+        for failure in self.known:
+            about = [
+                (report.trace, report.verdicts[failure.requirement])
+                for report in reports
+                if failure.requirement in report.verdicts
+                and failure.is_about(report.trace, failure.requirement)
+            ]
+            failed = [trace for trace, verdict in about if verdict is Verdict.FAIL]
+            what = f"{failure.requirement} ({failure.reason})"
+            if failed and self.today > failure.until:
+                until = failure.until
+                yield f"{what} was known to fail until {until}, and fails still: {failed[0]}"
+            elif about and not failed:
+                yield f"{what} is known to fail, and does not: take it out of the file"
+
+
+NONE_KNOWN = KnownFailures()
+"""No failure is accepted."""
+
+
+class _File(msgspec.Struct, forbid_unknown_fields=True):
+    known: list[KnownFailure] = []
+
+
+def read_known(path: str | Path, requirements: Collection[str]) -> list[KnownFailure]:
+    """Read a file of known failures: TOML, a table `[[known]]` for each.
+
+    Args:
+        path: of the file.
+        requirements: the ids of the existing requirements.
+
+    Raises:
+        RvmonError: the file cannot be read, is malformed, or has an unknown requirement.
+    """
+    try:
+        found = msgspec.convert(tomllib.loads(Path(path).read_text("utf-8")), _File).known
+    except OSError as error:
+        raise RvmonError(f"cannot read {path}: {error.strerror or error}") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError, msgspec.ValidationError) as error:
+        raise RvmonError(
+            f"{path}: {error}: a known failure is a table [[known]] with requirement, reason, "
+            'until = 2030-01-31, and recording = "*.csv" if it is about some only'
+        ) from None
+    for failure in found:
+        if failure.requirement not in requirements:
+            meant = did_you_mean(failure.requirement, list(requirements), "see `rvmon check`")
+            raise RvmonError(f"{path}: no requirement `{failure.requirement}`: {meant}")
+    return found

@@ -1,0 +1,184 @@
+"""Cases for the exported C: what `judge.c` reads, what it prints, and what the extension says."""
+
+from __future__ import annotations
+
+import struct
+import subprocess
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from rvmon.core.c_files import core_files, plan_files, prefix_of
+from rvmon.monitor.compiled_spec import compile_spec
+from rvmon.monitor.planned import PlannedCore, planned_core
+from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.records import NUMBER, RECORD
+from rvmon.testing.generate.trace import Case
+from rvmon.trace.sample import Sample, Scalar, Value
+from rvmon.trace.schema import Kind
+
+DRIVER = Path(__file__).parent / "judge.c"
+HEAP = -1
+_NO_TIME = -(1 << 63)
+_SAYS_NO, _SAYS_UNKNOWN, _SAYS_YES = range(3)
+_UNKNOWN, _WHOLE, _REAL = range(3)
+
+
+class Exported:
+    """Cases of which each has its plan in one program.
+
+    Args:
+        folder: where it is made.
+        cases: the cases; specifications that the core judges.
+        command: the compiler with its options.
+    """
+
+    def __init__(self, folder: Path, cases: Sequence[Case], command: Sequence[str]) -> None:
+        self.cases = cases
+        self._compiled = [
+            compile_spec(replace(case.spec, name=f"case {number}"))
+            for number, case in enumerate(cases)
+        ]
+        self.planned = [planned_core(one) for one in self._compiled]
+        self._program = folder / "judge"
+        names, texts = [], core_files()
+        for one in self._compiled:
+            texts |= plan_files(plan_alone(one))
+            names.append(prefix_of(one.checked.name))
+        for name, text in texts.items():
+            (folder / name).write_text(text, encoding="utf-8")
+        (folder / "plans.h").write_text(_plans(names))
+        self.compile(command)
+
+    def compile(self, command: Sequence[str]) -> None:
+        """Compile the program, by a compiler with its options."""
+        sources = [str(DRIVER), str(core_object(*command))]
+        line = [*command, "-I.", *sources, "-o", self._program.name, "-lm"]
+        subprocess.run(line, cwd=self._program.parent, check=True)  # noqa: S603
+
+    def judge(
+        self, runs: Sequence[tuple[int, int]], reserved: int = 0, *, notes: bool = False
+    ) -> list[list[str]]:
+        """What is printed of each case, which is run twice, by one monitor.
+
+        Args:
+            runs: the number of a case, and the size of its block, or `HEAP`.
+            reserved: for so many open attempts room is made at once.
+            notes: whether notes are kept, and read.
+        """
+        lines = (line for run in runs for line in self._lines(*run, reserved, notes=notes))
+        told = "\n".join(lines) + "\n"
+        done = subprocess.run(  # noqa: S603
+            [self._program], input=told, check=True, stdout=subprocess.PIPE, text=True
+        )
+        *found, rest = done.stdout.split(".\n")
+        assert not rest
+        return [text.splitlines() for text in found]
+
+    def _lines(self, number: int, size: int, reserved: int, *, notes: bool) -> Iterator[str]:
+        case, planned = self.cases[number], self.planned[number]
+        yield f"c {number} {size}"
+        if notes:
+            yield "n 0"
+        yield f"m {reserved}"
+        for name, place in planned.numbers.items():
+            if case.names is not None and name not in case.names:
+                yield f"a {place}"
+        actions = list(self._actions(number))
+        yield from [*actions, "r 0", *actions, "z 0"]
+
+    def _actions(self, number: int) -> Iterator[str]:
+        case, planned = self.cases[number], self.planned[number]
+        for action in case.actions:
+            if isinstance(action, Sample):
+                for name, value in action.values.items():
+                    yield from _update(planned, name, value)
+                yield f"s {action.t}"
+            else:
+                yield f"w {action}"
+        yield f"e {_NO_TIME if case.end is None else case.end}"
+
+    def records_of_extension(self, number: int) -> list[str]:
+        """What the extension says of a case, as `judge.c` prints it."""
+        case, planned = self.cases[number], self.planned[number]
+        names = frozenset(planned.numbers)
+        monitor = planned.monitor(names - (names if case.names is None else case.names))
+        for action in case.actions:
+            if isinstance(action, Sample):
+                assert monitor.judge(action.t, planned.plain(action.t, action.values), True)
+            else:
+                monitor.advance(action)
+        monitor.finish(case.end)
+        records, numbers, *_ = monitor.records()
+        rows = np.frombuffer(records, RECORD)
+        values = np.frombuffer(numbers, NUMBER).reshape(len(rows), -1 if len(rows) else 0)
+        return [_record(*one) for one in zip(rows, values, strict=True)]
+
+
+def core_object(*command: str) -> Path:
+    """The core as a compiler with its options makes it, once for all that ask."""
+    return Path(_core(command).name) / "rvmon_core.o"
+
+
+@cache
+def _core(command: tuple[str, ...]) -> TemporaryDirectory[str]:
+    """A folder with the core as an object, which takes longest; it is the same for all cases."""
+    folder: TemporaryDirectory[str] = TemporaryDirectory()
+    for name, text in core_files().items():
+        Path(folder.name, name).write_text(text, encoding="utf-8")
+    line = [*command, "-c", "rvmon_core.c", "-o", "rvmon_core.o"]
+    subprocess.run(line, cwd=folder.name, check=True)  # noqa: S603
+    return folder
+
+
+def _plans(names: Sequence[str]) -> str:
+    """A header with all plans in it."""
+    includes = [f'#include "{name}_plan.c"' for name in names]
+    rows = [f"    {{{name}_plan, sizeof {name}_plan}}," for name in names]
+    table = ["static const struct { const uint64_t *bytes; size_t size; } plans[] = {", *rows, "};"]
+    return "\n".join([*includes, *table]) + "\n"
+
+
+def _update(planned: PlannedCore, name: str, value: Value) -> Iterator[str]:
+    """The lines of an update."""
+    number, packed = planned.numbers[name], planned.packed
+    if name in packed.signals:
+        found = _number(value, packed.signals[name], packed.labels)
+        says = _SAYS_UNKNOWN if found.startswith(str(_UNKNOWN)) else _SAYS_YES
+        yield f"u {number} {says} {found}"
+    elif value is None or value == () or isinstance(value, bool):
+        says = _SAYS_UNKNOWN if value is None else _SAYS_YES if value else _SAYS_NO
+        yield f"u {number} {says} {_UNKNOWN} 0"
+    else:
+        kinds = {field: kind for (event, field), kind in packed.fields.items() if event == name}
+        for payload in value if isinstance(value, tuple) else (value,):
+            assert isinstance(payload, Mapping)
+            yield f"u {number} {_SAYS_YES} {_UNKNOWN} 0"
+            for place, (field, kind) in enumerate(kinds.items()):
+                yield f"f {place} {_number(payload.get(field), kind, packed.labels)}"
+
+
+def _number(value: Scalar | Any, kind: Kind, labels: Mapping[str, int]) -> str:
+    """Kind and bits of a number."""
+    if value is None or value != value:
+        return f"{_UNKNOWN} 0"
+    if kind is Kind.REAL:
+        (bits,) = struct.unpack("=Q", struct.pack("=d", value))
+        return f"{_REAL} {bits:x}"
+    whole = labels[str(value)] if kind is Kind.LABEL else int(value)
+    return f"{_WHOLE} {whole & 0xFFFF_FFFF_FFFF_FFFF:x}"
+
+
+def _record(row: Any, values: Any) -> str:
+    names = ("triggered", "decided", "requirement", "number", "verdict", "decision", "in_doubt")
+    captured = [
+        f"{value['kind']}:{int(value['bits']) & 0xFFFF_FFFF_FFFF_FFFF:x}"
+        for value in values
+        if row["captured"] >= 0 and value["kind"] != _UNKNOWN
+    ]
+    return " ".join(["r", *(str(row[name]) for name in names), *captured])

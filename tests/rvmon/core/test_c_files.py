@@ -1,0 +1,326 @@
+"""The exported C: it judges as the extension does, and is never green for want of memory."""
+
+import re
+import shutil
+import subprocess
+from itertools import islice
+
+import pytest
+from tests.rvmon.core.exported import HEAP, Exported, core_object
+from tests.tools.differential import cases_of
+from tests.tools.hostile import FORGERIES, hostile_names
+
+import rvmon
+from rvmon.core.c_files import FEWEST, c_files, identifiers
+from rvmon.core.plan import pack
+from rvmon.language.checked.specification import TimeModel
+from rvmon.monitor.compiled_spec import compile_spec
+from rvmon.monitor.plans import plan_alone
+from rvmon.native import memory_of
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import Case, TraceProfile
+from rvmon.trace.sample import Sample
+
+pytestmark = pytest.mark.compiler
+
+STRICT = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic")
+SANITIZED = ("-O0", "-fsanitize=address,undefined", "-fsanitize-undefined-trap-on-error")
+"""Where something undefined is done the program dies; to tell of it would take long to compile."""
+GREEN = {"1", "3"}
+"""Passed, and not triggered."""
+
+
+def judged(seed, many, **profile):
+    """Random cases of all time models in turn."""
+    number = 0
+    times = list(TimeModel)
+    while many > 0:
+        how = Profile(time=times[number % len(times)], **profile)
+        for case in islice(cases_of(f"{seed}/{number}", how, TraceProfile(), 2, windows=20), many):
+            many -= 1
+            yield case
+        number += 1
+
+
+def test_exported_c_judges_as_the_extension(tmp_path):
+    exported = Exported(tmp_path, list(judged("export", 60)), ["gcc", *STRICT, *SANITIZED])
+    wanted = [2 * exported.records_of_extension(number) for number in range(60)]
+    told = [records(run) for run in exported.judge([(number, HEAP) for number in range(60)])]
+    assert told == wanted
+    exported.compile(["gcc", "-m32", "-msse2", "-mfpmath=sse"])
+    told = [records(run) for run in exported.judge([(number, HEAP) for number in range(60)])]
+    assert told == wanted, "32 bits"
+    assert sum(map(len, told)) > 150
+    assert sum(":" in line for lines in told for line in lines) > 8, "captured values"
+
+
+def records(run):
+    """What a run recorded, or had to say else."""
+    return [line for line in run if line.startswith(("r ", "x "))]
+
+
+def test_memory_is_bounded_however_long_windows_are_followed(tmp_path):
+    """Of windows within windows what is over is given up, where samples are positions, too."""
+    cases = []
+    for time in ("held", "sampled", "sampled every 2 ns"):
+        required = "always F[0 ns, 9 ns] G[0 ns, 3 ns] p"
+        spec = rvmon.loads(f"time {time}\nsignal p : bool\nrequirement R\n  {required}\n").checked
+        samples = [Sample(t, {"p": t % 17 > 2}) for t in range(3000)]
+        cases += [Case(spec, tuple(samples[:many])) for many in (500, 3000)]
+    exported = Exported(tmp_path, cases, ["gcc", *STRICT, *SANITIZED])
+    runs = exported.judge([(number, HEAP) for number in range(len(cases))])
+    used = [int(run[-1].split()[-1]) for run in runs]
+    assert used[::2] == used[1::2]
+
+
+def without_memory(run):
+    """What was printed but for the bytes that were used."""
+    return [line.rpartition(" ")[0] if line.startswith("e ") else line for line in run]
+
+
+def test_notes_change_nothing_and_are_bounded(tmp_path):
+    """Whoever keeps them: records and verdicts stay; what is not needed any more goes."""
+    cases = list(judged("notes", 60))
+    exported = Exported(tmp_path, cases, ["gcc", *STRICT, *SANITIZED])
+    runs = [(number, HEAP) for number in range(len(cases))]
+    bare, noted = exported.judge(runs), exported.judge(runs, notes=True)
+    assert list(map(without_memory, bare)) == list(map(without_memory, noted))
+    long = []
+    for time in ("held", "sampled", "sampled every 2 ns"):
+        for required in (
+            "always F[0 ns, 9 ns] G[0 ns, 3 ns] (p or not p)",
+            "upon p then F[0 ns, 40 ns] q",
+        ):
+            spec = rvmon.loads(
+                f"time {time}\nsignal p, q : bool\nrequirement R\n  {required}\n"
+            ).checked
+            turns = [Sample(t, {"p": t % 17 > 2, "q": t % 5 == 0}) for t in range(4000)]
+            long += [Case(spec, tuple(turns[:many])) for many in (1000, 4000)]
+    exported = Exported(tmp_path, long, ["gcc", *STRICT, *SANITIZED])
+    runs = exported.judge([(number, HEAP) for number in range(len(long))], notes=True)
+    used = [int(run[-1].split()[-1]) for run in runs]
+    told = [len(records(run)) for run in runs]
+    grown = [b - a for a, b in zip(used[::2], used[1::2], strict=True)]
+    more = [b - a for a, b in zip(told[::2], told[1::2], strict=True)]
+    assert all(size <= 400 * count for size, count in zip(grown, more, strict=True)), (
+        grown,
+        more,
+    )
+
+
+def test_short_memory_is_never_green(tmp_path):
+    """Whatever the block: judged as with a heap, or refused, or said; then nothing has passed."""
+    exported = Exported(tmp_path, list(judged("memory", 40)), ["gcc", *STRICT, *SANITIZED])
+    spoilt = 0
+    for number, whole in enumerate(exported.judge([(number, HEAP) for number in range(40)])):
+        enough = int(whole[-1].split()[-1])
+        steps = {*range(0, enough, -(-enough // 40)), *range(enough - 400, enough, 16)}
+        sizes = [*sorted(steps), enough, 2 * enough]
+        runs = exported.judge([(number, size) for size in sizes])
+        assert runs[0] == ["none"]
+        assert runs[-2:] == [whole, whole]
+        runs += exported.judge([(number, size) for size in sizes[::4]], notes=True)
+        for run in runs:
+            if run != ["none"]:
+                spoilt += sum(map(is_spoilt, halves(run), halves(whole)))
+    assert spoilt > 500
+
+
+def halves(run):
+    """What was printed of the first run, and of the second."""
+    ends = [place for place, line in enumerate(run) if line.startswith("e ")]
+    assert len(ends) == 2
+    return run[1 : ends[0] + 1], run[ends[0] + 1 :]
+
+
+def is_spoilt(found, whole):
+    """Whether memory was short in a run, that is like another one up to there."""
+    _, spoilt, *verdicts, _ = found[-1].split()
+    if spoilt == "0":
+        assert (found[:-1], verdicts) == (whole[:-1], whole[-1].split()[2:-1])
+        return False
+    short = found.index("x 1")
+    assert found[:short] == whole[:short]
+    passed = [line for line in records(found[short:]) if line.split()[5:6] == ["1"]]
+    assert set(passed) <= set(whole), "what memory was short for has not passed"
+    assert not GREEN & set(verdicts)
+    return True
+
+
+def text_of(spec, *requirements):
+    """A specification in a few words."""
+    return f"spec {spec}\nsignal b : bool\n" + "".join(
+        f"requirement `{one}`\n  always b\n" for one in requirements
+    )
+
+
+def written(folder, text):
+    """The files of a specification, in a folder; returns the names of plans."""
+    texts = c_files(plan_alone(compile_spec(rvmon.loads(text).checked)))
+    for name, file in texts.items():
+        (folder / name).write_text(file, encoding="utf-8")
+    return [name for name in texts if name.endswith("_plan.c")]
+
+
+def compiled(folder, *line):
+    subprocess.run(line, cwd=folder, check=True)  # noqa: S603
+
+
+@pytest.fixture
+def strict():
+    """The compilers that there are, each with all warnings as errors."""
+    warnings = [*STRICT, "-Wconversion", "-Wshadow"]
+    names = ["arm-none-eabi-gcc -mthumb -mcpu=cortex-m3", "clang", "gcc -O1"]
+    return [[*name.split(), *warnings] for name in names if shutil.which(name.split()[0])]
+
+
+def test_nothing_but_the_interface_is_seen(tmp_path, strict):
+    """Strict compilers take all files; what they define for others is `rv_…`, and tables."""
+    (plan,) = written(tmp_path, text_of("door", "A"))
+    *others, gcc = strict
+    for line in others:
+        compiled(tmp_path, *line, "-fsyntax-only", plan, "rvmon_core.c")
+    compiled(tmp_path, *gcc, "-c", plan, "-o", "plan.o")
+    compiled(tmp_path, *gcc, "-c", "rvmon_core.c", "-o", "core.o")
+    for name, prefix in (("core.o", "rv_"), ("plan.o", "door_")):
+        line = [shutil.which("nm"), "-g", "--defined-only", tmp_path / name]
+        done = subprocess.run(line, check=True, stdout=subprocess.PIPE, text=True)  # noqa: S603
+        found = [line.split()[-1] for line in done.stdout.splitlines()]
+        assert found
+        assert all(one.startswith(prefix) for one in found)
+
+
+HOSTILE = [name for name in (*FORGERIES, "??/", "a_n1", "A_N1", "a n1") if name.strip() == name]
+
+
+def test_hostile_names_are_but_names(tmp_path, gcc):
+    names = [*HOSTILE, *islice((one for one in hostile_names(1) if one.strip() == one), 300)]
+    names = list(dict.fromkeys(name for name in names if not set(name) & set("\0\r\n`")))
+    (plan,) = written(tmp_path, text_of("`*/ int x; /*`", *names))
+    prefix = plan.removesuffix("_plan.c")
+    (tmp_path / "main.c").write_text(
+        f'#include "{plan}"\n#include <stdio.h>\nint main(void) {{ int i; '
+        f"for (i = 0; i < {prefix.upper()}_REQUIREMENTS; i++) puts({prefix}_requirements[i]); "
+        "return 0; }\n"
+    )
+    compiled(tmp_path, gcc, *STRICT, "main.c", "-o", "main")
+    done = subprocess.run([tmp_path / "main"], check=True, stdout=subprocess.PIPE)  # noqa: S603
+    assert done.stdout.decode("utf-8", "surrogatepass").split("\n") == [*names, ""]
+
+
+def test_identifiers_differ():
+    names = [*HOSTILE, *islice(hostile_names(2), 2000)]
+    made = identifiers(names)
+    assert len(set(made)) == len(names)
+    assert all(re.fullmatch(r"[A-Za-z0-9]+(_[A-Za-z0-9]+)*", one) for one in made)
+    assert identifiers(["speed", "e-stop"]) == ["SPEED", "E_STOP"]
+
+
+SIZES = """
+#include "door_plan.h"
+#include <stdint.h>
+#include <stdio.h>
+
+static uint64_t block[DOOR_MEMORY(64) / 8 + 2];
+
+int main(void)
+{
+    size_t size;
+    int32_t attempts;
+    for (size = 0; size < sizeof block; size += 16) {
+        const rv_memory memory = {NULL, NULL, NULL, block, size};
+        if (rv_new(door_plan, sizeof door_plan, memory) != NULL) {
+            break;
+        }
+    }
+    printf("%zu %d\\n", size, (int)DOOR_MEMORY(0));
+    for (attempts = 0; attempts <= 64; attempts++) {
+        const rv_memory memory = {
+            NULL, NULL, NULL, (char *)block + attempts % 16, DOOR_MEMORY(attempts)};
+        rv_monitor *m = rv_new(door_plan, sizeof door_plan, memory);
+        if ((m == NULL) || (rv_reserve(m, attempts) != RV_OK)) {
+            return 1;
+        }
+    }
+    return 0;
+}
+"""
+
+KEYED = """
+spec door
+signal b : bool
+event e(k : int)
+requirement R1
+  upon e
+  then within 3 s b
+requirement R2
+  upon e
+  then within 3 s b
+  for each i in e.k
+"""
+
+
+@pytest.mark.parametrize("text", [text_of("door", "A"), KEYED])
+def test_the_stated_memory_is_enough(tmp_path, gcc, text):
+    (plan,) = written(tmp_path, text)
+    (tmp_path / "main.c").write_text(SIZES)
+    begins = []
+    for word in ([], ["-m32", "-msse2", "-mfpmath=sse"]):
+        line = [gcc, *STRICT, *word]
+        compiled(tmp_path, *line, "main.c", plan, core_object(*line), "-o", "main", "-lm")
+        done = subprocess.run([tmp_path / "main"], check=True, stdout=subprocess.PIPE)  # noqa: S603
+        least, stated = map(int, done.stdout.split())
+        assert least <= stated
+        begins.append(least)
+    assert begins[1] < begins[0]
+    data = pack(plan_alone(compile_spec(rvmon.loads(text).checked))).data
+    assert begins[0] == memory_of(data, 0)
+    assert memory_of(data, FEWEST) > memory_of(data, 0)
+
+
+FACE = """
+#include "rvmon_core.hpp"
+#include "door_plan.h"
+#include <cstdio>
+
+static void judge(rvmon::Monitor monitor)
+{
+    if (!monitor) {
+        std::puts("none");
+        return;
+    }
+    monitor.step(0, {rvmon::whole(DOOR_SIGNAL_B, 1)});
+    monitor.step(1, {rvmon::unknown(DOOR_SIGNAL_B)});
+    monitor.step(2, {rvmon::whole(DOOR_SIGNAL_B, 0)});
+    monitor.records([](const rv_record &one) {
+        std::printf("%d at %d\\n", one.verdict, (int)one.decided);
+    });
+    std::printf("%d %d\\n", monitor.finish(), monitor.verdict(DOOR_REQUIREMENT_A));
+}
+
+int main()
+{
+    static char block[DOOR_MEMORY(4)];
+    rvmon::Monitor monitor(door_plan, sizeof door_plan);
+    judge(std::move(monitor));
+    judge(rvmon::Monitor(door_plan, sizeof door_plan, block, sizeof block));
+    judge(rvmon::Monitor(door_plan, sizeof door_plan, block, 100));
+    return monitor ? 1 : 0;
+}
+"""
+
+
+def test_the_face_for_cpp(tmp_path, gcc):
+    (plan,) = written(tmp_path, text_of("door", "A"))
+    (tmp_path / "main.cpp").write_text(FACE)
+    compiled(tmp_path, gcc, *SANITIZED, "-c", plan)
+    objects = [plan.replace(".c", ".o"), core_object("gcc", *STRICT, *SANITIZED)]
+    warnings = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-pedantic", "-Werror"]
+    for compiler in filter(shutil.which, ("clang++", "g++")):
+        for standard in ("-std=c++20", "-std=c++11"):
+            line = [compiler, standard, *warnings]
+            compiled(tmp_path, *line, "-x", "c++", "-c", plan, "-o", "plan.o")
+            compiled(tmp_path, *line, "-c", "main.cpp", "-o", "main.o")
+    compiled(tmp_path, "g++", "-std=c++11", *SANITIZED, "main.cpp", *objects, "-o", "main")
+    done = subprocess.run([tmp_path / "main"], check=True, stdout=subprocess.PIPE, text=True)  # noqa: S603
+    assert done.stdout == "0 at 2\n0 0\n0 at 2\n0 0\nnone\n"

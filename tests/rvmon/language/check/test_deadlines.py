@@ -1,0 +1,94 @@
+"""Deadlines that come from data: what they stand for, what is refused, when they are missed."""
+
+import re
+
+import pytest
+
+import rvmon
+from rvmon.language.print import format_formula
+
+HEAD = (
+    "spec s\nsignal a : bool\nsignal d : real [s]\nsignal n : int\nsignal far : real [m]\n"
+    "event e(w: real [s]), f, g\nrequirement R\n  upon e then "
+)
+
+
+def loaded(text):
+    return rvmon.loads(HEAD + text + "\n")
+
+
+@pytest.mark.parametrize(
+    ("text", "printed"),
+    [
+        ("a until now >= t0 + d let t0 = now", "a until now - t0 >= d"),
+        ("a until d + t0 < now let t0 = now", "a until now - t0 > d"),
+        ("a until now - t0 >= v let t0 = now let v = d", "a until now - t0 >= v"),
+        ("for 3 s (now - t0 <= 2 s -> a) let t0 = now", "for 3 s (not now - t0 > 2 s -> a)"),
+        ("always (now >= d -> a)", "always (now >= d -> a)"),
+        (
+            "within (far / (5 m/s)) f",
+            "not now - `upon` > `within` until (f and not now - `upon` > `within`)",
+        ),
+        ("for (e.w) a", "now - `upon` > `for` R (a or now - `upon` > `for`)"),
+    ],
+)
+def test_they_are_made_of_what_has_passed(text, printed):
+    found = format_formula(loaded(text).checked.requirements["R"].consequent)
+    assert found == printed
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("always (a -> within (d) f)", "comes from data"),
+        ("within (far) f", "`(far)` is no duration"),
+        ("within (n) f", "`(n)` is no duration"),
+        ("a until t0 >= 3 s let t0 = now", "it is compared with a duration"),
+        ("a until now == t0 let t0 = now", "it is compared with a duration"),
+        ("a until now - t0 >= e.w let t0 = now", "is there only while its event occurs"),
+        ("a until t0 + t0 <= now let t0 = now", "it is compared with a duration"),
+    ],
+)
+def test_what_is_refused(text, message):
+    """With what says it instead."""
+    with pytest.raises(rvmon.SpecError, match=re.escape(message)):
+        loaded(text)
+
+
+CASES = {
+    "within (far / (5 m/s)) f": ({"far": 10.0}, 2.0),
+    "within (e.w) f": ({"e": {"w": 0.3}}, 0.3),
+    "within (v * 2) f let v = d": ({"d": 0.25}, 0.5),
+    "(not (now > t0 + d)) until f let t0 = now": ({"d": 1.5}, 1.5),
+}
+
+
+@pytest.mark.parametrize("text", CASES)
+def test_they_are_missed_a_tick_late(text):
+    values, after = CASES[text]
+    spec = loaded(text)
+    ticks = round(after * 1e9)
+    begin = {"far": 1.0, "d": after, "e": {"w": 7.0}} | values
+    met = spec.monitor()
+    met.step_ns(5, begin)
+    (passed,) = met.step_ns(5 + ticks, {"f": True})
+    assert passed.verdict.value == "P"
+    missed = spec.monitor()
+    missed.step_ns(5, begin)
+    while missed.next_due is not None and missed.next_due < 5 + ticks + 1:
+        assert not missed.advance_ns(missed.next_due)
+    (failed,) = missed.advance_ns(5 + ticks + 10)
+    assert (failed.verdict.value, failed.decided) == ("F", 5 + ticks + 1)
+
+
+def test_what_must_hold_until_then_is_excused_behind_it():
+    spec = loaded("for (e.w) a")
+    good = [(0.0, {"a": True, "e": {"w": 2.0}}), (2.1, {"a": False})]
+    bad = [(0.0, {"a": True, "e": {"w": 2.0}}), (2.0, {"a": False})]
+    assert [spec.evaluate(one).verdicts["R"].value for one in (good, bad)] == ["P", "F"]
+
+
+def test_a_deadline_that_is_not_known_leaves_the_attempt_open():
+    spec = loaded("within (e.w) f")
+    samples = [(0.0, {"e": {"w": None}}), (9.0, {})]
+    assert spec.evaluate(samples).verdicts["R"].value == "I"

@@ -1,0 +1,234 @@
+"""`monitor as written`: universal CTL on single runs, and what is refused."""
+
+import random
+
+import pytest
+from tests.tools.ltl3 import Tableau
+
+from rvmon import loads
+from rvmon.errors import SpecError
+from rvmon.language.check.ctl import linear_form
+from rvmon.language.checked.ctl import PathBinary, PathUnary, StateAtom, StateBinary, StateNot
+from rvmon.language.checked.formula import BinaryOp, UnaryOp
+from rvmon.language.checked.specification import TimeModel
+from rvmon.language.compile import compile_text
+from rvmon.language.print import format_formula
+from rvmon.language.rules import Refusal
+
+HEAD = "spec s\ntime sampled\nsignal a, b, c : bool\n"
+
+
+def parts(text, head=HEAD):
+    spec = loads(f"{head}requirement R1\n  monitor as written\n  property {text}")
+    one = spec.requirements["R1"]
+    return one.mode.value, format_formula(one.trigger), format_formula(one.consequent)
+
+
+LINEAR = {
+    "A[] (a -> AF b)": ("whenever", "a", "eventually b"),
+    "a --> b": ("whenever", "a", "eventually b"),
+    "a -->[0, 3 s] b": ("whenever", "a", "within 3 s b"),
+    "AG AF a": ("whenever", "true", "eventually a"),
+    "A[a U b]": ("upon", "start", "a until b"),
+    "A[(a and AF c) U (not a and AF b)]": (
+        "upon",
+        "start",
+        "(a and eventually c) until (not a and eventually b)",
+    ),
+    "(a and AF b) or (not a and AG c)": (
+        "upon",
+        "start",
+        "(a and eventually b) or not a and always c",
+    ),
+    "not EF (a and EG b)": ("whenever", "true", "not a or eventually not b"),
+    "AG (a -> AX b)": ("whenever", "a", "next b"),
+}
+
+
+@pytest.mark.parametrize("text", LINEAR)
+def test_what_means_the_same_on_every_run_is_monitored(text):
+    assert parts(text) == LINEAR[text]
+
+
+REFUSED = {
+    "AF AG a": "means another thing on all paths together",
+    "A[a U AF b]": "means another thing on all paths together",
+    "AG EF a": "`EF a` speaks of some path",
+    "E<> a": "speaks of some path",
+    "(AF a) or (AG b)": "leaves open which of the two",
+    "AG (a <-> AF b)": "speaks of some path",
+    "AG (arm.moving -> AF a)": "`arm.moving` reads a clock or location of a model",
+}
+
+
+@pytest.mark.parametrize("text", REFUSED)
+def test_the_rest_is_refused_with_the_reason(text):
+    """The diagnostic is RV054, its place the part that is not linear."""
+    with pytest.raises(SpecError) as raised:
+        parts(text)
+    [finding] = raised.value.diagnostics
+    assert finding.code == "RV054"
+    assert REFUSED[text] in finding.message
+
+
+@pytest.mark.parametrize("text", ["AF[2 s, 5 s] AG a", "AG EF[1 s, 2 s] a", "E<>[1 s, 2 s] AG a"])
+def test_nobody_is_sent_to_a_checker_that_refuses_it(text):
+    with pytest.raises(SpecError) as raised:
+        parts(text)
+    [finding] = raised.value.diagnostics
+    assert finding.help.endswith("does not decide a window that opens later either")
+
+
+def test_there_has_to_be_a_property():
+    with pytest.raises(SpecError, match="add a clause `property"):
+        loads(f"{HEAD}requirement R1\n  monitor as written")
+
+
+def test_next_has_no_meaning_in_held_time():
+    with pytest.raises(SpecError, match="RV034"):
+        parts("AG (a -> AX b)", HEAD.replace("sampled", "held"))
+
+
+# Against the definitions, on random structures.
+
+
+def random_property(rng, depth):
+    """A universal property as text, linear or not."""
+    if depth == 0 or rng.random() < 0.15:
+        return rng.choice(["a", "b", "not a", "not b", "(a and b)", "(a or not b)"])
+    below = [random_property(rng, depth - 1) for _ in range(2)]
+    forms = ("({} and {})", "({} or {})", "({} -> {})", "A[{} U {}]", "A[{} W {}]", "A[{} R {}]")
+    unary = ("AG {}", "AF {}", "AX {}", "not EF not {}")
+    guarded = ("A[(a and {}) U (not a and {})]", "((a and {}) or (not a and {}))")
+    form = rng.choice((*forms, *unary, *unary, *guarded))
+    return "(" + form.format(*(f"({part})" for part in below)) + ")"
+
+
+def holds_everywhere(structure, state):
+    """Where a CTL formula is true: by the fixed points of its operators."""
+    labels, after = structure
+    worlds = frozenset(labels)
+
+    def pre_all(found):
+        return frozenset(w for w in worlds if set(after[w]) <= found)
+
+    def pre_some(found):
+        return frozenset(w for w in worlds if set(after[w]) & found)
+
+    def least(step):
+        found = frozenset()
+        while step(found) != found:
+            found = step(found)
+        return found
+
+    def greatest(step):
+        found = worlds
+        while step(found) != found:
+            found = step(found)
+        return found
+
+    def of(node):
+        match node:
+            case StateAtom(formula=formula):
+                return frozenset(w for w in worlds if _true(formula, labels[w]))
+            case StateNot(operand=operand):
+                return worlds - of(operand)
+            case StateBinary(op=op, left=left, right=right):
+                one, two = of(left), of(right)
+                if op is BinaryOp.AND:
+                    return one & two
+                return (one if op is BinaryOp.OR else worlds - one) | two
+            case PathUnary(universal=universal, op=op, operand=operand):
+                pre = pre_all if universal else pre_some
+                inner = of(operand)
+                if op is UnaryOp.NEXT:
+                    return pre(inner)
+                if op is UnaryOp.EVENTUALLY:
+                    return least(lambda found: inner | pre(found))
+                return greatest(lambda found: inner & pre(found))
+            case PathBinary(op=op, left=left, right=right):
+                one, two = of(left), of(right)
+                if op is BinaryOp.UNTIL:
+                    return least(lambda found: two | (one & pre_all(found)))
+                if op is BinaryOp.WEAK_UNTIL:
+                    return greatest(lambda found: two | (one & pre_all(found)))
+                return greatest(lambda found: two & (one | pre_all(found)))
+
+    return of(state)
+
+
+def _true(formula, label):
+    from rvmon.language.checked.formula import Binary, SignalAtom, Unary
+
+    match formula:
+        case SignalAtom(name=name):
+            return name in label
+        case Unary(operand=operand):
+            return not _true(operand, label)
+        case Binary(op=BinaryOp.AND, left=left, right=right):
+            return _true(left, label) and _true(right, label)
+        case Binary(op=BinaryOp.OR, left=left, right=right):
+            return _true(left, label) or _true(right, label)
+        case Binary(left=left, right=right):
+            return not _true(left, label) or _true(right, label)
+
+
+def on_all_paths(structure, tableau):
+    import networkx as nx
+
+    labels, after = structure
+    graph = nx.DiGraph()
+    for world, label in labels.items():
+        letter = frozenset(label) & frozenset(tableau.names)
+        for state in tableau.states:
+            if state.letter == letter:
+                graph.add_node((world, state))
+    for world, state in list(graph):
+        for later in tableau.after[state]:
+            for next_world in after[world]:
+                if (next_world, later) in graph:
+                    graph.add_edge((world, state), (next_world, later))
+    live = set()
+    for component in nx.strongly_connected_components(graph):
+        cyclic = len(component) > 1 or any(graph.has_edge(n, n) for n in component)
+        kept = all(
+            any(tableau._is_kept(part, state) for _, state in component)
+            for part in tableau.temporal
+        )
+        if cyclic and kept:
+            live |= component
+    live |= {node for target in list(live) for node in nx.ancestors(graph, target)}
+    broken = {world for world, state in live if not tableau._holds(tableau.formula, state)}
+    return frozenset(labels) - broken
+
+
+def random_structure(rng):
+    worlds = range(rng.randint(2, 4))
+    labels = {w: "".join(name for name in "ab" if rng.random() < 0.5) for w in worlds}
+    after = {w: rng.sample(list(worlds), rng.randint(1, 2)) for w in worlds}
+    return labels, after
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("seed", range(4))
+def test_a_structure_has_the_property_iff_all_its_runs_fulfil_the_formula(seed):
+    rng = random.Random(seed)
+    linear = refused = 0
+    while linear < 25:
+        text = random_property(rng, 2)
+        checked, _ = compile_text(f"{HEAD}property P1: {text}")
+        property_ = checked.properties["P1"]
+        try:
+            formula = linear_form(property_, property_.span, TimeModel.SAMPLED)
+        except Refusal:
+            refused += 1
+            continue
+        tableau = Tableau.of(formula, 5)
+        if tableau is None or not tableau.temporal:
+            continue
+        linear += 1
+        for _ in range(15):
+            structure = random_structure(rng)
+            wanted = holds_everywhere(structure, property_.formula)
+            assert on_all_paths(structure, tableau) == wanted, (text, structure)
+    assert refused > 5

@@ -1,0 +1,109 @@
+"""Macros and constants: hygienic, overridable, checked where they stand."""
+
+import pytest
+
+from rvmon.errors import SpecError
+from rvmon.language.compile import compile_text
+from rvmon.language.print import format_formula
+
+
+def printed(spec):
+    return format_formula(spec.requirements["R"].consequent)
+
+
+@pytest.mark.parametrize(
+    ("defined", "required", "expected"),
+    [
+        (
+            "define soon(p, lim) = within lim p\ndefine near(z, l) = z < l\n"
+            "define is(l) = state == l",
+            "upon start then soon(near(d, 5 cm) and is(idle), 2 * 500 ms)",
+            "within 1 s (d < 0.05 m and state == idle)",
+        ),
+        # A parameter of the same name as a signal in the argument does not capture it.
+        (
+            "define both(a, b) = a and next_to(b, a)\ndefine next_to(a, b) = not a or b",
+            "upon start then eventually both(b, a)",
+            "eventually (b and (not a or b))",
+        ),
+        # An argument may read what `let` names at its use.
+        ("define soon(p) = within 1 s p", "upon e then soon(d > v) let v = d", "within 1 s d > v"),
+        # A macro may stand in its own argument.
+        ("define m(p) = not p", "upon start then eventually m(m(a))", "eventually not not a"),
+    ],
+)
+def test_macros_with_parameters(checked, defined, required, expected):
+    """Arguments are formulas, numbers, durations or labels alike, and keep their own names."""
+    assert printed(checked(f"{defined}\nrequirement R {required}")) == expected
+
+
+def test_macro_does_not_see_names_of_its_use(codes):
+    text = "define far = d > v\nrequirement R upon e then within 1 s far let v = d"
+    assert codes(text) == ["RV012"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["define p = p", "define p = q\ndefine q = a or p", "const T = T + 1 s",
+     "define p(z) = q(z)\ndefine q(z) = p(z)", "define p = q\ndefine q = r\ndefine r = q"],
+)  # fmt: skip
+def test_recursion_is_an_error(codes, text):
+    assert codes(text) == ["RV015"]
+    assert codes(f"{text}\nrequirement R always (a and b)") == ["RV015"]
+
+
+def test_wrong_macro_is_reported_once(codes):
+    text = "define p = aa or b\nrequirement R1 always p\nrequirement R2 always not p"
+    assert codes(text) == ["RV012"]
+    assert codes("define p(z) = z or bb\nrequirement R always p(a)") == ["RV012"]
+    assert codes("define p(z) = z or bb") == ["RV012"]
+
+
+def test_number_of_arguments(codes):
+    macro = "define p(y, z) = y or z\nrequirement R always "
+    assert codes(f"{macro} p(a)") == ["RV021"]
+    assert codes(f"{macro} p(a, b, c)") == ["RV021"]
+    assert codes(f"{macro} p") == ["RV021"]
+
+
+def test_constants_are_constant(codes):
+    assert codes("const T = x") == ["RV020"]
+    assert codes("const T = a") == ["RV020"]
+
+
+def test_override():
+    text = "const T = 3 s\nevent a, b\nrequirement R upon a then within T b"
+    spec, _ = compile_text(text, constants={"T": "2s"})
+    assert printed(spec) == "within 2 s b"
+    with pytest.raises(SpecError, match=r"no constant named `S`.*\n.*there are T"):
+        compile_text(text, constants={"S": "2 s"})
+    with pytest.raises(SpecError, match=r"<constant T>:1:"):
+        compile_text(text, constants={"T": "2 +"})
+    with pytest.raises(SpecError, match=r"`2` is no duration|is no duration"):
+        compile_text(text, constants={"T": "2"})
+
+
+def test_expansion_is_limited(codes):
+    doubling = "define m0 = a\n" + "".join(f"define m{i + 1} = m{i} and m{i}\n" for i in range(60))
+    assert set(codes(f"{doubling}requirement R always m60")) == {"RV005"}
+    doubling = "define m0(p) = p\n" + "".join(
+        f"define m{i + 1}(p) = m{i}(p) and m{i}(p)\n" for i in range(60)
+    )
+    assert set(codes(f"{doubling}requirement R always m60(a)")) == {"RV005"}
+
+
+def test_double_names_show_both_places(codes):
+    assert codes("event a") == ["RV011"]
+    assert codes("define a = b") == ["RV011"]
+    assert codes("const a = 3") == ["RV011"]
+    assert codes("signal z, z : bool") == ["RV011"]
+    assert codes("define abs(z) = z") == ["RV011"]
+    assert codes("event z(k: int, k: int)") == ["RV011"]
+    assert codes("signal z : {k, k}") == ["RV011"]
+    assert codes("requirement R always a\nrequirement R always b") == ["RV011"]
+    assert codes("spec other") == ["RV011"]
+    assert codes("define m(p, p) = p") == ["RV011"]
+    assert codes("signal pick.x : bool") == ["RV011"]
+    assert codes("requirement R upon e then F b let a = d") == ["RV011"]
+    assert codes("requirement R upon e then F a let v = d let v = d") == ["RV011"]
+    assert codes("requirement R upon pick then F a for each v in pick.id let v = d") == ["RV011"]

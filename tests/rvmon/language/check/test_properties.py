@@ -1,0 +1,150 @@
+"""CTL properties, and the response monitors that are derived from them."""
+
+import pytest
+
+from rvmon.language.checked.ctl import ModelAtom, PathBinary, PathUnary, StateAtom, StateBinary
+from rvmon.language.checked.formula import Interval, UnaryOp
+from rvmon.language.checked.specification import Role
+from rvmon.language.print import format_formula
+
+ROLES = """signal ok, near : bool input
+signal v : real [m/s] output
+signal both : bool
+event sensed input
+event released, stopped output
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "universal", "op"),
+    [
+        ("A[] a", True, UnaryOp.ALWAYS),
+        ("E<> a", False, UnaryOp.EVENTUALLY),
+        ("A<> a", True, UnaryOp.EVENTUALLY),
+        ("E[] a", False, UnaryOp.ALWAYS),
+        ("AG a", True, UnaryOp.ALWAYS),
+        ("EF a", False, UnaryOp.EVENTUALLY),
+        ("AX a", True, UnaryOp.NEXT),
+        ("A[ ] a", True, UnaryOp.ALWAYS),
+    ],
+)
+def test_path_quantifiers(checked, text, universal, op):
+    """UPPAAL's signs and CTL's letters."""
+    formula = checked(f"property P: {text}").properties["P"].formula
+    assert (formula.universal, formula.op) == (universal, op)
+
+
+def test_reach(checked):
+    """`A[]` reaches to the end of the formula, `AG` binds like `not`."""
+    formula = checked("property P: A[] a -> b").properties["P"].formula
+    assert isinstance(formula, PathUnary)
+    formula = checked("property P: (AG a) -> b").properties["P"].formula
+    assert isinstance(formula, StateBinary)
+
+
+def test_bounds_and_until(checked):
+    formula = checked("property P: A[a U[0, 3 s] E[b W c]]").properties["P"].formula
+    assert isinstance(formula, PathBinary)
+    assert formula.interval == Interval(0, 3 * 10**9)
+    assert isinstance(formula.right, PathBinary)
+    assert checked("property P: AF<=3 s a").properties["P"].formula.interval.high == 3 * 10**9
+
+
+def test_leads_to(checked):
+    """`p --> q` is `AG (p -> AF q)`, with its bound on the second part."""
+    formula = checked("property P: a and b --> c").properties["P"].formula
+    assert (formula.universal, formula.op) == (True, UnaryOp.ALWAYS)
+    assert formula.operand.right.op is UnaryOp.EVENTUALLY
+    formula = checked("property P: a -->[0, 2 s] c").properties["P"].formula
+    assert formula.operand.right.interval == Interval(0, 2 * 10**9)
+
+
+def test_names_of_a_model(checked, codes):
+    found = checked("property P: E<> a and Robot.done and t < 5").properties["P"]
+    left, right = found.formula.operand.left, found.formula.operand.right
+    assert (left.left, right) == (
+        StateAtom(left.left.formula, left.left.span),
+        ModelAtom("t < 5", right.span),
+    )
+    assert codes("signal released : bool\nproperty P: E<> relased") == ["RV052"]
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("A[] (a -> eventually b)", "RV051"),
+        ("A[] a until b", "RV051"),
+        ("A[] once a", "RV051"),
+        ("A[a and b]", "RV051"),
+        ("AX[0, 1 s] a", "RV051"),
+        ("A[] (eventually Robot.done)", "RV051"),
+        ("A[] (AG a) < 3", "RV050"),
+        ("A[] (d < 3)", "RV023"),
+        ("AG a and b", "RV002"),
+    ],
+)
+def test_what_is_no_property_is_refused(codes, text, code):
+    assert codes(f"property P: {text}") == [code]
+
+
+def test_path_quantifier_outside_a_property(codes):
+    """A requirement speaks of one run."""
+    assert codes("requirement R upon a then EF b") == ["RV050"]
+    assert codes("define p = A[] a\nrequirement R p") == ["RV050"]
+
+
+def response(checked, body):
+    """Trigger and consequent of a derived monitor."""
+    text = f"{ROLES}requirement R\n  monitor as response within 3 s\n  property {body}"
+    found = checked(text).requirements["R"]
+    return format_formula(found.trigger), format_formula(found.consequent)
+
+
+@pytest.mark.parametrize(
+    ("body", "trigger", "consequent"),
+    [
+        ("E<> (sensed and ok and released)", "sensed and ok", "within 3 s released"),
+        (
+            "EF (released and sensed and stopped and not near)",
+            "sensed and not near",
+            "within 3 s (released and stopped)",
+        ),
+        ("E<> (released and v < 1 m/s)", "start", "within 3 s (released and v < 1 m/s)"),
+        ("E<> (sensed and not released)", "sensed", "for 3 s not released"),
+        (
+            "E<> (sensed and released and not stopped)",
+            "sensed",
+            "(within 3 s released) and for 3 s not stopped",
+        ),
+        ("E<> ((sensed or ok) and released)", "sensed or ok", "within 3 s released"),
+    ],
+)
+def test_response_monitor(checked, body, trigger, consequent):
+    """Inputs trigger, positive outputs are awaited together, negated ones stay away."""
+    assert response(checked, body) == (trigger, consequent)
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "E<> (sensed or released)",
+        "E<> (sensed and ok)",
+        "E<> (both and released)",
+        "A[] released",
+        "E<> (EF released)",
+        "E<> (Robot.done and released)",
+        "E<> (true and released)",
+    ],
+)
+def test_role_split_that_is_refused(codes, body):
+    text = f"{ROLES}requirement R\n  monitor as response within 3 s\n  property {body}"
+    assert codes(text) == ["RV053"]
+
+
+def test_response_monitor_needs_a_property(codes):
+    assert codes("requirement R monitor as response within 3 s") == ["RV053"]
+
+
+def test_roles(checked):
+    assert checked(ROLES).signals["ok"].role is Role.INPUT
+    assert checked(ROLES).signals["both"].role is None

@@ -1,0 +1,133 @@
+"""What people write who come from elsewhere is fixed in the words of the language."""
+
+import pytest
+
+from rvmon.errors import SpecError
+from rvmon.language.compile import compile_text
+from rvmon.language.syntax.expected import _word
+from rvmon.language.syntax.parse import grammar
+
+HEAD = """spec demo
+event asked, released
+signal speed : real [m/s]
+const T = 3 s
+"""
+
+
+def first_finding(text):
+    with pytest.raises(SpecError) as caught:
+        compile_text(HEAD + text)
+    return caught.value.diagnostics[0]
+
+
+@pytest.mark.parametrize(
+    ("required", "fix"),
+    [
+        ("within -1 s released", "write it without `-`"),
+        ("within 1,5 s released", "write `1.5`"),
+        ("within .5 s released", "write `0.5`"),
+        ("within (3) released", "did you mean `3 s`?"),
+        ("within 1.5 released", "`1.5 s released`"),
+        ("within 3 s, released", "no comma stands behind a duration"),
+        ("speed <= 40 A", "`A` is an operator here: write `40 ampere`"),
+        ("speed in [-1 m/s, 2 m/s]", "write `(speed >= -1 m/s and speed <= 2 m/s)`"),
+        ("delta(speed, 1 s) in [0, 2 m/s]", "write `(delta(speed, 1 s) >= 0 and delta(speed, 1 s)"),
+        ("not gaze_ok for 1 s", "write `held(not gaze_ok, 1 s)` for what has held so long"),
+        ("within T + 1 s released", "a duration that is computed stands in brackets"),
+        ("within 3 sec released", "did you mean `s`?"),
+        ("eventually[3 s, 1 s] released", "did you mean `[1 s, 3 s]`?"),
+        ("eventually(3 s, 3 s] released", "an open bound leaves its own instant out"),
+        ("released within 3 s", "`within 3 s (…)`"),
+        ("within 3 s relesed", "did you mean `released`?"),
+        ("within 3 s xyzzy", "declare it, as `signal xyzzy : bool` or `event xyzzy`"),
+        ("within 3 s released asked", "an operator is missing before `asked`"),
+        ("after 2 s released", "write `eventually[2 s, 2 s] (…)`"),
+    ],
+)
+def test_what_is_owed(required, fix):
+    assert fix in first_finding(f"requirement R\n  upon asked\n  then {required}\n").help
+
+
+@pytest.mark.parametrize(
+    ("item", "fix"),
+    [
+        ("signal w : real [N m]", "parts of a unit are joined by `*` and `/`"),
+        ("requirement R if asked then within 3 s released", "for `if` write `upon`"),
+        ("requirement R upon asked, then released", "the consequent stands after `then`"),
+        ('requirement "R" upon asked then released', "its name comes first"),
+        ("signal x", "a signal has a type"),
+        ("signal x : float", "write `real`"),
+        ("signal x : string", "write `{one, another}`"),
+        ("requirement R-16 always released", "`R-16` is no name: write `R_16`"),
+        ("requirement always released", "its name comes first: `requirement R1 always …`"),
+        ("requirement\n  released", "`released` is taken for its name"),
+        ("requirement R let z = speed upon asked then released", "stands behind the trigger or"),
+        ("event e(x)", "a field has a type"),
+        ('requirement R "t"\n severity high\n always released', "clause, as `severity …`, stands"),
+        ('requirement R "t" source "a b" released', "a clause, as `source …`, stands behind"),
+        ("requirement R scope after (asked) released", "a clause, as `scope …`, stands behind"),
+        ("requirement R at end inconclusive released", "a clause, as `at end …`, stands behind"),
+        ("requirement R for each k in ks released", "a clause, as `for each …`, stands behind"),
+        ("requirement R in at least 9 % of runs released", "a clause, as `in at …`, stands behind"),
+        ("requirement R property released", "a clause, as `property …`, stands behind"),
+    ],
+)
+def test_items(item, fix):
+    assert fix in first_finding(item + "\n").help
+
+
+def test_a_trigger_and_what_is_owed_are_both_looked_at():
+    with pytest.raises(SpecError) as caught:
+        compile_text(
+            HEAD + "requirement R\n  upon eventually asked\n  then within 1 s no\n  at end: x\n"
+        )
+    assert [found.code for found in caught.value.diagnostics] == ["RV040", "RV012", "RV045"]
+
+
+def test_the_expected_is_said_in_words():
+    found = first_finding("requirement R\n  upon asked\n  then within ! released\n")
+    assert found.message == "found `!`, expected a duration such as `3 s`"
+
+
+@pytest.mark.parametrize(
+    ("word", "fix"), [("boolean", "bool"), ("integer", "int"), ("reals", "real")]
+)
+def test_words_are_found_whole(word, fix):
+    """A word that starts like one of the language is not cut in two."""
+    found = first_finding(f"signal x : {word}\n")
+    assert found.message.startswith(f"found `{word}`, ")
+    assert f"`{fix}`" in found.help
+
+
+@pytest.mark.parametrize(
+    ("formula", "fix", "expected"),
+    [
+        ('state = "idle"', "labels have no quotes: `idle`", "a number or a name"),
+        ("(asked) => (released)", "write `->`", "the end of the item"),
+        ("(asked) ==> (released)", "write `->`", "a number or a name"),
+        ("state becomes idle", "write `rise(…)`", "the end of the item"),
+        ("at 3 s released", "`eventually[3 s, 3 s] (…)`", "the end of the item"),
+    ],
+)
+def test_signs_of_other_languages(formula, fix, expected):
+    found = first_finding(f"signal state : {{idle, on}}\nrequirement R\n  always {formula}\n")
+    assert fix in found.help
+    assert found.message.endswith(expected)
+
+
+def test_every_terminal_has_words():
+    for terminal in grammar().terminals:
+        if not terminal.name.startswith("__IGNORE"):
+            assert not set(_word(terminal.name, grammar())) & set("\\?|^"), terminal.name
+
+
+@pytest.mark.parametrize("formula", ["never (asked)", "never(asked)", "never asked"])
+def test_never(formula):
+    assert first_finding(f"requirement R\n  {formula}\n").help == (
+        "for `never` write `always not (…)`"
+    )
+
+
+@pytest.mark.parametrize("item", ["signal x : real m\n", "event hit(force: real m)\n"])
+def test_a_unit_without_brackets(item):
+    assert "a unit stands in brackets: `[m]`" in first_finding(item).help

@@ -1,0 +1,143 @@
+"""Imports: relative to the file, each file once, circles and double names with both places."""
+
+import os
+
+import pytest
+
+from rvmon import load
+from rvmon.errors import SpecError
+from rvmon.language.compile import compile_text
+
+
+@pytest.fixture
+def compile_file(tmp_path):
+    """Write files and compile the first of them."""
+
+    def compile_them(**texts):
+        for name, text in texts.items():
+            path = tmp_path / f"{name.replace('__', '/')}.rv"
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        first = tmp_path / f"{next(iter(texts))}.rv"
+        return compile_text(first.read_text(), name=str(first), directory=tmp_path)
+
+    return compile_them
+
+
+def test_import_brings_declarations_and_requirements(compile_file):
+    spec, warnings = compile_file(
+        main='spec main "M"\nimport "sub/signals.rv"\nrequirement R upon e then within 1 s a',
+        sub__signals='spec other\nimport "more.rv"\nsignal a, b : bool\nrequirement R0 always b',
+        sub__more="event e, unread",
+    )
+    assert (spec.name, spec.title) == ("main", "M")
+    assert list(spec.requirements) == ["R", "R0"]
+    assert set(spec.events) == {"e", "unread"}
+    assert warnings == ()
+
+
+def test_file_is_read_once(compile_file):
+    spec, _ = compile_file(
+        main='import "one.rv"\nimport "two.rv"\nimport "./one.rv"\nrequirement R always a',
+        one='import "base.rv"\nsignal b : bool',
+        two='import "base.rv"',
+        base="signal a : bool",
+    )
+    assert set(spec.signals) == {"a", "b"}
+
+
+@pytest.mark.parametrize(
+    "texts",
+    [
+        {"main": 'import "main.rv"'},
+        {"main": 'import "one.rv"', "one": 'import "two.rv"', "two": 'import "one.rv"'},
+        {"main": 'import "one.rv"', "one": 'import "main.rv"'},
+    ],
+)
+def test_circle_is_an_error_with_both_places(compile_file, texts):
+    with pytest.raises(SpecError) as caught:
+        compile_file(**texts)
+    (finding,) = caught.value.diagnostics
+    assert finding.code == "RV016"
+    assert len(finding.spans) == 2
+
+
+def test_double_name_over_files_shows_both_files(compile_file):
+    with pytest.raises(SpecError) as caught:
+        compile_file(main='import "one.rv"\nsignal a : bool', one="event a")
+    (finding,) = caught.value.diagnostics
+    assert finding.code == "RV011"
+    assert len({label.span.source.name for label in finding.spans}) == 2
+
+
+def test_error_in_imported_file_names_it(compile_file):
+    with pytest.raises(SpecError) as caught:
+        compile_file(main='import "one.rv"\nrequirement R always z', one="signal a boool")
+    names = [f.spans[0].span.source.name.rpartition("/")[2] for f in caught.value.diagnostics]
+    assert names == ["main.rv", "one.rv"]
+
+
+@pytest.mark.parametrize("target", ['"missing.rv"', '"."', "nolibrary", '"a\x00b"'])
+def test_what_cannot_be_read_is_said(compile_file, target):
+    with pytest.raises(SpecError) as caught:
+        compile_file(main=f"import {target}")
+    assert [finding.code for finding in caught.value.diagnostics] == ["RV016"]
+
+
+def test_binary_file_is_said(compile_file, tmp_path):
+    (tmp_path / "one.rv").write_bytes(b"\xff\xfe\x00")
+    with pytest.raises(SpecError, match="it is not UTF-8 text"):
+        compile_file(main='import "one.rv"')
+
+
+def test_time_may_stand_in_an_imported_file_once(compile_file):
+    """Two time lines contradict each other even over files."""
+    spec, _ = compile_file(main='import "one.rv"', one="time sampled")
+    assert spec.time == "sampled"
+    with pytest.raises(SpecError, match="RV011"):
+        compile_file(main='time held\nimport "one.rv"', one="time sampled")
+
+
+@pytest.mark.parametrize("target", ["/dev/zero", "/etc/passwd", "../secret.rv", "link.rv"])
+def test_nothing_outside_the_project_is_read(compile_file, tmp_path, target):
+    folder = tmp_path.parent / "secret.rv"
+    folder.write_text("password")
+    (tmp_path / "link.rv").symlink_to(folder)
+    with pytest.raises(SpecError, match="outside") as caught:
+        compile_file(main=f'import "{target}"')
+    assert [finding.code for finding in caught.value.diagnostics] == ["RV016"]
+    assert "password" not in str(caught.value)
+    assert "root:" not in str(caught.value)
+
+
+@pytest.mark.parametrize("mark", [".git", "pyproject.toml"])
+def test_a_project_shares_its_specifications(tmp_path, mark):
+    (tmp_path / mark).touch()
+    (tmp_path / "common").mkdir()
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "common" / "x.rv").write_text("signal a : bool")
+    text = 'import "../common/x.rv"\nrequirement R always a'
+    spec, _ = compile_text(text, directory=tmp_path / "robot")
+    assert set(spec.signals) == {"a"}
+
+
+def test_a_folder_that_is_named_may_be_imported_from(tmp_path, monkeypatch):
+    (tmp_path / "common").mkdir()
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "common" / "x.rv").write_text("signal a : bool")
+    monkeypatch.setenv("RVMON_ALLOW_IMPORTS", str(tmp_path / "common"))
+    text = 'import "../common/x.rv"\nrequirement R always a'
+    spec, _ = compile_text(text, directory=tmp_path / "robot")
+    assert set(spec.signals) == {"a"}
+
+
+def test_pipes_and_large_files_are_no_specifications(compile_file, tmp_path, monkeypatch):
+    os.mkfifo(tmp_path / "pipe.rv")
+    with pytest.raises(SpecError, match="a regular file is expected"):
+        compile_file(main='import "pipe.rv"')
+    with pytest.raises(SpecError, match="a regular file is expected"):
+        load(tmp_path / "pipe.rv")
+    monkeypatch.setenv("RVMON_MAX_TEXT", "1")
+    (tmp_path / "large.rv").write_text("# large\n" * (1 << 18))
+    with pytest.raises(SpecError, match="larger than 1 MB"):
+        load(tmp_path / "large.rv")

@@ -1,0 +1,47 @@
+"""Random texts by the grammar: they can be read, are varied, and layout keeps what they say."""
+
+import random
+
+import pytest
+from tests.rvmon.language.generate_text import HEAD, random_text, syntax_of
+
+from rvmon.language.print.formatter import format_text
+from rvmon.language.print.layout import pieces_of
+from rvmon.language.syntax.parse import grammar
+
+
+@pytest.mark.slow
+def test_most_texts_can_be_read_and_all_words_occur():
+    """What the grammar makes the parser reads, but for what has to be bracketed."""
+    missing = {terminal.name for terminal in grammar().terminals} - {*grammar().ignore_tokens}
+    made = read = 0
+    while missing or made < 500:
+        text = random_text(random.Random(f"1/{made}")).removeprefix(HEAD)
+        made += 1
+        if syntax_of(text) is not None:
+            read += 1
+            missing -= {piece.kind for piece in pieces_of(text)[0]}
+        assert made < 4_000, missing
+    assert read > made / 2
+
+
+@pytest.mark.slow
+def test_layout_keeps_what_a_text_says():
+    for seed in range(60):
+        text = random_text(random.Random(f"layout {seed}"), items=2)
+        syntax = syntax_of(text)
+        if syntax is None:
+            continue
+        once = format_text(text)
+        assert syntax_of(once) == syntax
+        assert format_text(once) == once
+        assert once.count("# note") == text.count("# note")
+
+
+def test_syntax_has_no_places():
+    """Two texts that differ in layout have one syntax; a bracket or another word makes two."""
+    first = syntax_of(HEAD + "requirement R always (p -> F q)")
+    assert first is not None
+    assert first == syntax_of(HEAD + "requirement R\n  always (p -> # note\n  eventually q)\n")
+    assert first != syntax_of(HEAD + "requirement R always (p -> F (q))")
+    assert syntax_of("requirement R always (") is None

@@ -1,0 +1,178 @@
+"""What UPPAAL has and this checker has not is refused by name, with its place and a way out."""
+
+import pytest
+
+from rvmon.errors import ModelError
+from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.load import loads_network
+from rvmon.models.search.verify import verify
+
+
+def model(declaration="", local="", invariant="", system="system T;", queries="", **labels):
+    texts = "".join(f'<label kind="{kind}">{text}</label>' for kind, text in labels.items())
+    return f"""<nta><declaration>{declaration}</declaration>
+<template><name>T</name><declaration>{local}</declaration>
+<location id="a"><name>A</name><label kind="invariant">{invariant}</label></location><init ref="a"/>
+<transition><source ref="a"/><target ref="a"/>{texts}</transition></template>
+<system>{system}</system><queries>{queries}</queries></nta>"""
+
+
+@pytest.mark.parametrize(
+    ("parts", "message"),
+    [
+        ({"declaration": 'import "lib.so" { int f(); };'}, "functions from outside"),
+        ({"declaration": "hybrid clock x;"}, "hybrid clocks"),
+        ({"declaration": "const string s = &quot;a&quot;;"}, "texts"),
+        ({"declaration": "dynamic T();"}, "templates that are started by runs"),
+        ({"declaration": "before_update { i = 0 }"}, "updates around every step"),
+        ({"declaration": "const N 5;"}, "a constant without a type"),
+        ({"assignment": "if (1) { }"}, "statements"),
+        ({"declaration": "void f() { break; }"}, "break"),
+        ({"declaration": "int i, j; void f() { if (i = j) { } }"}, "an assignment is no value"),
+        ({"declaration": "int f(int a) { return f(a); }", "guard": "f(3) == 2"}, "calls itself"),
+        ({"guard": "random(2) &gt; 1"}, "`random`"),
+    ],
+)  # fmt: skip
+def test_what_is_not_supported_is_called_by_its_name(parts, message):
+    with pytest.raises(ModelError) as caught:
+        loads_network(model(**parts))
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "TA016"
+    assert message in diagnostic.message
+    assert diagnostic.help
+    assert diagnostic.spans
+
+
+@pytest.mark.parametrize(
+    ("formula", "message"),
+    [
+        ("Pr[<=10](<> T.A) >= Pr[<=9](<> T.A)", "statistical query"),
+        ("simulate [#<=10] { T.A }", "statistical query"),
+        ("control: A<> T.A", "games"),
+        ("E<> T.A under s", "games"),
+        ("A<> T.A U T.A", "takes brackets"),
+    ],
+)
+def test_foreign_queries_are_called_by_their_name(formula, message):
+    """As a query of its own it is refused; in a file it is left out with a warning."""
+    with pytest.raises(ModelError, match=message):
+        asked_on(loads_network(model()), formula)[1]
+    text = formula.replace("<", "&lt;").replace(">", "&gt;")
+    queries = f"<query><formula>{text}</formula></query>"
+    network = loads_network(model(queries=queries))
+    (warning,) = network.warnings
+    assert message in warning.message
+    assert network.queries == ()
+
+
+def test_what_changes_no_run_is_passed_over():
+    charts = "system T; progress { 1; } gantt { T: 1 -&gt; 2; }"
+    assert loads_network(model(system=charts)).warnings == ()
+
+
+def test_steps_may_stand_before_the_variable():
+    """`++i` is `i++`."""
+    network, same = (
+        loads_network(model(declaration="int i;", assignment=text)) for text in ("++i", "i++")
+    )
+    assert network.automata == same.automata
+
+
+@pytest.mark.parametrize("text", ["do", "for", "priority", "E"])
+def test_names_of_the_text_form_are_free(text):
+    """A mistake in a `.ta` file is not blamed on a word that only UPPAAL knows."""
+    with pytest.raises(ModelError) as caught:
+        loads_network(f"automaton A {{ location {text} location end\n edge {text} -> end do = 3 }}")
+    assert caught.value.diagnostics[0].code == "TA001"
+
+
+def test_constants_are_computed_and_copied():
+    network = loads_network("""<nta><declaration>
+    int half(int n) { int k = n; while (k * 2 &gt; n) k--; return k; }
+    const int N = half(7) + 1;
+    typedef struct { int[0,9] a; int[0,9] b[2]; } pair;
+    const pair one = {N, {1, 2}};
+    const int[0,9] row[2] = {half(4), N};
+    const pair both[2] = {one, {0, row}};
+    pair first = both[1];
+    int[0,N] n;
+    </declaration><template><name>A</name><location id="a"/><init ref="a"/></template>
+    <system>system A;</system></nta>""")
+    assert [(v.name, v.high, v.initial) for v in network.variables] == [
+        ("first.a", 9, 0),
+        ("first.b[0]", 9, 2),
+        ("first.b[1]", 9, 4),
+        ("n", 4, 0),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("declared", "code"),
+    [
+        ("int v; int f() { return v; } const int N = f();", "TA006"),
+        ("int v; int f() { v = 1; return 2; } const int N = f();", "TA006"),
+        ("int f() { while (true) { } return 2; } const int N = f();", "TA019"),
+        ("int f(int n) { return 1 / n; } const int N = f(0);", "TA007"),
+        ("const int v[2] = {1, 2}; const int w[3] = v;", "TA004"),
+        ("typedef struct { int a; } p; const int v[2] = {1, 2}; p w = v;", "TA004"),
+    ],
+)
+def test_what_is_no_constant_is_refused(declared, code):
+    """A constant depends on no variable, and an initial value has the parts of its type."""
+    with pytest.raises(ModelError) as raised:
+        loads_network(f"""<nta><declaration>{declared}</declaration><template><name>A</name>
+        <location id="a"/><init ref="a"/></template><system>system A;</system></nta>""")
+    assert raised.value.diagnostics[0].code == code
+
+
+def test_the_price_of_a_run_changes_no_run():
+    """Cost and reward of priced automata are passed over, unless the model declares them."""
+    text = """<nta><declaration>clock x; {}</declaration><template><name>A</name>
+    <location id="a"><label kind="invariant">cost' == 2 and x &lt;= 5 and reward' == 1</label>
+    </location><init ref="a"/><transition><source ref="a"/><target ref="a"/>
+    <label kind="guard">{}</label><label kind="assignment">cost += 7, reward += x0, x = 0</label>
+    </transition></template><system>system A;</system></nta>"""
+    network = loads_network(text.format("", "x >= 5"))
+    assert [clock.name for clock in network.clocks] == ["x"]
+    assert verify(network, "A[] not deadlock").holds
+    with pytest.raises(ModelError, match="no name `cost`"):
+        loads_network(text.format("", "cost >= 5"))
+    with pytest.raises(ModelError, match="no name `x0`"):
+        loads_network(text.format("int cost, reward;", "x >= 5"))
+
+
+def test_what_uppaal_declares_is_known():
+    network = loads_network(model("int8_t a = INT8_MIN; uint16_t b = UINT16_MAX; int32_t c;"))
+    ranges = [(v.low, v.high, v.initial) for v in network.variables]
+    assert ranges == [(-128, 127, -128), (0, 65535, 65535), (-(1 << 31), (1 << 31) - 1, 0)]
+    with pytest.raises(ModelError, match="no type named `int8_t`"):
+        loads_network("int8_t a automaton A { location l start l }")
+
+
+def test_a_function_sees_what_is_declared_before_it():
+    local = "int f() { return a; } int a = 2; int g() { return a; }"
+    network = loads_network(model("const int a = 1;", local, guard="f() == 1 and g() == 2"))
+    assert verify(network, "A[] not deadlock").holds
+
+
+def test_a_function_that_is_wrong_is_told_once():
+    with pytest.raises(ModelError) as raised:
+        loads_network(model("int f() { return missing; }", guard="f() == f()"))
+    assert [one.code for one in raised.value.diagnostics] == ["TA002"]
+
+
+def test_an_index_outside_its_array_is_told_when_a_run_gets_there():
+    declared = "int a[2]; const int b[2] = {1, 2}; const int N = -1;"
+    network = loads_network(model(declared, guard="N &gt;= 0 and b[N] == a[N]"))
+    assert verify(network, "E<> deadlock").holds
+    network = loads_network(model(declared, assignment="a[0] = b[N + 3]"))
+    with pytest.raises(ModelError, match="index 2 is outside the array") as raised:
+        verify(network, "E<> deadlock")
+    assert raised.value.diagnostics[0].spans[0].span.text == "b[N + 3]"
+    with pytest.raises(ModelError, match="index 2 is outside the array"):
+        loads_network(model("clock x[2];", guard="x[2] &gt; 0"))
+
+
+def test_a_query_that_is_a_comment_asks_nothing():
+    queries = "<query><formula>// later: A[] true</formula></query>"
+    assert not loads_network(model(queries=queries)).warnings

@@ -1,0 +1,117 @@
+"""Models that are too large, or that speak of themselves, are findings at once."""
+
+import pytest
+
+from rvmon.errors import ModelError
+from rvmon.models.language.load import load_network, loads_network
+from rvmon.models.search.verify import verify
+
+A = "automaton A { location a start a } "
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("text", "code", "message"),
+    [
+        ("int[0," + "9" * 5000 + "] v " + A, "TA007", "the number is too large"),
+        ("unit " + "9" * 5000 + " ms " + A, "TA007", "the number is too large"),
+        ("clock x[99999999999] " + A, "TA007", "the number is too large"),
+        ("clock x[2000000000] " + A, "TA019", "an array of more than"),
+        ("clock x[5000] " + A, "TA019", "more than 4,999 clocks"),
+        (" ".join(f"bool a{i}[10000]" for i in range(11)) + " " + A, "TA019", "variables"),
+        (" ".join(f"chan a{i}[10000]" for i in range(11)) + " " + A, "TA019", "channels"),
+        (
+            A + "query: A[] forall (i : int[0,999]) forall (j : int[0,999]) i + j >= 0",
+            "TA019",
+            "quantifiers stand for more than",
+        ),
+        (
+            "automaton T(const int[0,999] i, const int[0,999] j) { location a start a }",
+            "TA019",
+            "more than 10,000 instances",
+        ),
+        (
+            "automaton T { location a start a "
+            "edge a -> a select i : int[0,999], j : int[0,999] }",
+            "TA019",
+            "edges in one",
+        ),
+        ("b(const int[0,1] i) = c(i) c(const int[0,1] i) = b(i) system b " + A, "TA015", "itself"),
+        ("b() = b() system b " + A, "TA015", "an instance of itself"),
+        (
+            "automaton T(const int[0,1] i, const int[0,1] i) { location a start a }",
+            "TA003",
+            "two things named `i`",
+        ),
+        (
+            "automaton T { location a start a edge a -> a select i : bool, i : bool }",
+            "TA003",
+            "two things named `i`",
+        ),
+        (A + "query q: E<> A.a query q: A[] A.a", "TA003", "two things named `q`"),
+        ("signal s = A.a signal s = A.a " + A, "TA003", "two things named `s`"),
+        (
+            A + "automaton B { location b start b edge b -> b when A.a }",
+            "TA002",
+            "edges and invariants do not see the locations of `A`",
+        ),
+        (A + "query: E<>[<=2147483647] A.a", "TA007", "a bound of 2147483647"),
+        (A + "query: A.a -->[<=-1] A.a", "TA007", "a bound of -1"),
+    ],
+)  # fmt: skip
+def test_each_is_one_finding(text, code, message):
+    """The code, and what is too much of what."""
+    with pytest.raises(ModelError) as caught:
+        loads_network(text)
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == code
+    assert message in diagnostic.message
+
+
+def test_a_name_whose_declaration_is_wrong_is_told_once():
+    with pytest.raises(ModelError) as caught:
+        loads_network("int v automaton A { location a start a edge a -> a when v == 1 do v = 0 }")
+    assert [d.code for d in caught.value.diagnostics] == ["TA005"]
+
+
+@pytest.mark.slow
+def test_a_wide_quantifier_is_decided():
+    network = loads_network("int[0,9] v " + A)
+    assert verify(network, "A[] forall (i : int[0,9999]) v < i + 1").holds
+    assert not verify(network, "E<> exists (i : int[1,9999]) v == i").holds
+
+
+def test_findings_end_at_a_hundred():
+    with pytest.raises(ModelError) as caught:
+        loads_network("clock " + ", ".join(f"x{i}, x{i}" for i in range(200)))
+    assert len(caught.value.diagnostics) == 100
+
+
+def test_the_same_mistake_at_many_places_is_told_once():
+    with pytest.raises(ModelError) as caught:
+        loads_network("clock x, x, x, x, x, x " + A)
+    (found,) = caught.value.diagnostics
+    assert found.message == "two things named `x` (5 places)"
+    assert [label.span.start for label in found.spans] == [9, 6, 12, 15]
+
+
+@pytest.mark.slow
+def test_xml_is_read_in_one_go():
+    for text in ("<nta><declaration>" + "\n" * 300_000 + "</declaration></nta>",
+                 "<nta><!-- ü -->" + "<a/>" * 50_000 + "</nta>"):  # fmt: skip
+        with pytest.raises(ModelError, match="there is no automaton"):
+            loads_network(text)
+
+
+def test_a_byte_order_mark_is_passed_over(tmp_path):
+    """Editors on Windows write one in front."""
+    path = tmp_path / "model.ta"
+    path.write_bytes(b"\xef\xbb\xbf" + A.encode())
+    assert len(load_network(path).automata) == 1
+
+
+def test_a_wide_range_is_warned_of():
+    text = "int[0, 1000000000] n\nint[0, 10] m\nautomaton a { location l start l }"
+    (warning,) = loads_network(text).warnings
+    assert (warning.code, warning.severity) == ("TA005", "warning")
+    assert "`n` has 1,000,000,001 values" in warning.message

@@ -1,0 +1,81 @@
+"""All mistakes of a text that cannot be read are told, each with its place."""
+
+import pytest
+
+from rvmon.errors import ModelError
+from rvmon.models.language.load import loads_network
+from rvmon.models.language.mistakes import MOST
+
+TEXT = """network wrong
+clock x, y
+int[0,5 n
+int[0,3] f(int[0,3] a) {
+  int[0,3] k = a +;
+  return k;
+}
+automaton A {
+  clock 3z
+  location a invariant x <= 5
+  location b
+  start a
+  edge a -> b when x >= 2 and > 1
+  edge b -> a when x >= 5 $ do x = 0
+  bool flag = = true
+}
+query one: E<> (A.b
+query two: E<> A.a
+signal s = 1 +
+"""
+
+XML = """<nta><declaration>clock x;
+int[0,5 n;
+int[0,3] f(int[0,3] a) {
+  int[0,3] k = a +;
+  for (i : int[0,3]) { k = i; }
+  return k;
+}
+typedef struct { int[0,1] a; } pair;
+pair s = {1}};
+bool b = true true;
+</declaration>
+<template><name>A</name><declaration>int 5a; bool ok; clock c 7;</declaration>
+<location id="a"><label kind="invariant">x &lt;= </label></location><init ref="a"/>
+<transition><source ref="a"/><target ref="a"/><label kind="guard">x &gt;&gt;&gt; 1</label>
+<label kind="assignment">x = , s.a = 1</label></transition></template>
+<system>A1 = A( ; A2 = A(); system A1, A2;</system></nta>"""
+
+
+def lines_of(text):
+    with pytest.raises(ModelError) as raised:
+        loads_network(text)
+    starts = [one.spans[0].span.start for one in raised.value.diagnostics]
+    return [text.count("\n", 0, start) + 1 for start in starts]
+
+
+def test_every_part_of_a_text_tells_its_mistake():
+    assert lines_of(TEXT) == [3, 5, 9, 13, 14, 15, 18, 20]
+
+
+def test_every_part_of_declarations_tells_its_mistake():
+    assert lines_of(XML) == [2, 4, 9, 10, 12, 12, 13, 14, 15, 16]
+
+
+def test_a_part_that_is_cut_short_hides_no_other():
+    text = """automaton A {
+  location a invariant
+  location b
+  start a
+  edge a -> b when x > > 1
+}
+"""
+    assert lines_of(text)[-1] == 5
+    assert len(lines_of(text)) == 2
+
+
+def test_so_many_mistakes_are_not_all_told():
+    assert len(lines_of("int[0,5 n\n" * 100)) == MOST
+
+
+@pytest.mark.parametrize("text", ["}", "{", "automaton", "automaton A {", "query", "(" * 50, "x;"])
+def test_what_has_no_parts_tells_one_mistake(text):
+    assert lines_of(text) == [1]

@@ -1,0 +1,237 @@
+"""UPPAAL's XML: textbook models load unchanged, what is not supported is refused with its place."""
+
+from pathlib import Path
+from xml.sax.saxutils import escape
+
+import pytest
+
+from rvmon.errors import ModelError
+from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.load import load_network, loads_network
+from rvmon.models.runs.statistics import sample
+from rvmon.models.search.verify import verify
+
+MODELS = Path(__file__).parents[4] / "examples" / "models"
+
+
+def wrap(template, *, declaration="", system="system T;", queries="", parameter=""):
+    return f"""<?xml version="1.0" encoding="utf-8"?>
+<!DOCTYPE nta PUBLIC '-//Uppaal Team//DTD Flat System 1.1//EN' 'http://nowhere/flat-1_2.dtd'>
+<nta>
+  <declaration>{declaration}</declaration>
+  <template><name>T</name><parameter>{parameter}</parameter>{template}</template>
+  <system>{system}</system>
+  <queries>{queries}</queries>
+</nta>"""
+
+
+ONE = '<location id="a"><name>a</name></location><init ref="a"/>'
+
+
+def edge(**labels):
+    texts = "".join(f'<label kind="{kind}">{text}</label>' for kind, text in labels.items())
+    return f'<transition><source ref="a"/><target ref="a"/>{texts}</transition>'
+
+
+def finding(text):
+    with pytest.raises(ModelError) as caught:
+        loads_network(text)
+    (diagnostic,) = caught.value.diagnostics
+    return diagnostic.code, diagnostic.spans[0].span.text if diagnostic.spans else None
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("model", "constants"),
+    [
+        ("fischer", {"N": 3}),
+        ("train_gate", {"N": 3}),
+        ("train_gate_queue", {}),
+        ("bridge", {}),
+        ("csma_cd", {"N": 2}),
+    ],
+)
+def test_textbook_models_load_and_have_the_known_answers(model, constants):
+    network = load_network(MODELS / f"{model}.xml", constants=constants)
+    assert network.warnings == ()
+    assert network.queries
+    for query in network.queries:
+        assert verify(network, query).holds, query.text
+
+
+def test_ints_without_range_are_sixteen_bits():
+    network = loads_network(wrap(ONE, declaration="int v = -5;"))
+    assert (network.variables[0].low, network.variables[0].high) == (-32768, 32767)
+
+
+def test_names_ids_and_comments():
+    body = '<location id="id7"/><init ref="id7"/>'
+    query = (
+        "<query><formula>A[] T.id7 &amp;&amp; x &gt;= 0</formula><comment>so  so</comment></query>"
+    )
+    network = loads_network(wrap(body, declaration="clock x; // &lt;", queries=query))
+    assert network.automata[0].locations[0].name == "id7"
+    assert network.queries[0].text == "A[] T.id7 && x >= 0"
+    assert network.queries[0].remark == "so so"
+
+
+def test_not_binds_as_tight_as_its_sign():
+    """`not x == 1` is `(not x) == 1`, and `not a && b` is `(not a) && b`, as in UPPAAL."""
+    texts = ("A[] not n == 1", "E<> not n == 1", "A[] not n && n == 2", "A[] (not n) == 0")
+    queries = "".join(f"<query><formula>{escape(text)}</formula></query>" for text in texts)
+    network = loads_network(wrap(ONE, declaration="int n = 2;", queries=queries))
+    assert [verify(network, query).holds for query in network.queries] == [
+        False,
+        False,
+        False,
+        True,
+    ]
+
+
+def test_old_and_new_ways_to_write_instances():
+    text = wrap(ONE, parameter="const int[0,3] n", system="A := T(1); B = T(2); system A, B, C;")
+    text = text.replace("<system>", "<instantiation>C = T(3);</instantiation><system>")
+    assert [a.name for a in loads_network(text).automata] == ["A", "B", "C"]
+
+
+def test_arrays_may_be_indexed_by_a_type():
+    text = wrap(
+        ONE + edge(select="i : id", guard="a[i] == 2", assignment="a[i] = 9, c[i] = 0"),
+        declaration="typedef int[3,4] id; int[0,9] a[id] = {1, 2}; clock c[id];",
+    )
+    network = loads_network(text)
+    assert [v.name for v in network.variables] == ["a[3]", "a[4]"]
+    assert verify(network, "E<> a[4] == 9").holds
+    assert not verify(network, "E<> a[3] == 9").holds
+
+
+def test_what_changes_no_run_is_passed_over():
+    body = ONE.replace("</location>", '<label kind="exponentialrate">1</label></location>') + edge(
+        testcode="x"
+    ).replace("</transition>", '<nail x="1" y="2"/></transition>')
+    assert loads_network(wrap(body)).warnings == ()
+
+
+def test_unit_weight_and_label_come_from_comments():
+    """What UPPAAL has no place for is read from the comments that our export writes."""
+    comments = "weight 0.25\nas go"
+    network = loads_network(wrap(ONE + edge(comments=comments), declaration="// unit 50 ms"))
+    assert network.unit == 50_000_000
+    assert (network.automata[0].edges[0].weight, network.automata[0].edges[0].label) == (0.25, "go")
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("<nta><declaration></nta>", ("TA018", "")),
+        ("<html></html>", ("TA018", "<html")),
+        (wrap(ONE + edge(guard="y &lt; 3")), ("TA002", "y")),
+        (wrap(ONE + edge(guard="x&lt;3&amp;&amp;y&gt;1"), declaration="clock x;"),
+         ("TA002", "y")),
+        (wrap(ONE + edge(guard="x -")), ("TA001", "")),
+        (wrap(ONE.replace('ref="a"', 'ref="b"')), ("TA002", "<init")),
+        (wrap('<location id="a"/>'), ("TA013", "T")),
+        (wrap(ONE, declaration="hybrid clock x;"), ("TA016", ";")),
+        (wrap(ONE, declaration="clock x, y;") .replace(
+            "</location>", "<label kind='invariant'>x' != 0</label></location>"), ("TA009", "x'")),
+        (wrap(ONE + edge(guard="x + y &lt; 3"), declaration="clock x, y;"),
+         ("TA008", "x + y &lt; 3")),
+        (wrap(ONE + edge(comments="weight 2")), ("TA017", "<label")),
+        (wrap(ONE, system="system T, U;"), ("TA002", "U")),
+        (wrap(ONE, parameter="const int n"), ("TA019", "const int")),
+    ],
+)  # fmt: skip
+def test_what_is_wrong_is_told_with_its_place(text, expected):
+    assert finding(text) == expected
+
+
+def test_places_are_right_behind_entities_and_newlines():
+    guard = "\n   x &lt;= 3 &amp;&amp;\r\n  ü == 1"
+    text = wrap(ONE + edge(guard=guard.replace("ü", "nobody")), declaration="clock x; // äöü")
+    with pytest.raises(ModelError) as caught:
+        loads_network(text)
+    span = caught.value.diagnostics[0].spans[0].span
+    assert span.text == "nobody"
+    assert span.column == 3
+
+
+@pytest.mark.parametrize(
+    ("comment", "told"),
+    [
+        ("query safe\nnever\n in a", ("safe", "never in a")),
+        (" query safe ", ("safe", "")),
+        ("query safe, always", ("", "query safe, always")),
+        ("see\nquery safe", ("", "see query safe")),
+        ("", ("", "")),
+    ],
+)
+def test_the_first_line_of_a_comment_may_be_an_id(comment, told):
+    queries = f"<query><formula>E&lt;&gt; T.a</formula><comment>{comment}</comment></query>"
+    [query] = loads_network(wrap(ONE, queries=queries)).queries
+    assert (query.id, query.remark) == told
+
+
+def test_a_query_that_cannot_be_read_is_a_warning():
+    queries = "".join(
+        f"<query><formula>{formula}</formula><comment/></query>"
+        for formula in ("control: T.a", "E&lt;&gt; T.a", "")
+    )
+    network = loads_network(wrap(ONE, queries=queries))
+    assert [query.text for query in network.queries] == ["E<> T.a"]
+    (warning,) = network.warnings
+    assert (warning.code, warning.severity) == ("TA020", "warning")
+
+
+@pytest.mark.parametrize(
+    "doctype",
+    [
+        '<!DOCTYPE nta [<!ENTITY a "b">]>',
+        '<!DOCTYPE nta [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;&a;&a;">]>',
+        '<!DOCTYPE nta [<!ENTITY a SYSTEM "file:///etc/passwd">]>',
+        '<!DOCTYPE nta [<!ENTITY % a SYSTEM "http://nowhere/"> %a;]>',
+    ],
+)
+def test_entities_are_refused(doctype):
+    with pytest.raises(ModelError) as caught:
+        loads_network(f"{doctype}<nta><declaration>&a;</declaration></nta>")
+    assert caught.value.diagnostics[0].code == "TA018"
+
+
+def test_deep_and_huge_files_are_refused():
+    with pytest.raises(ModelError, match="nested too deeply"):
+        loads_network("<nta>" + "<a>" * 1000 + "</a>" * 1000 + "</nta>")
+    with pytest.raises(ModelError, match="more than"):
+        loads_network("<nta>" + " " * 2_000_001 + "</nta>")
+
+
+def branching(*weights):
+    """A model in which an edge leads to a branch point, and from there to one location each."""
+    places = "".join(
+        f'<location id="p{i}"><name>p{i}</name></location>' for i in range(len(weights))
+    )
+    branches = "".join(
+        f'<transition><source ref="b"/><target ref="p{i}"/>'
+        f'<label kind="probability">{weight}</label><label kind="assignment">v = v + {i}</label>'
+        "</transition>"
+        for i, weight in enumerate(weights)
+    )
+    return wrap(
+        f'<location id="a"><name>a</name></location>{places}<branchpoint id="b"/><init ref="a"/>'
+        '<transition><source ref="a"/><target ref="b"/><label kind="guard">x &gt;= 2</label>'
+        f'<label kind="assignment">v = 3</label></transition>{branches}',
+        declaration="clock x; int[0,9] v; const int N = 4;",
+    )
+
+
+def test_a_branch_point_is_a_choice_with_weights():
+    network = loads_network(branching("N - 3", 3, 0))
+    assert [edge.weight for edge in network.automata[0].edges] == [0.25, 0.75]
+    assert verify(network, "E<> T.p1 and v == 4 and x == 2").holds
+    assert not verify(network, "E<> (T.p0 and v != 3) or T.p2 or (not T.a and x < 2)").holds
+    share = sample(network, asked_on(network, "Pr[<=100; 2000](<> T.p1)")[1]).value
+    assert 0.7 < share < 0.8
+
+
+@pytest.mark.parametrize("weights", [(0, 0), (2, -1)])
+def test_weights_that_share_nothing_are_refused(weights):
+    assert finding(branching(*weights))[0] == "TA017"

@@ -1,0 +1,172 @@
+"""Numbers with a fraction: random runs have them, and nothing is proved of them."""
+
+from fractions import Fraction
+
+import pytest
+
+import rvmon
+from rvmon.errors import ModelError
+from rvmon.models.conform import conform
+from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.load import loads_network
+from rvmon.models.requirements.observe import observe
+from rvmon.models.runs.statistics import sample, trajectories
+from rvmon.models.search.extremes import extremes
+from rvmon.models.search.suite import Criterion, build_suite
+from rvmon.models.search.verify import verify
+from rvmon.models.uppaal_xml import uppaal_xml
+
+MODEL = """
+unit 1 s
+const double GAIN = 0.5, HALF = GAIN
+const double ROW[2] = {1, 2.5}
+double last = 18
+double seen[2]
+int[0,9] rounds
+clock x, warm
+double next(double a, int[0,3] n) {
+  double b = a;
+  for (i : int[0,3]) if (i < n) b += sqrt(GAIN * GAIN);
+  return b;
+}
+void keep(double &at, double v) { at = v; }
+automaton Room {
+  location cold  invariant warm <= 2.5 and warm' == GAIN
+  location hot   invariant x <= 7.5 and warm' == -0.25
+  start cold
+  edge cold -> hot when warm >= ROW[1] and rounds < 9 do last = next(last, 2), x = 0, rounds++
+  edge hot -> cold when x >= 7.5 and last < 21.25
+    do x = 0.5, last = last - HALF, keep(seen[1], last)
+}
+"""
+
+
+def values(terms, text=MODEL, horizon=20):
+    network = loads_network(text)
+    (run,) = trajectories(network, asked_on(network, f"simulate [<={horizon}; 1] {{{terms}}}")[1])
+    return run.times, run.values
+
+
+def test_a_run_computes_as_doubles_do():
+    times, rows = values("last, warm, seen[1], x")
+    assert [float(t) for t in times] == [0, 5, 5, 12.5, 12.5, pytest.approx(16.25, abs=1e-3),
+                                         pytest.approx(16.25, abs=1e-3), 20]  # fmt: skip
+    last, warm, seen, x = ([float(v) for v in column] for column in zip(*rows, strict=True))
+    assert last == [18, 18, 19, 19, 18.5, 18.5, 19.5, 19.5]
+    assert warm[:4] == [0, 2.5, 2.5, 0.625]
+    assert seen[3:5] == [0, 18.5]
+    assert x[4] == 0.5
+
+
+def test_figures_of_such_runs():
+    network = loads_network(MODEL)
+    assert sample(network, asked_on(network, "Pr[<=30; 20](<> last >= 19.5)")[1]).value == 1
+    assert sample(network, asked_on(network, "Pr[<=30; 20](<> last > 19.5 + 1)")[1]).value == 0
+    mean = sample(network, asked_on(network, "E[<=6; 20](max: last / 2)")[1])
+    assert mean.value == 9.5
+
+
+@pytest.mark.parametrize(
+    ("term", "expected"),
+    [
+        ("7 / 2", 3),
+        ("7 / 2.0", 3.5),
+        ("-7.5", -7.5),
+        ("1 - 0.5 * 3", -0.5),
+        ("fmod(7.5, 2)", 1.5),
+        ("7.5 % 2", 1.5),
+        ("fint(-2.5)", -2),
+        ("floor(-2.5) + ceil(1.25) + round(0.75)", 0),
+        ("fabs(-0.25) + pow(2, -1)", 0.75),
+        ("(1 <? 0.5) + (1 >? 0.5)", 1.5),
+        ("(rounds == 0 ? 1 : 0.5) + 1", 2),
+        ("0.5 < 1 and not (0.5 >= 1) and 0.5 != 1", 1),
+        ("ln(exp(1)) + log(100)", 3),
+    ],
+)
+def test_operators(term, expected):
+    _, rows = values(term)
+    assert float(rows[0][0]) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    "update", ["last = 1 / (last - last)", "last = sqrt(-last)", "last = exp(1000 * last)"]
+)
+def test_what_has_no_value_is_told_when_a_run_gets_there(update):
+    with pytest.raises(ModelError, match="has no value for"):
+        values("last", MODEL.replace("rounds++", f"rounds++, {update}"))
+
+
+@pytest.mark.parametrize(
+    ("declared", "code"),
+    [
+        ("int[0,9] n = 2.5", "TA004"),
+        ("int[0,2.5] n", "TA004"),
+        ("int[0,9] f() { return last; }\nbool b = f() > 0", "TA004"),
+        ("int[0,9] f(int[0,9] a) { return a; }\nbool b = f(0.5) > 0", "TA004"),
+        ("int[0,9] n\nvoid f() { n = last; }", ""),
+        ("int[0,9] n\nvoid f() { keep(n, 1); }\nautomaton B { location l start l "
+         "edge l -> l do f() }", "TA015"),
+        ("double d = 1 << 0.5", "TA004"),
+        ("double d = ~0.5", "TA004"),
+        ("double d = sqrt(1, 2)", "TA015"),
+        ("double d = x", "TA009"),
+    ],
+)  # fmt: skip
+def test_what_needs_an_integer_refuses_a_fraction(declared, code):
+    text = MODEL + declared + "\n"
+    if not code:
+        loads_network(text)
+        return
+    with pytest.raises(ModelError) as raised:
+        loads_network(text)
+    assert code in {one.code for one in raised.value.diagnostics}
+
+
+def test_nothing_is_proved_of_them():
+    network = loads_network(MODEL)
+    spec = rvmon.loads("spec s\ntime held\nevent a\nrequirement R\n  upon a then within 1 s a\n")
+    searches = [
+        lambda: verify(network, network.queries[0] if network.queries else "E<> Room.hot"),
+        lambda: list(observe(network, spec.checked)),
+        lambda: build_suite(network, Criterion.EDGES),
+        lambda: list(extremes(network, asked_on(network, "sup: rounds")[1])),
+        lambda: conform(network, [], observed=frozenset(), end=1, tolerance=0),
+    ]
+    for search in searches:
+        with pytest.raises(ModelError, match="what is proved has integers only") as raised:
+            search()
+        assert "Pr[<=T]" in raised.value.diagnostics[0].help
+    plain = loads_network("clock x int[0,1] n automaton A { location l start l }")
+    for query in ("E<> n > 0.5", "E<> x > 0.5", "sup{n < 0.5}: n"):
+        with pytest.raises(ModelError, match="what is proved has integers only"):
+            asked_on(plain, query)[1]
+
+
+def test_branches_may_share_out_runs_in_fractions():
+    """Of weights nothing but odds depends: such a model is searched as any other."""
+    label = '<label kind="probability">{}</label>'
+    text = """<nta><template><name>A</name><location id="a"/><location id="b"/><location id="c"/>
+    <branchpoint id="p"/><init ref="a"/><transition><source ref="a"/><target ref="p"/></transition>
+    <transition><source ref="p"/><target ref="b"/>{}</transition>
+    <transition><source ref="p"/><target ref="c"/>{}</transition></template>
+    <system>system A;</system></nta>""".format(label.format("0.25"), label.format("0.75"))
+    network = loads_network(text)
+    assert [edge.weight for edge in network.automata[0].edges] == [0.25, 0.75]
+    assert verify(network, "E<> A.b").holds
+
+
+def test_a_model_with_fractions_is_read_back():
+    network = loads_network(MODEL)
+    again = loads_network(uppaal_xml(network))
+    query = "simulate [<=20; 2] {last, warm, rounds}"
+    assert trajectories(again, asked_on(again, query)[1]) == trajectories(
+        network, asked_on(network, query)[1]
+    )
+
+
+def test_a_grid_step_does_not_stop_time():
+    text = MODEL.replace("x >= 7.5", "x >= 2.1").replace("x <= 7.5", "x <= 2.1")
+    times, rows = values("warm", text, horizon=20)
+    assert times[-1] == Fraction(20)
+    assert max(float(row[0]) for row in rows) <= 2.501

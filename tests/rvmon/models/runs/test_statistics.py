@@ -1,0 +1,311 @@
+"""Probabilities and expected values: figures whose errors are what they are said to be."""
+
+import json
+from math import comb
+
+import pytest
+
+from rvmon.cli import main
+from rvmon.confidence import interval
+from rvmon.errors import ModelError
+from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.load import loads_network
+from rvmon.models.runs.statistics import MARGIN, sample, trajectories
+from rvmon.models.search.extremes import extremes
+from rvmon.models.search.verify import verify
+from rvmon.models.uppaal_xml import uppaal_xml
+
+COIN = """
+clock x
+int[0,3] n
+automaton A {
+  location toss invariant x <= 1
+  location heads
+  location tails
+  start toss
+  edge toss -> heads when x >= 1 do n = 3 weight 0.3
+  edge toss -> tails when x >= 1 do n = 1 weight 0.7
+}
+"""
+
+
+def figure(text, query, seed=1):
+    network = loads_network(text)
+    return sample(network, asked_on(network, query)[1], seed=seed)
+
+
+def sampled(query, seed=1):
+    return figure(COIN, query, seed)
+
+
+def test_estimates_have_bounds():
+    """The true probability is 0.3, or 0.7 of staying away; a run lasts as long as is said."""
+    one = sampled("Pr[<=2; 2000](<> A.heads)")
+    assert one.runs == 2_000
+    assert one.low < 0.3 < one.high < one.low + 0.05
+    assert sampled("Pr[<=2](<> A.heads)").runs == 1_000
+    away = sampled("Pr[<=2; 2000]([] not A.heads)")
+    assert away.low < 0.7 < away.high
+    assert sampled("Pr[<=0](<> A.heads)").value == 0
+    assert sampled("Pr[<=2](<> A.heads)") == sampled("Pr[<=2](<> A.heads)")
+    assert sampled("Pr[<=2](<> A.heads)") != sampled("Pr[<=2](<> A.heads)", seed=8)
+
+
+def test_bounds_are_kept_about_as_often_as_they_say():
+    missed = sum(
+        not one.low <= 0.3 <= one.high
+        for one in (sampled("Pr[<=2; 100](<> A.heads)", seed) for seed in range(30))
+    )
+    assert missed <= 5
+
+
+@pytest.mark.slow
+def test_delays_are_uniform_in_their_window():
+    """A bound in the middle of a window is met by half of the runs."""
+    text = """
+    clock x
+    automaton A { location a invariant x <= 10 location b start a edge a -> b when x >= 2 }
+    """
+    result = figure(text, "Pr[<=6; 2000](<> A.b)")
+    assert result.low < 0.5 < result.high
+    assert figure(text, "Pr[<=10](<> A.b)").value == 1
+    assert figure(text, "Pr[<=1](<> A.b)").value == 0
+
+
+def test_clocks_in_the_formula_are_met_while_time_passes():
+    """A formula that holds only in the middle of a wait is met."""
+    text = "clock x automaton A { location a invariant x <= 9 start a edge a -> a do x = 0 }"
+    assert figure(text, "Pr[<=50](<> x == 3 and A.a)").value > 0.5
+
+
+@pytest.mark.parametrize(("successes", "runs"), [(0, 20), (1, 20), (10, 20), (20, 20)])
+def test_bounds_are_clopper_and_pearsons(successes, runs):
+    """At each bound the observed count is just as improbable as the confidence allows."""
+    low, high = interval(successes, runs, 0.9)
+    at_least = sum(
+        comb(runs, k) * low**k * (1 - low) ** (runs - k) for k in range(successes, runs + 1)
+    )
+    at_most = sum(comb(runs, k) * high**k * (1 - high) ** (runs - k) for k in range(successes + 1))
+    assert low == 0 if successes == 0 else at_least == pytest.approx(0.05)
+    assert high == 1 if successes == runs else at_most == pytest.approx(0.05)
+
+
+def test_a_run_in_which_no_time_passes_is_refused():
+    hasty = "clock x automaton A { location a invariant x <= 0 start a edge a -> a }"
+    with pytest.raises(ModelError, match="moves in 0 units of time"):
+        figure(hasty, "Pr[<=5; 9](<> x > 3)")
+
+
+@pytest.mark.parametrize(
+    ("query", "expected"),
+    [
+        ("Pr[<=2](<> A.heads) >= 0.2", True),
+        ("Pr[<=2](<> A.heads) >= 0.4", False),
+        ("Pr[<=2](<> A.heads) <= 0.4", True),
+        ("Pr[<=2](<> A.heads) <= 0.2", False),
+        ("Pr[<=2]([] not A.heads) >= 0.6", True),
+        ("Pr[<=1](<> A.heads or A.tails) >= 0.99", True),
+    ],
+)
+def test_tests_take_as_many_runs_as_they_need(query, expected):
+    one = sampled(query)
+    assert one.holds is expected
+    assert 5 < one.runs < 5_000
+
+
+def test_tests_are_wrong_as_seldom_as_they_say():
+    """At the edge of what they need not tell, 5 % of the tests may be wrong."""
+    level = 0.3 - 4 * MARGIN
+    wrong = sum(
+        not sampled(f"Pr[<=2](<> A.heads) >= {level:.2f}", seed).holds for seed in range(10)
+    )
+    assert wrong <= 2
+
+
+def test_a_test_that_is_cut_short_says_nothing():
+    one = sampled("Pr[<=2; 50](<> A.heads) >= 0.3")
+    assert (one.runs, one.holds, one.margin) == (50, None, MARGIN)
+
+
+def test_expected_values():
+    """The mean of 3 in 0.3 and 1 in 0.7 of the runs is 1.6; the least value is the first."""
+    one = sampled("E[<=2; 2000](max: n)")
+    assert one.low < 1.6 < one.high < one.low + 0.1
+    assert sampled("E[<=2; 100](min: n)").value == 0
+    assert sampled("E[<=2; 2000](max: 10 * n)").low > 15
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "Pr[<=2](<> deadlock)",
+        "Pr[<=2](<> EF A.heads)",
+        "Pr[<=2](<> A.heads) >= 1.5",
+        "Pr[<=2](<> A.heads) > 0.5",
+        "Q[<=2](<> A.heads)",
+        "E[<=2; 9](max: x)",
+        "E[<=2; 9](sum: n)",
+        "E[<=2; 1](max: n)",
+        "E<> (Pr[<=2](<> A.heads))",
+    ],
+)
+def test_what_has_no_figure_is_refused(query):
+    with pytest.raises(ModelError):
+        sampled(query)
+
+
+def test_statistics_are_no_decision():
+    with pytest.raises(ModelError, match="no decision"):
+        verify(loads_network(COIN), "Pr[<=2](<> A.heads)")
+
+
+def test_the_command_says_figures(tmp_path, capsys):
+    model = tmp_path / "coin.ta"
+    model.write_text(COIN, "utf-8")
+    assert main(["verify", str(model), "--query", "Pr[<=2](<> A.heads)"]) == 0
+    assert "simulated: Pr" in (told := capsys.readouterr().out)
+    assert "95 % confidence" in told
+    failing = ["verify", str(model), "--query", "Pr[<=2](<> A.heads) >= 0.5"]
+    assert main(failing) == 1
+    assert "does not hold, by a test" in capsys.readouterr().out
+    assert main([*failing, "--format", "json"]) == 1
+    (one,) = json.loads(capsys.readouterr().out)["simulated"]
+    assert one["holds"] is False
+    assert one["error"] == 0.05
+
+
+TICKING = """
+clock x, cost
+int[0, 9] n
+automaton A {
+  location a invariant x <= 2 and cost' == 3
+  start a
+  edge a -> a when x >= 2 do x = 0, n = n + 1
+}
+query: simulate [<=5; 2] {n, x, cost, n > 1}
+"""
+
+
+def test_runs_are_shown_as_they_go_on(tmp_path, capsys):
+    network = loads_network(TICKING)
+    found = trajectories(network, network.queries[0])
+    assert len(found) == 2
+    times = (0, 2, 2, 4, 4, 5)
+    rows = (0, 0, 0, 0), (0, 2, 6, 0), (1, 0, 6, 0), (1, 2, 12, 0), (2, 0, 12, 1), (2, 1, 15, 1)
+    assert [(one.times, one.values) for one in found] == [(times, rows)] * 2
+    model = tmp_path / "ticking.ta"
+    model.write_text(TICKING, "utf-8")
+    assert main(["verify", str(model)]) == 0
+    told = capsys.readouterr().out
+    assert "simulated: simulate [<=5; 2]" in told
+    assert "        4  x = 2, cost = 12\n" in told
+    assert main(["verify", str(model), "--format", "json"]) == 0
+    (one,) = json.loads(capsys.readouterr().out)["simulated"]
+    assert one["runs"][1]["cost"] == [0, 6, 6, 12, 12, 15]
+
+
+@pytest.mark.parametrize("text", ["simulate 3 [<=2] {n}", "simulate [<=2; 3] {n}"])
+def test_both_ways_to_write_how_many_runs(text):
+    """Before the brackets, as UPPAAL had it once, and in them; one if nothing is said."""
+    network = loads_network(COIN)
+    assert len(trajectories(network, asked_on(network, text)[1])) == 3
+    assert len(trajectories(network, asked_on(network, "simulate[<=2]{n}")[1])) == 1
+    with pytest.raises(ModelError, match="no decision"):
+        verify(network, text)
+    with pytest.raises(ModelError, match="asks for no runs"):
+        trajectories(network, asked_on(network, "E<> n > 0")[1])
+
+
+STOPPED = """
+clock x, used, cost
+bool left
+automaton A {
+  location a invariant x <= 10 and used' == 0
+  location b invariant x <= 10 and used' == 2 and cost' == 3
+  location c rate 1:4
+  location d
+  start a
+  edge a -> b when x == 4
+  edge b -> c when x >= 10
+  edge c -> d do left = true
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("query", "share"),
+    [
+        ("Pr[<=10](<> A.c and used >= 12)", 1.0),
+        ("Pr[<=10](<> A.c and used > 12)", 0.0),
+        ("Pr[<=7](<> used > 6)", 0.0),
+        ("Pr[<=8](<> used > 6)", 1.0),
+        ("Pr[<=4](<> used > 0)", 0.0),
+    ],
+)
+def test_clocks_stop_and_run_at_other_rates(query, share):
+    """Simulated exactly: 4 units stopped, then 6 at a rate of 2."""
+    assert figure(STOPPED, query).value == share
+
+
+def test_a_wait_without_end_has_the_rate_of_its_location():
+    """A location with rate 1:4 is left within 4 units in 1 - 1/e of the runs."""
+    found = figure(STOPPED, "Pr[<=14; 4000](<> left)")
+    assert found.low < 0.632 < found.high
+
+
+def test_what_stop_watches_reach_is_not_decided():
+    network = loads_network(STOPPED)
+    assert verify(network, "E<> A.c").holds
+    for query in ("E<> used > 3", "A<> cost > 3", "G (cost < 9)"):
+        with pytest.raises(ModelError, match="not decidable"):
+            verify(network, query)
+    with pytest.raises(ModelError, match="not decidable"):
+        list(extremes(network, asked_on(network, "sup: cost")[1]))
+    guarded = loads_network(STOPPED.replace("when x >= 10", "when x >= 10 and used > 3"))
+    with pytest.raises(ModelError, match="2 places"):
+        verify(guarded, "E<> A.c")
+
+
+@pytest.mark.parametrize(
+    ("invariant", "message"),
+    [("used' == n - 1", "set by two automata"), ("cost' == 1 + n", "set by two automata")],
+)
+def test_rates_that_have_no_meaning_are_told(invariant, message):
+    """A run that gets there says which clock and where."""
+    text = STOPPED.replace("bool left", "int[0,3] n\nbool left")
+    text += f"automaton B {{ location l invariant {invariant} start l }}"
+    network = loads_network(text.replace("used' == 0", "x <= 10"))
+    with pytest.raises(ModelError, match=message):
+        sample(network, asked_on(network, "Pr[<=10](<> left)")[1])
+
+
+def test_rates_come_back_from_uppaal():
+    network = loads_network(STOPPED)
+    assert loads_network(uppaal_xml(network)).automata == network.automata
+
+
+def test_rates_may_be_told_for_all_elements():
+    text = """
+    clock y[2]
+    automaton A { location l invariant forall (i : int[0,1]) y[i]' == i and y[i] <= 9 start l }
+    """
+    (place,) = loads_network(text).automata[0].locations
+    assert [(rate.clock, rate.value.value) for rate in place.rates] == [(0, 0), (1, 1)]
+    assert [compare.clock for compare in place.invariant.clocks] == [0, 1]
+
+
+@pytest.mark.parametrize(
+    ("written", "share"),
+    [
+        ("4", (4, 1)),
+        ("OFTEN", (10, 1)),
+        ("1 : OFTEN * 2", (1, 20)),
+        ("0.25", (1, 4)),
+        ("1e2", (100, 1)),
+        ("1:2.5", (2, 5)),
+    ],
+)
+def test_how_often_a_location_is_left_is_a_share(written, share):
+    text = f"const int OFTEN = 10 automaton A {{ location l rate {written} start l }}"
+    (place,) = loads_network(text).automata[0].locations
+    assert tuple(number.value for number in place.leaving) == share

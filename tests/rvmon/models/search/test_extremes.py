@@ -1,0 +1,131 @@
+"""Largest and least values are those of all reachable states, and runs show them."""
+
+import json
+from math import ceil, floor
+
+import pytest
+from tests.tools.timed_generate import random_model
+from tests.tools.timed_regions import RegionGraph, TooManyRegionsError, truth_of
+
+from rvmon.cli import main
+from rvmon.errors import ModelError
+from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.load import loads_network
+from rvmon.models.network.expressions import ClockCompare, ClockOp, Constant
+from rvmon.models.runs.concrete import Rules
+from rvmon.models.search.extremes import FARTHEST, extremes
+from rvmon.models.search.meter import Budget
+from rvmon.models.search.verify import verify
+
+LAMP = """
+clock x, y
+int[0,100] n
+automaton A {
+  location a invariant x <= 10
+  location b
+  start a
+  edge a -> a when x >= 3 and n < 17 do x = 0, n += 2
+  edge a -> b when x > 4 and x < 7
+}
+"""
+
+
+def asked(text, query, **options):
+    network = loads_network(text)
+    return list(extremes(network, asked_on(network, query)[1], **options))
+
+
+@pytest.mark.parametrize(
+    ("query", "expected"),
+    [
+        ("sup: n", [(18, True)]),
+        ("inf: n, 3 - n", [(0, True), (-15, True)]),
+        ("sup{A.a}: x", [(10, True)]),
+        ("inf{A.b}: x", [(4, False)]),
+        ("inf{A.a and n == 2}: y", [(3, True)]),
+        ("sup{A.a}: y", [(100, True)]),
+        ("bounds: n, A.b ? n : 50", [(0, True), (18, True), (0, True), (50, True)]),
+        ("sup{A.b and x < 9}: x", [(9, False)]),
+    ],
+)
+def test_ends_are_exact(query, expected):
+    found = asked(LAMP, query)
+    assert [(one.value, one.attained) for one in found] == expected
+    assert all(one.exact and one.run is not None for one in found)
+
+
+def test_a_clock_may_grow_without_bound():
+    (idle,) = asked(LAMP, "sup: x")
+    assert (idle.value, idle.exact) == (None, True)
+    assert "without bound" in idle.remark
+    loop = "clock x, y automaton A { location a invariant x <= 99999 start a edge a -> a do x = 0 }"
+    (round_,) = asked(loop, "sup: y")
+    assert (round_.value, round_.exact) == (FARTHEST, False)
+
+
+def test_where_nothing_counts_there_is_no_value():
+    (none,) = asked(LAMP, "sup{n == 3}: n")
+    assert (none.value, none.exact, none.remark) == (None, True, "no state counts")
+    (cut,) = asked(LAMP, "sup: n", budget=Budget(states=4))
+    assert not cut.exact
+    assert "4 states were visited" in cut.remark
+
+
+@pytest.mark.parametrize("first", range(0, 20, 10))
+@pytest.mark.law
+def test_values_are_those_of_the_regions(first):
+    for seed in range(first, first + 10):
+        network = loads_network(random_model(seed))
+        clocks = range(len(network.clocks))
+        fence = [ClockCompare(clock, ClockOp.LE, Constant(7)) for clock in clocks]
+        try:
+            graph = RegionGraph(network, fence, limit=2_000)
+            states = [region.now for region in graph.reachable([graph.start()])]
+        except TooManyRegionsError:
+            continue
+        where = " and ".join(f"{clock.name} <= 7" for clock in network.clocks)
+        terms = ", ".join(one.name for one in (network.variables[0], *network.clocks))
+        query = asked_on(network, f"bounds{{{where}}}: {terms}")[1]
+        inside = [now for now in states if all(truth_of(one)(now) for one in fence)]
+        values = [
+            [now.values[0] for now in inside],
+            *([now.clocks[clock] for now in inside] for clock in clocks),
+        ]
+        found = list(extremes(network, query))
+        for own, least, largest in zip(values, found[::2], found[1::2], strict=True):
+            assert (least.value, least.attained) == (floor(min(own)), min(own) == floor(min(own)))
+            assert (largest.value, largest.attained) == (ceil(max(own)), max(own) == ceil(max(own)))
+        for one in found:
+            assert truth_of(query.formula.where)(Rules(network).replay(one.run)[-1])
+
+
+@pytest.mark.parametrize(
+    ("query", "message"),
+    [
+        ("sup{AF A.b}: n", "a condition on runs"),
+        ("sup: x > 3", "the value of a clock"),
+        ("A[] (sup: n)", "expected"),
+    ],
+)
+def test_what_has_no_end_is_refused(query, message):
+    with pytest.raises(ModelError, match=message):
+        asked(LAMP, query)
+
+
+def test_a_value_is_no_decision():
+    """The search refuses the query, the command answers it, in words and as JSON."""
+    with pytest.raises(ModelError, match="no decision"):
+        verify(loads_network(LAMP), "sup: n")
+
+
+def test_the_command_answers(tmp_path, capsys):
+    model = tmp_path / "lamp.ta"
+    model.write_text(LAMP + 'query most "the count ends": sup: n\n', "utf-8")
+    assert main(["verify", str(model)]) == 0
+    told = capsys.readouterr().out
+    assert "most: answered: sup: n" in told
+    assert "n is at most 18" in told
+    assert main(["verify", str(model), "--query", "inf{A.b}: x", "--format", "json"]) == 0
+    (answer,) = json.loads(capsys.readouterr().out)["extremes"]
+    assert (answer["end"], answer["value"], answer["attained"]) == ("inf", 4, False)
+    assert main(["verify", str(model), "--query", "sup: n", "--max-states", "9"]) == 1

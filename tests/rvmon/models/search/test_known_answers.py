@@ -1,0 +1,69 @@
+"""Textbook models have the answers that textbooks give."""
+
+from pathlib import Path
+
+import pytest
+from tests.tools.timed_runs import shows
+
+from rvmon.models.language.load import load_network, loads_network
+from rvmon.models.search.meter import Policy
+from rvmon.models.search.verify import verify
+
+MODELS = Path(__file__).parents[4] / "examples" / "models"
+
+
+def answers(network):
+    """The answer to each query of a network, by id; runs are checked on the way."""
+    found = {}
+    for query in network.queries:
+        outcome = verify(network, query)
+        assert outcome.run is None or shows(network, outcome)
+        found[query.id] = outcome.holds
+    return found
+
+
+@pytest.mark.parametrize("processes", [2, 3, 4, 5])
+def test_fischer_is_safe(processes):
+    network = load_network(MODELS / "fischer.ta", constants={"N": processes})
+    assert verify(network, network.queries[0]).holds
+
+
+def test_fischer_stores_as_few_states_as_the_peer():
+    stored = {}
+    for processes in (4, 5):
+        network = load_network(MODELS / "fischer.ta", constants={"N": processes})
+        stored[processes] = verify(network, network.queries[0]).statistics.stored
+    assert stored == {4: 220, 5: 727}
+
+
+def test_broken_fischer_is_caught():
+    """With >= for > two processes meet, and a concrete run shows how."""
+    network = load_network(MODELS / "fischer_broken.ta", constants={"N": 2})
+    outcome = verify(network, network.queries[0])
+    assert outcome.holds is False
+    assert shows(network, outcome)
+
+
+@pytest.mark.parametrize("trains", [2, 3, 4])
+def test_trains_never_meet_and_always_cross(trains):
+    network = load_network(MODELS / "train_gate.ta", constants={"N": trains})
+    assert answers(network) == {"exclusion": True, "crossing": True, "alive": True}
+
+
+def test_a_gate_without_urgency_may_dawdle():
+    """If `go` is not urgent a stopped train may wait for ever, but trains still never meet."""
+    text = (MODELS / "train_gate.ta").read_text().replace("urgent chan", "chan")
+    network = loads_network(text, constants={"N": 2})
+    assert answers(network) == {"exclusion": True, "crossing": False, "alive": True}
+
+
+@pytest.mark.parametrize(("delays", "minutes"), [("5, 10, 20, 25", 60), ("1, 2, 5, 10", 17)])
+def test_bridge_is_crossed_in_the_known_time(delays, minutes):
+    text = (MODELS / "bridge.ta").read_text().replace("5, 10, 20, 25", delays)
+    network = loads_network(text)
+    over = verify(network, network.queries[0], policy=Policy.FASTEST)
+    assert over.run is not None
+    assert over.run.duration == minutes
+    people = "forall (i : person) Person(i).safe"
+    assert verify(network, f"E<>[<={minutes}] {people}").holds
+    assert not verify(network, f"E<>[<={minutes - 1}] {people}").holds

@@ -1,0 +1,80 @@
+"""Formulas of LTL over all runs, under premises, with a run that shows where they fail."""
+
+import pytest
+
+from rvmon.errors import ModelError
+from rvmon.models.language.load import loads_network
+from rvmon.models.runs.run import Ending
+from rvmon.models.search.verify import verify
+
+RETRY = """
+clock x
+chan go
+automaton A {
+  location asked invariant x <= 5
+  location failed invariant x <= 5
+  location done
+  start asked
+  edge asked -> failed when x >= 1 do x = 0
+  edge failed -> asked when x >= 1 do x = 0
+  edge asked -> done
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("query", "expected"),
+    [
+        ("G F A.asked", False),
+        ("F G A.done or G F A.failed", True),
+        ("F A.done assuming not (G F A.failed)", True),
+        ("A<> A.done assuming F G not A.failed", True),
+        ("A.asked --> A.done assuming G F A.failed", False),
+        ("E<> A.done assuming G F A.failed", False),
+        ("E (G F A.failed and G not A.done)", True),
+        ("A ([] (A.failed imply <> A.asked))", True),
+        ("(not A.done W A.failed)", False),
+        ("A[A.asked U A.done]", False),
+        ("G (A.failed and x > 2 imply F (A.asked and x < 1))", True),
+        ("E (F G (A.failed and x <= 4))", False),
+        ("E (A.asked W F (A.done and x > 2))", True),
+        ("E (not A.failed and x < 4 W F (A.failed and x > 5))", False),
+    ],
+)
+def test_known_answers(query, expected):
+    outcome = verify(loads_network(RETRY), query)
+    assert outcome.holds is expected
+    assert (outcome.run is not None) == (expected == query.startswith("E"))
+
+
+def test_a_loop_on_which_time_passes_is_preferred():
+    lazy = "clock x automaton A { location a start a edge a -> a edge a -> a when x >= 1 do x = 0 }"
+    assert verify(loads_network(lazy), "F x > 9").run.ending is Ending.LOOP
+    hasty = "clock x automaton A { location a invariant x <= 1 start a edge a -> a }"
+    outcome = verify(loads_network(hasty), "G F x == 0")
+    assert outcome.run.ending is Ending.ZENO_LOOP
+    assert "Zeno" in outcome.remark
+
+
+@pytest.mark.parametrize(
+    ("query", "message"),
+    [
+        ("G X (A.done)", "no next instant"),
+        ("G (A.asked imply AF A.done)", "CTL"),
+        ("F deadlock", "deadlock"),
+        ("A (A.done)", "speaks of runs"),
+        ("A.done assuming G F A.asked", "whole runs"),
+        ("E<> (F A.done)", "CTL"),
+    ],
+)
+def test_what_is_not_decided_says_why(query, message):
+    with pytest.raises(ModelError, match=message):
+        verify(loads_network(RETRY), query)
+
+
+def test_g_and_f_are_names_elsewhere():
+    """Variables, functions of arrays and templates may be called G, F, A, E, U and W."""
+    text = "int[0,1] G\nint[0,1] F = 1\nint[0,1] U\nautomaton A { location a start a }"
+    network = loads_network(text)
+    assert verify(network, "A[] (G < F and U == G)").holds
+    assert verify(network, "G (G == 0 and F == 1)").holds

@@ -1,0 +1,68 @@
+"""Time passes on a loop if and only if more rounds can take longer, written out round by round."""
+
+from math import inf
+from random import Random
+
+import pytest
+
+from rvmon.models.runs.run import bound_of, universe
+from rvmon.models.runs.timing import TimedStep, timing_of
+from rvmon.models.search.loops import surely_passes, time_passes
+
+DIM = 3
+
+
+def longest(loop, rounds):
+    """The longest time of some rounds, in whole units; `None` if they are not possible."""
+    timing = timing_of(loop * rounds, universe(DIM))
+    if timing is None:
+        return None
+    longest = float(timing.relation((0, len(loop) * rounds))[0, 1])
+    return longest if longest == inf else -(-longest // timing.scale)
+
+
+def random_loop(random):
+    """One to four steps with bounds and resets of two clocks."""
+
+    def atoms():
+        found = []
+        for _ in range(random.choice((0, 0, 1, 1, 2))):
+            clock, number = random.randint(1, 2), random.randint(0, 3)
+            strict = random.random() < 0.4
+            if random.random() < 0.6:
+                found.append((0, clock, bound_of(number, strict)))
+            else:
+                found.append((clock, 0, bound_of(-number, strict)))
+        return tuple(found)
+
+    def resets():
+        clocks = random.choice(((), (), (1,), (2,), (1, 2)))
+        return tuple((clock, float(random.choice((0, 0, 1)))) for clock in clocks)
+
+    return [
+        TimedStep(random.random() < 0.8, atoms(), resets(), atoms())
+        for _ in range(random.randint(1, 4))
+    ]
+
+
+@pytest.mark.slow
+def test_it_is_what_the_rounds_written_out_say():
+    random, seen = Random(1), []
+    for _ in range(1500):
+        loop = random_loop(random)
+        fewer, more = longest(loop, 4), longest(loop, 16)
+        if more is None or fewer == inf:
+            continue
+        passes = time_passes(loop, universe(DIM), DIM)
+        assert passes == (fewer < more), loop
+        sure = surely_passes(loop)
+        assert sure in (None, passes), loop
+        seen.append((sure, passes))
+    assert {(True, True), (False, False), (None, True), (None, False)} <= set(seen)
+
+
+def test_long_loops_need_no_long_paths():
+    """A loop of hundreds of steps is told without all its rounds being written out."""
+    step = TimedStep(True, ((0, 1, 5.0),), (), ())
+    last = TimedStep(True, ((0, 1, 5.0),), ((1, 0.0), (2, 0.0)), ())
+    assert time_passes([*[step] * 300, last], universe(DIM), DIM)

@@ -1,0 +1,92 @@
+"""Formulas of CTL are decided, with path operators inside others."""
+
+import pytest
+
+from rvmon.errors import ModelError
+from rvmon.models.language.load import loads_network
+from rvmon.models.search.verify import verify
+
+TRAP = """
+clock x
+automaton A {
+  location start
+  location open
+  location trap
+  start start
+  edge start -> open when x >= 1 do x = 0
+  edge open -> start when x <= 4 do x = 0
+  edge open -> trap when x >= 5
+}
+"""
+
+
+@pytest.mark.parametrize(
+    ("query", "expected"),
+    [
+        ("A[] (E<> A.trap)", True),
+        ("A[] (E<> A.start)", False),
+        ("A[] (A.open and x <= 4 imply EF A.start)", True),
+        ("A[] (A.open imply EF A.start)", False),
+        ("E<> (A.open and (A[] not A.start))", True),
+        ("E<> (A.open and x <= 4 and (A[] not A.start))", False),
+        ("A[] (A.open imply A<> A.trap)", False),
+        ("A[] (A.trap imply A<> A.trap)", True),
+        ("E<> (A.open and (E[] A.open))", True),
+        ("E<> (EF (A.trap and x < 6) and AG not A.start)", True),
+    ],
+)
+def test_nests_are_decided(query, expected):
+    assert verify(loads_network(TRAP), query).holds is expected
+
+
+def test_the_run_leads_to_where_the_inner_formula_holds():
+    outcome = verify(loads_network(TRAP), "A[] (A.open imply EF A.start)")
+    assert outcome.run.steps[-1].window.low == 4
+    assert outcome.run.duration > 5
+
+
+@pytest.mark.parametrize(
+    ("query", "expected"),
+    [
+        ("A<> (E<> A.trap)", True),
+        ("AG AF A.start", False),
+        ("EG EF A.trap", True),
+        ("E<>[<=3] (A[] A.trap)", False),
+        ("A[] (A.open imply (A<>[<=3] (E<> A.trap)))", True),
+        ("A.open --> (E<> A.trap)", True),
+        ("A<> deadlock", False),
+        ("A[not A.open U A.start]", True),
+        ("A[A.start U A.open]", False),
+        ("E[not A.open U A.trap]", False),
+        ("E[not A.trap U A.open]", True),
+        ("E[A.start U[<=0] A.open]", False),
+        ("E[A.open W A.trap]", False),
+        ("EX A.open", True),
+        ("AX (A.open and EX A.trap)", True),
+        ("(E<> A.trap) imply (A<> A.trap)", False),
+        ("EF[<=5] A.trap or EF[<=6] A.trap", True),
+    ],
+)
+def test_all_of_ctl_is_decided(query, expected):
+    assert verify(loads_network(TRAP), query).holds is expected
+
+
+def test_a_formula_decided_backwards_meets_what_breaks_a_range():
+    network = loads_network(
+        "int[0,1] v\nautomaton A { location a start a edge a -> a do v = v + 1 }"
+    )
+    with pytest.raises(ModelError) as caught:
+        verify(network, "EG EF A.a")
+    assert caught.value.diagnostics[0].code == "TA007"
+
+
+def test_what_speaks_of_no_run_is_refused():
+    with pytest.raises(ModelError) as caught:
+        verify(loads_network(TRAP), "A.open")
+    assert caught.value.diagnostics[0].code == "TA020"
+
+
+def test_a_nest_without_brackets_is_fixed():
+    with pytest.raises(ModelError) as caught:
+        verify(loads_network(TRAP), "A[] (A.open or A<> A.trap)")
+    assert "brackets: (A<> …)" in caught.value.diagnostics[0].help

@@ -1,0 +1,220 @@
+"""Small networks show each rule of the step by what can and cannot be reached."""
+
+import pytest
+
+from rvmon.errors import ModelError
+from rvmon.models.language.elaborate import asked_on
+from rvmon.models.language.load import loads_network
+from rvmon.models.runs.run import Window
+from rvmon.models.runs.statistics import sample
+from rvmon.models.search.meter import Policy
+from rvmon.models.search.verify import verify
+
+PAIR = """
+{kind}chan c
+clock x
+int[0,3] heard
+automaton Sender {{ location s location t start s edge s -> t on c! }}
+automaton Left {{ location l location m start l edge l -> m on c? do heard = heard + 1 }}
+automaton Right {{ location l location m start l edge l -> m on c? do heard = heard * 2 }}
+"""
+TWO = """
+clock x
+automaton A {{ {kind} location a location b start a edge a -> b }}
+automaton B {{ location a location b start a edge a -> b }}
+"""
+WRITTEN = """
+chan c
+int[0,5] v
+automaton A {{ location a location b start a edge a -> b on c! do v = 2 }}
+automaton B {{ location a location b start a edge a -> b {receives} }}
+"""
+BLOCKED = """
+clock x
+automaton A {{
+  location a
+  location b invariant x <= 1
+  start a
+  edge a -> b when x >= 2 {update}
+}}
+"""
+RADIO = """
+urgent broadcast chan c
+clock x
+automaton A { location a location b start a edge a -> b on c! }
+automaton B { location a start a edge a -> a on c? }
+"""
+SET = """
+clock x, y
+automaton A { location a location b start a edge a -> b when x <= 1 do x = 5 }
+"""
+STRICT = """
+clock x
+automaton A { location a location b start a edge a -> b when x > 1 and x < 2 }
+"""
+ARRAYS = """
+chan c[3]
+int[0,2] who, list[3] = {2, 0, 1}
+automaton A { location a location b start a edge a -> b on c[list[who]]! do who = 1 }
+automaton B {
+  int[0,2] got
+  location a
+  start a
+  edge a -> a select i : int[0,2] on c[i]? do got = i
+}
+"""
+RANKS = """
+broadcast chan c
+{ranks}
+automaton Q {{ location q  location r  start q  edge q -> r {on} }}
+automaton P {{ location p  location s  start p  edge p -> s }}
+system Q < P
+"""
+
+RULES = {
+    "a binary channel has one receiver, never both": (
+        PAIR.format(kind=""),
+        {"E<> Left.m": True, "E<> Right.m": True, "E<> Left.m and Right.m": False},
+    ),
+    "a broadcast takes all that can receive, in the order of the automata": (
+        PAIR.format(kind="broadcast "),
+        {
+            "E<> Sender.t and not (Left.m and Right.m)": False,
+            "E<> heard == 2": True,
+            "E<> heard == 1": False,
+        },
+    ),
+    "a receiver's update sees what the sender has written": (
+        WRITTEN.format(receives="on c? do v = v + 1"),
+        {"A[] (A.b imply v == 3)": True},
+    ),
+    "a receiver's guard sees the variables as they were before the step": (
+        WRITTEN.format(receives="when v == 2 on c?"),
+        {"E<> A.b": False},
+    ),
+    "time passes beside a channel": (PAIR.format(kind=""), {"E<> x > 0 and Sender.s": True}),
+    "an urgent channel stops it": (PAIR.format(kind="urgent "), {"E<> x > 0 and Sender.s": False}),
+    "an urgent broadcast stops it as soon as its sender can send": (
+        RADIO,
+        {"E<> A.a and x > 0": False, "E<> A.b and x > 0": True},
+    ),
+    "an urgent location stops it, and lets other steps go": (
+        TWO.format(kind="urgent"),
+        {"E<> A.a and x > 0": False, "E<> A.b and x > 0": True, "E<> A.a and B.b": True},
+    ),
+    "a committed location stops it, and goes first": (
+        TWO.format(kind="committed"),
+        {"E<> A.a and x > 0": False, "E<> A.b and x > 0": True, "E<> A.a and B.b": False},
+    ),
+    "a step whose target's invariant would be false is not taken": (
+        BLOCKED.format(update=""),
+        {"E<> A.b": False},
+    ),
+    "it is behind the update that the invariant counts": (
+        BLOCKED.format(update="do x = 0"),
+        {"E<> A.b": True},
+    ),
+    "a clock may be set to a number, and runs on from there": (
+        SET,
+        {
+            "E<> A.b and x == 5 and y <= 1": True,
+            "E<> A.b and x < 5": False,
+            "E<> A.b and x == 7 and y > 3": False,
+            "E<> A.b and x == 7 and y == 3": True,
+        },
+    ),
+    "strict bounds exclude the number itself": (
+        STRICT,
+        {"E<> A.b and x <= 1": False, "E<>[<=1] A.b": False, "E<>[<=2] A.b": True},
+    ),
+    "bounds may leave nothing": (STRICT.replace("x < 2", "x <= 1"), {"E<> A.b": False}),
+    "elements chosen by a variable are found as if they were named": (
+        ARRAYS,
+        {"A[] (A.b imply B.got == 2)": True, "A[] (A.b imply list[who] == 0)": True},
+    ),
+    **{
+        f"P is above Q unless Q's channel is above steps without one: {ranks} {on}": (
+            RANKS.format(ranks=ranks, on=on),
+            {"E<> Q.r and P.p": first},
+        )
+        for ranks, on, first in (
+            ("", "", False),
+            ("", "on c!", False),
+            ("chan priority default < c", "on c!", True),
+            ("chan priority c < default", "on c!", False),
+        )
+    },
+}
+
+
+@pytest.mark.parametrize("rule", RULES)
+def test_a_step_is_taken_by_its_rule(rule):
+    text, answers = RULES[rule]
+    network = loads_network(text)
+    assert {query: verify(network, query).holds for query in answers} == answers
+
+
+def test_weights_below_one_make_the_likeliest_run():
+    """The likeliest run avoids an improbable edge even if more steps are needed."""
+    network = loads_network("""
+    automaton A {
+      location a location b location c
+      start a
+      edge a -> c weight 0.1
+      edge a -> b weight 0.9
+      edge b -> c weight 0.5
+    }
+    """)
+    steps = {policy: len(verify(network, "E<> A.c", policy=policy).run.steps) for policy in Policy}
+    assert steps == {Policy.SHORTEST: 1, Policy.FASTEST: 1, Policy.LIKELIEST: 2}
+
+
+def test_a_step_waits_for_those_of_higher_priority():
+    """What is possible at an instant by guards keeps back what is lower, and only then."""
+    network = loads_network("""
+    clock x
+    broadcast chan low, high
+    chan priority low < default < high
+    automaton A {
+      location a  location b  location c  location d invariant x <= 3
+      start a
+      edge a -> b on low!
+      edge a -> c when x >= 2 on high!
+      edge a -> d when x <= 1
+    }
+    """)
+    assert verify(network, "E<> A.b and x > 1").holds
+    assert verify(network, "E<> A.d").holds
+    # From 2 on `high` can be taken, up to 1 the edge without a channel: `low` between only.
+    between = asked_on(network, "Pr[<=9; 20]([] not (A.b and x <= 1))")[1]
+    assert sample(network, between).value == 1
+
+
+def test_what_cannot_be_entered_keeps_nothing_back():
+    """A step of high priority needs the invariant behind it, now or with other values."""
+    text = """
+    clock x
+    int[0,9] v
+    broadcast chan high
+    chan priority default < high
+    automaton A {
+      location a  location b invariant x <= v  location c
+      start a
+      edge a -> b on high! do v = 2
+      edge a -> c
+    }
+    """
+    run = verify(loads_network(text), "E<> A.c").run
+    assert run.steps[0].window == Window(2, None, low_strict=True)
+
+
+def test_what_fails_keeps_back_and_is_told():
+    """A step of high priority whose update has no value is an error, not a way for others."""
+    text = """
+    int[0,1] v
+    broadcast chan high
+    chan priority default < high
+    automaton A { location a  location b  start a  edge a -> a on high! do v = v + 1  edge a -> b }
+    """
+    with pytest.raises(ModelError, match="outside"):
+        verify(loads_network(text), "E<> A.b")

@@ -1,0 +1,127 @@
+"""Zeno loops, time-locks and deadlocks are told apart and said to be what they are."""
+
+import pytest
+
+from rvmon.errors import ModelError
+from rvmon.models.language.load import loads_network
+from rvmon.models.runs.run import Ending
+from rvmon.models.search.verify import verify
+
+LOOP = """
+clock x
+automaton A {{
+  location a invariant x <= 5
+  location b
+  start a
+  edge a -> a {first}
+  edge a -> b when x >= 5
+}}
+"""
+
+
+def test_a_zeno_loop_is_called_one():
+    """A loop in which time cannot pass on is no plain counterexample."""
+    outcome = verify(loads_network(LOOP.format(first="")), "A<> A.b")
+    assert outcome.holds is False
+    assert outcome.run.ending is Ending.ZENO_LOOP
+    assert "Zeno" in outcome.remark
+
+
+CONVERGING = """
+clock x, total
+automaton A {
+  location a invariant total <= 3
+  location b
+  start a
+  edge a -> a when x > 0 do x = 0
+  edge a -> b when total == 3
+}
+"""
+LOCKED = """
+clock x
+automaton A {
+  location a
+  location b invariant x <= 3
+  location c
+  start a
+  edge a -> b when x <= 4
+  edge b -> c when x <= 1
+}
+"""
+IDLE = "automaton A { location a location b start a edge a -> b }"
+
+ENDINGS = {
+    "if the loop resets the clock, time passes and the run is a real one": (
+        *(LOOP.format(first="do x = 0"), "A<> A.b", Ending.LOOP),
+    ),
+    "where a Zeno loop and a real loop both avoid the goal, the real one is shown": (
+        *(LOOP.format(first="edge a -> a when x >= 1 do x = 0"), "A<> A.b", Ending.LOOP),
+    ),
+    "delays that must shrink from round to round add up to less than a bound": (
+        *(CONVERGING, "A<> A.b", Ending.ZENO_LOOP),
+    ),
+    "a state that must be left but cannot be is a time-lock": (
+        *(LOCKED, "A[] not (deadlock and A.b)", Ending.TIME_LOCK),
+    ),
+    "and so it is where something is awaited": (LOCKED, "A.b --> A.c", Ending.TIME_LOCK),
+    "a state that nothing leaves while time goes on is a deadlock": (
+        *(IDLE, "A[] not deadlock", Ending.DEADLOCK),
+    ),
+    "idling there is a run": (IDLE, "A<> A.b", Ending.IDLE),
+}
+
+
+@pytest.mark.parametrize("name", ENDINGS)
+def test_a_run_that_refutes_is_told_by_how_it_ends(name):
+    text, query, ending = ENDINGS[name]
+    outcome = verify(loads_network(text), query)
+    assert (outcome.holds, outcome.run.ending) == (False, ending)
+
+
+def test_a_deadlock_in_part_of_a_zone_is_found():
+    """Only some clock values are stuck; simulation would overlook or invent it."""
+    text = """
+    clock x, y
+    automaton A {
+      location a invariant y <= 3
+      location b invariant y <= 3
+      start a
+      edge a -> b when x >= 1 do x = 0
+      edge b -> b when x == 2 do x = 0, y = 0
+    }
+    """
+    network = loads_network(text)
+    assert verify(network, "E<> A.b and y <= 1 and not deadlock").holds
+    outcome = verify(network, "E<> A.b and deadlock")
+    assert outcome.holds
+    assert outcome.run.steps[0].window.low == 1
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "clock x automaton A { location a invariant x < 0 start a }",
+        "int[0,1] v automaton A { location a invariant v == 1 start a }",
+    ],
+)
+def test_a_model_that_cannot_start_is_refused(text):
+    with pytest.raises(ModelError) as caught:
+        verify(loads_network(text), "E<> A.a")
+    (diagnostic,) = caught.value.diagnostics
+    assert diagnostic.code == "TA014"
+    assert diagnostic.spans
+    assert diagnostic.help
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "clock x automaton A { location a invariant x < 3 start a edge a -> a when x > 3 }",
+        "automaton A { urgent location a start a }",
+    ],
+)
+def test_a_time_lock_at_the_start_is_an_answer(text):
+    network = loads_network(text)
+    assert verify(network, "E<> deadlock").run.ending is Ending.TIME_LOCK
+    assert not verify(network, "A[] not deadlock").holds
+    assert verify(network, "E[] A.a").holds

@@ -1,0 +1,98 @@
+"""Runs come with the exact window of each wait, and any choice inside the windows is a run."""
+
+from fractions import Fraction
+
+import pytest
+
+from rvmon.models.language.load import loads_network
+from rvmon.models.runs.concrete import InvalidRunError, Rules
+from rvmon.models.runs.run import Run, RunStep, Window
+from rvmon.models.runs.timing import TimedStep, earliest, timing_of
+from rvmon.models.search.meter import Policy
+from rvmon.models.search.verify import verify
+
+RELAY = """
+clock x, y
+automaton A {
+  location a invariant x <= 5
+  location b invariant x <= 7
+  location c
+  start a
+  edge a -> b when x >= 2 do y = 0
+  edge b -> c when y > 1 and x < 7
+}
+"""
+
+
+def test_windows_are_exact():
+    """Each wait's window holds all and only the durations that some run has."""
+    run = verify(loads_network(RELAY), "E<> A.c").run
+    assert [step.window for step in run.steps] == [
+        Window(2, 5, False, False),
+        Window(1, 5, True, True),
+    ]
+    assert run.steps[0].delay == 2
+    assert run.steps[1].delay in run.steps[1].window
+
+
+def test_impossible_paths_have_no_timing():
+    """A path that no run can follow is recognised, also if only strictness forbids it."""
+    above, below = (1, 0, -2 - 2.0**-20), (0, 1, 2.0)
+    assert timing_of([TimedStep(True, (above, below), (), ())]) is None
+    assert timing_of([TimedStep(True, ((1, 0, -2.0), below), (), ())]) is not None
+
+
+def test_earliest_is_the_least_of_all():
+    steps = [
+        TimedStep(True, ((1, 0, -2.0),), (), ()),
+        TimedStep(True, ((1, 0, -3 - 2.0**-20),), (), ()),
+    ]
+    first, second = earliest(timing_of(steps))
+    assert first == 2
+    assert 1 < second < Fraction(3, 2)
+
+
+@pytest.mark.parametrize("position", [0, 1])
+def test_a_wrong_delay_is_no_run(position):
+    """The plain rules reject a run with one delay outside its window."""
+    network = loads_network(RELAY)
+    run = verify(network, "E<> A.c").run
+    steps = list(run.steps)
+    broken = steps[position]
+    wide = Window(0, None)
+    steps[position] = RunStep(wide, Fraction(1, 2), broken.action, broken.position)
+    with pytest.raises(InvalidRunError):
+        Rules(network).replay(Run(run.start, tuple(steps)))
+
+
+def test_fastest_beats_shortest():
+    network = loads_network("""
+    clock x
+    automaton A {
+      location a
+      location b
+      location c
+      start a
+      edge a -> c when x >= 9
+      edge a -> b when x >= 1
+      edge b -> c when x >= 2
+    }
+    """)
+    runs = {policy: verify(network, "E<> A.c", policy=policy).run for policy in Policy}
+    assert (len(runs[Policy.SHORTEST].steps), runs[Policy.SHORTEST].duration) == (1, 9)
+    assert (len(runs[Policy.FASTEST].steps), runs[Policy.FASTEST].duration) == (2, 2)
+
+
+def test_the_fastest_run_counts_the_goal_too():
+    network = loads_network("""
+    clock x
+    automaton A {
+      location a
+      location b
+      start a
+      edge a -> b when x >= 1 do x = 0
+      edge a -> b when x >= 2
+    }
+    """)
+    run = verify(network, "E<> A.b and x >= 5", policy=Policy.FASTEST).run
+    assert run.duration == 5

@@ -1,0 +1,220 @@
+"""The same data in every format of messages, written by the libraries of that format."""
+
+import gc
+import json
+import random
+import sqlite3
+import struct
+
+import pytest
+from tests.rvmon.recordings.messages.flatbuffers import (
+    message_of,
+    packed,
+    schema_of,
+    write_flatbuffer_mcap,
+)
+from tests.tools.bags import (
+    HEADER,
+    OF_MESSAGES,
+    SHOP,
+    START,
+    sent_at_random,
+    write_csv,
+    write_json_mcap,
+    write_ros1,
+    write_ros2,
+)
+
+import rvmon
+from rvmon.cli import main
+from rvmon.recordings.messages.flatbuffer import FlatBuffers
+
+pytest.importorskip("rosbags")
+pytest.importorskip("mcap_protobuf")
+
+
+FORMATS = {
+    **OF_MESSAGES,
+    "d.mcap": lambda path, sent: write_json_mcap(path, sent, encoding="msgpack"),
+    "e.mcap": lambda path, sent: write_json_mcap(path, sent, encoding="cbor", schemas=False),
+    "bz2.bag": lambda path, sent: write_ros1(path, sent, compression="bz2"),
+    "lz4.bag": lambda path, sent: write_ros1(path, sent, compression="lz4"),
+    "f.mcap": write_flatbuffer_mcap,
+}
+"""By the name of a recording."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", FORMATS)
+def test_the_same_data_gives_the_records_that_csv_gives(tmp_path, name):
+    spec = rvmon.loads(SHOP)
+    verdicts = set()
+    for seed in range(4):
+        sent = sent_at_random(random.Random(seed), 120)
+        table = write_csv(tmp_path / f"{seed}.csv", sent, HEADER)
+        folder = tmp_path / str(seed)
+        folder.mkdir()
+        path = FORMATS[name](folder / name, sent)
+        expected, found = spec.evaluate(table), spec.evaluate(path)
+        assert found.attempts == expected.attempts
+        assert (found.verdicts, found.end) == (expected.verdicts, expected.end)
+        assert repr(found.health) == repr(expected.health)
+        assert repr(samples(spec, path)) == repr(samples(spec, table))
+        verdicts |= {str(attempt.verdict) for attempt in found.attempts}
+    assert {"P", "F"} <= verdicts
+    gc.collect()  # a file that was left open would be told
+
+
+def samples(spec, path):
+    return [(sample.t, sorted(sample.values.items())) for sample in spec.recording(path)]
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_a_deadline_runs_out_while_other_topics_go_on(tmp_path, name):
+    """A recording ends with its last message, also of a topic that nothing is declared for."""
+    sent = [("/go", START, {}), ("/speed", START + 10**9, {"data": 1.0})]
+    path = FORMATS[name](tmp_path / name, sent)
+    spec = rvmon.loads("spec s\nevent go\nrequirement R\n upon go then for 500 ms go")
+    assert spec.evaluate(path).verdicts["R"] == "F"
+    spec = rvmon.loads("spec s\nevent go\nrequirement R\n upon go then within 500 ms (not go)")
+    assert spec.evaluate(path).verdicts["R"] == "P"
+    assert spec.evaluate(path).end == START + 10**9
+
+
+def test_tables_in_tables_and_arrays_of_flatbuffers_are_read(tmp_path):
+    pose, later = {"x": 1.5, "frame": "map"}, {"x": 0.0, "frame": "odom"}
+    sent = [
+        ("/arm", START, {"pose": pose, "ranges": [3.0, 0.5], "on": True}),
+        (
+            "/arm",
+            START + 10**9,
+            {"pose": later, "ranges": [2.0], "on": False},
+        ),
+    ]
+    path = write_flatbuffer_mcap(tmp_path / "a.mcap", sent)
+    spec = tmp_path / "a.rv"
+    spec.write_text(
+        "signal x, near : real\nsignal on : bool\nsignal frame : {map, odom}\nrequirement R\n"
+        "  always ((on -> x == 1.5 and near == 0.5) and (frame == odom -> x == 0 and near == 2))\n"
+    )
+    values = {"x": "pose.x", "near": "min(ranges)", "on": "on", "frame": "pose.frame"}
+    binding = tmp_path / "a.toml"
+    binding.write_text(
+        "".join(f'[bind.{name}]\ntopic = "/arm"\nvalue = "{own}"\n' for name, own in values.items())
+    )
+    report = rvmon.load(spec).evaluate(path, binding=binding)
+    assert report.verdicts["R"] == "P"
+    assert [one.t for one in samples_of(spec, path, binding)] == [START, START + 10**9]
+
+
+def samples_of(spec, path, binding):
+    return list(rvmon.load(spec).recording(path, binding=binding))
+
+
+def test_damaged_flatbuffers_are_told(tmp_path):
+    rng = random.Random(5)
+    fields = {"x": 1.5, "name": "map", "inner": {"y": 2.0, "on": True}, "all": [1.0, 2.0]}
+    schema, message = schema_of("a.B", fields), packed(message_of(fields))
+    whole = FlatBuffers(schema, "a.B").decode(message)
+    assert whole | {"all": list(whole["all"])} == fields
+    told = set()
+    for _ in range(3_000):
+        both = [bytearray(schema), bytearray(message)]
+        hurt = both[rng.random() < 0.5]
+        hurt[rng.randrange(len(hurt))] = rng.choice([0, 1, 127, 255, rng.randrange(256)])
+        try:
+            FlatBuffers(bytes(both[0]), "a.B").decode(bytes(both[1]))
+        except (ValueError, IndexError, KeyError, struct.error) as error:
+            told.add(type(error))
+    assert len(told) > 1
+
+
+def test_an_older_bag_of_ros_2_needs_no_definitions_of_what_ros_brings_along(tmp_path):
+    """Bags of sqlite3 have their definitions from version 7 on."""
+    sent = [("/speed", START, {"data": 1.0}), ("/pick", START + 1, {"id": 1})]
+    path = write_ros2(tmp_path / "old", sent, "sqlite3", 8)
+    import apsw
+
+    database = apsw.Connection(str(path / "old.db3"))
+    database.execute("UPDATE schema SET schema_version = 3")
+    database.close()
+    spec = rvmon.loads("spec s\nsignal speed : real\nrequirement R\n  always speed < 2\n")
+    assert spec.evaluate(path).verdicts["R"] == "P"
+    assert spec.evaluate(path / "old.db3").verdicts["R"] == "P"
+    spec = rvmon.loads("spec s\nevent pick\nrequirement R\n  upon pick then for 1 ms pick\n")
+    with pytest.raises(rvmon.TraceError, match=r"/pick \(shop_msgs/msg/Pick\).*`definitions`"):
+        spec.evaluate(path)
+
+
+def test_a_file_of_json_without_schemas_or_index_is_read(tmp_path):
+    from mcap.writer import IndexType
+
+    sent = [("/speed", START + t * 10**7, {"data": t / 10}) for t in range(9)]
+    for options in ({}, {"index_types": IndexType.NONE, "use_summary_offsets": False}):
+        path = write_json_mcap(tmp_path / "a.mcap", sent, schemas=False, **options)
+        spec = rvmon.loads("spec s\nsignal speed : real\nrequirement R\n  always speed < 0.75\n")
+        report = spec.evaluate(path)
+        assert report.verdicts["R"] == "F"
+        assert report.end == START + 8 * 10**7
+
+
+@pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
+def test_a_folder_is_read_as_the_command_reads_it(tmp_path, capsys, plugin):
+    sent = sent_at_random(random.Random(1), 60)
+    (tmp_path / "shop.rv").write_text(SHOP)
+    spec = rvmon.load(tmp_path / "shop.rv")
+    folder = write_ros2(tmp_path / "bag", sent, plugin)
+    for is_closed in (True, False):
+        if not is_closed:
+            (folder / "metadata.yaml").unlink()
+        report = spec.evaluate(folder)
+        assert main(["run", str(tmp_path / "shop.rv"), str(folder), "--format", "json"]) == 1
+        [told] = [json.loads(line) for line in capsys.readouterr().out.splitlines()]
+        verdicts = {name: one["verdict"] for name, one in told["requirements"].items()}
+        assert verdicts == {name: one.value for name, one in report.verdicts.items()}
+        assert (told["origin"], told["end"]) == (report.origin, report.end)
+    write_ros2(folder / "more", sent, plugin)
+    with pytest.raises(rvmon.TraceError, match="holds 2 recordings"):
+        spec.evaluate(folder)
+
+
+@pytest.mark.parametrize("distribution", ["ROS2_DASHING", "ROS2_FOXY", "ROS2_HUMBLE", "LATEST"])
+def test_a_bag_without_definitions_is_read_by_those_of_its_distribution(tmp_path, distribution):
+    """`sensor_msgs/Range` got a field after Humble; older bags hold no definitions."""
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores[distribution])
+    kinds = store.types
+    stamp = kinds["builtin_interfaces/msg/Time"](1, 0)
+    rest = (0.5,) if distribution == "LATEST" else ()
+    header = kinds["std_msgs/msg/Header"](stamp, "sonar")
+    said = kinds["sensor_msgs/msg/Range"](header, 0, 0.5, 0.25, 8.0, 1.5, *rest)
+    path = write_ros2(tmp_path / "bag", [("/speed", START, {"data": 1.0})], "sqlite3", version=8)
+    [file] = path.glob("*.db3")
+    with sqlite3.connect(file) as base:
+        base.execute("UPDATE topics SET name = '/sonar', type = 'sensor_msgs/msg/Range'")
+        raw = bytes(store.serialize_cdr(said, "sensor_msgs/msg/Range"))
+        base.execute("UPDATE messages SET data = ?", (raw,))
+    base.close()
+    metadata = path / "metadata.yaml"
+    text = metadata.read_text().replace("name: /speed", "name: /sonar")
+    metadata.write_text(text.replace("std_msgs/msg/Float64", "sensor_msgs/msg/Range"))
+    text = "spec s\nsignal sonar.range : real\nrequirement R\n always sonar.range == 1.5"
+    spec = rvmon.loads(text)
+    assert spec.evaluate(path).verdicts["R"] == "P"
+
+
+def test_a_definition_that_lacks_a_part_is_a_fault_of_its_topic(tmp_path, capsys):
+    from mcap.writer import Writer
+
+    path = tmp_path / "a.mcap"
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        kind = writer.register_schema("shop_msgs/msg/Tool", "ros2msg", b"shop_msgs/msg/Grip grip\n")
+        channel = writer.register_channel("/tool", "cdr", kind)
+        writer.add_message(channel, START, b"\0\1\0\0\1", START)
+        writer.finish()
+    assert main(["init", str(path)]) == 2
+    told = "`tool`: the definition of its messages names shop_msgs/msg/Grip, and does not say"
+    assert told in capsys.readouterr().err

@@ -1,0 +1,382 @@
+"""Logs of vehicles and measurements: the records of CSV, and never green where they are damaged."""
+
+import random
+import re
+import struct
+
+import pytest
+from tests.tools.logs import (
+    write_can,
+    write_csv,
+    write_dataflash,
+    write_hdf5,
+    write_mat,
+    write_mdf,
+    write_tlog,
+    write_ulog,
+)
+
+import rvmon
+from rvmon.cli import main
+from rvmon.errors import TraceError
+from rvmon.recordings.recording import messages_of
+
+FORMS = {
+    "a.ulg": (write_ulog, "drive", "pyulog"),
+    "a.bin": (write_dataflash, "DRV", "pymavlink"),
+    "a.tlog": (write_tlog, "VFR_HUD", "pymavlink"),
+    "a.asc": (write_can, "Drive", "can"),
+    "a.blf": (write_can, "Drive", "can"),
+    "a.log": (write_can, "Drive", "can"),
+    "a.mf4": (write_mdf, "drive", "asammdf"),
+    "a.h5": (write_hdf5, "drive", "h5py"),
+    "a.mat": (write_mat, "drive", "scipy"),
+}
+"""By the name of a recording what writes it, what its topic is called, what reads it."""
+
+OF_ALL, OF_CAN = (1, 1_003, 10_000), (15_625, 31_250)
+"""Microseconds between messages; logs of CAN count from their start, and BLF drops fractions."""
+
+SPEC = """
+spec drive
+signal {0}.speed : real [m/s]
+signal {0}.mode : int
+
+requirement R1
+  always {0}.speed < 1.25 m/s
+requirement R2
+  upon {0}.mode == 3
+  then within 20 ms {0}.speed < 0.5 m/s
+requirement R3
+  upon {0}.mode == 1
+  then for 5 ms {0}.mode != 2
+"""
+
+
+def rows_at_random(seed, count=150, steps=OF_ALL):
+    rng = random.Random(seed)
+    t, rows = 1_000_000, []
+    for _ in range(count):
+        t += rng.choice(steps)
+        rows.append((t, rng.choice([0.0, 0.25, 1.0, 1.125, 1.5]), rng.randrange(5)))
+    return rows
+
+
+def written(folder, name, rows):
+    """A recording, and the specification that reads it."""
+    write, topic, package = FORMS[name]
+    pytest.importorskip(package)
+    folder.mkdir(exist_ok=True)
+    path = write(folder / name, rows)
+    return path, topic
+
+
+def spec_of(topic, name):
+    spec = rvmon.loads(SPEC.format(topic))
+    if name != "a.tlog":
+        return spec
+    return spec.reading(
+        columns={f"{topic}.speed": f"/{topic}.airspeed", f"{topic}.mode": f"/{topic}.throttle"}
+    )
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_a_log_gives_the_records_that_csv_gives(tmp_path, name):
+    verdicts = set()
+    for seed in range(2):
+        rows = rows_at_random(seed, steps=OF_CAN if name in ("a.asc", "a.blf") else OF_ALL)
+        path, topic = written(tmp_path / str(seed), name, rows)
+        first = next(messages_of(str(path)).read({f"/{topic}"}))[1] // 1_000 - rows[0][0]
+        rows = [(t + first, speed, mode) for t, speed, mode in rows]
+        table = write_csv(tmp_path / f"{seed}.csv", rows, topic)
+        spec, plain = spec_of(topic, name), rvmon.loads(SPEC.format(topic))
+        found, expected = spec.evaluate(path), plain.evaluate(table)
+        assert found.attempts == expected.attempts
+        assert (found.verdicts, found.end) == (expected.verdicts, expected.end)
+        verdicts |= {str(attempt.verdict) for attempt in found.attempts}
+    assert {"P", "F"} <= verdicts
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_what_is_cut_off_is_never_green(tmp_path, name):
+    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
+    path, topic = written(tmp_path / "a", name, rows)
+    spec, data = spec_of(topic, name), path.read_bytes()
+    assert spec.evaluate(path).verdicts["R1"] == "P"
+    rng, judged = random.Random(1), 0
+    for _ in range(10):
+        path.write_bytes(data[: rng.randrange(1, len(data))])
+        try:
+            report = spec.evaluate(path)
+        except TraceError:
+            continue
+        judged += 1
+        assert report.verdicts["R1"] == "I" or is_whole(path.read_bytes(), data, name, len(rows))
+    assert judged or name in ("a.mf4", "a.h5", "a.mat", "a.blf")
+
+
+def is_whole(cut, data, name, count):
+    """Whether it was cut just between two messages, which nothing in such a log can tell."""
+    if name in ("a.asc", "a.log"):
+        return cut.endswith(b"\n")
+    size = {"a.ulg": 18, "a.bin": 16, "a.tlog": len(data) // count}[name]
+    return (len(data) - len(cut)) % size == 0
+
+
+@pytest.mark.parametrize("name", ["a.bin", "a.tlog"])
+def test_what_is_damaged_in_the_middle_is_an_outage(tmp_path, name):
+    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
+    path, topic = written(tmp_path / "a", name, rows)
+    spec, data = spec_of(topic, name), bytearray(path.read_bytes())
+    middle = len(data) // 2
+    data[middle : middle + 40] = bytes(40)
+    path.write_bytes(data)
+    report = spec.evaluate(path)
+    assert report.verdicts["R1"] == "I"
+    assert any(
+        "no message at byte" in one.remark or "no packet" in one.remark for one in report.health
+    )
+    rows[3] = (rows[3][0], 7.0, 0)
+    data[: len(path.read_bytes())] = written(tmp_path / "a", name, rows)[0].read_bytes()
+    data[middle : middle + 40] = bytes(40)
+    path.write_bytes(data)
+    assert spec.evaluate(path).verdicts["R1"] == "F"
+
+
+def test_what_the_logger_dropped_is_an_outage(tmp_path):
+    pytest.importorskip("pyulog")
+    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
+    spec = spec_of("drive", "a.ulg")
+    path = write_ulog(tmp_path / "a.ulg", rows, drops=[(100, 30)])
+    report = spec.evaluate(path)
+    assert report.verdicts["R1"] == "I"
+    [found] = [one for one in report.health if one.remark == "the logger dropped messages"]
+    assert found.first == 1_100_000_000
+    assert spec.robustness(path).attempts
+
+
+@pytest.mark.parametrize("drops", [[], [(100, 30)]])
+def test_what_one_of_several_files_lost_is_lost_of_their_recording(tmp_path, drops):
+    pytest.importorskip("pyulog")
+    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
+    files = [write_ulog(tmp_path / "a.ulg", rows, drops=drops), tmp_path / "b.csv"]
+    files[1].write_text("t,lamp\n1,true\n1.2,true\n")
+    spec = "signal drive.speed : real\nsignal lamp : bool\nrequirement {}\n  always {}"
+    found = [
+        rvmon.loads(spec.format(*one)).evaluate(files).verdicts[one[0]].value
+        for one in (("R1", "drive.speed < 1"), ("R2", "lamp"))
+    ]
+    assert found == (["I", "P"] if drops else ["P", "P"])
+
+
+@pytest.mark.parametrize("name", ["a.ulg", "a.mf4", "a.h5", "a.mat", "a.blf"])
+def test_a_log_whose_head_is_damaged_is_told(tmp_path, name):
+    path, topic = written(tmp_path / "a", name, rows_at_random(1))
+    data = path.read_bytes()
+    path.write_bytes(bytes(64) + data[64:])
+    with pytest.raises(TraceError, match=re.escape(name)):
+        spec_of(topic, name).evaluate(path)
+
+
+def test_messages_without_a_stamp_are_lost_and_those_of_other_topics_are_not(tmp_path):
+    pytest.importorskip("pyulog")
+    path = write_ulog(tmp_path / "a.ulg", [(1_000_000, 0.0, 0), (0, 9.0, 0), (1_001_000, 0.0, 0)])
+    report = spec_of("drive", "a.ulg").evaluate(path)
+    assert any(one.remark == "messages have no stamp" for one in report.health)
+    assert report.verdicts["R1"] == "I"
+
+
+def test_units_that_a_log_says_are_compared(tmp_path):
+    pytest.importorskip("can")
+    path = write_can(tmp_path / "a.asc", rows_at_random(1))
+    for unit, why in (("rad", "is in [m/s]"), ("km/h", "judged as it is")):
+        text = "spec s\nsignal Drive.speed : real [{0}]\nrequirement R\n always Drive.speed < 1 {0}"
+        spec = rvmon.loads(text.format(unit))
+        with pytest.raises(TraceError, match=r"Drive\.speed") as caught:
+            spec.evaluate(path)
+        assert why in str(caught.value)
+
+
+def test_a_database_is_named_in_a_binding_or_lies_beside(tmp_path):
+    pytest.importorskip("can")
+    path = write_can(tmp_path / "a.asc", rows_at_random(1))
+    folder = tmp_path / "elsewhere"
+    folder.mkdir()
+    (tmp_path / "car.dbc").rename(folder / "car.dbc")
+    spec = spec_of("Drive", "a.asc")
+    with pytest.raises(TraceError, match=r"put the database \(\.dbc\) beside it"):
+        spec.evaluate(path)
+    (tmp_path / "b.toml").write_text('definitions = ["elsewhere/car.dbc"]\n')
+    assert spec.evaluate(path, binding=tmp_path / "b.toml").attempts
+
+
+def test_a_group_of_mdf_that_has_fewer_records_than_it_counts_is_told(tmp_path):
+    asammdf = pytest.importorskip("asammdf")
+    path = write_mdf(tmp_path / "a.mf4", [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)])
+    with asammdf.MDF(path) as file:
+        counted = file.groups[0].channel_group.address + 80
+    data = bytearray(path.read_bytes())
+    assert struct.unpack_from("<Q", data, counted) == (6,)
+    struct.pack_into("<Q", data, counted, 7)
+    path.write_bytes(data)
+    with pytest.raises(TraceError, match="holds 6 records of a group, and says itself that it has"):
+        spec_of("drive", "a.mf4").evaluate(path)
+
+
+def test_numbers_to_scale_are_the_nearest_doubles(tmp_path):
+    """33709 hundredths are 337.09, as mavlogdump writes them, and not 337.09000000000003."""
+    pytest.importorskip("pymavlink")
+    rows = [(1_000 * n, n, 0) for n in range(0, 65_536, 5)]
+    path = write_dataflash(tmp_path / "a.bin", rows, "C")
+    found = [content["speed"] for _, _, content in messages_of(str(path)).read({"/DRV"})]
+    assert found == [n / 100 for n in range(0, 65_536, 5)]
+
+
+def test_a_packet_whose_kind_is_damaged_is_lost(tmp_path):
+    dialect = pytest.importorskip("pymavlink.dialects.v20.ardupilotmega")
+    rows = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
+    path = write_tlog(tmp_path / "a.tlog", rows)
+    data, spec = path.read_bytes(), spec_of("VFR_HUD", "a.tlog")
+    assert spec.evaluate(path).verdicts["R1"] == "P"
+    size = len(data) // 6
+    strange = [(data[: 8 + 7] + b"\x60\xea\x00" + data[8 + 10 : size]) for _ in range(2)]
+    path.write_bytes(data[: 3 * size] + strange[0] + data[4 * size :])
+    assert spec.evaluate(path).verdicts["R1"] == "I"
+    for number in (b"\x60\xea\x00", b"\x8e\0\0"):
+        body = data[8 + 1 : 8 + 7] + number + data[8 + 10 : size - 2]
+        checksum = dialect.x25crc(body + b"\x71").crc.to_bytes(2, "little")
+        other = data[: 8 + 1] + body + checksum
+        path.write_bytes(data[:size] + 2 * other + data[size:])
+        assert spec.evaluate(path).verdicts["R1"] == "P"
+        path.write_bytes(data[:size] + other + data[size:])
+        assert spec.evaluate(path).verdicts["R1"] == "I"
+
+
+@pytest.mark.parametrize("ending", ["asc", "trc"])
+def test_a_line_of_can_that_cannot_be_read_is_lost(tmp_path, ending):
+    """The library passes over it; what it said may have failed, and at its neighbours' stamps."""
+    pytest.importorskip("can")
+    rows = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
+    path = write_can(tmp_path / f"a.{ending}", rows)
+    spec, text = spec_of("Drive", "a.asc"), path.read_text()
+    frames = [line for line in text.splitlines() if re.search(r" 0*64 .*3F", line)]
+    assert len(frames) == 6
+    assert spec.evaluate(path).verdicts["R1"] == "P"
+    damaged = frames[3].replace("Rx", "Rq", 1).replace(" DT ", " D\u00a7 ", 1)
+    for broken in (damaged, "\0\0\0" + frames[3][5:], frames[3][:12]):
+        path.write_text(text.replace(frames[3], broken))
+        report = spec.evaluate(path)
+        assert report.verdicts["R1"] == "I"
+        assert any("a line that cannot be read" in one.remark for one in report.health)
+    whole = path.read_text().replace(broken, frames[3])
+    path.write_text(whole.replace(frames[5], damaged))
+    assert spec.evaluate(path).verdicts["R1"] == "I"
+    path.write_text(whole.replace(frames[0], damaged))
+    assert spec.evaluate(path).verdicts["R1"] == "I"
+
+
+def test_lines_of_can_that_are_no_frames_are_no_loss(tmp_path):
+    """Comments, statistics, the state of the chip; an error frame says that nothing came."""
+    pytest.importorskip("can")
+    path = write_can(tmp_path / "a.asc", [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(3)])
+    *head, first, second, third, end = path.read_text().splitlines()
+    others = [
+        "// a comment",
+        "   0.0005 1  Statistic: D 0 R 0 XD 0 XR 0 E 0 O 0 B 0.00%",
+        "   0.0005 CAN 1 Status:chip status error active",
+        "   0.0005 1  ErrorFrame",
+        "   0.0006 log trigger event",
+        "",
+    ]
+    path.write_text("\n".join([*head, first, *others, second, third, end]) + "\n")
+    report = spec_of("Drive", "a.asc").evaluate(path)
+    assert report.verdicts["R1"] == "P"
+    assert not any("cannot be read" in one.remark for one in report.health)
+
+
+CAN_ROWS = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
+
+
+@pytest.mark.parametrize(
+    ("ending", "line", "verdict"),
+    [
+        ("log", "(1.0025) vcan0 20000004#0001000000000000", "I"),
+        ("log", "(1.0025) vcan0 20000006#0003000000000000", "I"),
+        ("log", "DROPCOUNT: dropped 2 CAN frames on 'vcan0' socket (total drops 2)", "I"),
+        ("log", "(1.0025) vcan0 20000004#0004000000000000", "P"),
+        ("log", "(1.0025) vcan0 20000064#0000000000000000", "P"),  # 64 is Drive, too
+        ("trc", "   4)  1002.5 Warng FFFFFFFF 4 00 00 00 02 OVERRUN", "I"),
+        ("trc", "   4   1002.500 ST     Rx - 4 00 00 00 40", "I"),
+        ("trc", "   4   1002.500 ST     Rx - 4 00 00 00 0C", "P"),
+    ],
+)
+def test_what_a_log_of_can_says_of_its_bus(tmp_path, ending, line, verdict):
+    """Frames that found no room are lost; in an error frame nobody said anything."""
+    pytest.importorskip("can")
+    path = write_can(tmp_path / f"a.{ending}", CAN_ROWS)
+    lines = path.read_text().splitlines()
+    path.write_text("\n".join([*lines[:-3], line, *lines[-3:]]) + "\n")
+    report = spec_of("Drive", "a.asc").evaluate(path)
+    assert report.verdicts["R1"] == verdict
+    lost = [one.remark for one in report.health if "frames were lost" in one.remark]
+    assert bool(lost) is (verdict == "I")
+
+
+@pytest.mark.parametrize("kinds", [{1: 125}, {2: 126}, {1: 125, 4: 126}, {6: 125}])
+def test_what_a_binary_log_of_can_lost_is_unknown(tmp_path, kinds):
+    pytest.importorskip("can")
+    path = write_can(tmp_path / "a.blf", CAN_ROWS, kinds)
+    report = spec_of("Drive", "a.blf").evaluate(path)
+    assert [one.remark for one in report.health if "frames were lost" in one.remark]
+    assert report.verdicts["R1"] == "I"
+
+
+def test_states_have_their_names_and_named_values_of_a_number_are_unknown(tmp_path):
+    pytest.importorskip("can")
+    path = write_can(tmp_path / "a.asc", [(1_000_000, 0.5, 1), (1_001_000, 0.25, 7)])
+    text = (tmp_path / "car.dbc").read_text()
+    (tmp_path / "car.dbc").write_text(text + 'VAL_ 100 mode 0 "idle" 1 "busy" ;\n')
+    content = [dict(one) for _, _, one in messages_of(str(path)).read({"/Drive"})]
+    assert [one["mode"] for one in content] == ["busy", "7"]
+    (tmp_path / "car.dbc").write_text(
+        text.replace('255] ""', '255] "m"') + 'VAL_ 100 mode 7 "none" ;\n'
+    )
+    content = [dict(one) for _, _, one in messages_of(str(path)).read({"/Drive"})]
+    assert [one["mode"] for one in content] == [1, None]
+
+
+def test_the_stamps_of_arrays_can_be_named(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w") as file:
+        file["data/when"] = [0, 10, 20]
+        file["data/speed"] = [1.0, 2.0, 3.0]
+    spec = rvmon.loads("spec s\nsignal data.speed : real\nrequirement R\n always data.speed < 3")
+    with pytest.raises(TraceError, match="no array is called as stamps are"):
+        spec.evaluate(path)
+    assert spec.evaluate(path, time="data/when:ms").attempts[0].decided == 20_000_000
+
+
+@pytest.mark.parametrize("name", FORMS)
+def test_first_specifications_are_made_of_it_and_pass(tmp_path, monkeypatch, name):
+    path, _ = written(tmp_path / "a", name, rows_at_random(3))
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", str(path), "-o", "mine.rv"]) == 0
+    assert main(["run", "mine.rv", str(path)]) == 0
+
+
+def test_what_points_down_is_no_height_and_no_climbing(tmp_path, capsys):
+    """In flight z is downwards: a climb rate of its velocity would have the wrong sign."""
+    mavlink = pytest.importorskip("pymavlink.dialects.v20.ardupilotmega")
+    link = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
+    with (tmp_path / "a.tlog").open("wb") as file:
+        for n in range(20):
+            packet = link.local_position_ned_encode(n, 0, 0, -n, 0, 0, -1.0).pack(link)
+            file.write((1_000_000 + n * 1_000).to_bytes(8, "big") + packet)
+    text = "spec s\nsignal climb_rate : real [m/s]\nsignal speed_z : real [m/s]\n"
+    text += "requirement R\n always (climb_rate < 2 m/s and speed_z < 2 m/s)\n"
+    (tmp_path / "a.rv").write_text(text)
+    assert main(["init", str(tmp_path / "a.tlog"), "--for", str(tmp_path / "a.rv")]) == 1
+    told = capsys.readouterr()
+    assert 'value = "vz"' in told.out.partition("[bind.speed_z]")[2]
+    assert "`climb_rate` is left open" in told.err

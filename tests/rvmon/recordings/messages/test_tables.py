@@ -1,0 +1,184 @@
+"""A folder of tables as one recording: joined by time, each file with its own absence."""
+
+import gzip
+import json
+import math
+import random
+
+import pytest
+
+import rvmon
+from rvmon.cli import main
+from rvmon.errors import RvmonError
+from rvmon.recordings.recording import FileRecording
+
+SPEC = """
+spec flight
+signal pose.x, speed : real
+signal pose.q : real
+signal battery.armed : bool
+signal battery.count : int
+signal mode : {idle, fly}
+
+requirement R1
+  always (pose.x < 3 or speed < 0.9)
+requirement R2
+  upon mode == fly
+  then within 2 s (battery.armed and speed > 0.1)
+requirement R3
+  always (battery.count >= 0 -> known(speed))
+"""
+
+ONE = "spec s\nsignal speed : real\nrequirement R1\n  always speed < 1\n"
+
+
+def folder(path, files, topics=""):
+    path.mkdir()
+    for name, text in files.items():
+        (path / name).write_text(text)
+    (path / "topics.toml").write_text(topics)
+    return path
+
+
+def samples(path, **columns):
+    schema = rvmon.loads(SPEC).reading(columns=columns).schema
+    return [(one.t, dict(one.values)) for one in FileRecording(path, schema) if one.values]
+
+
+def test_each_file_says_what_it_says_at_its_own_instants(tmp_path):
+    place = folder(
+        tmp_path / "a",
+        {
+            "pose.csv": "t,x,q[0],q[1],Odd name\n0,1,,,7\n1,2,0.5,\n",
+            "speed.csv": "t,speed\n0.5,0.25\n1,nan\n",
+            "battery.csv": "t,armed,count\n1,0,3\n1.5,1,\n",
+            "mode.csv": "t,mode\n2,fly\n",
+        },
+    )
+    with pytest.raises(rvmon.TraceError, match=r"pose.csv: line 3: 4 cells, and the header has 5"):
+        samples(place)
+    (place / "pose.csv").write_text("t,x,q[0],q[1],Odd name\n0,1,,,7\n1,2,0.5,,\n")
+    found = samples(place, **{"pose.q": "/pose.q[0]"})
+    assert found[:2] == [(0, {"pose.x": 1.0}), (5 * 10**8, {"speed": 0.25})]
+    assert found[2][0] == 10**9
+    assert math.isnan(found[2][1].pop("speed"))
+    assert found[2][1] == {
+        "pose.x": 2.0,
+        "pose.q": 0.5,
+        "battery.armed": False,
+        "battery.count": 3,
+    }
+    assert found[3:] == [(15 * 10**8, {"battery.armed": True}), (2 * 10**9, {"mode": "fly"})]
+
+
+def test_the_same_report_as_of_one_file_of_all(tmp_path):
+    rng = random.Random(3)
+    kinds = {
+        "pose.x": lambda: rng.randrange(5),
+        "speed": lambda: rng.choice([0.0, 0.5, 1.0]),
+        "battery.armed": lambda: rng.random() < 0.5,
+        "battery.count": lambda: rng.randrange(9),
+        "mode": lambda: rng.choice(["idle", "fly"]),
+    }
+    for number in range(30):
+        rows = {"pose.csv": [], "speed.csv": [], "battery.csv": [], "mode.csv": []}
+        lines = []
+        for t in sorted(rng.choices(range(40), k=30)):
+            name = rng.choice([*kinds])
+            value = kinds[name]()
+            cells = json.dumps(value).strip('"')
+            file = f"{name.partition('.')[0]}.csv"
+            if name == "battery.armed":
+                cells += ","
+            elif name == "battery.count":
+                cells = f",{cells}"
+            rows[file].append(f"{t / 10},{cells}\n")
+            lines.append(((t, [*rows].index(file)), {"t": t / 10, name: value}))
+        heads = {"pose": "t,x", "speed": "t,speed", "battery": "t,armed,count", "mode": "t,mode"}
+        files = {
+            f"{name}.csv": f"{head}\n{''.join(rows[f'{name}.csv'])}" for name, head in heads.items()
+        }
+        # As the files are called, where instants are equal.
+        order = sorted(rows)
+        lines.sort(key=lambda one: (one[0][0], order.index([*rows][one[0][1]])))
+        path = tmp_path / f"{number}.jsonl"
+        path.write_text("".join(f"{json.dumps(one)}\n" for _, one in lines))
+        spec = rvmon.loads(SPEC)
+        allowed = {"allow_missing": True}
+        place = folder(tmp_path / str(number), files)
+        assert spec.evaluate(place, **allowed).attempts == spec.evaluate(path, **allowed).attempts
+
+
+def test_a_file_says_which_is_which(tmp_path, capsys):
+    toml = (
+        'time = "stamp:us"\n[topics]\nspeed = "log_speed_0.csv"\n'
+        'mode = {file = "mode.csv.gz", time = "t"}\n'
+        'pose = {file = "pose.csv", type = "geometry_msgs/msg/Point"}\n'
+    )
+    files = {
+        "log_speed_0.csv": "stamp,speed\n1000000,0.5\n",
+        "pose.csv": "stamp,x\n3000000,1\n",
+        "other.csv": "no table\n",
+    }
+    place = folder(tmp_path / "a", files, toml)
+    (place / "mode.csv.gz").write_bytes(gzip.compress(b"t,mode\n2,idle\n"))
+    assert samples(place) == [
+        (10**9, {"speed": 0.5}),
+        (2 * 10**9, {"mode": "idle"}),
+        (3 * 10**9, {"pose.x": 1.0}),
+    ]
+    spec = tmp_path / "a.rv"
+    spec.write_text("spec s\nsignal pose.x : real [m/s]\nrequirement R\n  always pose.x < 2 m/s\n")
+    assert main(["run", str(spec), str(place)]) == 2
+    assert "`pose.x` is declared [m/s], and `x` of topic /pose" in capsys.readouterr().err
+    spec.write_text(ONE + "signal height : real [m]\n")
+    assert main(["init", str(place), "--for", str(spec)]) == 1
+    assert '[bind.speed]  # real\ntopic = "/speed"' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("files", "toml", "message"),
+    [
+        ({}, "", "there is no table: put .csv files"),
+        ({"a.csv": "t,x\n0,1\n"}, "time = ", "topics.toml: no TOML"),
+        ({"a.csv": "t,x\n0,1\n"}, "tme = 3", "topics.toml: no key `tme`: did you mean `time`"),
+        ({"a.csv": "t,x\n0,1\n"}, "[topics]\na = 3", "which file is `a`"),
+        ({"a.csv": "t,x\n0,1\n"}, '[topics]\na = "b.csv"', r"b\.csv: No such file .*a\.csv`"),
+        ({"speed.csv": "time,x\n0,1\n"}, "", r"speed\.csv: expected one time column"),
+        ({"speed.csv": "t,speed\n1,1\n0,1\n"}, "", r"speed\.csv: line 3: time goes backwards"),
+        ({"speed.csv": "t,speed\nzero,1\n"}, "", r"speed\.csv: line 2: "),
+        ({"speed.csv": "t,speed\n0,1e400\n"}, "", r"speed\.csv: `1e400` is too large"),
+        ({"speed.csv": "t,speed\n0,1\n1,fast\n"}, "", "`speed` is declared real, .* holds text"),
+    ],
+)
+def test_what_is_wrong_is_told_with_its_place(tmp_path, files, toml, message):
+    place = folder(tmp_path / "a", files, toml)
+    with pytest.raises(RvmonError, match=message):
+        rvmon.loads(SPEC).evaluate(place, allow_missing=True)
+
+
+def test_commands_take_such_a_folder_for_one_recording(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "s.rv").write_text(ONE)
+    (tmp_path / "runs").mkdir()
+    for name, speed in (("one", 0.5), ("two", 2)):
+        folder(tmp_path / "runs" / name, {"speed.csv": f"t,speed\n0,{speed}\n1,0\n"})
+    assert main(["run", "s.rv", "runs"]) == 1
+    shown = capsys.readouterr().out
+    assert "runs/one  to 1 s" in shown
+    assert "runs/two  to 1 s" in shown
+    assert main(["why", "s.rv", "runs/two", "R1"]) == 0
+    assert main(["run", "s.rv", "runs", "--out", "out.csv", "--resume"]) == 1
+    assert main(["init", "runs/one"]) == 0
+    assert main(["run", "one.rv", "runs/one", "--strict"]) == 0
+    capsys.readouterr()
+    clip = ["clip", "s.rv", "runs/two", "R1#1", "--before", "1s", "-o", "x"]
+    assert main(clip) == 2
+    assert "clip each of them" in capsys.readouterr().err
+
+
+def test_a_file_of_a_topic_whose_last_line_has_no_end_is_refused(tmp_path):
+    """What it says last may be half of what it was."""
+    files = {"speed.csv": "t,speed\n0,0.5\n1,0.9"}
+    with pytest.raises(RvmonError, match=r"speed\.csv: line 3: it has no end: was it cut off"):
+        rvmon.loads(ONE).evaluate(folder(tmp_path / "a", files))

@@ -1,0 +1,59 @@
+"""Stretches of a text are read ahead by threads; nobody sees that but by the clock."""
+
+import threading
+from collections import deque
+
+import pytest
+
+import rvmon
+from rvmon.recordings import places
+from rvmon.recordings.ahead import read_ahead
+
+SPEC = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x < 1e300\n")
+NUMBER = "0.1000000000000000055511151231257827021181583404541015625"
+
+
+def named(name):
+    """The threads that read."""
+    return [one for one in threading.enumerate() if one.name.startswith(name)]
+
+
+@pytest.fixture
+def written(tmp_path, monkeypatch):
+    """A recording of several stretches, and the place to damage it at."""
+    monkeypatch.setattr(places, "BLOCK", 4096)
+    path = tmp_path / "a.csv"
+    path.write_text("t,x\n" + "".join(f"{t},{NUMBER}\n" for t in range(1000)))
+    return path
+
+
+def test_numbers_that_python_reads_are_read_ahead(written):
+    samples = list(SPEC.recording(written))
+    assert [one.values["x"] for one in samples] == [0.1] * 1000
+
+
+def test_what_is_no_text_is_told_in_its_turn(written):
+    with open(written, "ab") as file:
+        file.write(b"1000,\xff\n")
+    found = deque()
+    with pytest.raises(rvmon.TraceError, match="not UTF-8 text"):
+        found.extend(SPEC.recording(written))
+    assert len(found) > 900
+
+
+def test_who_stops_reading_leaves_no_thread(written):
+    samples = iter(SPEC.recording(written))
+    for _ in range(500):
+        next(samples)
+    assert named("rvmon-reads")
+    samples.close()
+    assert not named("rvmon-reads")
+
+
+def test_faults_of_who_reads_are_raised_in_their_turn():
+    found = read_ahead(iter([b"1\n", b"x\n", b"2"]), int)
+    first, second, third = found
+    assert first[1]() == 1
+    with pytest.raises(ValueError, match="x"):
+        second[1]()
+    assert third == (b"2", None)

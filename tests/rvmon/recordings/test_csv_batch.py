@@ -1,0 +1,162 @@
+"""CSV in blocks: what rows say, one by one, whatever is odd and wherever a block ends."""
+
+import csv
+import random
+import struct
+from pathlib import Path
+
+import pytest
+from tests.rvmon.recordings.csv_reference import samples_of_csv
+
+import rvmon
+from rvmon.recordings import csv_batch, places
+from rvmon.recordings.batch import Batch
+
+SPEC = rvmon.loads("""
+spec all "Each kind of value"
+signal p : bool
+signal speed : real
+signal count : int
+signal mode : {idle, pick, place}
+event stop(id: int, part: {arm, hand})
+requirement R1 "a"
+  always (count < 5)
+""")
+SPEC_OF_DATES = "spec s\nsignal p : bool\nrequirement R\n  always p\n"
+HEADER = ["t", "p", "speed", "count", "mode", "stop", "stop.id", "stop.part", "note"]
+ODD = ["", " ", "nan", "NaN", "-1", "7.0", "1e3", "x", '"', 'a"b', "\xa0", "\xa05", "é", "\x1f3"]
+ENDS = ["\n"] * 6 + ["\r\n", "\r", "\n\n", "\n \n", "\r\n\r\n"]
+
+
+def quoted(rng: random.Random, cell: str) -> str:
+    """A cell as it may be written."""
+    if "," in cell or "\n" in cell or "\r" in cell or rng.random() < 0.1:
+        return '"' + cell.replace('"', '""') + '"'
+    return cell
+
+
+def number(rng: random.Random) -> str:
+    """A number as programs write it: short, with all its digits, or with more."""
+    exact = struct.unpack("d", rng.randbytes(8))[0]
+    return rng.choice(
+        [
+            f"{rng.uniform(-9, 9):.3f}",
+            repr(rng.random()),
+            repr(rng.uniform(-1e6, 1e6)),
+            repr(exact),
+            f"{rng.random():.25f}",
+            f"{rng.randrange(10**19)}e-{rng.randrange(25)}",
+            f".{rng.randrange(10**18):018d}",
+        ]
+    )
+
+
+def csv_text(rng: random.Random, oddness: float) -> str:
+    rows, t = [",".join(HEADER)], 0
+    for _ in range(rng.randrange(40)):
+        t += rng.choice([0, 1, 50_000_000, 600_000_000])
+        cells = [
+            f"{t // 10**9}.{t % 10**9:09d}",
+            rng.choice(["1", "0", "true", "FALSE", ""]),
+            number(rng),
+            str(rng.choice([0, 3, -7, 2**63 - 1, rng.randrange(10**9)])),
+            rng.choice(["idle", "pick", "place", "", "lost"]),
+            rng.choice(["1", "0", ""]),
+            rng.choice(["1", "", ""]),
+            rng.choice(["arm", "hand", 'say "a"', "b,c", "d\ne", "f\r\ng", ""]),
+            rng.choice(["anything", "h\ri", "", '"']),
+        ]
+        for place in range(len(cells)):
+            if rng.random() < oddness:
+                cells[place] = rng.choice(ODD)
+        if rng.random() < oddness / 4:
+            cells.append("more") if rng.random() < 0.5 else cells.pop()
+        rows.append(",".join(quoted(rng, cell) for cell in cells))
+    return "".join(row + rng.choice(ENDS) for row in rows)[: rng.choice([-1, None, None])]
+
+
+def read(samples) -> list[tuple[int, str]]:
+    """The samples of a recording, or of what there was before its fault, and that."""
+    made = []
+    try:
+        made += ((one.t, repr(sorted(one.values.items()))) for one in samples)
+    except rvmon.TraceError as error:
+        made.append((-1, str(error)))
+    return made
+
+
+def of_pieces(path: Path):
+    """The samples of a file that is read in columns, in which equal stamps are not merged."""
+    opened = SPEC.recording(path)
+    for piece in opened.pieces():
+        if isinstance(piece, Batch):
+            yield from opened.rows.samples(
+                (0, one.t, one.values) for one in piece.rows(0, len(piece.times))
+            )
+        else:
+            yield piece
+
+
+@pytest.mark.law
+def test_columns_say_what_rows_say(tmp_path, monkeypatch):
+    for seed in range(100):
+        rng = random.Random(seed)
+        (tmp_path / "a.csv").write_text(csv_text(rng, rng.choice([0, 0.01, 0.1])), newline="")
+        expected = read(samples_of_csv(SPEC, tmp_path / "a.csv"))
+        monkeypatch.setattr(places, "BLOCK", rng.choice([1, 7, 100, 999, 1 << 20]))
+        monkeypatch.setattr(csv_batch, "_ODD", 1)
+        monkeypatch.setattr(csv_batch, "_LABELS", 1)
+        assert read(of_pieces(tmp_path / "a.csv")) == expected
+        assert read(SPEC.recording(tmp_path / "a.csv")) == expected
+
+
+CELLS = {
+    "t,p\n0,{}\n": "1 0 true FALSE yes 1.0 -0",
+    "t,count\n0,{}\n": "3 -7 +12 007 0x1F 1.0 9223372036854775808 nan 1_000",
+    "t,speed\n0,{}\n1,0.1\n": "0.1 0.30000000000000004 1e-3 +1.5 -0 .5 5. . inf -inf 1e400 "
+    "1e-400 nan nan(1) 1_0 1e",
+    "t,p\n{},1\n": "1 1.5 1e0 1.000000001 1.0000000001 +1 nan inf 1_0 4611686018.427387904",
+    "t_ns,p\n{},1\n": "1 +1 007 0x1F 1.0 1e3 4611686018427387903 4611686018427387904",
+}
+"""Files with a cell to be filled in, and what is."""
+
+
+@pytest.mark.parametrize(
+    "text", [text.format(cell) for text, cells in CELLS.items() for cell in cells.split()]
+)
+def test_a_cell_is_read_as_in_rows(text, tmp_path):
+    path = tmp_path / "a.csv"
+    path.write_text(text)
+    assert read(SPEC.recording(path)) == read(samples_of_csv(SPEC, path))
+
+
+def test_numbers_are_the_nearest(tmp_path):
+    rng = random.Random(1)
+    texts = [number(rng) for _ in range(20_000)]
+    texts += [f"{2**53 + 1}.{'0' * n}{rest}" for n in range(12) for rest in ("", "1")]
+    texts += ["-0", "-0.0", "5.", ".5", "+5", "1e22", "1e23", "4.9e-324", "2.2250738585072011e-308"]
+    texts = [text for text in texts if text not in ("inf", "-inf", "nan")]
+    with open(tmp_path / "a.csv", "w", newline="") as file:
+        csv.writer(file).writerows([("t", "speed"), *enumerate(texts)])
+    spec = rvmon.loads("spec s\nsignal speed : real\nrequirement R\n  always speed < 1\n")
+    (piece,) = spec.recording(tmp_path / "a.csv").pieces()
+    found = piece.signals["speed"].values.tolist()
+    assert list(map(repr, found)) == [repr(float(text)) for text in texts]
+
+
+@pytest.mark.slow
+def test_dates_are_exact(tmp_path):
+    rng = random.Random(2)
+    texts = []
+    for _ in range(1500):
+        year, month, day = rng.randint(1825, 2115), rng.randint(0, 13), rng.randint(0, 32)
+        clock = f"{rng.randint(0, 25):02d}:{rng.randint(0, 60):02d}:{rng.randint(0, 61):02d}"
+        part = rng.choice(["", ".5", ",25", f".{rng.randrange(10**9):09d}", ".1234567890", "."])
+        zone = rng.choice(["", "Z", "z", " Z", " ", "+02:00", "-23:59", "+24:00", "+0100", "+1"])
+        texts.append(f"{year}-{month:02d}-{day:02d}{rng.choice('T tx')}{clock}{part}{zone}")
+    texts += ["2024-02-29T00:00:00", "1900-02-29T00:00:00", "0000-01-01T00:00:00", "2024-05-01"]
+    spec = rvmon.loads(SPEC_OF_DATES).reading(time="t:iso")
+    path = tmp_path / "a.csv"
+    for text in texts:
+        path.write_text(f"t,p\n{text},1\n")
+        assert read(spec.recording(path)) == read(samples_of_csv(spec, path)), text

@@ -1,0 +1,199 @@
+"""CSV as other tools write it gives the records of plain CSV."""
+
+import random
+
+import pytest
+
+import rvmon
+from rvmon.errors import TraceError
+from rvmon.recordings import csv_dialect
+from rvmon.recordings.csv_dialect import PLAIN, dialect_of
+
+SPEC = """
+spec base
+signal speed : real [m/s]
+signal mode : {idle, busy}
+event stop
+
+requirement R1
+  always speed < 2 m/s
+requirement R2
+  upon stop
+  then within 500 ms speed < 0.5 m/s
+requirement R3
+  always (mode == busy -> speed > 0.25 m/s)
+"""
+
+
+def rows_at_random(seed, count=60):
+    rng = random.Random(seed)
+    t, rows = 0, []
+    for _ in range(count):
+        t += rng.choice([1, 250_000, 1_003])
+        speed = rng.choice(["", "0.125", "1.5", "2.5", "-1e-3", "nan"])
+        rows.append((t * 1_000, speed, rng.choice(["", "idle", "busy"]), rng.choice(["", "1"])))
+    return rows
+
+
+def comma(text):
+    return text.replace(".", ",")
+
+
+def seconds(t):
+    return f"{t // 10**9}.{t % 10**9:09d}"
+
+
+def plain(rows):
+    return "t_ns,speed,mode,stop\n" + "".join(",".join(map(str, row)) + "\n" for row in rows)
+
+
+def semicolons(rows):
+    lines = [f"{comma(seconds(t))};{comma(speed)};{mode};{stop}" for t, speed, mode, stop in rows]
+    return "\n".join(["t;speed;mode;stop", *lines, ""])
+
+
+def tabs(rows):
+    lines = [f"{seconds(t)}\t{speed}\t{mode}\t{stop}" for t, speed, mode, stop in rows]
+    return "\r\n".join(["t\tspeed\tmode\tstop", *lines, ""])
+
+
+def bars_below_remarks(rows):
+    lines = [f"{t}|{speed}|{mode}|{stop}" for t, speed, mode, stop in rows]
+    above = ["# Logger 3", "# rate: 100 Hz; range: 2", ""]
+    return "\n".join([*above, "t_ns|speed|mode|stop", *lines[:9], "# paused", *lines[9:], ""])
+
+
+def commented_header(rows):
+    lines = [f"{t},{speed or 'nan'}" for t, speed, _, _ in rows]
+    return "\n".join(["# t_ns,speed", *lines, ""])
+
+
+def below_properties(rows):
+    above = ["Device:,Base 7", "Serial;4711", ""]
+    return "\n".join(above) + "\n" + plain(rows)
+
+
+def units_in_names(rows):
+    lines = [f"{t // 1_000},{speed},{mode},{stop}" for t, speed, mode, stop in rows]
+    return "\n".join(["t [us],speed [m/s],mode,stop (-)", *lines, ""])
+
+
+def said(rows):
+    return "sep=;\n" + semicolons(rows)
+
+
+DIALECTS = (semicolons, tabs, bars_below_remarks, below_properties, units_in_names, said)
+
+
+@pytest.mark.parametrize("write", DIALECTS)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
+def test_a_dialect_gives_the_records_that_plain_csv_gives(tmp_path, write, encoding):
+    spec, verdicts = rvmon.loads(SPEC), set()
+    for seed in range(2):
+        rows = rows_at_random(seed)
+        (tmp_path / "plain.csv").write_text(plain(rows))
+        (tmp_path / "other.csv").write_bytes(write(rows).encode(encoding))
+        expected, found = (spec.evaluate(tmp_path / name) for name in ("plain.csv", "other.csv"))
+        assert found.attempts == expected.attempts
+        assert (found.verdicts, found.end) == (expected.verdicts, expected.end)
+        verdicts |= {str(attempt.verdict) for attempt in found.attempts}
+    assert {"P", "F"} <= verdicts
+
+
+def test_plain_text_is_left_as_it_is(tmp_path):
+    for seed in range(8):
+        assert dialect_of(plain(rows_at_random(seed)).encode()) == PLAIN
+    for text in ("", "t", "t,a\n", "t,a\n1\n", 't,"a;b"\n0,1;5\n', "1,2\n3,4\n", "a b c\n"):
+        assert dialect_of(text.encode()) == PLAIN or text == "a b c\n"
+
+
+def test_blanks_in_a_property_and_in_labels_separate_nothing(tmp_path):
+    spec = rvmon.loads("spec s\nsignal n : int\nrequirement R\n always n == 0")
+    rows = "".join(f"{t},idle now,1\n" for t in range(20))
+    (tmp_path / "a.csv").write_text(f"Device,Base 7\nSerial,4711\n\nt,mode,n\n{rows}")
+    assert spec.evaluate(tmp_path / "a.csv").verdicts["R"] == "F"
+
+
+def test_blanks_and_a_header_that_is_a_comment(tmp_path):
+    """As `numpy.savetxt` and recorders of trajectories write."""
+    spec = rvmon.loads("spec s\nsignal x, y : real\nrequirement R\n always x + y < 5")
+    (tmp_path / "a.csv").write_text("# t x y\n0 1 2\n0.5  2   2.5\n1 3 4\n")
+    assert spec.evaluate(tmp_path / "a.csv").attempts[0].decided == 10**9
+    rows = rows_at_random(1)
+    (tmp_path / "b.csv").write_text(commented_header(rows))
+    (tmp_path / "c.csv").write_text(commented_header(rows).removeprefix("# "))
+    spec = rvmon.loads("spec s\nsignal speed : real\nrequirement R\n always speed < 2")
+    assert spec.evaluate(tmp_path / "b.csv").attempts == spec.evaluate(tmp_path / "c.csv").attempts
+
+
+@pytest.mark.parametrize(
+    ("header", "cells", "time"),
+    [
+        ("secs,nsecs", "1700000001,500000000", "secs+nsecs"),
+        ("header.stamp.sec,header.stamp.nanosec", "1700000001,500000000", ""),
+        ("s,usec", "1700000001,500000", "s+usec"),
+        ("Date,Time", "14.11.2023,22:13:21.5", "Date+Time:%d.%m.%Y %H:%M:%S.%f"),
+        ("when", "11/14/23 10:13:21.5 PM", "when:%m/%d/%y %I:%M:%S.%f %p"),
+        ("when", "2023-11-14 22:13:21.500", "when:iso"),
+    ],
+)
+def test_stamps_of_two_columns_and_dates(tmp_path, header, cells, time):
+    (tmp_path / "a.csv").write_text(f"{header},speed\n{cells},0.5\n")
+    time = time or "header.stamp.sec+header.stamp.nanosec"
+    spec = rvmon.loads("spec s\nsignal speed : real\nrequirement R\n always speed < 2")
+    assert spec.evaluate(tmp_path / "a.csv", time=time).end == 1_700_000_001_500_000_000
+
+
+def test_faults_are_told_with_the_line_that_they_are_on(tmp_path):
+    spec = rvmon.loads("spec s\nsignal speed : real\nrequirement R\n always speed < 2")
+    path = tmp_path / "a.csv"
+    for text, told, time in (
+        ("# a\n# b\nt;speed\n0;1,5\n1;x\n", r"a\.csv: line 5: column `speed`", None),
+        ("t;speed\n0;1,5\n1;2;3\n", r"a\.csv: line 3: 3 cells where the header has 2", None),
+        ("s,ns,speed\n1,2,3\n1,x,3\n", r"line 3: time `1 x` is not two whole numbers", "s+ns"),
+        ("d,speed\n1,2\n", r"line 2: time `1` is not a date like `%Y`", "d:%Y"),
+        ("s,speed\n1,2\n", r"no time column `s\+ns`", "s+ns"),
+    ):
+        path.write_text(text)
+        with pytest.raises(TraceError, match=told):
+            spec.evaluate(path, time=time)
+
+
+def test_a_unit_in_a_name_is_compared(tmp_path):
+    spec = rvmon.loads(SPEC)
+    path = tmp_path / "a.csv"
+    path.write_text("t,speed [km/h],mode,stop\n0,1,idle,\n")
+    with pytest.raises(TraceError, match=r"`speed \[km/h\]` is in \[km/h\], and `speed` is"):
+        spec.evaluate(path)
+    path.write_text("t,V (rad),mode,stop\n0,1,idle,\n")
+    with pytest.raises(TraceError, match=r"`V \(rad\)` is in \[rad\], and `speed` is declared"):
+        spec.evaluate(path, columns={"speed": "V (rad)"})
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_lines_that_are_taken_together_say_the_same(seed, tmp_path, monkeypatch):
+    rng = random.Random(seed)
+    remark = rng.choice(["", "# by a tool\n"])
+    lines = [f"{remark}t;speed;mode;stop\n"]
+    odd = ['{};"1,5";busy;\n', "{};1,5;b,usy;\n", "\n", ";;;\n", "# {}\n", "{};x;;\n", "{};1,5;\n"]
+    odd += [' ; "";;\n', '"{}";"-1,5";" busy ";"1"\n', '{};"1,\n5";busy;1\n']
+    for t in range(60):
+        line = rng.choice(odd) if rng.random() < 0.03 else "{},5;-{},25;idle;1\r\n"
+        lines.append(line.format(t, t))
+    path = tmp_path / "a.csv"
+    path.write_text("".join(lines)[: rng.choice([None, -2])], newline="")
+    found = []
+    for together in (0, 1, 7, 4096):
+        monkeypatch.setattr(csv_dialect, "_TOGETHER", together)
+        found.append(told(rvmon.loads(SPEC).recording(path)))
+    assert found == [found[0]] * 4
+
+
+def told(recording):
+    """The samples of a recording, or what is wrong with it behind some."""
+    found = []
+    try:
+        found.extend((one.t, dict(one.values)) for one in recording)
+    except TraceError as error:
+        found.append(str(error))
+    return found
