@@ -104,7 +104,7 @@ class Names:
         measured = [
             node.amount for node in plan.graph.nodes if isinstance(node.amount, WindowValue)
         ]
-        self.windows = {fromkey: place for place, fromkey in enumerate(dict.fromkeys(measured))}
+        self.windows = {window: place for place, window in enumerate(dict.fromkeys(measured))}
         self.numbering = numbering
         self._spec = plan.spec
 
@@ -174,6 +174,8 @@ class Programs:
     def _number(self, value: float | str) -> int:
         """The index of a constant in `NUMBERS`."""
         if isinstance(value, str):
+            # Labels are compared as numbers; the order of declaration means nothing, so only `==`
+            # and `!=` are allowed on them.
             value = self._names.numbering.labels.get(value, -1)  # −1: equal to no label
         if isinstance(value, int) and -_INT64 <= value < _INT64:
             return self._sections.shared(Section.NUMBERS, _WHOLE, int(value))
@@ -324,6 +326,9 @@ class Atoms:
                 op = leaf.op.mirrored
             case _:
                 return None
+        # Most comparisons are of this kind, so the core has an instruction for it. It compares
+        # doubles: a whole number beyond 2⁵³ or a signal of another kind takes the exact, general
+        # way.
         constant = exact(value)
         if constant is None or self._plan.spec.signals[name].type.kind is not Kind.REAL:
             return None

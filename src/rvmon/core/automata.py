@@ -91,6 +91,7 @@ def _decisions(root: Tree) -> list[tuple[int, tuple[Tree, ...]]]:
         if not isinstance(node, int) and id(node[1]) not in found:
             found[id(node[1])] = node
             stack += node[1]
+    # Strides grow with the level, and a decision only leads to lower levels.
     return sorted(found.values(), key=lambda node: -node[0])
 
 

@@ -127,6 +127,8 @@ def _values(core: Literal | Constant) -> list[int]:
     if isinstance(core, Constant):
         return [(_WORSE + _BETTER) * core.value] * 3
     wanted = TRUE if core.sense is Sense.TRUE else FALSE
+    # An unknown literal is false in the pessimistic run and true in the optimistic one; a test of
+    # knowledge is false in both.
     unknown = 0 if core.sense is Sense.KNOWN_FALSE else _BETTER
     return [
         unknown if value == UNKNOWN else (_WORSE + _BETTER) * (value == wanted)

@@ -176,6 +176,7 @@ def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkP
         return automaton
     network = plan_of(rule.required, gap)
     chain = None if rule.stepped else chain_of(network, gap)
+    # A single window moves in runs as an automaton, or costs one comparison per attempt either way.
     if automaton is None or (chain is not None and len(chain.windows) > 1):
         return network, chain
     return automaton
@@ -197,6 +198,7 @@ def outcomes(policy: EndPolicy) -> tuple[int, ...]:
 
     Indexed by bits, the arguments of `settle_at_end`: held (1), cannot pass (2), cannot fail (4).
     """
+    # A table instead of the rule: the core knows no policies, only eight outcomes.
     found = []
     for state in range(8):
         verdict, decision = settle_at_end(
@@ -238,6 +240,8 @@ class Unit:
         yield -1 if key is None else names.field(key.event, key.field)
         graph = self._plan.graph
         vary = sorted(varying(graph))
+        # What depends on captured values is valued anew in each attempt; all else is shared with
+        # the run that starts it.
         lapsed = [place for place, node in enumerate(nodes.all) if node.op is NodeOp.LAPSED]
         lists: Sequence[Sequence[int]] = (
             [programs.place(capture.value) for capture in self._requirement.captures],

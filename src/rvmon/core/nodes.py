@@ -150,6 +150,7 @@ class Nodes:
         self.stretches = _count_slots(self.all, STRETCHED)
         tallied = [node for node in self.all if node.op is NodeOp.WINDOW and not node.tally]
         for number, node in enumerate(tallied):
+            # Until here `tally` marks the windows that add numbers (0) and the others (−1).
             node.tally = number
         self.tallies = len(tallied)
         timed = [node for node in self.all if node.op in TIMED]
@@ -166,6 +167,9 @@ class Nodes:
         """
         found: list[list[int]] = [[] for _ in self._atoms.all]
         for place, node in enumerate(self.all):
+            # Births and doubt of triggers cost at each row, but most streams have them behind them
+            # soon: from then on the core follows the second set of lists, without the nodes that
+            # serve only these.
             if not live or place in self.needed:
                 for atom in (node.a,) if node.op is NodeOp.LEAF else node.reads:
                     found[atom].append(place)
@@ -277,6 +281,8 @@ class Nodes:
 
 def _since(state: State) -> NodeOp:
     """The kind of a `since` node, by what it has to remember."""
+    # Without a lower bound the last instant at which both sides allowed it decides; with both
+    # bounds several stretches may still come to lie in the window, so all are kept.
     if state.low == 0:
         return NodeOp.EVER if state.high is None else NodeOp.EDGE
     return NodeOp.EDGE if state.high is None else NodeOp.STRETCH
@@ -308,6 +314,7 @@ def _asked(rule: PlannedRule, plan: Plan) -> Iterator[State]:
     yield from rule.alphabet.propositions
     yield from rule.noted
     yield from rule.captures_known
+    # Robustness reads nodes of its own, which no verdict asks for.
     leaves = () if rule.measured is None else plan_of(rule.measured, plan.gap).leaves
     for _, core in leaves:
         if isinstance(core, Literal) and is_followed(core, plan.spec, rule.requirement):

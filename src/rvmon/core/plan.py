@@ -72,6 +72,8 @@ class Part:
         self._add_atoms()
         perishable = self._add_signals()
         fields = self._add_events()
+        # The order of the fields below is that of `part_plan` in plan.h; the C refuses a plan whose
+        # sizes do not agree.
         own: Iterable[int] = SHARED
         if any(rule.is_apart for rule in plan.rules):
             unit = Unit(plan, numbers[0])
@@ -261,6 +263,8 @@ class Part:
         each = next((rule.requirement.for_each for rule in self._plan.rules), None)
         if each is None:
             return {}
+        # A field captured by `let` is read wherever its event occurs, whatever instance that
+        # concerns.
         asked = (state for rule in self._plan.judged for state in rule.states)
         fields = keys_of(self._plan.graph, each, asked)
         for event in events_of(*self._captured):

@@ -172,6 +172,7 @@ class Sections:
             sizes: the numbers of signals, events, fields, requirements, and the most captured
                 values of an attempt.
         """
+        # Each section begins at a multiple of 8, so that the core reads its records in place.
         padded = [bytes(data) + bytes(-len(data) % 8) for data in self._bytes.values()]
         begin = HEADER.size + len(padded) * _ENTRY.size
         offsets = accumulate(map(len, padded), initial=begin)

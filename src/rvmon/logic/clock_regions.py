@@ -68,6 +68,8 @@ def within(ages: Ages, intervals: Sequence[tuple[int, int]]) -> Ages | None:
 
 def _bind(found: list[list[int]], one: int, other: int, bound: int) -> None:
     """Tighten one bound and close the matrix again."""
+    # Only paths through the tightened bound can have become shorter, so n² steps close the matrix
+    # again, not n³.
     behind = [(place, most) for place, most in enumerate(found[other]) if most < NEVER]
     for row in found:
         if row[one] < NEVER:
@@ -92,6 +94,7 @@ def after(ages: Ages, longest: int) -> Ages:
 
 def with_new_clock(ages: Ages) -> Ages:
     """The zone with one more clock, the last, of age 0."""
+    # The new clock is as old as the reference clock: its row and column are copies of those of 0.
     rows = [(*row, row[0]) for row in ages]
     return (*rows, rows[0])
 
@@ -116,6 +119,8 @@ def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:
         low, high = bounds(ages, clock)
         least, greatest = region_bounds(own, bisect_right(own, low))
         place = clock + 1
+        # Beyond its last cut the age of a clock decides nothing any more, and neither does its
+        # difference from others.
         if not differences or greatest == NEVER:
             apart.append(place)
         if _is_wide(least, greatest, low) or (low < high and not differences):

@@ -1,4 +1,4 @@
-"""From a formula to its automaton: breadth-first over locations, age regions and letters."""
+"""From a formula to its automaton: all locations that are reached, in all regions of ages."""
 
 from __future__ import annotations
 
@@ -72,6 +72,7 @@ class _Construction:
         self.todo: list[int] = []
 
     def run(self, required: Temporal) -> Automaton:
+        # First, as FAILED and PASSED are the locations 0 and 1 of every automaton.
         for residual in (FAILS, HOLDS):
             self.enter(residual, ())
         initial = self.enter(frozenset([frozenset([(required, NO_CLOCK)])]), ())
@@ -98,12 +99,15 @@ class _Construction:
         least = tuple(map(min, known, ages))
         if least != known:
             self.youngest[index] = least
+            # To be explored again: with smaller ages more of its regions can be reached.
             if index not in self.todo:
                 self.todo.append(index)
         return index
 
     def explore(self, index: int) -> None:
         location = self.locations[index]
+        # Between two cuts no window opens or is over, so one vector of ages stands for its region.
+        # It has to be the least one: from it the targets are entered with their least ages.
         for regions in product(*(range(len(cuts) + 1) for cuts in location.cuts)):
             row = (index, regions)
             ages = _least_ages(location.cuts, regions, self.youngest[index])
@@ -126,6 +130,8 @@ class _Construction:
             return self.enter(made, entered), sources
 
         try:
+            # One step for all letters: literals stay open as atoms, and the diagram decides them
+            # one by one. A step per letter would be exponential in the propositions.
             opened = step(residual, ages, read, self.budget.clauses)
         except TooManyClausesError:
             raise DoesNotCloseError(f"more than {self.budget.clauses} clauses") from None

@@ -90,6 +90,8 @@ class Forecaster:
         return self._values[key]
 
     def _found(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
+        # Certain to be false: nothing satisfies it. Certain to be true: nothing satisfies its
+        # negation. Each is a question of emptiness.
         if not self.admits(self.duals.affirmed(residual), ages, gap):
             return False
         try:
@@ -118,6 +120,7 @@ class Forecaster:
             try:
                 self._known[key] = is_satisfiable(start, gap)
             except TooLargeError:
+                # "It may": a forecast that is not found never changes a verdict.
                 self._known[key] = True
         return self._known[key]
 
@@ -192,6 +195,8 @@ def is_satisfiable(start: Start, gap: int | None) -> bool:
         TooLargeError: the search exceeds its limits even without differences of clocks.
     """
     try:
+        # Exact differences tell more empty languages, but distinguish more states: only where that
+        # search grows too large, the coarser one.
         return _Search(gap, differences=True).run(start)
     except TooLargeError:
         return _Search(gap, differences=False).run(start)
@@ -250,6 +255,8 @@ class _Search:
                 reached = step(state.residual, in_ticks, _left_open, MOST_OF_A_STEP)
             except TooManyClausesError:
                 raise TooLargeError from None
+            # A cycle in which the oldest clock stays below a cut for ever takes no time: no real
+            # word.
             waits = bool(cuts) and bisect_right(cuts[0], shown[0]) < len(cuts[0])
             for clause in reached:
                 pending = _without_literals(clause)

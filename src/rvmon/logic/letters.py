@@ -258,6 +258,7 @@ class Diagrams:
         product = _Product(self.alphabet, limit)
         diagram = LetterDiagram(product.tree(tuple(roots), len(self.alphabet.propositions) - 1))
         found: LetterClasses = diagram
+        # The core looks the class up at each change of a proposition: one load where a table fits.
         if self.alphabet.size <= MOST_TABLED:
             found = array("H", map(diagram.__getitem__, range(self.alphabet.size)))
         return found, len(product.leaves), [_edges(nodes) for nodes in product.leaves]
@@ -276,6 +277,7 @@ class _Product:
 
     def tree(self, nodes: tuple[Node, ...], level: int) -> Tree:
         """The classes of all letters over the propositions up to `level`."""
+        # Propositions on which no root decides here make no difference between letters.
         while level >= 0 and all(node.level != level for node in nodes):
             level -= 1
         if level < 0:

@@ -123,6 +123,7 @@ def lower(
         # Where an episode ends only the truth of its trigger counts, not its robustness.
         truth = _running(truth_reader.four(requirement.trigger).read(FALSE), requirement, factory)
         required = lowering.episode(truth, lowering.required(implied), requirement)
+        # Where a past operator stands above a future one, the position alone falsifies nothing.
         again = None
         if not looks_back_at_future(requirement.consequent):
             again = _at_once(begin(opened=True).core(requirement.consequent, True), factory)

@@ -220,6 +220,8 @@ class _Planning:
         def window(operand: int, first: int, last: int, every: bool, over: int) -> int:
             return self.add(Window(operand, first, last, every, over))
 
+        # The identity of the module's docstring, part by part. A neutral left operand makes two of
+        # the three parts true, so they are not planned.
         parts = []
         if core.high is not None:
             high = core.high // self.gap

@@ -165,6 +165,7 @@ class Lowering:
 
     def _since(self, left: Core, right: Core, interval: Interval | None, dual: bool) -> Core:
         low, high = (interval.low, interval.high) if interval else (0, None)
+        # `once` and `historically` have a constant on the left, which needs no position to be true.
         if left is not self.factory.constant(not dual):
             left = self._in_past(left)
         right = self._in_past(right)
@@ -214,6 +215,7 @@ class Lowering:
         All operands without future operators are joined into a single proposition.
         """
         factory = self.factory
+        # One proposition for all of them: each proposition multiplies the letters of the automaton.
         present = [(f, sign) for f, sign in args if not has_future(f)]
         parts = [self.core(f, sign) for f, sign in args if has_future(f)]
         if present or beside:

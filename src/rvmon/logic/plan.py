@@ -206,6 +206,7 @@ def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
 
     Each attempt or instance of a unit is a run of its own.
     """
+    # What captures nothing is valued once for all; each attempt of a unit has its own valuation.
     shared = plan_of(spec, [rule for rule in rules if not rule.is_apart])
     units = tuple(plan_of(spec, [rule]) for rule in rules if rule.is_apart)
     return replace(shared, units=units, asked=tuple(rules))

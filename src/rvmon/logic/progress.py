@@ -92,6 +92,7 @@ class _Step:
         until = isinstance(node, Until)
         if where is Phase.OVER:
             return FAILS if until else HOLDS
+        # `φ U ψ` is `φ ∧ pending` before its window and `ψ ∨ (φ ∧ pending)` in it; `R` is the dual.
         kept: Atom = (node, clock) if where is Phase.BEFORE else opened(node, clock)
         pending: Residual = frozenset([frozenset([kept])])
         left = self.instance(node.left)
@@ -127,6 +128,8 @@ class _Step:
             case Next():
                 return frozenset([frozenset([(node, NO_CLOCK)])])
             case Until() | Release():
+                # All that is instantiated at one position shares one clock, whatever its bounds:
+                # clocks count positions of birth, not operators.
                 return self.window(node, len(self.ages), phase(node, 0))
             case Since() | Previous():
                 raise AssertionError("a past operator above a future one is left to the network")

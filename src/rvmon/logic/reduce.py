@@ -41,6 +41,7 @@ def reduce(automaton: Automaton, label: Label) -> Automaton:
         label: key that merged locations must share, so that explanations stay right.
     """
     draft = _Draft(automaton)
+    # Until neither helps: merged targets make rows equal, and rows joined make locations equal.
     while draft.merge(label) or draft.drop_cuts():
         pass
     return draft.tables()
@@ -95,6 +96,7 @@ class _Draft:
 
     def _key(self, index: int, label: Label) -> Hashable:
         """The initial key of partition refinement."""
+        # The core knows FAILED and PASSED by number, and starts attempts in the initial location.
         if index <= PASSED or index == self.initial:
             return index
         draft = self.drafts[index]
@@ -103,6 +105,7 @@ class _Draft:
 
     def _moves(self, index: int, blocks: list[int]) -> Hashable:
         """The successors of a location, up to the current partition."""
+        # By `id`, as equal edges are one object (`known`) and each stands in many rows.
         seen: dict[int, Hashable] = {id(None): None}
 
         def move(edge: Edge | None) -> Hashable:
@@ -216,5 +219,6 @@ def _merged_row(row: Row, other: Row) -> Row | None:
     for mine, its in zip(row[0], other[0], strict=True):
         if mine is not its and mine is not None and its is not None and mine != its:
             return None
+        # Where no run can be, any edge will do: that lets regions merge which differ only there.
         edges.append(its if mine is None else mine)
     return (tuple(edges), *row[1:])

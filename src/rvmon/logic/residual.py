@@ -31,8 +31,8 @@ _MOST_PAIRS = 1 << 10
 
 
 _KEPT = 1 << 12
-"""So many results of `both` and of reduction are kept: building an automaton asks for most of them
-again, in each region and at each letter."""
+"""The number of results of `both` and of `_reduced` in their caches: building an automaton asks for
+most of them again, in each region and at each letter."""
 
 
 class TooManyClausesError(Exception):
@@ -72,7 +72,6 @@ def either(left: Residual, right: Residual) -> Residual:
 
 
 @lru_cache(_KEPT)
-@lru_cache(_KEPT)
 def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
     """The reduced conjunction.
 
@@ -83,6 +82,7 @@ def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
         return left
     if left == HOLDS:
         return right
+    # Before the product is made: it alone may take all memory, however short it would be reduced.
     if limit is not None and len(left) * len(right) > max(limit, _MOST_PAIRS):
         raise TooManyClausesError
     made = _reduced(frozenset(_conjunction(clause | other) for clause in left for other in right))
@@ -100,6 +100,9 @@ def _conjunction(clause: Clause) -> Clause:
 @lru_cache(_KEPT)
 def _reduced(clauses: Residual) -> Residual:
     """The residual of clauses without implied atoms: clauses that imply another one are dropped."""
+    # Shortest first: mostly the shorter clause is the implied one, and a longer one goes at once.
+    # Not always: `_follows` lets a short clause imply a longer one, so kept ones are looked at
+    # again.
     ordered = sorted(clauses, key=len)
     if ordered and not ordered[0]:
         return HOLDS
@@ -109,6 +112,8 @@ def _reduced(clauses: Residual) -> Residual:
         if any(map(clause.issuperset, kept)):
             continue
         rigid[clause] = _rigid(clause)
+        # The subset test is cheap and settles most pairs; `_clause_implies` is quadratic in the
+        # atoms.
         if not any(rigid[one] <= clause and _clause_implies(clause, one) for one in kept):
             own = rigid[clause]
             kept = [one for one in kept if not (own <= one and _clause_implies(one, clause))]

@@ -83,6 +83,7 @@ class Shapes:
         bounds = sorted({bound for node in nodes for bound in _bounds(node)})
         stand_ins = _stand_ins(bounds)
         shape = (budget, *_description(nodes, alphabet, stand_ins))
+        # Two levels: automata per shape, which cost the most, and per shape and bounds, put back.
         key = (shape, *bounds)
         if key not in self._automata:
             made = self._made(shape, nodes, stand_ins, alphabet, budget)
@@ -102,6 +103,8 @@ class Shapes:
             made, steps = _constructed(others, alphabet, budget)
             is_same = all(old == new for old, new in stand_ins.items())
             # Clocks differ in age by a tick each: the oldest may lead by the number of clocks.
+            # The stand-ins are far apart; so must the ages met be, or a bound was reached by
+            # counting ticks.
             is_general = is_same or steps + budget.clocks < _APART
             self._shapes[shape] = (made, others) if is_general else None
         found = self._shapes[shape]

@@ -247,6 +247,8 @@ def graph_of(roots: Iterable[State]) -> Graph:
         elif varies.intersection(operands[place]):
             varies.add(place)
         if state.op in (StateOp.PREVIOUS, StateOp.SINCE, StateOp.AMOUNT, StateOp.DOUBT):
+            # Memory that reads captured values is another for each attempt, unless it begins with
+            # it.
             remembers |= place in varies and not begins_with_attempt(state)
             stateful.append(place)
         elif isinstance(state.leaf, Elapsed) or state.op is StateOp.PASSED:
@@ -328,6 +330,8 @@ def keys_of(graph: Graph, each: ForEach, asked: Iterable[State]) -> dict[str, Fi
         }
         if name in found or len({*fields.values()}) != 1:
             continue
+        # A leaf over the event that is not compared itself is harmless where all above it conjoin
+        # it with one that is.
         parents = {one for place in leaves.keys() - fields for one in graph.parents[place]}
         alone = roots.intersection(leaves.keys() - fields) or any(
             graph.nodes[parent].op is not StateOp.AND

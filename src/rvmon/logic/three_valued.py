@@ -85,6 +85,7 @@ class Reader(Reading[Four]):
         factory = self.factory
         match formula:
             case Unary(op=UnaryOp.NOT, operand=operand):
+                # Under a negation unborn counts in favour by the other value.
                 return factory.negation(self.literal(operand, TRUE - unborn))
             case Binary(op=BinaryOp.AND | BinaryOp.OR as op, left=left, right=right):
                 join = factory.state_all if op is BinaryOp.AND else factory.state_any
@@ -273,6 +274,8 @@ class Reader(Reading[Four]):
             value = self._or_lost(value, left, right, low, high)
         if not right.born_late:
             return Four(factory, always_read_as(value), born_late=False)
+        # Once born, always born: the present position tells. Else each position of the window is
+        # asked.
         if right.stays_born and low == 0:
             # `sure`: an outage before the first sample leaves it open whether it is born.
             unborn = factory.state_all([right.unborn, factory.sure(factory.negation(value))])

@@ -70,6 +70,7 @@ class Reasons:
         """The finding for a decision at `t`, taken in state `before` with `letter`."""
         location, anchors = before
         ages = zip(self.cuts(location), anchors, strict=True)
+        # In one region no window opens or is over, so ages within it have the same cause.
         key = (location, letter, verdict, *[bisect_right(cuts, t - at) for cuts, at in ages])
         found = self._found.get(key)
         if found is None:
@@ -143,6 +144,8 @@ class MachineRuns:
 
     def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
         """See `Judged`."""
+        # The pessimistic run requires the most; once it failed, only the optimistic one still says
+        # what for.
         token = attempt.worse if attempt.worse[0] != FAILED else attempt.better
         if token[0] <= PASSED:
             return Explanation(f"left open by the input: {attempt.doubt}")

@@ -84,11 +84,15 @@ class CauseFinder:
             left = after(alone, self.ages) if self.by_time else step(alone, self.ages, self._read)
             return left == self.wanted
 
+        # A pass needs one clause to hold whole; a failure needs an atom of each clause to fail, and
+        # the shortest clause names the fewest suspects.
         clauses = sorted(residual, key=len)
         if self.verdict:
             clauses = [c for c in clauses if all(decided(atom) for atom in c)]
         found = sorted(
             {atom for clause in clauses for atom in clause if decided(atom)},
+            # The oldest clock first: the obligation that stood longest. Ids make the choice the
+            # same in each run.
             key=lambda atom: (atom[1], atom[0].id),
         )
         for node, clock in found:
@@ -109,6 +113,8 @@ class CauseFinder:
             case Until() | Release():
                 if clock > NO_CLOCK and phase(node, self.ages[clock]) is Phase.OVER:
                     return Cause(node, clock, True, None)
+                # `U` passes and `R` fails by its right operand, at the position where that is
+                # decided; the other decision comes from the left operand.
                 ends_it = isinstance(node, Until) is self.verdict
                 part = node.right if ends_it else node.left
                 if isinstance(part, Literal):

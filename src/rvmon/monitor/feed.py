@@ -65,6 +65,8 @@ class Feed:
             TimeOrderError: it is not later than what has been judged; nothing changed.
         """
         if self._intake is None:
+            # Before anything changes: an outage ended for a sample that is then refused could not
+            # be taken back.
             _, last, reached = self._core.times()
             refuse_earlier(t, last, reached)
         if self.losses.awaits_sample:
@@ -73,6 +75,8 @@ class Feed:
             self._judge(t, values)
         else:
             self._judge_all(self._intake.take(t, values))
+            # What `max delay` has made impossible has passed: windows may be decided though no
+            # sample came.
             self._core.advance(self._intake.floor)
 
     def advance(self, t: int) -> None:

@@ -72,6 +72,7 @@ class Intake:
         self._hold(t, values)
         ready = self.settle(t - self.delay)
         if self.delay and len(self._held) > MOST_HELD:
+            # A clock that is wrong by years would otherwise hold all samples back for ever.
             oldest = self._held[0][0]
             count, first = self.crowded or (0, oldest)
             self.crowded = (count + 1, first)
@@ -290,6 +291,7 @@ def _scalar(value: Any, type_: Type, name: str, t: int) -> Scalar:
         return known
     if value is None:
         return None
+    # The common types are done: what follows costs only those who pass NumPy scalars or subclasses.
     item = getattr(value, "item", None)
     if callable(item) and type(value) not in (bool, int, float, str):
         try:

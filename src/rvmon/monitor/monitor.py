@@ -74,6 +74,8 @@ class Monitor(FedMonitor[Attempt]):
     def _attend(self) -> None:
         """Bind `step` to the core, unless callbacks are registered or the feed holds samples."""
         if self._feed.is_direct and not self._listeners:
+            # The bound method of the C object itself: a wrapper in Python would take longer than
+            # most steps.
             self.step, self.step_ns = self._core.step, self._core.step_ns
         else:
             self.step, self.step_ns = self._take_at, self._take
@@ -292,6 +294,7 @@ class Monitor(FedMonitor[Attempt]):
             return Counter(attempt.requirement for attempt in found), found
         oldest: dict[object, Attempt] = {}
         for attempt in found:
+            # One instance with thousands of attempts must not crowd out the others.
             each = self._planned.instance(attempt)
             if each not in oldest or attempt.triggered < oldest[each].triggered:
                 oldest[each] = attempt

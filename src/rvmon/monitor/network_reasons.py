@@ -157,6 +157,8 @@ class NetworkCauseFinder:
         if isinstance(core, Constant):
             return None
         positions = self.network.positions
+        # The stamp of a piece grows with the position by `slope`, so at most one position of it has
+        # the stamp sought.
         for left, right, at, slope in self.network.known_of(core)[not self.verdict]:
             low, high = max(left, first), min(right, last)
             if low > high:
@@ -285,6 +287,7 @@ class NetworkRuns:
         Each attempt costs a search of its own, so nothing is forecast beyond `MOST_ATTEMPTS`.
         """
         del now
+        # All of them ask at each report: beyond that a live view would stall.
         if self.count > MOST_ATTEMPTS:
             return None
         worse, better = attempt.worse, attempt.better

@@ -310,6 +310,7 @@ def _checked(
     """A plan from the cache; `None` if there is none or the core refuses it."""
     if before is None:
         return None
+    # The core checks bounds and the hash of a plan as it loads it: a damaged cache is made anew.
     found = planned_as(compiled.checked, ids, before, compiled)
     try:
         found.monitor(frozenset())
@@ -351,6 +352,7 @@ def planned_as(
             *map(labels, types),
         ),
         bytes(map(_KINDS.index, kinds)),
+        # One byte serves both: events are never `ignoring`, signals never `single`.
         bytes(name in made.single or name in ignoring for name in names),
         made.single,
         made.readers,

@@ -141,6 +141,7 @@ class Network:
         self.start = cells[0][0] if cells else FAR
         stamps = [position for position, _ in cells]
         if cells and first // step < self.start:
+            # The core drops letters that decide nothing before the first noted one.
             stamps.insert(0, first // step)
         self.positions = Positions(gap, stamps)
         self._leaves = (self._samples if gap is None else self._held)(cells)

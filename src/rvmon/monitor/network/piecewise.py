@@ -274,6 +274,7 @@ def _sliding(
         if position <= -FAR:
             continue
         settle(position - high - 1)
+        # Monotone queue: what a newer and better point outlives can never be the best again.
         while best and not keeps(best[-1][1], value):
             best.pop()
         best.append((position, value))

@@ -38,6 +38,8 @@ def until(left: Known, right: Known) -> Known:
     """
     found: list[Known] = []
     carried: Carried = None
+    # Backwards, as `until` depends on the next position; each stretch then needs only one value
+    # from its right neighbour.
     for first, last, stays, meets in reversed(list(_stretches(left, right))):
         true, false = _until_on(first, last, stays, meets, carried)
         found.append((true, false))
@@ -49,6 +51,7 @@ def _until_on(first: int, last: int, stays: _Side, meets: _Side, beyond: Carried
     """`until` on a stretch on which neither operand changes."""
     true = _whole(first, last, meets, True)
     false: Pieces = ()
+    # Where both are false, `until` is false whatever follows.
     if meets is not None and not meets[0]:
         false = latest(_whole(first, last, stays, False), _whole(first, last, meets, False))
     if beyond is not None:
