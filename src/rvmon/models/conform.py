@@ -49,7 +49,7 @@ RESOLUTION = TICKS_PER_UNIT["ms"]
 
 @dataclass(frozen=True, slots=True)
 class Allowed:
-    """What a network would have allowed instead.
+    """An action that the network would have allowed instead.
 
     Attributes:
         label: of an action; empty: nothing more until the end of the recording.
@@ -64,7 +64,7 @@ class Allowed:
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """Where a recording leaves the network's runs.
+    """The point at which a recording stops being a run of the network.
 
     Attributes:
         at: ticks since the start.
@@ -154,7 +154,7 @@ def conform(
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """How far a recording is explained.
+    """A position in a recording: everything before it is explained by some run.
 
     Attributes:
         t: the instant of what comes next, in ticks.
@@ -193,7 +193,7 @@ def _chain_of(actions: Sequence[Recorded], end: int, tolerance: int, most: int) 
 
 
 def _rests(labels: tuple[str, ...], most: int) -> set[tuple[str, ...]]:
-    """What can be left of actions of one instant before the last of them is explained."""
+    """The rests of the actions of one instant that can remain before the last is explained."""
     found, waiting = {labels}, [labels]
     while waiting:
         for _, left in _firsts(waiting.pop(), most):
@@ -247,7 +247,7 @@ def _named(watcher: Watcher, labels: Iterable[str], names: Sequence[str]) -> Exp
 def _allowed(
     network: Network, labels: Sequence[str], chain: Sequence[_Place], most: int, meter: Meter
 ) -> tuple[Allowed, ...]:
-    """What some run can do at the last place, with the earliest and the latest instant of each."""
+    """The actions possible at the last place in some run, with their earliest and latest instants."""
     watcher, last = _following(network, labels, chain, most), len(chain) - 1
     end = ClockCompare(watcher.clock, ClockOp.GE, Constant(chain[-1].latest))
     names = {watcher.add_location(kind=LocationKind.URGENT): label for label in labels}

@@ -28,7 +28,7 @@ def action_text(network: Network, action: Action | None) -> str:
 
 
 def location_text(network: Network, position: Position) -> str:
-    """Where each automaton is."""
+    """The location of each automaton, as text."""
     return ", ".join(
         f"{automaton.name}.{automaton.locations[place].name}"
         for automaton, place in zip(network.automata, position.locations, strict=True)
@@ -104,7 +104,7 @@ def run_lines(network: Network, run: Run) -> Iterator[str]:
 
 
 def position_data(network: Network, position: Position) -> dict[str, Any]:
-    """Where a run is: locations by automaton, values by variable."""
+    """A position of a run for JSON: locations by automaton, values by variable."""
     return {
         "locations": {
             automaton.name: automaton.locations[place].name
@@ -165,7 +165,7 @@ def suite_data(network: Network, suite: Suite) -> dict[str, Any]:
 
 
 def sampled_data(sampled: Sampled) -> dict[str, Any]:
-    """What random runs say of a query, for JSON."""
+    """The result of sampling a query, for JSON."""
     data = {
         "query": sampled.query.text,
         "id": sampled.query.id,

@@ -93,7 +93,7 @@ class NetworkBuilder:
 
     @property
     def text(self) -> str:
-        """What was added so far, as a `.ta` text."""
+        """The declarations added so far, as a `.ta` text."""
         lines = [*self.declarations]
         for builder in self.automata:
             lines += [*builder.lines, f" {_clause('start', builder.initial)}", "}"]

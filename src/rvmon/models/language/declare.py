@@ -61,7 +61,7 @@ Read = TypeVar("Read")
 
 @dataclass(slots=True)
 class Parts:
-    """What the declarations of a model have made so far.
+    """The parts of a network made so far from the declarations of a model.
 
     Attributes:
         levels: the priorities of channels, if any are declared; `None` is all others.
@@ -104,7 +104,7 @@ class Findings:
             raise refusal(*_counted(errors))
 
     def attempt(self, read: Callable[[], Read], default: Read) -> Read:
-        """What `read` returns, or the default if it finds something wrong, which is noted."""
+        """The result of `read`, or the default if it raises an error, which is noted."""
         made = [default]
         with self.collect():
             made.append(read())

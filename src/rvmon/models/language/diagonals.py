@@ -1,4 +1,4 @@
-"""What edges keep up instead of zones: differences of clocks, lower bounds of invariants.
+"""Moves constraints that zones cannot have onto edges: diagonals, lower bounds of invariants.
 
 While time passes, `x − y <= c` stays true or false: only an edge that sets x or y changes it. The
 edge that sets x to v makes it `y >= v − c`, so it is taken apart into two: one for where that
@@ -188,7 +188,7 @@ def difference(
 
 
 def terms_of(written: syntax.Expression, sign: int = 1) -> Iterator[tuple[int, syntax.Expression]]:
-    """What an expression adds up, each part with its sign."""
+    """The terms of a sum, each with its sign."""
     match written:
         case syntax.Binary(BinaryOp.ADD | BinaryOp.SUB as op, left, right):
             yield from terms_of(left, sign)
@@ -198,7 +198,7 @@ def terms_of(written: syntax.Expression, sign: int = 1) -> Iterator[tuple[int, s
 
 
 def _values(edge: Edge, diagonal: Diagonal) -> dict[int, int]:
-    """What an edge sets the clocks of a diagonal to."""
+    """The values to which an edge sets the clocks of a diagonal."""
     found: dict[int, int] = {}
     for reset in resets_in(edge.updates):
         if reset.clock in (diagonal.first, diagonal.second):

@@ -120,7 +120,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
 
 
 def _known() -> Scope:
-    """What UPPAAL declares by itself."""
+    """The names that UPPAAL declares by itself."""
     scope = Scope()
     for bits in (8, 16, 32):
         high = (1 << bits - 1) - 1

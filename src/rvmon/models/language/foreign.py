@@ -8,7 +8,7 @@ from rvmon.diagnostics import Span
 from rvmon.models.network.rules import model_error
 
 Reason = tuple[str, str]
-"""What is not supported, and what to do instead."""
+"""An unsupported construct, and the way to do without it."""
 
 _STATEMENTS: Reason = (
     "statements stand in functions only",
@@ -78,7 +78,7 @@ def refuse_foreign(name: str, span: Span) -> None:
 
 
 def reason_at(text: str, start: int, length: int, rule: str) -> Reason | None:
-    """What of UPPAAL's language a text uses at the place where it could not be read.
+    """The unsupported construct of UPPAAL's language at the place of a syntax error.
 
     >>> reason_at("hybrid clock x;", 7, 5, "declarations")[0]
     'hybrid clocks are not supported'

@@ -56,7 +56,7 @@ MAX_LOCALS = 100_000
 """The most parameters and local variables of all functions together."""
 
 _NOTHING = ResolvedType(BaseType.INT, 0, 0)
-"""What a `cannot_pass` function returns."""
+"""The result type of a function that returns nothing."""
 
 _CHOSEN = InLocation(-1, -1)
 """Stands for an index that is not constant, in the key of a function."""
@@ -64,7 +64,7 @@ _CHOSEN = InLocation(-1, -1)
 
 @dataclass(slots=True)
 class Functions:
-    """Those that were called so far, and the places that they use.
+    """The functions called so far, and the memory slots that they use.
 
     Attributes:
         variables: of the network, as far as they are declared.

@@ -43,7 +43,7 @@ from rvmon.models.network.scope import (
 from rvmon.texts import did_you_mean
 
 Family = automaton_syntax.Template | automaton_syntax.Instance
-"""What a name in the system line may mean."""
+"""The things that a name in the system line may stand for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,7 +160,7 @@ def _argument(
     own: Scope,
     resolver: Resolver,
 ) -> Symbol:
-    """What an argument stands for; its type has the names of `own`, itself those of `scope`."""
+    """The symbol of an argument; its type is read in the scope `own`, its expression in `scope`."""
     kind = resolver.type(parameter.type, own)
     extents = (*resolver.extents(parameter.sizes, own), *kind.extents)
     if not parameter.reference and kind.base in (BaseType.INT, BaseType.BOOL) and not extents:
@@ -277,7 +277,7 @@ def _has_rate(written: syntax.Expression) -> bool:
 def _parts(
     written: syntax.Expression, scope: Scope, resolver: Resolver
 ) -> Iterator[tuple[syntax.Expression, Scope]]:
-    """What an invariant joins, as far as rates are among it."""
+    """The conjuncts of an invariant that contains rates."""
     match written:
         case syntax.Binary(BinaryOp.AND, left, right) if _has_rate(written):
             yield from _parts(left, scope, resolver)

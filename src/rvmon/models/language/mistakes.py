@@ -9,13 +9,13 @@ from rvmon.diagnostics import Diagnostic, Span
 from rvmon.errors import ModelError
 
 Place = Callable[[int, int], Span]
-"""Where the characters `[start, end)` of a text stand for people."""
+"""From the characters `[start, end)` of a text to their line and column in the file."""
 
 MOST = 20
 """Behind so many, nothing more is looked for: the text is read again for each."""
 
 LONGEST = 100_000
-"""Of a longer text the first mistake is reported: reading it again and again takes too long."""
+"""In a longer text only the first mistake is reported, as each further one needs another parse."""
 
 _FIRM = "automaton|(?:(?:urgent|committed)[ \t]+)?location|edge|start|query|signal|unit|system"
 _LOOSE = "clock|broadcast|urgent|chan|int|bool|const|meta|struct|typedef|void"
@@ -31,7 +31,7 @@ _TOKENS = {
         ("document", rf"{_DECLARED}|^[ \t]*(?P<firm>{_FIRM})\b"),
     )
 }
-"""What parts begin and end with, by the rule that reads them; other rules read one part."""
+"""The patterns at which parts begin and end, by the rule that reads them; others read one part."""
 
 
 def all_mistakes(

@@ -168,7 +168,7 @@ def whole_compare(
 
 
 LINEAR_WORDS = "AEGFX"
-"""What looks like a call and speaks of one run, or of runs."""
+"""Path quantifiers and temporal operators, which look like calls."""
 
 _OF_CTL = {
     ("A", PathOp.FINALLY): PathOp.EVENTUALLY,
@@ -209,7 +209,7 @@ def assuming(asked: Expression | LeadsToFormula, premise: Expression, span: Span
 
 
 def linear_of(name: str, body: Expression, span: Span) -> Expression:
-    """What `G (…)`, `F (…)`, `A (…)`, `E (…)` say; in CTL, if the last two can be said there."""
+    """The formula of `G (…)`, `F (…)`, `A (…)`, `E (…)`; the last two in CTL where possible."""
     match name, body:
         case "G", _:
             return PathFormula(PathOp.GLOBALLY, body)
@@ -288,7 +288,7 @@ def fractional_call(
 
 
 def clock_number(value: Expression, calls: Calls) -> Expression:
-    """What a clock is compared with, or set to: a fraction of a unit becomes steps of the grid."""
+    """The number for a clock in steps of the grid, also of a fraction of a unit."""
     if not is_real(value, calls):
         return value
     if is_fixed(value) and (number := number_of(evaluator(value)((), ()))).is_integer():

@@ -119,7 +119,7 @@ def _syntax_error(
 
 
 def _fix(text: str, offset: int) -> str:
-    """What fixes a syntax error, if it is a common one."""
+    """The fix for a syntax error, if it is a common one."""
     for operator in _PATH.finditer(text):
         if operator.start() <= offset < operator.end():
             return f"inside a formula it takes brackets: ({operator[0]} …)"
@@ -132,7 +132,7 @@ def _fix(text: str, offset: int) -> str:
 
 _PATH = re.compile(r"[AE](?:<>|\[\])")
 _WORD = re.compile(r"[^\W_][\w-]*")
-"""What was meant for a name."""
+"""Text that was meant as a name."""
 
 _OPERATORS = {
     "_AND", "_OR", "IMPLY", "EQUALITY", "RELATION", "PLUS", "MINUS", "FACTOR", "LSQB", "DOT",

@@ -59,7 +59,7 @@ MAX_UNROLLED = 100_000
 
 @dataclass(slots=True)
 class Resolver:
-    """What expressions may refer to beside the names of their scope.
+    """Resolves expressions, with what they may refer to besides the names of their scope.
 
     Attributes:
         functions: those that can be called.
@@ -267,7 +267,7 @@ class Resolver:
         return ResolvedType(BaseType.INT, low, high)
 
     def symbol(self, written: syntax.Expression, scope: Scope) -> Symbol:
-        """What a name, an element or a member stands for.
+        """The symbol of a name, an element of an array or a member of a record.
 
         Raises:
             ModelError: nothing has that name, or the expression is no name.
@@ -318,7 +318,7 @@ class Resolver:
                 return None
 
     def _named(self, written: syntax.Expression, scope: Scope) -> Symbol | None:
-        """What an expression names, if it names anything but a location."""
+        """The symbol that an expression names, if it names one and that is no location."""
         is_name = isinstance(written, syntax.Name | syntax.Index | syntax.Member)
         if not is_name or self._location(written, scope) is not None:
             return None

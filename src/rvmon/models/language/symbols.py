@@ -1,4 +1,4 @@
-"""What names stand for: how arrays and records are laid out, and what can be done with a name."""
+"""Symbols: the meaning of names, the layout of arrays and records, the operations on a name."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ INT16 = (-32768, 32767)
 """UPPAAL's `int` without a range."""
 
 INT32 = (-(1 << 31), (1 << 31) - 1)
-"""What a constant without a range may be."""
+"""The range of a constant that is declared without one."""
 
 Extents = tuple[range, ...]
 """The indices of each dimension of an array, the outermost first."""

@@ -274,7 +274,7 @@ class SyntaxBuilder(QueryBuilder):
 
 
 def _levels(items: Iterable[Any]) -> list[list[Any]]:
-    """What stands between the signs `<`."""
+    """The items split at the signs `<`."""
     levels: list[list[Any]] = [[]]
     for item in items:
         if item == "<":

@@ -69,7 +69,7 @@ class Element:
         return Span(self.source, self.start, self.start + len(self.name) + 1)
 
     def place(self, start: int, end: int) -> Span:
-        """Where some characters of the text stand in the file."""
+        """The place in the file of some characters of the text."""
         if not self.offsets:
             return self.span()
         first = self._position(start)
@@ -218,7 +218,7 @@ def _part(element: Element | None, start: str, findings: Findings, default: Any)
 
 
 def _parsed(element: Element, start: str) -> Any:
-    """What a text says. UPPAAL's `not` binds as its `!` does, tighter than a comparison."""
+    """The syntax tree of a text. UPPAAL's `not` binds like its `!`, tighter than a comparison."""
     return parse_part(_NOT.sub("!  ", element.text), start, element.place)
 
 

@@ -189,7 +189,7 @@ def evaluator(expression: Expression) -> Evaluator:
 
 
 def chained(op: BinaryOp, expression: Expression) -> list[Expression]:
-    """What a connective joins, however it is nested."""
+    """The operands of a connective, with nested ones of the same kind flattened."""
     match expression:
         case BinaryOperation(found, left, right) if found is op:
             return [*chained(op, left), *chained(op, right)]

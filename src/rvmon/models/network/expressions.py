@@ -53,7 +53,7 @@ class BinaryOp(StrEnum):
 
 
 class PathOp(StrEnum):
-    """What must hold of the runs from a state."""
+    """Quantifiers over the runs from a state, each with a temporal operator."""
 
     POSSIBLY = "E<>"
     INVARIANTLY = "A[]"
@@ -70,7 +70,7 @@ class PathOp(StrEnum):
 
 
 class BaseType(StrEnum):
-    """What a declared name holds."""
+    """The base types of declared names."""
 
     INT = "int"
     BOOL = "bool"
@@ -182,7 +182,7 @@ class InLocation:
 
 
 class ClockOp(StrEnum):
-    """How a clock is compared with a number."""
+    """Comparisons of a clock with a number."""
 
     LT = "<"
     LE = "<="

@@ -52,10 +52,10 @@ OPERATIONS: dict[str, Callable[..., float]] = {
 integer."""
 
 WHOLE = {"<", "<=", "==", "!=", ">=", ">", "grid", "fint"}
-"""Those that give an integer."""
+"""The operations with an integer result."""
 
 FUNCTIONS = {name: 1 + (name in ("fmod", "pow", "hypot")) for name in [*OPERATIONS][15:]}
-"""Those that a model calls by name, with the number of their arguments."""
+"""The operations that a model calls by name, with the number of their arguments."""
 
 
 def bits_of(number: float) -> int:

@@ -63,7 +63,7 @@ class Guard:
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """How fast a clock runs: in units of it for each unit of time."""
+    """The rate of a clock: its increase per unit of time."""
 
     clock: int
     value: Expression
@@ -145,7 +145,7 @@ class Priorities:
     channels: tuple[int, ...]
 
     def rank(self, channel: int | None, automata: Iterable[int]) -> int:
-        """That of a step on a channel, or without one: its channel first, then its automata."""
+        """The priority of a step: its channel's (`None`: an internal step), then its automata's."""
         level = self.internal if channel is None else self.channels[channel]
         return level + max(self.automata[one] for one in automata)
 
@@ -219,7 +219,7 @@ class Extremes:
 
 
 Asked = Chance | Mean | Simulation | Extremes
-"""What is answered by figures or values, and not by yes or no."""
+"""Queries that are answered by figures or values, not by yes or no."""
 
 QueryFormula = Expression | LeadsToFormula | Asked
 

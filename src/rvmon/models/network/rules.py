@@ -1,4 +1,4 @@
-"""What can be wrong with a model or query: the codes, and how a finding is made and raised."""
+"""The diagnostics of models and queries: their codes, and how they are made and raised."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What names stand for while a model is elaborated."""
+"""Scopes: the names that are visible while a model is elaborated."""
 
 from __future__ import annotations
 

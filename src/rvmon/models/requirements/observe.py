@@ -47,7 +47,7 @@ from rvmon.trace.time import TICKS_PER_UNIT
 MET_IN_THE_END = "none stays open for ever while time passes on"
 OPEN_FOR_EVER = "an attempt stays open for ever"
 UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"
-"""What is reported of a requirement without deadline that no finite run fails."""
+"""The remark on a requirement without deadline that no finite run violates."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,7 +244,7 @@ def open_means(required: Core) -> bool | None:
 
 
 def signals_of(network: Network) -> dict[str, Evaluator]:
-    """How specifications' names are read off the network; its own variables come last."""
+    """Evaluators of the signals of a specification in the network; its own variables come last."""
     return {name: evaluator(value) for name, value in _values(network).items()}
 
 

@@ -51,7 +51,7 @@ _LOST = -2
 
 
 class Phase(Enum):
-    """Where the monitor is between two positions."""
+    """The phases of the monitor between two positions."""
 
     START = "the run has just begun: both without an attempt and with one, if one begins there"
     IDLE = "no attempt is followed, and the trigger does not hold"
@@ -77,7 +77,7 @@ class _Site:
 
     @property
     def held(self) -> _Held:
-        """Where the monitor waits there."""
+        """The state in which the monitor waits there."""
         return self.location, self.clocks, self.region
 
     @property
@@ -87,7 +87,7 @@ class _Site:
 
 
 _Held = tuple[int, tuple[int, ...], Region]
-"""Where the monitor waits: its location, what its clocks are, their region."""
+"""The state of a waiting monitor: its location, the clocks in use, their region."""
 
 
 class Observed:
@@ -259,7 +259,7 @@ class Observed:
         self._watcher.add_edge(place, self._place(site), letters, bounds, started, watches=False)
 
     def _fresh(self, edge: Edge, clocks: Sequence[int]) -> tuple[_Site, list[int]]:
-        """Where the monitor is behind a step, and the clocks that are set."""
+        """The site of the monitor after a step, and the clocks that the step resets."""
         target, sources = edge
         numbers, started = self._started([NOW if s == NOW else clocks[s] for s in sources])
         if target <= PASSED:
@@ -276,7 +276,7 @@ class Observed:
     def _held(
         self, held: _Held, letter: int, ages: Ages, steps: int
     ) -> Iterator[tuple[tuple[ClockCompare, ...], _Held]]:
-        """How the monitor steps just behind an instant, until it only waits: when, and where."""
+        """The waiting states that steps just after an instant lead to, with the bounds for each."""
         if steps > MOST_STEPS:
             yield bounds_of(ages), (_LOST, (), ())
             return

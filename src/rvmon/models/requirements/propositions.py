@@ -1,4 +1,4 @@
-"""What a requirement is in a network: its propositions, and the tables of its monitor."""
+"""A requirement seen from a network: its propositions as expressions, and its monitor's tables."""
 
 from __future__ import annotations
 
@@ -139,13 +139,13 @@ _Tree = int | tuple[int, "_Tree", "_Tree"]
 """A class of letters; or a proposition, and what follows where it is false and where it is true."""
 
 Edge = tuple[int, tuple[int, ...]]
-"""Where the monitor goes, and where its clocks come from."""
+"""The target location of the monitor, and for each of its clocks the source."""
 
 Region = tuple[int, ...]
 """For each clock the number of bounds that its age has passed."""
 
 Ages = Mapping[int, tuple[int, float]]
-"""Of some clocks the least age, and that which they have not reached."""
+"""By clock, its least age, and a bound that it has not reached."""
 
 
 class Tables:
@@ -175,7 +175,7 @@ class Tables:
     # Letters.
 
     def edge(self, location: int, region: Region, letter: int) -> Edge | None:
-        """Where a class of letters leads; `None` where no run comes."""
+        """The edge for a class of letters; `None` in unreachable rows."""
         automaton = self._automaton
         edge = automaton.edges[row_of(automaton, location, region) * automaton.classes + letter]
         return None if edge < 0 else (automaton.targets[edge], automaton.sources[edge])
@@ -203,7 +203,7 @@ class Tables:
         return tree
 
     def _classes(self, place: int, letter: int) -> _Tree:
-        """How the values of the propositions from one on decide the class of a letter."""
+        """The decision tree from the propositions, from `place` on, to the class of a letter."""
         alphabet = self._automaton.alphabet
         if place == len(alphabet.propositions):
             return self._automaton.class_of[letter]
@@ -257,7 +257,7 @@ class Tables:
     def just_behind(
         self, location: int, clocks: Sequence[int], region: Region, ages: Ages
     ) -> Ages | None:
-        """Those of some ages from which any delay, however short, leads into a region.
+        """The part of some ages from which any delay, however short, leads into a region.
 
         Args:
             location: of the monitor.
@@ -285,7 +285,7 @@ class Tables:
 
 
 def bounds_of(ages: Ages) -> tuple[ClockCompare, ...]:
-    """That clocks have some ages; those that begin now do."""
+    """The condition that clocks have some ages; clocks that begin now satisfy it."""
     bounds = []
     for clock, (low, high) in ages.items():
         if clock != NOW and low:
@@ -305,7 +305,7 @@ def _cut(ticks: int, unit: int) -> _Cut:
 
 
 def negated(one: Expression) -> Expression:
-    """That something does not hold."""
+    """The negation of an expression."""
     if one in (TRUE, FALSE):
         return FALSE if one == TRUE else TRUE
     return UnaryOperation(UnaryOp.NOT, one)

@@ -41,11 +41,11 @@ class InvalidRunError(AssertionError):
 
 
 class _FailedUpdateError(InvalidRunError):
-    """What is taken has no value."""
+    """An update of a taken edge has no value."""
 
 
 def initial_configuration(network: Network) -> Configuration:
-    """Where every run starts."""
+    """The initial configuration of every run."""
     return Configuration(
         tuple(automaton.initial for automaton in network.automata),
         tuple(variable.initial for variable in network.variables),
@@ -207,7 +207,7 @@ class Rules:
         return self._network.priorities.rank(channel, (automaton for automaton, _ in action.edges))
 
     def _behind(self, now: Configuration, action: Action) -> Configuration:
-        """Where edges lead that are taken together, priorities apart."""
+        """The configuration after edges taken together, whatever their priority."""
         movers = [automaton for automaton, _ in action.edges]
         for automaton, edge in action.edges:
             if edge not in self._network.automata[automaton].edges:

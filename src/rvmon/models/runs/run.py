@@ -56,7 +56,7 @@ class Action:
 
 @dataclass(frozen=True, slots=True)
 class Position:
-    """Where a run is between two actions: the location of each automaton, the variables."""
+    """The discrete state of a run between two actions: locations and values of variables."""
 
     locations: tuple[int, ...]
     values: tuple[int, ...]
@@ -81,10 +81,10 @@ class RunStep:
 
 
 class Ending(StrEnum):
-    """How a run ends."""
+    """The ways in which a run ends."""
 
     REACHED = "reached"
-    """It shows what was sought."""
+    """The run reaches the goal of the search."""
 
     DEADLOCK = "deadlock"
     """No edge can be taken any more; time can pass for ever."""
@@ -93,13 +93,13 @@ class Ending(StrEnum):
     """No edge can be taken any more, and time stops."""
 
     IDLE = "idle"
-    """It can stay where it is for ever."""
+    """The run can stay in its last state for ever."""
 
     LOOP = "loop"
-    """It can go round for ever, and time passes without bound."""
+    """The run can repeat its loop for ever, and time diverges."""
 
     ZENO_LOOP = "zeno loop"
-    """It can go round for ever, but time stops before a certain instant."""
+    """The run can repeat its loop for ever, but time converges."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +130,7 @@ Atom = tuple[int, int, float]
 """`(x, y, bound)`: clock y − clock x is at most the bound; clock 0 is always 0."""
 
 STRICT = 2.0**-12
-"""What a strict bound lacks."""
+"""The difference between a strict bound and the number it is written with."""
 
 Zone = list[float]
 """Clock valuations by their bounds: of `dim` clocks `dim²`, as an atom's at `x * dim + y`."""
@@ -158,7 +158,7 @@ class Bag:
     bounds: NDArray[np.float64]
 
     def kept(self, instants: Iterable[int]) -> Bag:
-        """What it says of some of them."""
+        """The bag restricted to some instants."""
         import numpy as np
 
         chosen = tuple(sorted(instants))

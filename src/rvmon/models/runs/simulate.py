@@ -51,7 +51,7 @@ def trial_of(
     mean_wait: float,
     goes_on: Callable[[], bool],
 ) -> Callable[[], bool]:
-    """What simulates one run and says whether it meets a normalised formula within a horizon."""
+    """A function that simulates a run: whether it meets a normalised formula within a horizon."""
     space = Space(network, GRID)
     pieces = pieces_of(sought, GRID)
 
@@ -133,7 +133,7 @@ def _draw(
 
 
 class _Paces:
-    """How fast clocks run in states, and how long runs wait there that may wait for ever."""
+    """The rates of clocks in states, and the mean waits of runs that may wait for ever."""
 
     def __init__(self, network: Network) -> None:
         self._network = network
@@ -146,7 +146,7 @@ class _Paces:
             yield automaton.locations[place]
 
     def rates(self, state: State) -> tuple[float, ...]:
-        """Of each clock, counted from 1.
+        """The rate of each clock, numbered from 1.
 
         Raises:
             ModelError: two automata disagree, or a rate is below 0.
@@ -239,7 +239,7 @@ class _Choice:
 
 
 def _longest(state: State, clocks: list[float], rates: Sequence[float]) -> float:
-    """How long time may pass in a state."""
+    """The longest delay that the invariants of a state allow."""
     if not state.delays:
         return 0
     atoms = tuple((0, clock, bound) for clock, bound in state.invariant)

@@ -164,7 +164,7 @@ class Space:
         return state
 
     def step(self, state: State, edges: Iterable[tuple[int, int]]) -> Move | None:
-        """What edges do together, given by automaton and number; `None` if it is forbidden."""
+        """The joint move of some edges (automaton and number); `None` if it is forbidden."""
         return self._move(state, tuple(self._edges[a][number] for a, number in edges), ())
 
     def moves(self, state: State) -> list[Move]:
@@ -273,7 +273,7 @@ class _Tried:
         return (edge for edges in self._edges for edge in edges)
 
     def senders(self) -> Iterator[ReadyEdge]:
-        """Those that begin a synchronisation."""
+        """The edges that start a synchronisation."""
         return (edge for edge in self.leaving() if edge.sends)
 
     def is_able(self, edge: ReadyEdge) -> bool:
@@ -284,7 +284,7 @@ class _Tried:
         return self._known[key]
 
     def receivers(self, sender: ReadyEdge) -> Iterator[ReadyEdge]:
-        """Those that can receive from a sender."""
+        """The edges that can receive from a sender."""
         first = sender.channels
         for edge in self.leaving():
             if edge.automaton == sender.automaton or edge.channel is None or edge.sends:

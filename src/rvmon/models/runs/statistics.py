@@ -36,7 +36,7 @@ MARGIN = 0.01
 is left is the margin."""
 
 ERROR = 0.05
-"""How often a test may be wrong, either way; estimates have bounds with the rest as confidence."""
+"""The probability of a wrong test, either way; estimates have the confidence 1 − ERROR."""
 
 MOST_TRIALS = 1_000_000
 """After so many runs a test gives up."""
@@ -50,7 +50,7 @@ Drawn = TypeVar("Drawn")
 
 @dataclass(frozen=True, slots=True)
 class Sampled:
-    """What random runs say of a query.
+    """The answer to a query from random runs.
 
     Attributes:
         query: the question.
@@ -175,7 +175,7 @@ class _Runs:
         return self._watch is None or self._watch(self._count)
 
     def drawn(self, draw: Callable[[], Drawn], most: int) -> Iterator[Drawn]:
-        """What each of at most so many runs gives."""
+        """The results of at most `most` runs."""
         while self._count < most and self.goes_on():
             try:
                 yield draw()

@@ -104,7 +104,7 @@ def on_grid(bound: float, scale: int) -> float:
 
 
 def windows(timing: Timing) -> list[Window]:
-    """How long the wait before each step can last, over all runs along the path."""
+    """The shortest and longest wait before each step, over all runs along the path."""
     found = []
     for low, high, _ in timing.waits:
         low_units, high_units = int(low // timing.scale), None

@@ -162,7 +162,7 @@ class _Climb:
         return not fixed and state is not None and not state.is_time_bounded
 
     def _farthest(self) -> int:
-        """What no value goes beyond, or of a clock's is not asked."""
+        """A bound on all values; for a clock, the value beyond which none is asked for."""
         if self._term.clock is not None:
             return FARTHEST if self._largest else 0
         return self._sign * value_range(self._term.value, self._network)[self._largest]

@@ -193,7 +193,7 @@ class Plan:
         ]
 
     def _extra(self, sought: Sought, timer: int) -> list[int]:
-        """What the query compares clocks with, wherever the automata are."""
+        """The bounds with which the query compares clocks, whatever the locations."""
         everywhere = self._asked.get(None, {}).get(0, [])
         bounds = ClockBounds()
         bounds.note(everywhere, self._network)
@@ -291,7 +291,7 @@ def _limit_rows(bounds: ClockBounds) -> list[int]:
 
 
 class Seek(IntEnum):
-    """What a plan seeks, as `plan.h` says."""
+    """The kinds of search, by their numbers in `plan.h`."""
 
     GOAL = 0
     DEADLOCK = 1
@@ -306,16 +306,18 @@ class Seek(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Sought:
-    """What is sought in a network.
+    """The question to a search in a network.
 
     Attributes:
         kind: of search.
-        goal: normalised; where runs lead, or from where they are watched, or what holds where
-            there is no deadlock.
-        inside: normalised; where runs stay, or what holds where there is a deadlock.
-        ways: the automaton of a formula of LTL, that accepts the run.
-        progress: whether time has to pass on for ever on the run, beside what `ways` says.
-        nested: normalised; where runs lead, or what holds at the start, if that speaks of runs.
+        goal: normalised; the states to reach, or from which runs are watched, or the condition on
+            states without a deadlock.
+        inside: normalised; the states in which runs stay, or the condition on states with a
+            deadlock.
+        ways: the automaton of an LTL formula that has to accept the run.
+        progress: whether time has to diverge on the run, in addition to `ways`.
+        nested: normalised; the states to reach, or the condition on the start, if it has path
+            quantifiers.
         choose: among several runs.
         bound: units of time, if there is one.
     """

@@ -1,4 +1,4 @@
-"""What a search may cost and what it cost, and the answer to a query."""
+"""The budget and the cost of a search, and the answer to a query."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rvmon.models.runs.run import Run
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """When a search gives up; `None` is no limit.
+    """The limits at which a search gives up; `None`: no limit.
 
     Attributes:
         states: symbolic states visited.
@@ -35,7 +35,7 @@ UNLIMITED = Budget()
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """How far a search is: symbolic states visited and waiting, seconds since it began."""
+    """The progress of a search: symbolic states visited and waiting, seconds since it began."""
 
     visited: int
     waiting: int
@@ -47,7 +47,7 @@ Watch = Callable[[Progress], None]
 
 @dataclass(frozen=True, slots=True)
 class Statistics:
-    """What a search cost.
+    """The cost of a search.
 
     Attributes:
         visited: symbolic states that were kept when they were met.
@@ -117,12 +117,12 @@ class Meter:
         return time.perf_counter() - self._start
 
     def statistics(self) -> Statistics:
-        """What was counted, as data."""
+        """The counts so far."""
         return Statistics(self.visited, self.stored, self.seconds)
 
     @property
     def left(self) -> int:
-        """How many states may still be visited; -1: any number."""
+        """The number of states that may still be visited; −1: any number."""
         states = self._budget.states
         return -1 if states is None else max(0, states - self.visited)
 
@@ -166,7 +166,7 @@ def _is_full(limit: int) -> bool:
 
 
 def _megabytes() -> float:
-    """What the process holds now; at its highest, or 0, where the system reports no more."""
+    """The memory of the process now; its peak, or 0, where the system reports nothing better."""
     try:
         pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
         return pages * mmap.PAGESIZE / (1 << 20)

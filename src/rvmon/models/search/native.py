@@ -65,13 +65,13 @@ _ENDINGS = (
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """What a search gave.
+    """The result of a search.
 
     Attributes:
-        run: to what was sought; `None` if there is none or the search was stopped.
-        improper: whether a way to stay was passed by because time stops on it.
-        spans: of a goal that was not found, with a watcher: by location of that which was met, the
-            least and largest value that the last clock came near there; `inf`: it has no end.
+        run: a run to the goal; `None` if there is none or the search was stopped.
+        improper: whether a run that stays inside was left out because time stops on it.
+        spans: if the goal was not found, and there is a watcher: by location of the watcher that
+            was reached, the infimum and supremum of the last clock there; `inf`: unbounded.
     """
 
     run: Run | None

@@ -58,7 +58,7 @@ class Programs:
         self._nests: dict[int, int] = {}
         """By function where its program begins, and how deep it calls others."""
         self._added: dict[int, tuple[object, int]] = {}
-        """Where what was added begins, by its identity, for as long as it is held."""
+        """The start of each program, by the identity of its expression, which is kept alive."""
         self._ends: list[int] = []
 
     def add(self, expression: Expression) -> int:

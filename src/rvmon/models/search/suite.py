@@ -35,7 +35,7 @@ from rvmon.models.search.native import seek
 
 
 class Criterion(StrEnum):
-    """What a suite goes through."""
+    """Coverage criteria for test suites."""
 
     LOCATIONS = "locations"
     EDGES = "edges"

@@ -47,7 +47,7 @@ from rvmon.models.search.native import seek
 
 @dataclass(frozen=True, slots=True)
 class _Question:
-    """What all searches for one query share."""
+    """The arguments that all searches for one query share."""
 
     network: Network
     meter: Meter
@@ -114,10 +114,10 @@ def _remark(run: Run | None) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """What a search says of a query.
+    """The result of the searches for a query.
 
     Attributes:
-        shows: whether a run shows that it holds, else that it does not.
+        shows: whether a run would show that the query holds (`E<>`), or that it does not (`A[]`).
         run: that run; `None` if there is none.
         chosen: the policy that chose it, if there was a choice.
         holds: whether it holds, where no single run shows it.

@@ -36,7 +36,7 @@ from rvmon.models.network.network import (
 
 
 def names_of(network: Network, edge: Edge) -> tuple[str, ...]:
-    """What an edge adds to the names of a move: its label, and if it begins one its channel's."""
+    """The names that an edge gives a move: its label, and its channel if it sends."""
     sends = edge.sync is not None and edge.sync.sends
     channel = network.channels[edge.sync.slot.first].name if edge.sync and sends else ""
     return tuple(dict.fromkeys(name for name in (edge.label, channel) if name))
