@@ -21,11 +21,11 @@ from rvmon.texts import text_of_file
 
 @dataclass(frozen=True, slots=True)
 class Compilation:
-    """What the passes made of a text, right or wrong.
+    """The results of all passes over a text, right or wrong.
 
     Attributes:
-        files: the text and what it imports, the items that could be read.
-        checked: what could be checked; `None` if there were too many errors.
+        files: the text and its imports, with the items that could be read.
+        checked: the items that could be checked; `None` if there were too many errors.
         findings: errors and warnings, those of the text itself first, in order of place.
     """
 

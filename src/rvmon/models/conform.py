@@ -247,7 +247,7 @@ def _named(watcher: Watcher, labels: Iterable[str], names: Sequence[str]) -> Exp
 def _allowed(
     network: Network, labels: Sequence[str], chain: Sequence[_Place], most: int, meter: Meter
 ) -> tuple[Allowed, ...]:
-    """The actions possible at the last place in some run, with their earliest and latest instants."""
+    """The actions possible at the last place, each with its earliest and latest instant."""
     watcher, last = _following(network, labels, chain, most), len(chain) - 1
     end = ClockCompare(watcher.clock, ClockOp.GE, Constant(chain[-1].latest))
     names = {watcher.add_location(kind=LocationKind.URGENT): label for label in labels}

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _Read = TypeVar("_Read")
 
 MOST_THREADS = 4
-"""That read; who looks at what they have read is slower than these."""
+"""The most reading threads; the consumer of their results is slower than these."""
 
 
 def stretches(first: bytes, file: BinaryIO) -> Iterator[bytes]:

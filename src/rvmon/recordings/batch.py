@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 NO, UNKNOWN, YES, NO_UPDATE = 0, 1, 2, 255
-"""What a row may say of a name: an event does not occur, it is unknown, it is so, nothing."""
+"""The entries of a row for an event: it does not occur, unknown, it occurs, no update."""
 
 
 class NotPlainError(Exception):
@@ -65,7 +65,7 @@ class Cells:
         return Cells(values, _spread(self.says, rows, count), self.labels)
 
     def of_rows(self, start: int, stop: int) -> Iterator[Any]:
-        """What rows say as samples have it; `NO_UPDATE` itself: nothing."""
+        """The values of rows as in samples; `NO_UPDATE` itself where there is none."""
         values = self.values[start:stop].tolist()
         says = repeat(YES) if self.says is None else self.says[start:stop].tolist()
         for value, said in zip(values, says, strict=False):
@@ -79,7 +79,7 @@ class Cells:
 
 @dataclass(frozen=True, slots=True)
 class Occurrences:
-    """Where an event occurs.
+    """The occurrences of an event.
 
     Attributes:
         says: uint8[n].
@@ -221,7 +221,7 @@ def outer_join(batches: Sequence[Batch], first: int) -> Batch | None:
 def _spread(
     says: NDArray[np.uint8] | None, rows: NDArray[np.intp], count: int
 ) -> NDArray[np.uint8]:
-    """What rows say, in more rows, of which the others say nothing."""
+    """The entries spread over more rows, with `NO_UPDATE` in the others."""
     made = np.full(count, NO_UPDATE, np.uint8)
     made[rows] = YES if says is None else says
     return made

@@ -73,7 +73,7 @@ def _where(cells: Cells, heard: NDArray[np.bool_]) -> Cells:
 
 
 def _occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDArray[np.uint8]:
-    """Where an event occurs: with a payload unless its own cell says false, else as that says."""
+    """The occurrences of an event: by its own cell; with a payload, unless that is false."""
     if own is None:
         says = np.full(count, NO_UPDATE, np.uint8)
     else:
@@ -128,7 +128,7 @@ def cells_of_array(
 
 
 def kept(values: NDArray[Any], gaps: Gaps) -> NDArray[np.bool_]:
-    """Where a value does not stand for no update."""
+    """A mask of the values that are updates."""
     found = np.ones(len(values), bool)
     if gaps.nan and values.dtype.kind == "f":
         found &= values == values

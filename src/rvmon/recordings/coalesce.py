@@ -70,7 +70,7 @@ def coalesce(
 
 
 def updates_in(values: Mapping[str, Value], ignoring: frozenset[str]) -> Mapping[str, Value]:
-    """What a sample says, without NaN and null of signals of which these are no update.
+    """The updates of a sample, without NaN and null of signals for which these are none.
 
     >>> updates_in({"x": None, "y": float("nan"), "z": 1.0}, frozenset({"x", "z"}))
     {'y': nan, 'z': 1.0}
@@ -87,7 +87,7 @@ def updates_in(values: Mapping[str, Value], ignoring: frozenset[str]) -> Mapping
 def merged(
     first: Sample, then: Mapping[str, Value], events: Container[str], conflicts: Conflicts
 ) -> dict[str, Value]:
-    """What a sample says, and then another one of its instant; see `coalesce`."""
+    """The values of a sample joined with those of a later one at its instant; see `coalesce`."""
     made = dict(first.values)
     for name, value in then.items():
         if name not in made:
@@ -127,13 +127,13 @@ REMARK = (
     "alternates with values, as in a merge of topics; if it stands for no update, say so: "
     'nan="no update", rvmon run --nan no-update'
 )
-"""What is reported of a name that does."""
+"""The remark on a name whose unknown values alternate with others."""
 
 _LEAST = 3
 """Stretches of unknown values; fewer are dropouts."""
 
 _SCALARS = frozenset({bool, int, float, str})
-"""Of these types all values are known but NaN, which differs from itself."""
+"""The types whose values are all known but NaN, which differs from itself."""
 
 _LONGEST = 4
 """Known values of a stretch, on average, at most."""
@@ -182,7 +182,7 @@ class Alternation:
 
 
 class Alternations:
-    """Those of all names of a recording; payload fields are called `event.field`."""
+    """The alternations of all names of a recording; payload fields are called `event.field`."""
 
     def __init__(self) -> None:
         self._found: dict[str, Alternation] = defaultdict(Alternation)

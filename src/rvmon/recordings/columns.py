@@ -114,7 +114,7 @@ class TableRecording:
         return self.pieces()
 
     def doubts(self) -> list[Health]:
-        """What is odd about its stamps."""
+        """The doubtful stamps."""
         return self.stamp_doubts()
 
     def stamp_doubts(self) -> list[Health]:
@@ -215,7 +215,7 @@ def _rounded(
 def _of_fewest_digits(
     parts: NDArray[np.float64], halves: NDArray[np.float64], scale: int
 ) -> NDArray[np.float64]:
-    """What stands behind the point as ticks: as many digits as tell floats apart, see `exact`."""
+    """The decimals as ticks: as many digits as tell floats apart, see `exact`."""
     power, found = float(scale), np.rint(parts * float(scale))
     while power > 1:
         power /= 10

@@ -33,7 +33,7 @@ else:
     read = extension("_csv", CSV_FOLDER, "the reader of CSV").read
 
 _ALL, _ROW = 0, 2
-"""That a call ended with the text, or at a row that is odd; else with its room."""
+"""The ways a call ends: with the text, or at an odd row; else its room is used up."""
 
 _KINDS = {Kind.BOOL: 0, Kind.INT: 1, Kind.REAL: 2, Kind.LABEL: 3}
 
@@ -92,10 +92,10 @@ def csv_batches(
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What a call found in a text: as `csv.h` says, in arrays with room for more.
+    """The results of a call on a text: see `csv.h`; the arrays have room for more.
 
     Attributes:
-        counts: how it ended, rows, where what is left begins, where an odd row ends, lines, odd
+        counts: the way it ended, rows, the start of the rest, the end of an odd row, lines, odd
             cells, labels.
     """
 
@@ -240,7 +240,7 @@ class _Reader:
 
 
 def _cell(text: bytes, start: int, end: int) -> str:
-    """What a cell says; where its end is negative, quotes in it are doubled."""
+    """The text of a cell; where its end is negative, quotes in it are doubled."""
     if end >= 0:
         return text[start:end].decode().strip()
     return text[start:~end].decode().replace('""', '"').strip()

@@ -50,7 +50,7 @@ _PARTS |= {"us": 1_000, "usec": 1_000, "microseconds": 1_000, "ms": 1_000_000, "
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """How a text is written.
+    """The dialect of a text.
 
     Attributes:
         separator: of cells; empty: blanks.

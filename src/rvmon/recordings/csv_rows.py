@@ -33,7 +33,7 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Layout:
-    """What the header says, and how its rows are read.
+    """The columns of a header, and the way to read its rows.
 
     Attributes:
         header: names of the columns.
@@ -179,7 +179,7 @@ def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
 
 
 def row_values(cells: Iterable[tuple[Column, Any]], gaps: Gaps) -> dict[str, Value]:
-    """What a row says: the one reading of rows, whatever holds them.
+    """The values of a row: the one reading of rows, whatever format holds them.
 
     A signal is updated by its cell. An event with a payload cell occurs unless its own cell says
     false; one without occurs where its own cell is true.

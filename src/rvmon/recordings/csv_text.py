@@ -14,10 +14,10 @@ from rvmon.recordings.csv_rows import split_lines
 _Found = TypeVar("_Found")
 
 _MARK = b"\xef\xbb\xbf"
-"""That some editors begin a text with."""
+"""The byte order mark of UTF-8, with which some editors begin a text."""
 
 _END = re.compile(rb"\r\n|\n|\r(?!\Z)")
-"""Of a line; a carriage return that ends a stretch may be half of one."""
+"""The end of a line; a carriage return at the end of a block may be half of one."""
 
 
 class CsvText(Generic[_Found]):

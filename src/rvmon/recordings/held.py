@@ -24,7 +24,7 @@ class HeldRecording(Sequence[Sample]):
         self.outages = tuple(outages)
 
     def __len__(self) -> int:
-        """How many rows there are, of which some may be of one sample."""
+        """The number of rows, of which several may belong to one sample."""
         return sum(1 if isinstance(piece, Sample) else len(piece.times) for piece in self.pieces)
 
     def __iter__(self) -> Iterator[Sample]:

@@ -37,13 +37,13 @@ class File(Recording, Protocol):
 
     @property
     def outages(self) -> Sequence[Outage]:
-        """What it lost."""
+        """The outages of the file."""
 
     def parts(self) -> Iterator[Batch | Sample]:
-        """It in order, rows as columns where it has such; there may be none."""
+        """The file in order, as columns where it has such; may be empty."""
 
     def doubts(self) -> list[Health]:
-        """What is odd about it."""
+        """The doubts about the file."""
 
 
 class Joined:
@@ -127,12 +127,12 @@ class Joined:
             yield from (piece,) if isinstance(piece, Sample) else piece.samples()
 
     def stamp_doubts(self) -> list[Health]:
-        """What is odd about each file."""
+        """The doubts about the stamps of each file."""
         return [doubt for file in self._files for doubt in (*file.rows.doubts(), *file.doubts())]
 
 
 class _Head:
-    """Where the reading of a file stands: a batch of which some rows are taken, or a sample."""
+    """The reading position in a file: a batch of which some rows are taken, or a sample."""
 
     def __init__(self, file: File) -> None:
         self._path, self._parts = file.path, file.parts()
@@ -161,7 +161,7 @@ class _Head:
         return part.cut(0, count) if count else None
 
     def take_at(self, until: int) -> Iterator[Sample]:
-        """What there is at an instant."""
+        """The samples at an instant."""
         while self.is_there and self._first == until:
             part = self._part
             if isinstance(part, Sample):
@@ -182,7 +182,7 @@ class _Head:
 
 
 def topics_of(paths: Sequence[str]) -> list[tuple[str, str]]:
-    """Of each file its name, and that without what all begin with and the number of an instance.
+    """By file its name, and that without the common beginning and the number of an instance.
 
     >>> topics_of(["log_17_odom_0.csv", "log_17_status_0.csv"])
     [('log_17_odom_0', 'odom'), ('log_17_status_0', 'status')]
@@ -194,7 +194,7 @@ def topics_of(paths: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def schemas_of(paths: Sequence[str], of_messages: Sequence[bool], schema: Schema) -> list[Schema]:
-    """What is read of each file: a name that begins with its own is that of the column behind it.
+    """The schema of each file: a name that begins with the file's own is that of its column.
 
     Args:
         paths: of the files.

@@ -21,10 +21,10 @@ from rvmon.trace.time import TIME_LIMIT
 Line = TypeVar("Line", str, bytes)
 
 MOST_NAMES = 1_000
-"""So many names are told apart."""
+"""The most names that are counted apart."""
 
 MORE = "… and more"
-"""What counts for all other names."""
+"""The entry that counts all other names."""
 
 TOO_DEEP = "it is nested too deeply"
 
@@ -38,7 +38,7 @@ _HALF_PAIR = re.compile(r"\\u[dD][89abAB]..(?!\\u[dD][c-fC-F])")
 
 _APART = re.compile(r'"\s+:')
 _APART_IN_BYTES = re.compile(rb'"\s+:')
-"""What looks like the end of a name that its colon does not follow at once."""
+"""A quote that may end a name, with blanks before the colon."""
 
 
 def jsonl_samples(
@@ -108,7 +108,7 @@ def decoded(line: Line, decode: Callable[[Line], Any]) -> Any:
 
 
 def names_in(text: str | bytes) -> int:
-    """How many names objects of a text have, or another number than that, where it is not plain.
+    """The number of names in the objects of a text; another number if the text is not plain.
 
     >>> names_in('{"a": "b:c", "a": {"d":1}}'), names_in('{"a" : 1}')
     (3, -1)
@@ -121,7 +121,7 @@ def names_in(text: str | bytes) -> int:
 
 
 def count_of_names(value: object) -> int:
-    """How many names objects in a decoded value have.
+    """The number of names in the objects of a decoded value.
 
     >>> count_of_names({"a": 1, "b": [{"c": {}}]})
     3
@@ -273,7 +273,7 @@ def _scalar(value: object, kind: Kind, name: str) -> Scalar:
 
 
 def bound(ignored: Counter[str]) -> None:
-    """Of many names, count all but the first together.
+    """Count all names but the first `MOST_NAMES` together.
 
     >>> seen = Counter({f"name{number}": 1 for number in range(MOST_NAMES + 5)})
     >>> bound(seen)

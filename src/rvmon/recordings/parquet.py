@@ -91,7 +91,7 @@ def _damage(error: Exception) -> TraceError:
 
 
 def parquet_layout(path: str | Path, schema: Schema) -> Layout:
-    """What the file's columns are.
+    """The layout of the file's columns.
 
     Raises:
         RvmonError: there is no pyarrow.

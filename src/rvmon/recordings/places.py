@@ -1,4 +1,4 @@
-"""Where recordings lie: files, packed ones, and addresses, of which a copy is read."""
+"""The places of recordings: files, packed ones, and addresses, of which a copy is read."""
 
 from __future__ import annotations
 
@@ -126,7 +126,7 @@ def created(path: Path) -> Iterator[BinaryIO]:
 
 
 def _packing(packed: str) -> tuple[Callable[[BinaryIO, str], Any], tuple[type[Exception], ...]]:
-    """What opens a file that is packed in that way, and what it raises where one is damaged."""
+    """The function that opens a packed file, and the exceptions that it raises on damage."""
     if packed == ".gz":
         import gzip
         import zlib
@@ -141,7 +141,7 @@ def _packing(packed: str) -> tuple[Callable[[BinaryIO, str], Any], tuple[type[Ex
 
 
 def local_path(path: str) -> Path:
-    """Where a file lies; of an address, its copy, which lasts while no other one is asked for.
+    """The path of a file; of an address that of its copy, kept until another one is asked for.
 
     Raises:
         TraceError: the address cannot be read.

@@ -140,7 +140,7 @@ class FileRecording:
 
     @property
     def outages(self) -> Sequence[Outage]:
-        """What it lost, in order; text is whole, or an error."""
+        """The outages, in order; a text has none."""
         held = self._messages or self._joined
         return () if held is None else held.outages
 
@@ -230,7 +230,7 @@ class FileRecording:
 
     @property
     def fraction_read(self) -> float:
-        """How much of the file has been read, 0 to 1; 0 where that is not known."""
+        """The share of the file that has been read, 0 to 1; 0 if unknown."""
         if self._messages is not None:
             return min(1.0, self.rows.count / (self._messages.count or inf))
         if self._open_file is None or self._open_file.closed:
@@ -238,7 +238,7 @@ class FileRecording:
         return self._open_file.tell() / max(1, os.fstat(self._open_file.fileno()).st_size)
 
     def stamp_doubts(self) -> list[Health]:
-        """What is odd about its stamps.
+        """The doubts about its stamps.
 
         Those of columns look like milliseconds, by the first ones, which are read if they were not
         yet; of messages that were read the headers say otherwise than the log.
@@ -257,7 +257,7 @@ class FileRecording:
         return doubt_unit(first, self._stamps)
 
     def health(self) -> list[Health]:
-        """What was noticed while reading: undeclared names, conflicts, a doubtful unit of time."""
+        """The findings while reading: undeclared names, conflicts, a doubtful unit of time."""
         ignored = [
             Health(HealthKind.IGNORED, name, count, remark="not declared in the spec")
             for name, count in self.ignored.items()
@@ -265,11 +265,11 @@ class FileRecording:
         return ignored + self.rows.doubts() + self.doubts()
 
     def doubts(self) -> list[Health]:
-        """What is odd about its stamps and its end."""
+        """The doubts about its stamps and its end."""
         return self.stamp_doubts() + self._cut_off()
 
     def _cut_off(self) -> list[Health]:
-        """That nobody knows what the last cell said: the end of a line alone says that it ends."""
+        """The doubt about the last cell: without an end of line it may have been cut."""
         if not self._unended:
             return []
         names = ", ".join(f"`{name}`" for name in sorted(self._unended))

@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
 
 LOOKED_AT = 1_000
-"""So many of the first stamps of a recording are looked at."""
+"""The number of stamps, from the first, that are examined."""
 
 FEWEST = 10
-"""Of fewer stamps nothing is reported."""
+"""The fewest stamps about which anything is reported."""
 
 LONG_STEP = 5
 """Seconds of a median step from which on seconds may be milliseconds."""
@@ -68,7 +68,7 @@ def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
 
 
 ROOM = 65_536
-"""So many rows wait at most for those that are late."""
+"""The most rows that wait for late ones."""
 
 LEAP = 365 * 86_400 * TICKS_PER_SECOND
 """Ticks of a year, for which no recording is silent: one of the two stamps is of another clock."""
@@ -244,7 +244,7 @@ class Rows:
                 del fault  # its traceback holds this frame, and with it an open file
 
     def doubts(self) -> list[Health]:
-        """What is odd: signals that got two values at one stamp, stamps of another clock."""
+        """The doubts: signals with two values at one stamp, stamps of another clock."""
         found = self._conflicts.health()
         if self._leaps:
             last, t = self._leaps[0]
@@ -256,5 +256,5 @@ class Rows:
         return found
 
     def with_findings(self, health: Sequence[Health]) -> tuple[Health, ...]:
-        """What a monitor found about these samples, with what was noted here."""
+        """The findings of a monitor about these samples, with those made here."""
         return (*self.alternations.remarked(health), *self.doubts())

@@ -1,4 +1,4 @@
-"""What a program or a person takes for a trace, how it is read, and its pieces to be judged."""
+"""Sources of traces: whatever may be given as one, the way to read it, its pieces for the core."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ class ReadingArguments(SchemaArguments, total=False):
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What `Spec.evaluate` and its kin are given about a trace.
+    """The options of `Spec.evaluate` and its kin about a trace.
 
     Attributes:
         schema: the declared names, and how the trace gives them.

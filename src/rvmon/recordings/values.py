@@ -17,7 +17,7 @@ TRUE_WORDS = frozenset({"true", "True", "TRUE", "1"})
 FALSE_WORDS = frozenset({"false", "False", "FALSE", "0"})
 
 _ABSENT = frozenset({"na", "n/a", "<na>", "none", "null", "nil"})
-"""What programs write where they have no value: it is unknown, or none has come."""
+"""The texts that programs write for a missing value: unknown, or no update."""
 
 
 def scalar_of_text(text: str, kind: Kind) -> Scalar:
@@ -167,5 +167,5 @@ def shorten(text: str, width: int = 40) -> str:
 
 
 def first_line(error: Exception) -> str:
-    """What an error of another library says first."""
+    """The first line of an error of another library."""
     return shorten(str(error).partition("\n")[0] or type(error).__name__, 120)

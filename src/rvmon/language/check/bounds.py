@@ -37,7 +37,7 @@ class Bounded:
     scope: Scope
 
     def late(self, word: str, span: Span) -> Passed:
-        """That the window is over."""
+        """The condition that the window is over."""
         trigger = self.scope.trigger
         assert trigger is not None, "what is required at the trigger has one"
         trigger.begun(span)

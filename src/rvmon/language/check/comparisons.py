@@ -70,7 +70,7 @@ _EQUALITY = (CompareOp.EQ, CompareOp.NE)
 
 
 def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
-    """What a comparison stands for.
+    """The formula of a comparison.
 
     Raises:
         Refusal: the sides cannot be compared.
@@ -212,7 +212,7 @@ def _extreme(lone: Lone, op: CompareOp, limit: Placed, span: Span) -> Formula | 
 
 
 def alone(value: Beside, span: Span) -> Diagnostic:
-    """What is wrong with what stands alone and may not."""
+    """The finding for a value that is only allowed beside something else in a comparison."""
     match value:
         case Age():
             return rules.age_alone(span)

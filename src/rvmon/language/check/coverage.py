@@ -194,7 +194,7 @@ class _Point:
     labelled: bool
 
     def formula(self, bin_: items.BinSyntax) -> Formula:
-        """Where a bin is hit."""
+        """The formula that is true where a bin is hit."""
         match bin_.values:
             case None if self.labelled:
                 return self._valued(expressions.Name(bin_.name.text, bin_.name.span))
@@ -208,7 +208,7 @@ class _Point:
                 return self._valued(wanted)
 
     def _valued(self, wanted: expressions.Expression) -> Formula:
-        """That the expression has a value; without one, what is written is the formula."""
+        """The condition that the expression has a value; without one, the bin's own formula."""
         expression = self.expression
         if self.labelled and isinstance(wanted, expressions.Name):
             return self._compared(CompareOp.EQ, wanted, wanted.span)
@@ -222,9 +222,9 @@ class _Point:
         return formula
 
     def _stepped(self, steps: items.StepsSyntax) -> Formula:
-        """That the last update took the expression to the last value, those before to others.
+        """The condition that the last updates took the expression through the steps, in order.
 
-        From each value it came to the next without a third in between.
+        Between two values of the steps there was no third one.
         """
         span, expression = steps.span, self.expression
         if expression is None:
@@ -275,7 +275,7 @@ def _alike(formula: Formula, other: Formula) -> bool:
 def _clauses(
     checker: Checker, clauses: Sequence[items.GoalClauses]
 ) -> tuple[Formula | None, int, int] | None:
-    """Where it is sampled, the goal and the weight; `None` if one is wrong."""
+    """The formula at which it is sampled, the goal and the weight; `None` if one is wrong."""
     upon: Formula | None = None
     counts = {"goal": 1, "weight": 1}
     for clause in clauses:

@@ -166,7 +166,7 @@ class _Linear:
 
 
 _PATHS = (expressions.Path, expressions.Quantified, expressions.LeadsTo)
-"""What has a path quantifier."""
+"""The expressions with a path quantifier."""
 
 
 def _signed(state: StateFormula, positive: bool) -> StateFormula:
@@ -304,7 +304,7 @@ class _States:
 
 
 def property_of(checker: Checker, item: RequirementItem) -> Property | None:
-    """What a requirement states in CTL; `None` if it does not."""
+    """The CTL property that a requirement states; `None` if it is none."""
     for clause in item.clauses:
         if isinstance(clause, PropertyClause):
             found = checked_property(checker, item.name.text, clause.formula)

@@ -71,7 +71,7 @@ P = ParamSpec("P")
 T = TypeVar("T")
 
 NOW = "now"
-"""What is said of the time since the first instant; a name that is declared goes before."""
+"""The word for the time since the first instant; a declared name of that text takes precedence."""
 
 
 class Checker:
@@ -105,7 +105,7 @@ class Checker:
         return self.collected(self.formula, expression, scope)
 
     def collected(self, make: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:
-        """What is made of something, or `None` if that is refused, and then it is recorded."""
+        """The result of `make`, or `None` if it refuses; the refusal is recorded."""
         try:
             return make(*args, **kwargs)
         except Refusal as refusal:
@@ -115,7 +115,7 @@ class Checker:
         return None
 
     def formula(self, expression: Expression, scope: Scope) -> Formula:
-        """What the expression stands for, which has to be a formula.
+        """The formula that the expression stands for.
 
         Raises:
             Refusal: it is a number or label.
@@ -129,7 +129,7 @@ class Checker:
         return [formula_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
 
     def quantities(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Quantity]:
-        """What the expressions stand for, which have to be numbers."""
+        """The quantities that the expressions stand for."""
         values = self.values(expressions, scope)
         return [number_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
 
@@ -147,7 +147,7 @@ class Checker:
         return spread(self.values(args, scope), span, calculate)
 
     def values(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Value]:
-        """What the expressions stand for.
+        """The values that the expressions stand for.
 
         Raises:
             Reported: one is wrong; the findings of all are recorded.
@@ -168,7 +168,7 @@ class Checker:
         return ticks_of(self.values((expression,), scope)[0], expression.span)
 
     def value(self, expression: Expression, scope: Scope) -> Value | None:
-        """What the expression stands for; `None` if it is wrong, and then that is recorded."""
+        """The value that the expression stands for; `None` if it is wrong, which is recorded."""
         try:
             self.effort.enter(expression.span)
             return self._value(expression, scope)

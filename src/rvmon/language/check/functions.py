@@ -38,13 +38,13 @@ _INSTEAD = {
     "rms": "its square is the mean of squares: `mean(x * x, 10 s) <= 0.04`",
     **dict.fromkeys(("stddev", "std"), "its square is the variance: `variance(e.x, 10 s) <= 0.04`"),
 }
-"""What says nearly the same as functions that there are not."""
+"""By name of a function that the language lacks, the way to write nearly the same."""
 _EXTREMES = {NumericOp.MIN: Measured.MIN, NumericOp.MAX: Measured.MAX}
 _COUNTS = ("no argument", "one argument", "two arguments")
 
 
 def applied(operands: Operands, call: Call, scope: Scope) -> Value:
-    """What a call of a function of the language stands for.
+    """The value of a call of a function of the language.
 
     Raises:
         Refusal: there is no such function, or the arguments do not fit.

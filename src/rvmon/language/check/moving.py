@@ -123,7 +123,7 @@ def _joined(how: NumericOp, left: Numeric, right: Numeric) -> Numeric:
 
 
 def _may_go(how: NumericOp, beside: Numeric) -> bool:
-    """What is added may be anything that does not move, a factor a constant."""
+    """Whether an operand may stand beside a moving one: any fixed term, or a constant factor."""
     if how in (NumericOp.ADD, NumericOp.SUB):
         return not _moves(beside)
     return isinstance(beside, Literal) and beside.value != 0

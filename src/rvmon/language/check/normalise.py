@@ -138,7 +138,7 @@ def scoped_trigger(trigger: Formula, opening: Formula | None, closing: Formula |
 
 
 def scoped_consequent(consequent: Formula, closing: Formula | None, *, must_close: bool) -> Formula:
-    """What is required within the scope."""
+    """The consequent restricted to the scope."""
     if closing is None:
         return consequent
     required = _until_closed(consequent, closing)

@@ -40,7 +40,7 @@ Placed = tuple[Quantity, Span]
 _RADIAN = parse_unit("rad")
 _OF_ANGLES = {UnitRule.OF_ANGLE: PLAIN, UnitRule.PLACES: parse_unit("m")}
 _HIGHEST = 9
-"""Of units, powers up to there have a meaning."""
+"""The highest power of a unit."""
 _DOING = {NumericOp.ADD: "added to", NumericOp.SUB: "reduced by"}
 
 
@@ -100,7 +100,7 @@ def arithmetic(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
 
 
 def node_of(placed: Placed) -> Numeric:
-    """What yields the quantity at run time, in its own unit.
+    """The expression that yields the quantity at run time, in its own unit.
 
     Raises:
         Refusal: a constant that is out of range.
@@ -243,7 +243,7 @@ MOST_OUTCOMES = 64
 
 
 def spread(values: Sequence[Value], span: Span, make: Callable[[Sequence[Value]], Value]) -> Value:
-    """What is made of values, some of which may be choices.
+    """The result of `make` over values, some of which may be choices.
 
     Raises:
         Refusal: they have too many outcomes, or what `make` says.

@@ -128,7 +128,7 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement:
 
 
 def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
-    """Of several occurrences at one instant each has to tell by itself whether it counts."""
+    """Refuse fields where occurrences are added up: each has to tell by itself if it counts."""
     for window in windows_of(*formulas):
         events = {value.event for value in fields_in(window.value)} if window.value else None
         if not events:

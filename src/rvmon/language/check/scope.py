@@ -1,4 +1,4 @@
-"""What an expression stands for while it is checked, and where names are looked up and missed."""
+"""The values of expressions under check, and the scopes and table in which names are looked up."""
 
 from __future__ import annotations
 
@@ -91,13 +91,13 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class Lone:
-    """What a number is that is a window and nothing else: beside a limit it has ways of its own.
+    """A number that is just a window; beside a limit it is compared in a way of its own.
 
     Attributes:
         of: the window; of a share, its duration.
         added: its x, if it is of numbers.
         share: whether it is divided by D.
-        begun: that the trigger has come, if only what is since then counts.
+        begun: the condition that the trigger has come, if only members since then count.
     """
 
     of: WindowValue
@@ -107,7 +107,7 @@ class Lone:
 
 
 Beside = Age | Now | Moment
-"""What only stands beside something else in a comparison."""
+"""The values that are only allowed beside something else in a comparison."""
 
 Value = Formula | Quantity | Beside | Chosen
 
@@ -122,12 +122,12 @@ class Closure:
 
 @dataclass(frozen=True, slots=True)
 class AtTrigger:
-    """What is captured at the trigger besides `let`, as far as what is required asks for it."""
+    """Values captured at the trigger besides `let`, as far as the consequent reads them."""
 
     captures: list[Capture] = field(default_factory=list)
 
     def begun(self, span: Span) -> Passed:
-        """That it has come."""
+        """The condition that the trigger has come."""
         if not any(capture.name == TRIGGERED for capture in self.captures):
             self.captures.append(Capture(TRIGGERED, NowValue()))
         return since_trigger(span)
@@ -161,7 +161,7 @@ class Scope:
         return replace(self, at_once=False) if self.at_once else self
 
     def inside(self, names: Mapping[str, Closure]) -> Scope:
-        """That of the body of a macro."""
+        """The scope of the body of a macro."""
         return Scope(names, self.trigger, self.at_once)
 
 
@@ -212,12 +212,12 @@ _LONG_NAMES = {
     "pixel": "px",
     "byte": "B",
 }
-"""What people write for a unit, in lower case and without a last `s`."""
+"""By what people write for a unit, in lower case and without a last `s`: its symbol."""
 
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """What the names of a file stand for.
+    """The declarations of a file, by name.
 
     Attributes:
         time: the time model.
@@ -246,7 +246,7 @@ class Table:
 
 
 def close_name(table: Table, name: str, local: tuple[str, ...] = ()) -> str:
-    """What to try in place of an unknown name, in words; empty if nothing is alike."""
+    """A proposal in place of an unknown name, in words; empty if no name is similar."""
     fields = [f"{e.name}.{f}" for e in table.events.values() for f in e.fields]
     close = nearest(name, [*local, *table.declared, *fields])
     return f"did you mean `{close}`?{_described(table, close)}" if close else ""
@@ -280,7 +280,7 @@ class Operands(Protocol):
     table: Table
 
     def values(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Value]:
-        """What the operands stand for."""
+        """The values of the operands."""
 
     def calculated(
         self, op: NumericOp, args: tuple[Expression, ...], scope: Scope, span: Span
@@ -291,10 +291,10 @@ class Operands(Protocol):
         """The same, which have to be numbers."""
 
     def formula(self, expression: Expression, scope: Scope) -> Formula:
-        """What an operand stands for, which has to be a formula."""
+        """The formula that an operand stands for."""
 
     def duration(self, expression: Expression, scope: Scope) -> int:
-        """What it stands for, which has to be a constant duration, in ticks."""
+        """The constant duration that an expression stands for, in ticks."""
 
     def known(self, name: str, scope: Scope) -> bool:
         """Whether a name stands for anything but a label."""

@@ -38,13 +38,13 @@ _FIRST = "at the first instant"
 def traps_at_trigger(
     trigger: Formula, consequent: Formula, time: TimeModel, span: Span
 ) -> Iterator[Diagnostic]:
-    """What is required at the trigger, and cannot hold there.
+    """Find parts that are required at the trigger and cannot hold there.
 
     Args:
-        trigger: without what a scope adds.
+        trigger: without the part that a scope adds.
         consequent: the same.
         time: the time model.
-        span: of the requirement, for what has no place of its own.
+        span: of the requirement, for parts without a place of their own.
     """
     facts = {about: truth for about, truth in facts_of(trigger).items() if about is not Bound.START}
     for part in _required_at_once(consequent):
@@ -55,13 +55,13 @@ def traps_at_trigger(
 def traps_at_start(
     mode: Mode, trigger: Formula, consequent: Formula, span: Span
 ) -> Iterator[Diagnostic]:
-    """What is required from the start of the run on, and cannot hold there.
+    """Find parts that are required from the start of the run on and cannot hold there.
 
     Args:
         mode: of the requirement.
         trigger: the same.
         consequent: the same.
-        span: of the requirement, for what has no place of its own.
+        span: of the requirement, for parts without a place of their own.
     """
     always = mode is Mode.WHENEVER and isinstance(trigger, Constant) and trigger.value
     if not always and not (isinstance(trigger, BoundAtom) and trigger.bound is Bound.START):
@@ -142,7 +142,7 @@ def _from_later_on(part: Binary, time: TimeModel) -> str:
 
 
 def _later(part: Formula) -> str:
-    """How what looks back is required only where there is something to look at."""
+    """The way to require a part that looks back only where there is a past to look at."""
     due = max(map(_reach, subformulas(part)))
     if not due:
         return f"leave out the first instant: `start or {_operand(part)}`"
@@ -151,7 +151,7 @@ def _later(part: Formula) -> str:
 
 
 def _reach(part: Formula) -> int:
-    """How long ago the latest instant is that an operator looks at, ticks."""
+    """The distance of the latest instant that an operator looks back at, ticks."""
     match part:
         case Unary(op=UnaryOp.HELD, interval=window) if window is not None:
             return window.high or 0

@@ -40,22 +40,22 @@ from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.units import PLAIN, Unit, parse_unit, product
 
 TRIGGER = "trigger"
-"""What windows may begin with: `x since trigger`."""
+"""The word after `since` in a window that begins at the trigger: `x since trigger`."""
 _SECONDS = parse_unit("s")
 MOST_LAST = 1_000_000
-"""So many updates a window may hold."""
+"""The most updates that a window may hold."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Window:
-    """What a call measures, and where.
+    """The window of a call: its members and its extent.
 
     Attributes:
         of: the expression.
         scope: of that.
         ticks: D; `None`: no such window.
-        most: how many updates; `None`: any number.
-        since: whether only what is since the trigger counts.
+        most: the number of updates; `None`: any number.
+        since: whether only members since the trigger count.
     """
 
     of: Expression
@@ -71,7 +71,7 @@ class _Window:
 
 
 def _window(operands: Operands, call: Call, scope: Scope) -> _Window:
-    """Of the last D, of `last(n, x)`, since the trigger, or since the first instant."""
+    """The window of the last D, of `last(n, x)`, since the trigger, or since the first instant."""
     of, inner = operands.peeled(call.args[0], scope)
     found = _Window(call.args[0], scope)
     match of:
@@ -111,7 +111,7 @@ def _count(operands: Operands, expression: Expression, scope: Scope) -> int:
 
 
 def amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> Quantity:
-    """What a call measures.
+    """The quantity that a call measures.
 
     Raises:
         Refusal: there is no such window, or that is not measured of such members.
@@ -150,7 +150,7 @@ def _unit_of(measured: Measured, unit: Unit) -> Unit:
 
 
 def _counted(operands: Operands, measured: Measured, call: Call, window: _Window) -> Lone:
-    """How much of a formula there was, which has to be known at once."""
+    """The count or duration of a formula, whose members have to be known at once."""
     formula = operands.formula(window.of, window.scope)
     _refuse_future(formula, call, call.function.text)
     share = call.function.text == "share"
@@ -173,7 +173,7 @@ def _refuse_future(formula: Formula, call: Call, name: str) -> None:
 
 
 def _updates(operands: Operands, names: set[str], span: Span) -> Formula:
-    """Where the only name of an expression is updated."""
+    """The formula that is true where the only name of an expression is updated."""
     if len(names) != 1:
         raise Refusal(rules.last_of_several(span))
     (name,) = names
@@ -232,7 +232,7 @@ def _is_of_occurrence(formula: Formula, events: set[str]) -> TypeGuard[Compare]:
 
 
 def _can_be_added(measured: Measured, node: Numeric, *, fields: bool, signals: bool) -> bool:
-    """Of what occurs, of what is held, or of either."""
+    """Whether a measure adds up numbers of occurrences, of held values, or of either."""
     match measured.of:
         case Members.EVENTS:
             return fields or isinstance(node, SignalValue)
@@ -254,7 +254,7 @@ def _refuse_curve(operands: Operands, call: Call, window: _Window) -> None:
 
 
 def is_extreme(operands: Operands, call: Call, scope: Scope) -> bool:
-    """Of a window, if the second argument is a duration and the first is no time."""
+    """Whether `min` or `max` is of a window: only the second argument is a duration."""
     if len(call.args) == 1:
         return True
     if len(call.args) > 2:

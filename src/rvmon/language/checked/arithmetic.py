@@ -15,7 +15,7 @@ from rvmon.language.checked import mathematics
 
 
 class UnitRule(Enum):
-    """What arguments an operation takes, and what becomes of their units."""
+    """The units that an operation takes, and the unit of its result."""
 
     SAME = "of one unit, which the result has"
     PRODUCT = "of any unit; their product"
@@ -33,7 +33,7 @@ class UnitRule(Enum):
 
 
 class Exactness(StrEnum):
-    """How near the result is to that of the numbers that are there."""
+    """The accuracy of a result."""
 
     EXACT = "exact"
     ROUNDED = "rounded once"
@@ -42,11 +42,11 @@ class Exactness(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Operation:
-    """What is to be known of an operation.
+    """The entry of an operation: arity, units, evaluation, documentation.
 
     Attributes:
-        least: so many arguments at least.
-        most: so many at most; `None`: any number, folded from the left.
+        least: the least number of arguments.
+        most: the greatest; `None`: any number, folded from the left.
         unit: of the result.
         apply: yields the result, of exact fractions too; an error of arithmetic is unknown.
         whole: whether the result of whole numbers is one.

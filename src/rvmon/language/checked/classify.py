@@ -1,4 +1,4 @@
-"""What a formula is by its syntax: present or future, pulse or level, constant at one instant."""
+"""Classifies formulas by syntax: present or future, pulse or level, constant at an instant."""
 
 from __future__ import annotations
 
@@ -129,7 +129,7 @@ Pulses = tuple[bool, bool]
 
 
 class _Pulsing(Connectives[Pulses]):
-    """Of a conjunction either has to be a pulse, of a disjunction both."""
+    """Pulses: a conjunction is one if either operand is, a disjunction if both are."""
 
     def constant(self, value: bool) -> Pulses:
         return not value, value
@@ -180,14 +180,14 @@ def mixed_disjunction(trigger: Formula) -> tuple[Formula, Formula] | None:
 
 
 Facts = Mapping[Hashable, bool]
-"""What is known of propositions at an instant, by what they say."""
+"""The known truth values of propositions at an instant."""
 
 FIRST: Facts = {Bound.START: True}
-"""Of the first instant of a run."""
+"""The facts of the first instant of a run."""
 
 
 def facts_of(formula: Formula) -> dict[Hashable, bool]:
-    """What has to be so where a formula of the present and past is true.
+    """The facts that hold wherever a formula of the present and past is true.
 
     >>> from rvmon.language.checked.formula import BinaryOp
     >>> facts_of(Binary(BinaryOp.AND, EventAtom("e"), Unary(UnaryOp.NOT, SignalAtom("p"))))
@@ -197,7 +197,7 @@ def facts_of(formula: Formula) -> dict[Hashable, bool]:
 
 
 Both = tuple[dict[Hashable, bool], dict[Hashable, bool]]
-"""What has to be so where a formula is true, and where it is false."""
+"""The facts where a formula is true, and those where it is false."""
 
 
 class _Facts(Reading[Both]):
@@ -245,11 +245,11 @@ def _both_facts(formula: Formula) -> Both:
 
 
 def truth_at(formula: Formula, facts: Facts) -> bool | None:
-    """What a formula is at an instant; `None` if that depends on more than is known.
+    """The truth value of a formula at an instant; `None` if the facts do not decide it.
 
     Args:
         formula: of any tense.
-        facts: what is known of the instant; `FIRST` if it is the first one.
+        facts: of the instant; `FIRST` if it is the first one.
     """
     match formula:
         case Constant(value=value):

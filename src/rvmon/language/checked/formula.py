@@ -135,7 +135,7 @@ class WindowValue:
 
 
 Read = NowValue | SignalValue | FieldValue | Captured | UpdateValue
-"""What a number is read off."""
+"""The numbers that are read off the input or captured."""
 
 Numeric = Literal | Read | WindowValue | Arithmetic
 
@@ -191,12 +191,12 @@ class CompareOp(StrEnum):
 
     @property
     def mirrored(self) -> CompareOp:
-        """What is true of `b` and `a` where this is of `a` and `b`."""
+        """The operator for swapped operands: `a < b` is `b > a`."""
         return CompareOp(self.translate(_MIRROR))
 
     @property
     def denied(self) -> CompareOp:
-        """What is true where this is not."""
+        """The operator of the negation: `not a < b` is `a >= b`."""
         return _DENIED.get(self) or next(op for op, other in _DENIED.items() if other is self)
 
 
@@ -317,7 +317,7 @@ class Amount:
 
     @property
     def operands(self) -> tuple[Formula, ...]:
-        """Those of the window; behind the first ones, whether c is known."""
+        """The operands of the window, then the condition that the limit is known."""
         own = self.of.operands
         chosen = len(own) - len(self.of.chosen)
         return own if self.known is None else (*own[:chosen], self.known, *own[chosen:])
@@ -373,12 +373,12 @@ TRIGGERED = "upon"
 
 
 def since_trigger(span: Span | None = None) -> Passed:
-    """That the trigger has come."""
+    """The condition that the trigger has come."""
     return passed(TRIGGERED, Literal(0, "s"), False, span)
 
 
 def passed(since: str | None, after: Numeric, strict: bool, span: Span | None = None) -> Passed:
-    """That so many seconds have passed since an instant that was captured, or the first."""
+    """The condition that a duration has passed since a captured instant, or since the first."""
     read = after if since is None else Arithmetic(NumericOp.ADD, (Captured(since), after))
     return Passed(since, after, strict, itself(read), span)
 

@@ -15,7 +15,7 @@ from rvmon.language.checked.operators import UnaryOp, Window
 
 
 class Argument(Enum):
-    """What an argument has to be."""
+    """The kinds of arguments."""
 
     FORMULA = "a formula"
     DURATION = "a duration"
@@ -69,7 +69,7 @@ _OF_UPDATES = (
 
 
 LAST = "last"
-"""What stands in windows: `last(n, x)`."""
+"""The function that only stands in windows: `last(n, x)`."""
 _COUNTED = (Argument.FORMULA, Argument.DURATION)
 _ADDED = (Argument.NUMBER, Argument.DURATION)
 

@@ -1,4 +1,4 @@
-"""What runs should show: cover goals, coverpoints and crosses, as data."""
+"""Cover goals, coverpoints and crosses, as data."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Cover:
 
 
 class BinKind(StrEnum):
-    """What a hit of a bin means."""
+    """The kinds of bins: the meaning of a hit."""
 
     GOAL = "goal"
     IGNORE = "ignore"

@@ -1,4 +1,4 @@
-"""What operations on numbers yield that Python has no function for.
+"""Operations on numbers for which Python has no function.
 
 An error of arithmetic, or of a value, is a result that is unknown.
 """

@@ -1,4 +1,4 @@
-"""What is measured in windows of the past: one entry for each, which all readers use."""
+"""The measures of windows of the past: an entry each, which all users of windows share."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum, StrEnum
 
 
 class Members(Enum):
-    """What the members of a window are."""
+    """The kinds of members of a window."""
 
     TRUTHS = "a formula that is true at single instants"
     TIME = "a formula"
@@ -26,14 +26,14 @@ class Dimension(Enum):
 
 
 class Measured(StrEnum):
-    """What is measured of a formula, or of a number, over the last D.
+    """The measures of a formula, or of a number, over the last D.
 
     Attributes:
-        of: what it is of.
-        dimension: of what comes out.
+        of: the kind of its members.
+        dimension: of its result.
         doc: its value in a few words.
-        unknown: what becomes of it where something in the window is not known.
-        each: bytes that a member takes at most, or a stretch of equal ones.
+        unknown: its value where a member of the window is unknown.
+        each: bytes that a member, or a stretch of equal ones, takes at most.
         fixed: bytes besides.
         steady: whether it takes no more without D, however long the run.
 
@@ -120,7 +120,7 @@ class Measured(StrEnum):
 
     @property
     def memory(self) -> str:
-        """What it takes, in words."""
+        """The memory that it takes, in words."""
         return f"{self.fixed} bytes, and up to {self.each} a member, or stretch of equal ones"
 
     @property

@@ -77,12 +77,12 @@ class Window(Enum):
 
 
 PREFIXED, CALLED = 6, 7
-"""How tightly prefixes bind, and what is written as a call."""
+"""The precedence of prefixes, and of calls."""
 
 
 @dataclass(frozen=True, slots=True)
 class Operator:
-    """What is to be known of an operator.
+    """The entry of an operator.
 
     Attributes:
         sign: of it.
@@ -156,7 +156,7 @@ def _historically(reading: Reading[T], it: T, window: Interval) -> T:
 
 
 def _held(reading: Reading[T], it: T, window: Interval) -> T:
-    """What is before the first instant has not held."""
+    """`held`: before the first instant nothing has held."""
     begun = _once(reading, reading.constant(True), Interval(window.high or 0, None))
     return reading.both(_historically(reading, it, window), begun)
 

@@ -36,7 +36,7 @@ def _classes() -> Mapping[str, type]:
 
 @cache
 def _rarer_classes() -> Mapping[str, type]:
-    """Those of properties and goals, which few specifications have."""
+    """The classes of properties and goals, which few specifications have."""
     from rvmon.language.checked import ctl, goals
 
     return dict(_own_classes(ctl, goals))
@@ -130,7 +130,7 @@ def identity_text(spec: specification.CheckedSpec, *, without: Collection[str] =
 
 
 def _parts(without: Collection[str], value: Any) -> Any:
-    """What something is made of, for a JSON text: one level, which is gone when it is written."""
+    """The parts of a value for a JSON text: one level, freed once it is written."""
     own: Any = type(value)
     names = _attributes(own)
     if names is not None:

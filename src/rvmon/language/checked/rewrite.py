@@ -15,11 +15,11 @@ Part = TypeVar("Part", bound=Formula | Numeric | Interval)
 
 
 def read(formula: Unary | Binary, of: Callable[[Formula], T], reading: Connectives[T]) -> T:
-    """What the outermost operator of a formula makes of its operands.
+    """The reading of a formula, from the readings of its operands.
 
     Args:
         formula: any.
-        of: what an operand is; each is asked for once.
+        of: reads an operand; called once for each.
         reading: a `Reading`, unless the operator is a connective.
     """
     operands = (formula.operand,) if isinstance(formula, Unary) else (formula.left, formula.right)

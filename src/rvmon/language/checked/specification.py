@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class Role(StrEnum):
-    """Who sets a signal or event: the environment (`input`) or the system (`output`)."""
+    """The side that sets a signal or event: the environment (`input`) or the system (`output`)."""
 
     INPUT = "input"
     OUTPUT = "output"
@@ -67,14 +67,14 @@ class Event:
 
 
 class Mode(StrEnum):
-    """How attempts start and what they owe (SEMANTICS 3)."""
+    """The ways in which attempts start, with what each requires (SEMANTICS 3)."""
 
     UPON = "upon"
     WHENEVER = "whenever"
 
 
 class EndPolicy(StrEnum):
-    """What becomes of an undecided attempt when the trace ends (SEMANTICS 3, The end)."""
+    """The verdict of an undecided attempt at the end of the trace (SEMANTICS 3, The end)."""
 
     DEFAULT = "default"
     STRICT = "strict"

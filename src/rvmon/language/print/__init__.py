@@ -121,7 +121,7 @@ def _formula(formula: Formula, level: int) -> str:
 
 
 def _age(formula: Formula, *, denied: bool) -> str | None:
-    """That an age is so much at most, or denied; `None`: that is not what it says."""
+    """The text of a limit on an age, or of its negation; `None` if the formula is none."""
     match formula:
         case Unary(
             op=UnaryOp.ONCE,
@@ -180,7 +180,7 @@ def format_window(formula: WindowValue) -> str:
 
 
 def _conditions(formula: WindowValue) -> list[Formula]:
-    """Where there is a member, but for that its number is there, and that a signal is updated."""
+    """The conditions on a member, without those that its number is known and its signal updated."""
     conditions = [without_spans(one) for one in chain(formula.operand)]
     if formula.value is not None and not isinstance(formula.value, Literal):
         conditions = [condition for condition in conditions if condition != itself(formula.value)]

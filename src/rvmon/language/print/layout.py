@@ -100,7 +100,7 @@ WIDTH = 100
 """Longer lines are broken where operators or commas allow it."""
 
 _OPERATORS = ("LEADS_TO", "IFF", "IMPLIES", "OR", "XOR", "AND", "INFIX")
-"""Where long formulas are broken: the loosest operator first."""
+"""The operators at which long formulas are broken, the loosest first."""
 
 _TAKES_WINDOW = ("TEMPORAL", "INFIX", "PATH", "CTL", "QUANTIFIER", "LEADS_TO")
 _PLAIN = re.compile(r"\d+(\.\d+)?([eE][+-]?\d+)?")

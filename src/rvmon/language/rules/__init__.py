@@ -1,4 +1,4 @@
-"""What can be wrong with a specification: a module of rules for each family.
+"""The rules for specifications: a module for each family.
 
 A rule has a code, a name and a severity; a breach of it becomes a finding with a place and a fix.
 """

@@ -96,4 +96,4 @@ built_in = Breach(DOUBLE_NAME, "`{}` is a function of the language", "choose ano
 
 
 unused = Breach(UNUSED, "`{1} {2}` is used nowhere", "remove it, or look for what should use it")
-"""What nothing uses, a `define`, `const` or `let`: which of them, and its name."""
+"""An unused `define`, `const` or `let`: which of them, and its name."""

@@ -22,7 +22,7 @@ no_value = Breach(
 
 
 def false_at_trigger(span: Span, part: str, escape: str, fix: str) -> Diagnostic:
-    """What is required contradicts its trigger."""
+    """The consequent contradicts its trigger."""
     unless = f" unless `{short(escape)}` holds at that very instant" if escape else ""
     return finding(
         AT_TRIGGER,
@@ -34,7 +34,7 @@ def false_at_trigger(span: Span, part: str, escape: str, fix: str) -> Diagnostic
 
 
 false_at_first = Breach(AT_FIRST, "`{0}` is false {1}, whatever comes: it fails there", "{2}")
-"""What is required from the start on and cannot hold then: at which instant, and how to fix it."""
+"""A part required from the start on that cannot hold then: at which instant, and the fix."""
 
 
 def captured_once(span: Span, trigger: str) -> Diagnostic:

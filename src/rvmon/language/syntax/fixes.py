@@ -1,4 +1,4 @@
-"""What fixes a syntax error: what people write who come from another language."""
+"""Fixes for syntax errors: the habits of people who come from another language."""
 
 from __future__ import annotations
 
@@ -73,8 +73,8 @@ _WRITTEN = (
     ),
     (r"\Aevent\b", "COLON", "a field has a type, as in `event pick(id: int)`"),
 )
-"""What stands before a word or sign that cannot stand there, and behind `\\0` that; a terminal that
-could, or none; and what fixes it."""
+"""The text before a word that cannot stand there, `\\0` and that word; a terminal that could stand
+there, or none; and the fix."""
 _BEGINNINGS = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->"
 """Before what a formula begins."""
 _TYPES = {
@@ -89,13 +89,13 @@ _TYPES = {
 
 
 def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> str:
-    """What fixes a syntax error; empty if nothing is known to.
+    """The fix for a syntax error; empty if none is known.
 
     Args:
         found: the word or sign that could not stand there; empty at the end of the item.
         accepted: the terminals that could have.
         parser: knows their patterns.
-        before: what of the item stands before it.
+        before: the part of the item before it.
     """
     return (
         if_fix(before.text)
@@ -113,13 +113,13 @@ def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> s
 
 
 def if_fix(before: str) -> str:
-    """What fixes an `if` that is no choice between numbers; empty if there is none."""
+    """The fix for an `if` that is no choice between numbers; empty if there is none."""
     found = re.search(r"(?<![\w.])if(?![\w.])(?!.*(?<![\w.])else(?![\w.]))", before, re.DOTALL)
     return _TRIGGER_WORDS.format("if") if found else ""
 
 
 def _unit_fix(found: str, before: str) -> str:
-    """What fixes `40 A` and `5 W`, whose letters are operators behind a number."""
+    """The fix for `40 A` and `5 W`, whose letters are operators behind a number."""
     written = re.search(r"(?<![\w.])(\d[\d.]*)[ \t]*([AW])[ \t]*\Z", f"{before}{found}")
     written = written or re.search(r"(?<![\w.])(\d[\d.]*)[ \t]*([AW])\s*\Z", before)
     if written is None:
@@ -128,7 +128,7 @@ def _unit_fix(found: str, before: str) -> str:
 
 
 def _range_fix(found: str, before: Span) -> str:
-    """What fixes `x in [a, b]`, where labels in braces are expected."""
+    """The fix for `x in [a, b]`, where labels in braces are expected."""
     said = re.search(rf".*(?:{_BEGINNINGS})\s*(.*\S)\s+in\s*\Z", before.text, re.DOTALL)
     ends = re.compile(r"\s*\[([^],]+),([^]]+)\]").match(before.source.text, before.end)
     if found != "[" or said is None or ends is None:
@@ -138,7 +138,7 @@ def _range_fix(found: str, before: Span) -> str:
 
 
 def _held_fix(found: str, before: Span) -> str:
-    """What fixes `φ for 1 s`, said of what has been."""
+    """The fix for `φ for 1 s`, where the past is meant."""
     text = before.text
     said = re.search(rf".*(?:{_BEGINNINGS}|\()\s*([^()]*\S)\s*\Z", text, re.DOTALL)
     length = re.compile(r"for[ \t]+(\d[\d.]*[ \t]*\w+)").match(before.source.text, before.end)
@@ -159,7 +159,7 @@ def _dash_fix(before: str) -> str:
 
 
 def _fix_written(found: str, accepted: set[str], before: str) -> str:
-    """What fixes one of `_WRITTEN`; or a unit without brackets."""
+    """The fix for one of `_WRITTEN`, or for a unit without brackets."""
     if found in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before):
         return f"a unit stands in brackets: `[{found}]`"
     for pattern, terminal, fix in _WRITTEN:
@@ -170,13 +170,13 @@ def _fix_written(found: str, accepted: set[str], before: str) -> str:
 
 
 def _clause_fix(found: str, before: str) -> str:
-    """What fixes a clause above the formula, where the first word of most reads as a name."""
+    """The fix for a clause above the formula, where the first word of most reads as a name."""
     clause = _CLAUSE.fullmatch(f"{before.rstrip()} {found}")
     return f"a clause, as `{clause[1]} …`, stands behind the formula" if clause else ""
 
 
 def _word_fix(found: str, accepted: set[str], parser: lark.Lark, before: str) -> str:
-    """What fixes a word that is none of the language, or stands where none can."""
+    """The fix for a word that the language does not have, or does not allow there."""
     if not re.fullmatch(r"[^\W\d]\w*", found):
         return ""
     if "LBRACE" in accepted and found.lower() in _TYPES:
@@ -197,7 +197,7 @@ def _word_fix(found: str, accepted: set[str], parser: lark.Lark, before: str) ->
 
 
 def _number_fix(found: str, before: Span) -> str:
-    """What fixes a number or duration that is written as it is elsewhere."""
+    """The fix for a number or duration in the notation of another language."""
     digits = re.search(r"(?<![\w.])\d*$", before.text)
     behind = re.compile(r"[.,](\d*)").match(before.source.text, before.end)
     if digits and behind and (behind[1] or (digits[0] and found == ".")):

@@ -66,7 +66,7 @@ def parse_spec(source: Source, findings: Findings) -> ParsedSpec:
 
 
 def _misspelled_item(text: str, start: int, findings: list[Diagnostic]) -> int | None:
-    """Where an item starts that was taken for a part of the one before, as `requirment R2` is."""
+    """The start of an item that was parsed as part of the one before, as `requirment R2` is."""
     place = findings[0].spans[0].span.start
     if place <= start or text[place - 1] != "\n":
         return None
@@ -105,7 +105,7 @@ def _tree(text: str, rule: str) -> lark.Tree[Any]:
 
 
 def _operators(text: str) -> int:
-    """How many operators of chains a text has at least: counted before it costs anything."""
+    """A lower bound on the operators in chains of a text, counted before it is parsed."""
     return 0 if len(text) < LARGEST else len(_OPERATOR.findall(_NO_CODE.sub("", text)))
 
 

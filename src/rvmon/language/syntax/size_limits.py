@@ -1,4 +1,4 @@
-"""How deep, large and costly expressions may be, their macros expanded."""
+"""Limits on the depth, size and cost of expressions with their macros expanded."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Effort:
         return mark
 
     def since(self, mark: Cost) -> Cost:
-        """What was evaluated since the mark; it no longer counts itself."""
+        """The cost since the mark, without that of the mark."""
         cost = Cost(self._deepest - self._depth, self._size - mark.size)
         self._deepest, self._size = max(mark.depth, self._deepest), mark.size
         return cost

@@ -1,4 +1,4 @@
-"""What in a recording may feed a signal: its fields, what is calculated of them, their ranges."""
+"""Candidates for signals in a recording: fields, values computed from them, their ranges."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _ALONG: Mapping[str, Mapping[str, tuple[str, ...]]] = {
     },
     "rad/s": {"x": ("roll",), "y": ("pitch",), "z": ("yaw", "turn")},
 }
-"""What people call a quantity along, or about, an axis of a robot."""
+"""The names of a quantity along, or about, an axis of a robot."""
 
 ALONG = frozenset(
     {word for axes in _ALONG.values() for words in axes.values() for word in words}
@@ -62,7 +62,7 @@ _COMMANDING = re.compile(r"Ackermann|Trajectory|Setpoint|Command|Target|Goal|Jog
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """What may feed a name.
+    """A candidate to feed a declared name.
 
     Attributes:
         topic: of the messages.
@@ -70,7 +70,7 @@ class Candidate:
         kind: of the value; `None` of each message.
         own: words of the value, and those of its meaning.
         around: words of the topic, of its frames and of the type.
-        meaning: of the field; of what is calculated that of the result.
+        meaning: of the field, or of the computed result.
         axis: along which it is measured; empty if along none.
         comment_words: those of a comment on it.
         implied: words that people have for it along its axis, or of a joint.
@@ -99,7 +99,7 @@ class Candidate:
 
     @property
     def unit(self) -> Unit | None:
-        """What the messages say, or the name of the field; `None` if neither says one."""
+        """The unit that the messages or the name of the field state; `None` if neither does."""
         if self.meaning.sort is Sort.MEASURED and len(self.meaning.units) == 1:
             return self.meaning.units[0]
         named = unit_in_name(self.value) if self.meaning.sort is Sort.OPEN else ""
@@ -112,7 +112,7 @@ class Candidate:
 
     @property
     def dimensions(self) -> frozenset[Dimension]:
-        """Of its units; by its words where the messages do not say it; none if nobody knows."""
+        """The dimensions of its units; guessed from its words where the messages state none."""
         if self.meaning.sort is Sort.MEASURED:
             return frozenset(unit.dimension for unit in self.meaning.units)
         if self.unit is not None:
@@ -194,7 +194,7 @@ def _implied(value: str, own: Iterable[str], meaning: Meaning, axis: str) -> tup
 
 
 def events_of(topics: Mapping[str, Topic]) -> Iterator[Candidate]:
-    """What may be an event: a topic whose only truth value is true, or each of its messages."""
+    """Candidates for events: a topic whose only truth value is true, or each of its messages."""
     for topic in topics.values():
         flags = [leaf for leaf, kind in topic.leaves.items() if kind is Kind.BOOL]
         around, meaning = tuple(words_of(topic.name)), Meaning(Sort.CODE)
@@ -230,7 +230,7 @@ _FIRST = 3
 
 @dataclass(slots=True)
 class Range:
-    """What a value was.
+    """The range of the values seen.
 
     Attributes:
         count: of messages that had it.

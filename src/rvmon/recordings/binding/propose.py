@@ -41,7 +41,7 @@ Ranges = Mapping[tuple[str, str], Range]
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """What is proposed for a specification and a recording.
+    """The binding proposed for a specification and a recording.
 
     Attributes:
         text: of the binding, TOML.

@@ -85,7 +85,7 @@ EMPTY = _set(
 """Words without meaning for the match."""
 
 PLACES = _set("base body frame link joint fmu")
-"""Those of `EMPTY` that count if a field has no other word."""
+"""The words of `EMPTY` that count if a field has no other word."""
 
 WEAK = frozenset({"imu", "ground", "horizontal"})
 """Words that need not be found if there is no foreign word."""
@@ -100,10 +100,10 @@ MODIFIERS = _set(
 """Words that turn a quantity into another one."""
 
 OF_TOPICS = _set("innovation variance bias error drift home origin")
-"""Those of `MODIFIERS` that apply to all fields if they are in the name of a topic."""
+"""The words of `MODIFIERS` that apply to all fields if they are in the name of a topic."""
 
 OF_COMMENTS = OF_TOPICS | _set("accuracy covariance limit tolerance")
-"""Those that apply if they are in a comment."""
+"""The modifiers that apply if they are in a comment."""
 
 SUBJECTS = _set(
     "wind water air person pedestrian human people obstacle object ball door target lead other",

@@ -1,4 +1,4 @@
-"""What is cut out of a recording; of CSV and JSON lines, rows are copied as they stand."""
+"""Pieces cut out of a recording; the rows of CSV and JSON lines are copied as they stand."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ class Piece:
 
 @dataclass(slots=True)
 class Copied:
-    """What of a recording is in a piece, but for what that brings along."""
+    """The part of a recording that is in a piece, without the values carried in from before it."""
 
     count: int = 0
     first: int = TIME_LIMIT

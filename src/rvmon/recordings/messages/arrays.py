@@ -29,7 +29,7 @@ _FORM = "a file of arrays"
 _MAGIC = b"\x89HDF\r\n\x1a\n"
 
 _TIMES = ("t", "time", "timestamp", "timestamps", "t_ns", "time_ns", "timestamp_ns", "tout")
-"""What arrays of stamps are called."""
+"""The names of arrays of stamps."""
 
 _UNITS = {"seconds": "s", "sec": "s", "milliseconds": "ms", "microseconds": "us", "µs": "us"}
 

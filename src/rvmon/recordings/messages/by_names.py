@@ -98,7 +98,7 @@ def _named(above: list[Any], elements: Sequence[Any], name: str) -> Any:
 
 
 def part_of(content: Any, name: str) -> Any:
-    """What a message, or a part of one, has by that name; `None` if it has nothing."""
+    """The field of a message, or of a part of one, by name; `None` if it has none."""
     if isinstance(content, Mapping):
         return content.get(name)
     return getattr(content, name, None)

@@ -46,9 +46,9 @@ _TEXTS = {
         re.compile(rf"DROPCOUNT|{_ERROR}[\dA-F]{{7}}#"),
     ),
 }
-"""What lines of text are like that say something else than a frame, as the library passes over what
-it cannot read, too; that say that frames were lost, as a buffer ran over (CAN_ERR_CRTL_RX_OVERFLOW;
-OVERRUN and QOVERRUN of PCAN); that it would take for frames, or cannot pass over."""
+"""Patterns of lines of text that are no frames, as the library skips lines it cannot read; of lines
+that report lost frames, as a buffer overflowed (CAN_ERR_CRTL_RX_OVERFLOW; OVERRUN and QOVERRUN of
+PCAN); of lines that the library would take for frames, or cannot skip."""
 
 _LOST = {125: True, 126: False}
 """By the number of an object of BLF whether frames are lost from there on, or up to there."""
@@ -204,7 +204,7 @@ class _Lines:
                 return self._line
 
     def take(self) -> str:
-        """What was lost before the line that was read last, which is a frame."""
+        """The loss before the line that was read last, which is a frame."""
         found, self.why, self._line = self.why, "", ""
         return found
 
@@ -301,7 +301,7 @@ def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
 
 
 def _names(messages: Iterable[Any]) -> Mapping[int, str]:
-    """What messages are called, by identity: by their identifier, too, where two have one name."""
+    """The names of messages, by identity; with their identifier where two have the same name."""
     known = {id(message): message for message in messages}
     counts = Counter(message.name for message in known.values())
     digits = {
@@ -349,7 +349,7 @@ def _kind(signal: Any) -> Kind:
 
 
 def _reader(message: Any) -> Callable[[bytes], Mapping[str, Any]]:
-    """What gives the values of a frame; one that has a name and should be a number is unknown."""
+    """A decoder of frames; a value that is a name where a number is expected is unknown."""
     named = {signal.name: signal.choices for signal in message.signals if _is_named(signal)}
     special = {
         signal.name: {

@@ -58,7 +58,7 @@ _WRITTEN = {
     r"(?<=/s|ec)2$": "^2",
     r"/s(ec\w*)?/s(ec\w*)?$": "/s^2",
 }
-"""How units are written otherwise."""
+"""Other spellings of units."""
 
 _BRACKETS = re.compile(r"[\[(]([^\[\]()]*)[\])]")
 
@@ -69,7 +69,7 @@ _BEHIND_IN = re.compile(
 _POWER = r"(?:0?\.0*1|10+|1e-?\d|10\^-?\d)"
 
 _SCALE = re.compile(rf"(?<![\d.]){_POWER}\s*\*?\s*(?=[a-zA-Z])|\s*[*/x]\s*{_POWER}$|E\d$")
-"""What makes tenths, or hundreds, of a unit of it."""
+"""A power of ten beside a unit: tenths, or hundreds, of it."""
 
 _FIELD = re.compile(r"(?P<type>[\w/]+)(?:<=\d+)?(?:\[[^\]]*\])?\s+(?P<name>\w+)[^=]*")
 

@@ -100,7 +100,7 @@ def _rows(form: Any, data: Any, starts: Any) -> Any:
 
 
 def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
-    """What a log has of a message; each instance is a topic of its own."""
+    """The topics of a message in a log; each instance is a topic of its own."""
     rows = _rows(form, data, starts[starts + form.len <= len(data)])
     stamp = _stamp_of(form)
     if stamp is None or not len(rows):

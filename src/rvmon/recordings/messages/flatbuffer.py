@@ -15,7 +15,7 @@ _NUMBERS = {
     number: (Struct(f"<{sign}"), np.dtype(f"<{sign}"))
     for number, sign in enumerate("B?bBhHiIqQfd", 1)
 }
-"""How numbers of each base type are packed."""
+"""The layout of numbers of each base type."""
 
 _BOOL, _REALS, _STRING, _VECTOR, _TABLE, _ARRAY = 2, (11, 12), 13, 14, 15, 17
 """Base types of `reflection.fbs`, of which unions are not read."""
@@ -56,7 +56,7 @@ class _Type:
 
 
 class FlatBuffers:
-    """What decodes the messages of a schema.
+    """Decodes the messages of a schema.
 
     Args:
         schema: a `.bfbs`, as `flatc --binary --schema` makes it.
@@ -159,11 +159,11 @@ class _Packed:
         return form.unpack_from(self.data, at)[0]
 
     def follow(self, at: int) -> int:
-        """Where an offset leads."""
+        """The place that an offset leads to."""
         return at + int(self.number(_U32, at))
 
     def slot(self, table: int, offset: int) -> int:
-        """Where a table has a field; 0 if it has none."""
+        """The place of a field in a table; 0 if it has none."""
         offsets = table - self.number(_I32, table)
         if offset >= self.number(_U16, offsets):
             return 0

@@ -1,4 +1,4 @@
-"""What the first messages of topics name: the frames, and the elements of arrays."""
+"""The names in the first messages of topics: frames, and elements of arrays."""
 
 from __future__ import annotations
 
@@ -25,10 +25,10 @@ _FRAMES = ("header.frame_id", "child_frame_id")
 
 @dataclass(frozen=True, slots=True)
 class Looked:
-    """What the first messages of a topic say of it.
+    """The names in the first messages of a topic.
 
     Attributes:
-        frames: that their headers name.
+        frames: in their headers.
         joints: by the path of an array of names those in it.
         entries: the first value of each key, by its path: `status[motor].values[Load].value`.
     """
@@ -39,7 +39,7 @@ class Looked:
 
 
 def names_in(source: MessageFile) -> Mapping[str, Looked]:
-    """What the first messages of each topic name: frames, elements of arrays, keys."""
+    """The names in the first messages of each topic: frames, elements of arrays, keys."""
     wanted: dict[str, list[str]] = {}
     keys: dict[str, list[str]] = {}
     for known in source.topics.values():

@@ -86,7 +86,7 @@ def _refuse_damaged_summary(path: Path) -> None:
 
 
 def mcap_reader(file: BinaryIO) -> Any:
-    """What reads an open MCAP file of any encodings.
+    """A reader of an open MCAP file of any encodings.
 
     Raises:
         RvmonError: it is not installed.
@@ -201,7 +201,7 @@ class _OtherMessages(Messages):
 
 
 def mcap_errors() -> AbstractContextManager[None]:
-    """What goes wrong in a file is the fault of the file."""
+    """Turns errors of the library into those of the file."""
     return errors_as_damage("MCAP", "is it cut off? Copy it again, or try `mcap recover`")
 
 
@@ -227,7 +227,7 @@ _OBJECTS: Mapping[str, Callable[[], Decode]] = {
     "msgpack": lambda: msgspec.msgpack.decode,
     "cbor": _cbor,
 }
-"""What decodes messages that are objects with fields by name, by their encoding."""
+"""By encoding, the decoder of messages that are objects with fields by name."""
 
 
 def _object(decode: Decode, data: bytes) -> Mapping[str, Any]:
@@ -267,7 +267,7 @@ def _described_leaves(
 
 
 _FOUND = {bool: Kind.BOOL, int: Kind.REAL, float: Kind.REAL, str: Kind.LABEL}
-"""What is written as a whole number may be no such number in the next message."""
+"""The kinds of values; a number without decimals may have some in the next message."""
 
 
 def _found_leaves(value: Any, path: str) -> Iterator[tuple[str, Kind]]:

@@ -29,7 +29,7 @@ from rvmon.trace.schema import Stamps
 _STAMPS = Stamps("its time", "s", is_stated=True)
 
 _IN_TIME = 1
-"""How a master channel that counts seconds is marked."""
+"""The mark of a master channel that counts seconds."""
 
 _FRAMES = "CAN_DataFrame"
 """The channel of a group that holds frames as they were on the bus."""
@@ -116,7 +116,7 @@ def mdf_frames(path: Path) -> Iterator[tuple[int, tuple[int, bool], int, bytes]]
 
 @contextmanager
 def _quietly_freed() -> Iterator[None]:
-    """What could not be opened is closed by the library, and yet again when it is freed."""
+    """Silence the library: it closes a file that it could not open again when it is freed."""
     try:
         yield
     except Exception as error:

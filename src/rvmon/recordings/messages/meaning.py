@@ -1,4 +1,4 @@
-"""What the fields of messages mean: facts about the packages that many robots use.
+"""The meaning of fields of messages: facts about the packages that many robots use.
 
 The tables are in `meanings`, a file per package: its messages in brackets, below each of them a
 field a line, what it is, and words that people use for it. What a field is:
@@ -43,7 +43,7 @@ from rvmon.units import PLAIN, Unit, parse_unit
 
 
 class Sort(Enum):
-    """What a field is."""
+    """The sorts of fields."""
 
     MEASURED = "measured"
     CODE = "#"
@@ -54,13 +54,13 @@ class Sort(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Meaning:
-    """What is known of a field.
+    """The known meaning of a field.
 
     Attributes:
-        sort: what it is.
+        sort: of the field.
         units: in one of which it is measured; empty if it is not, or nobody knows.
         is_scaled: whether it is in another scale of the unit.
-        words: that people use for it.
+        words: people's words for it.
         is_prose: whether a comment says it, which may mean something else.
     """
 
@@ -72,14 +72,14 @@ class Meaning:
 
 
 UNKNOWN = Meaning(Sort.OPEN)
-"""Of fields that stand in no table."""
+"""The meaning of fields that stand in no table."""
 
 _OF_OTHERS = Meaning(Sort.OPEN, is_scaled=True)
-"""Of a field whose unit the recording says, and it is none that is known here."""
+"""The meaning of a field whose unit, as the recording states it, is not known here."""
 
 
 def meaning_of(path: str, topic: Topic) -> Meaning:
-    """What a field of the messages of a topic means.
+    """The meaning of a field of the messages of a topic.
 
     >>> one = meaning_of("twist.linear.x", Topic("/v", "geometry_msgs/msg/TwistStamped", {}))
     >>> one.units[0].symbol, one.words
@@ -119,7 +119,7 @@ def plain_type(type_name: str) -> str:
 
 
 def _told(path: str, topic: Topic) -> Meaning:
-    """What a recording says of a field, itself or by a comment on a number or a vector."""
+    """The meaning that a recording states for a field, itself or by a comment."""
     said = topic.units.get(path, "")
     unit = "1" if said in ("1", "-") else spoken_unit(said)
     is_number = topic.leaves.get(path) in (Kind.REAL, Kind.INT)

@@ -118,7 +118,7 @@ def refuse_fewer(found: int, counted: int) -> None:
 
 @cache
 def bag_readers() -> Mapping[str, Callable[[Path], Any]]:
-    """What opens bags, by their form."""
+    """The readers of bags, by form."""
     with needed("a bag", "rosbags"):
         from rosbags import rosbag1, rosbag2
 
@@ -154,7 +154,7 @@ def _refuse_unclosed(path: Path) -> None:
 
 
 def bag_errors(form: str) -> AbstractContextManager[None]:
-    """What goes wrong in a bag is the fault of the bag."""
+    """Turns errors of the library into those of the bag."""
     return errors_as_damage("a bag", _FIX[form], _FIXES)
 
 
@@ -221,7 +221,7 @@ _UNDEFINED = (
 
 
 _DISTRIBUTIONS = ("LATEST", "ROS2_HUMBLE", "ROS2_FOXY", "ROS2_DASHING")
-"""Those in which messages of ROS itself changed, the newest first."""
+"""The distributions in which messages of ROS itself changed, the newest first."""
 
 
 def _of_ros(
@@ -265,7 +265,7 @@ def _types(distribution: str, parts: Iterable[Callable[[], Any]]) -> tuple[Any, 
 
 
 def _lacking(store: Any, type_name: str) -> str:
-    """What a definition names and nobody defines, as a fault; empty: nothing."""
+    """The types that a definition names and nobody defines, as a fault; empty: none."""
     from rosbags.interfaces import Nodetype
 
     known, waiting = {type_name}, [type_name]
@@ -285,7 +285,7 @@ def _lacking(store: Any, type_name: str) -> str:
 def _comments(
     leaves: Iterable[str], messages: Mapping[str, str], comments: Mapping[str, Mapping[str, str]]
 ) -> Iterator[tuple[str, str]]:
-    """What a definition says of fields, by path."""
+    """The comments of a definition on fields, by path."""
     for path in (*messages, *leaves) if comments else ():
         above, _, field = path.rpartition(".")
         own = comments.get(plain_type(messages[above]) if above else "", {})

@@ -57,7 +57,7 @@ def _rows(
 
 
 class MessageReaders:
-    """What reads the messages, by topic: made for the first one of each."""
+    """The readers of messages by topic, each made for its first message."""
 
     def __init__(self, bounds: Mapping[str, Bound], schema: Schema) -> None:
         self._schema = schema
@@ -69,7 +69,7 @@ class MessageReaders:
     def take(
         self, topic: Topic, logged: int, content: Any
     ) -> Iterator[tuple[int, dict[str, Value]]]:
-        """What a message says, and when: of each clock that is asked for.
+        """The values of a message with its stamp, by each clock in use.
 
         Args:
             topic: of the message.
@@ -150,7 +150,7 @@ def _event(name: str, bound: Bound, schema: Schema) -> Take:
 def _reader(
     name: str, term: Term, kind: Kind, labels: Mapping[str, str], gaps: Gaps
 ) -> Callable[[Any], Any]:
-    """What gives a value of the kind, `None` where it is unknown, or `_ABSENT`."""
+    """A function from a message to a value of the kind, `None` if unknown, or `_ABSENT`."""
     get = getter(term)
 
     def read(content: Any) -> Any:

@@ -36,12 +36,12 @@ ENOUGH = 10
 
 @dataclass(slots=True)
 class Differences:
-    """How much later than its header the messages of a topic were recorded, in ticks.
+    """The delays between the headers of a topic's messages and their recording, in ticks.
 
     Attributes:
         stamp: of a message; `None`: they have no header.
         count: of messages with one.
-        first: when the first was recorded.
+        first: the instant at which the first was recorded.
         lots: the least difference of each `SOME` messages, in order.
     """
 
@@ -89,7 +89,7 @@ class Skew:
             found.note(logged, content)
 
     def doubts(self) -> list[Health]:
-        """What is odd about the clocks, by topic."""
+        """The doubts about the clocks, by topic."""
         known = {
             name: differences
             for name, differences in self.by_topic.items()

@@ -24,7 +24,7 @@ _Key = tuple[int, int, int, int]
 """A message, its system and component, and what its checksum says of its definition."""
 
 _OURS = -1
-"""That a checksum says that a message is defined as in the dialect that is known."""
+"""Marks a message whose checksum agrees with its definition in the known dialect."""
 
 _FAR = 3 * 24 * 3600 * 1_000_000
 """Microseconds: a stamp so far from the one before is none."""
@@ -194,7 +194,7 @@ class TelemetryMessages(Messages):
             yield self._names[sender], self._times[one], readers[sender](self._places[one])
 
     def _reader(self, number: int) -> Callable[[int], Mapping[str, Any]]:
-        """What gives the fields of the packet at a place, whose checksum fits.
+        """A function from the place of a packet with a valid checksum to its fields.
 
         Zeros at the end of a packet are not sent. Version 1 of MAVLink knows no extensions.
         """

@@ -1,4 +1,4 @@
-"""What recordings of messages have in common."""
+"""Topics and message files: the common part of all recordings of messages."""
 
 from __future__ import annotations
 
@@ -87,11 +87,11 @@ def by_name(topics: Iterable[Topic]) -> dict[str, Topic]:
 def errors_as_damage(
     form: str, fix: str = "is it cut off? Copy it again", fixes: Mapping[str, str] | None = None
 ) -> Iterator[None]:
-    """What a library raises is the fault of the file: damage shows in whatever reads it.
+    """Turns whatever a library raises into an error of the file: damage shows anywhere.
 
     Args:
         form: of the file, for people.
-        fix: what to do about it.
+        fix: the advice.
         fixes: the same by a word of the error that says more.
     """
     try:

@@ -1,4 +1,4 @@
-"""Where one frame is in another, composed of the transforms that a robot sends."""
+"""The pose of one frame in another, composed of the transforms that a robot sends."""
 
 from __future__ import annotations
 
@@ -123,7 +123,7 @@ def _take(message: Any, frames: dict[str, tuple[str, Transform]]) -> str:
 def _way(
     outer: str, inner: str, frames: Mapping[str, tuple[str, Transform]]
 ) -> tuple[Transform, frozenset[str]] | None:
-    """Where a frame is in another, and the frames whose transforms say it; `None`: unknown."""
+    """The pose of a frame in another, and the frames on the way; `None`: unknown."""
     above = _above(outer, frames)
     below = _above(inner, frames)
     common = next((frame for frame in below if frame in above), None)

@@ -81,7 +81,7 @@ def ulog_messages(path: Path) -> ColumnMessages:
 
 
 def _topic(data: Any, start: int) -> tuple[ColumnTopic, Outage | None]:
-    """What a log has of a topic; the instances behind the first one are numbered.
+    """The topic of a log; instances after the first are numbered.
 
     Messages that were sent without a stamp, as 0, came nobody knows when: up to the first that has
     one the topic is lost.

@@ -1,4 +1,4 @@
-"""What a recording holds under one name, and how that goes over time."""
+"""The values of a recording under one name, and their course over time."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 FEW = 5
-"""Of fewer occurrences nobody knows whether they are regular."""
+"""The fewest occurrences of which regularity can be told."""
 
 STEADY = 3
-"""What keeps coming has no gap of more than so many times the mean one."""
+"""The longest gap of a steady signal, in multiples of the mean gap."""
 
 MOST_INSTANTS = 10_000
 """Occurrences that are kept of one name."""
@@ -32,7 +32,7 @@ EVENT_SHARE = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What the values of one name look like, before time is looked at.
+    """The shape of the values of one name, whatever their times.
 
     Attributes:
         kind: of a signal; `None` for an event.
@@ -79,10 +79,10 @@ MOST = 160
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """What was said in a stretch of time.
+    """The updates in a stretch of time.
 
     Attributes:
-        updates: how often; of an event its occurrences.
+        updates: their number; of an event its occurrences.
         low: least number; `None` if there is none.
         high: greatest number.
     """
@@ -150,7 +150,7 @@ class Course:
 
 
 def _halved(join: np.ufunc, values: NDArray[Any], nothing: float) -> NDArray[Any]:
-    """Of two stretches one, and behind them as many in which nothing was said."""
+    """Pairs of stretches joined to one each, followed by as many empty ones."""
     joined = join(values[::2], values[1::2])
     return np.concatenate((joined, np.full_like(joined, nothing)))
 
@@ -214,7 +214,7 @@ class Column:
         return self.shape.kind is None
 
     def updates_in(self, times: NDArray[np.int64], cells: Cells) -> Updates:
-        """What rows say of a signal.
+        """The updates of a signal in rows.
 
         Args:
             times: int64[n] ticks, of the rows.

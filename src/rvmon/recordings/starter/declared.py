@@ -1,4 +1,4 @@
-"""What was seen under the names and topics of a recording, and what these can be declared as."""
+"""The values seen under the names and topics of a recording, and possible declarations of these."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ _WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 
 
 class SeenValues:
-    """What was seen under one name; a CSV cell 0 or 1 is a bit: number or truth value."""
+    """The values seen under one name; a CSV cell 0 or 1 is a bit: number or truth value."""
 
     def __init__(self) -> None:
         self.kinds: set[Kind] = set()
@@ -93,7 +93,7 @@ class SeenValues:
 
 
 def shapes_seen(seen: Mapping[str, SeenValues]) -> Shapes:
-    """What names can be declared as."""
+    """The possible declarations of names."""
     declared: dict[str, Shape] = {}
     left_out: dict[str, str] = {}
     for name, entry in seen.items():
@@ -149,7 +149,7 @@ _ODD = "a covariance, or the like"
 
 
 def message_shapes(source: MessageFile) -> Shapes:
-    """What topics, their fields and the named elements of their arrays can be declared as.
+    """The possible declarations of topics, their fields and the named elements of their arrays.
 
     Raises:
         TraceError: a message with a text cannot be read.

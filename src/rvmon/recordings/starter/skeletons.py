@@ -71,7 +71,7 @@ def _ranges(columns: Sequence[Column]) -> Iterator[Skeleton]:
 
 
 def _sources(columns: Sequence[Column]) -> Iterator[Skeleton]:
-    """How often what is reported comes: one signal of each topic."""
+    """Skeletons about the rate of reports: one signal of each topic."""
     signals = [column for column in columns if not column.is_event and column.updates > 1]
     first = {signal.shape.source or signal.name: signal for signal in reversed(signals)}
     chosen = [signal for signal in signals if signal in first.values()]
@@ -80,7 +80,7 @@ def _sources(columns: Sequence[Column]) -> Iterator[Skeleton]:
 
 
 def _others(profile: Profile) -> Iterator[Skeleton]:
-    """What can be said of any recording."""
+    """Skeletons that fit any recording."""
     yield from (_range(column) for column in profile.columns if column.is_finite)
     yield from (_happens(column, profile) for column in profile.columns if column.instants)
     yield from (_ever(column) for column in profile.columns)
