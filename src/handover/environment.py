@@ -39,7 +39,7 @@ ACTIONS: Mapping[str, Action | None] = {
     "open the hand": SetParam("hpressureOk", 0),
     "withdraw": Withdraw(),
 }
-"""What the person can begin to do, by its name; an action is the number of an entry."""
+"""The actions of the person, by name; an action of the environment is the number of an entry."""
 
 OBSERVED: Mapping[str, tuple[float, float]] = {
     "seconds since the start": (0.0, HORIZON_S),
@@ -52,7 +52,7 @@ OBSERVED: Mapping[str, tuple[float, float]] = {
     "z of the hand [m]": (-2.0, 2.0),
     "whether the hand holds the piece": (0.0, 1.0),
 }
-"""What an observation holds, in this order, with the least and the greatest value."""
+"""The entries of an observation, in this order, with the least and the greatest value."""
 
 _WAIT = SetParam("time", round(STEP_S / 0.05))
 _STEP_NS = round(STEP_S * TICKS_PER_SECOND)
@@ -107,7 +107,7 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
         return self._observed(self._played), {"samples": (), "begun": False}
 
     def _acts(self) -> Iterator[Action]:
-        """What the person begins, at the instants at which the one before is over."""
+        """The person's actions, each at the instant at which the one before is over."""
         while True:
             for action in (self._chosen, _WAIT):
                 if action is not None:
@@ -171,7 +171,7 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
 
 
 def published(spec: Spec) -> Callable[[object, object, Mapping[str, Any]], list[Sample]]:
-    """What a step published of the names of a specification: for `Judged`, as `observe`."""
+    """A function from a step to the samples of a specification's names: `observe` of `Judged`."""
     declared = {*spec.schema.signals, *spec.schema.events}
 
     def observe(_: object, __: object, info: Mapping[str, Any]) -> list[Sample]:

@@ -65,7 +65,7 @@ class Span:
 
 
 class Severity(StrEnum):
-    """How much a finding weighs: an error stops the compilation, a warning does not."""
+    """The severity of a finding: an error stops the compilation, a warning does not."""
 
     ERROR = "error"
     WARNING = "warning"

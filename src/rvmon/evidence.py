@@ -107,7 +107,7 @@ ABOUT, VERDICTS, COVERAGE = "evidence.json", "verdicts.csv", "coverage.json"
 
 
 class Judging(msgspec.Struct, frozen=True):
-    """How recordings were judged, as the options of `rvmon run` say it."""
+    """The options of `rvmon run` under which recordings were judged."""
 
     only: str | None
     const: list[str]
@@ -124,7 +124,7 @@ class Judging(msgspec.Struct, frozen=True):
 
 
 class About(msgspec.Struct, frozen=True, kw_only=True):
-    """How evidence was made.
+    """The origin of evidence.
 
     Attributes:
         name: of the specification, or of the campaign.
@@ -132,7 +132,7 @@ class About(msgspec.Struct, frozen=True, kw_only=True):
         specs: entries with the requirements, by robot; of recordings by an empty name.
         command: of a campaign, the words that run it.
         recordings: SHA-256 by path.
-        judging: how recordings were judged; `None` of a campaign.
+        judging: the options for recordings; `None` of a campaign.
         timeout_s: of a campaign, seconds that a test could take.
         planted: of a campaign, the faults of tests on a robot that had one, by robot and test.
     """
@@ -239,7 +239,7 @@ def texts_of(
 
 
 def coverage_json(covered: Mapping[str, tuple[Model, Iterable[Hits]]]) -> bytes:
-    """What was hit of coverage models, by robot: the share, and how often each item was."""
+    """The coverage by robot as JSON: the share, and the hits of each item."""
     document = {}
     for robot, (model, several) in covered.items():
         hits = merged(several)
@@ -290,7 +290,7 @@ def derived_entries(
 
 @contextmanager
 def opened_evidence(path: str) -> Iterator[Kept]:
-    """What evidence holds.
+    """The contents of evidence.
 
     Raises:
         RvmonError: it cannot be read, is none, or one of a later rvmon.

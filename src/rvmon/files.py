@@ -20,7 +20,7 @@ from operator import attrgetter
 from pathlib import Path
 
 PREFIX, SUFFIX = ".rvmon-", ".part"
-"""Of names that stand for what is not finished."""
+"""Prefix and suffix of the names of unfinished files."""
 
 _IN_PLACE = (errno.EPERM, errno.EACCES, errno.EBUSY)
 """Causes for which a file that cannot be replaced may still be written; a full disk is none."""
@@ -156,7 +156,7 @@ _NAMES = rf"(?P<unfinished>{PREFIX}\w{{8}}{SUFFIX})|(\w+-)?[0-9a-f]{{40,}}[-.].+
 
 
 def cache_folder() -> Path | None:
-    """Where files are kept; `None` if nowhere: switched off, or others could write there.
+    """The folder of the cache; `None` if there is none: switched off, or others could write there.
 
     Source: XDG Base Directory Specification: paths that are not absolute are passed over.
     """
@@ -195,7 +195,7 @@ def this_rvmon() -> str:
 
 
 def contents(path: Path) -> Iterator[tuple[str, str]]:
-    """What a file, or a folder of sources, holds: each path within, and a checksum.
+    """The contents of a file, or of a folder of sources: each path within, and a checksum.
 
     It is the same on every machine, wherever it is and whenever it was installed.
     """
@@ -219,7 +219,7 @@ def files_within(folder: str) -> Iterator[os.DirEntry[str]]:
 
 
 def read_kept(path: Path) -> bytes | None:
-    """What was written there; `None` if that is nothing, not ours, or not whole."""
+    """The cached bytes; `None` if there are none, or they are not ours, or not whole."""
     try:
         if not is_ours(path):
             return None

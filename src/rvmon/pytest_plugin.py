@@ -131,7 +131,7 @@ def rv(request: pytest.FixtureRequest) -> Any:
 
 
 def _without_frames(call: Callable[[], _T]) -> _T:
-    """What a call gives; of what is wrong with its input, the text, and where the test made it."""
+    """The result of a call; errors of its input are raised without the frames of rvmon."""
     from rvmon.errors import RvmonError
 
     __tracebackhide__ = True
@@ -161,7 +161,7 @@ def _conclude(item: pytest.Item, judge: Judge) -> None:
 
 
 def _explained(report: Report, spec: Spec, wrong: list[str]) -> str:
-    """What a person needs to see of these requirements."""
+    """An explanation of these requirements for people."""
     from rvmon.report.run_text import print_report
     from rvmon.report.terminal import Terminal
 
@@ -236,7 +236,7 @@ class RequirementItem(pytest.Item):
         return str(super().repr_failure(excinfo, style))
 
     def reportinfo(self) -> tuple[Path, int, str]:
-        """Where it is."""
+        """The place of the test."""
         return self.path, 0, self.name
 
 

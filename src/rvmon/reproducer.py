@@ -28,7 +28,7 @@ FORMAT = 1
 """Version of the description; what a later one says is not guessed."""
 
 MOST_BYTES = 1 << 31
-"""Of all files together when they are unpacked."""
+"""The most bytes of all files together when they are unpacked."""
 
 MOST_FILES = 1000
 
@@ -36,7 +36,7 @@ _DESCRIPTION = "case.json"
 _MOST_DESCRIBED = 1 << 20
 _BLOCK = 1 << 20
 _LEADS_OUT = frozenset("\\:\0")
-"""What no name has in it: on some systems it would lead out of the folder."""
+"""Characters that no name may contain: on some systems they would lead out of the folder."""
 
 
 class Case(msgspec.Struct, frozen=True):
@@ -177,7 +177,7 @@ def _expect_inside(case: Case) -> None:
 
 @contextmanager
 def opened_case(path: str) -> Iterator[Case]:
-    """What a reproducer holds; its files last as long as it is open.
+    """The contents of a reproducer; its files last as long as it is open.
 
     Raises:
         RvmonError: it cannot be read, is none, a damaged one, one of a later rvmon, or too large;
@@ -255,7 +255,7 @@ def _unpack(packed: zipfile.ZipFile, folder: Path) -> None:
 
 
 def placed(folder: Path, name: str) -> Path:
-    """Where a name in an archive lies.
+    """The path of a name in an archive.
 
     Raises:
         RvmonError: elsewhere.

@@ -98,7 +98,7 @@ class Spec:
 
     @cached_property
     def looking(self) -> Looking:
-        """What was made to look recordings through, for all of them."""
+        """The plans for searching recordings, shared by all of them."""
         from rvmon.analysis.subformulas import Looking
 
         return Looking(self.checked)
@@ -256,7 +256,7 @@ class Spec:
         return (with_plan(report, self.planned(asked)) for report in found)
 
     def planned(self, only: Iterable[str] | None = None) -> PlannedCore:
-        """What judges some requirements, and tells of their attempts; made once."""
+        """The packed plan of some requirements, with its tables; made once."""
         from rvmon.monitor.planned import planned_core
 
         return planned_core(self._compiled, requirements_asked(self.checked, only))
@@ -315,17 +315,17 @@ class Spec:
 
     @cached_property
     def coverage_model(self) -> SpecCoverage:
-        """What runs should show: bins, combinations, cover goals, and what requirements do."""
+        """The coverage model: bins, combinations, cover goals, and the outcomes of requirements."""
         from rvmon.coverage.monitor import SpecCoverage
 
         return SpecCoverage(self.checked)
 
     def coverage(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Hits:
-        """What of `coverage_model` a trace hits, by group and item; arguments as of `evaluate`."""
+        """The hits of a trace in `coverage_model`, by group and item; arguments as `evaluate`."""
         return self.coverage_model.of(self.recording(trace, **reading))
 
     def recording(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Recording:
-        """What `evaluate` takes as a trace, not read yet; by default any name may be missing."""
+        """A trace as `evaluate` takes it, not read yet; by default any name may be missing."""
         from rvmon.monitor.evaluate import open_trace
 
         reading.setdefault("allow_missing", True)

@@ -66,7 +66,7 @@ _PROPOSED = re.compile(r"did you mean `([^`]+)`\?|write `([^`\d{]+)`\Z")
 
 
 def proposed(help_: str) -> str:
-    """What a help proposes to write in place of what is wrong; empty if that is not all of it.
+    """The replacement that a help proposes; empty if the help says more than that.
 
     >>> proposed("did you mean `released`?  (event, line 9)"), proposed("put brackets around it")
     ('released', '')
@@ -252,7 +252,7 @@ def share_text(share: float) -> str:
 
 
 _MARKS = (".git", "pyproject.toml")
-"""What stands in the root of a project."""
+"""The files that mark the root of a project."""
 
 
 @dataclass(frozen=True, slots=True)

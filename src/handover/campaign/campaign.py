@@ -45,7 +45,7 @@ ROBOTS = {
     "correct": "Correct robot",
     "legacy": "Robot of the paper's testbench",
 }
-"""What the two robots are called in titles."""
+"""The names of the two robots in titles."""
 
 
 def handover_campaign(

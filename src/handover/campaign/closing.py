@@ -1,4 +1,4 @@
-"""How the campaign of handovers closes its holes: by the model, and what no test can show."""
+"""Closing the holes of the handover campaign: queries to the model, and unreachable items."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ _CLAIMS = {
 
 
 def closing() -> Closing:
-    """What the campaign knows of its own holes."""
+    """The campaign's way to close its holes."""
     return Closing(
         strategies=("pseudorandom", "constrained", "disturbed"),
         written=("directed",),
@@ -72,7 +72,7 @@ def _test(template: Template[Any], seed: int) -> AbstractTest:
 
 
 def query_of(group: str, item: str) -> str:
-    """What the model is asked about an item of the coverage model; empty: it knows nothing of it.
+    """The query to the model about an item of the coverage model; empty: there is none.
 
     >>> query_of("ending", "kept")
     'E<> withheld'
@@ -111,4 +111,4 @@ UNREACHABLE = (
         for item in (JUST_BEFORE, AT)
     ),
 )
-"""What no test of the correct robot can show: a test that does is an error of that file."""
+"""The items that no test of the correct robot can hit: a hit is an error in this list."""

@@ -1,4 +1,4 @@
-"""What the tests of each strategy have to bring, and what is known to fail."""
+"""The gates of each strategy, and the known failures."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _COVERAGE = {
 """Percent of the correct robot's coverage model that a hundred tests cover whatever the seed."""
 
 _SELDOM = ("T54", "T55", "T65", *_NEEDS["a human who does not come"])
-"""What disturbed tests trigger in one or two of a hundred, or none."""
+"""The requirements that at most two of a hundred disturbed tests trigger."""
 
 
 def gates(robots: Collection[str]) -> dict[str, Gate]:
@@ -78,7 +78,7 @@ def _is_judged(name: str, robots: Collection[str]) -> bool:
 
 
 def expected_failures(robots: Collection[str]) -> tuple[ExpectedFailure, ...]:
-    """What is known to fail."""
+    """The known failures."""
     hidden = "noise of the tracker hides a hand, and the gripper feels nothing: a risk that remains"
     shown = "noise of the tracker shows a hand where none is, as the gripper has closed"
     known = (

@@ -1,4 +1,4 @@
-"""What the model says, for the page: claims about all of its runs, and runs compared with it."""
+"""The model on the page: claims about all of its runs, and runs compared with it."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ SIMULATED, SIMULATED_UNITS = 1000, 1200
 """Random runs of the model for each query, and their length: a minute, in which it is over."""
 
 Addresses = Mapping[RobotTest, str]
-"""Of pages."""
+"""The addresses of pages."""
 
 
 Row = tuple[str | Markup, ...]
@@ -147,7 +147,7 @@ def _witnesses() -> Witnesses:
 
 
 def _follower() -> Callable[[str], frozenset[str]]:
-    """What plays a test of a run of the model, and tells which edges it has shown."""
+    """A function that plays a test made from a run of the model: the edges that were shown."""
     witnesses = _witnesses()
 
     def shown(edge: str) -> frozenset[str]:
@@ -184,7 +184,7 @@ def _edge_rows(shown: frozenset[str]) -> list[Row]:
 
 
 def _strategy_row(pairs: Sequence[tuple[AbstractTest, Conformance]], addresses: Addresses) -> Row:
-    """How many runs of a strategy conform, and where the others leave the model."""
+    """The number of runs of a strategy that conform, and the points where the others diverge."""
     others = []
     for test, found in pairs:
         if found.conforms is not True:

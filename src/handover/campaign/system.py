@@ -14,7 +14,7 @@ OUTCOMES = {
     "released": "the piece was released",
     "withheld": "the robot kept the piece",
 }
-"""What ends a handover, by the event that reports it."""
+"""The ends of a handover, by the event that reports them."""
 
 
 class Handover:

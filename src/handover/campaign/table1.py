@@ -103,7 +103,7 @@ class Spread(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 def spread() -> Spread:
-    """What was computed.
+    """The computed ranges.
 
     >>> spread().ranges["model-based"]["R1"]["P"]
     (2, 3)
@@ -192,7 +192,7 @@ def witness_test(requirement: str) -> str:
 
 
 def checked_of(summary: CampaignSummary) -> dict[str, bool | None]:
-    """What model checking says by requirement, where tests were taken from the model."""
+    """The results of model checking by requirement, if tests were taken from the model."""
     robots = summary.robots.values()
     if not any("model-based" in robot.strategies for robot in robots):
         return {}

@@ -8,8 +8,8 @@ __all__ = ["SPECS", "situations_path", "spec_path"]
 
 
 SPECS = {"correct": "specs/handover_correct.rv", "legacy": "specs/handover_legacy.rv"}
-"""What judges each robot: the paper's words and the truth of the world, or the triggers that the
-paper's testbench had."""
+"""The specification of each robot: the paper's words and the truth of the world, or the triggers of
+the paper's testbench."""
 
 
 def spec_path(robot: str) -> Path:

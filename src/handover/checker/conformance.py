@@ -27,14 +27,14 @@ same times.
 
 READY = "humanIsReady"
 READY_AFTER_NS = (500_000_000, 20_000_000_000)
-"""How long after being informed the model's human gets ready, at the earliest and latest."""
+"""The earliest and latest delay after which the model's human, once informed, gets ready."""
 
 TOLERANCE_NS = 110_000_000
 """The robot looks for signals ten times a second, the network's robot hears them at once."""
 
 
 def actions_of(run: Run) -> tuple[list[Recorded], frozenset[str]]:
-    """What is observed of a run, in order, and the labels that are observed at all.
+    """The observed actions of a run, in order, and the labels that are observed at all.
 
     The robot hears the first readiness after it has informed the human; it is an input of the model
     that the robot has to go by. One at an instant at which the model's human has none, such as

@@ -30,7 +30,7 @@ TRANSITIONS = (
     ("decide", "done"),
     ("release", "done"),
 )
-"""Those that the code allows: from, to; loops and failures included, in the order of a handover."""
+"""The transitions that the code allows, loops and failures included, in the order of a handover."""
 
 _EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 

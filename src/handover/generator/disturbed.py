@@ -106,7 +106,7 @@ is too (Moon et al. 2014, "Meet me where I'm gazing", HRI, 102 people). Neither 
 
 
 def behave(rng: random.Random) -> tuple[Action, ...]:
-    """What one person does, from arriving to leaving.
+    """The actions of one person, from arriving to leaving.
 
     Source: as the seed's closing section asks for; a Markov usage model (Whittaker and Thomason
     1994, "A Markov chain model for statistical software testing").
@@ -125,7 +125,7 @@ def behave(rng: random.Random) -> tuple[Action, ...]:
 
 
 P_SENSORS: Final = 0.3
-"""Of tests, with one fault of the sensors, each kind as often."""
+"""The share of tests with one fault of the sensors, each kind equally often."""
 
 NOISE_M: Final = (0.02, 0.2)
 """Body trackers with depth cameras err by some centimetres at hand and head, by decimetres when
@@ -136,7 +136,7 @@ DELAY_S: Final = (0.1, 1.0)
 """From a tracker's usual latency to that of a loaded network."""
 
 LOSS: Final = (0.1, 0.6)
-"""Of readings, from a hand that is hidden now and then to one that is hidden mostly."""
+"""The share of lost readings, from a hand that is hidden now and then to one mostly hidden."""
 
 P_SLIPPERY: Final = 0.08
 GREASY: Final = 0.02
@@ -148,7 +148,7 @@ PLAN_FAILURE: Final = (0.2, 0.8)
 
 P_HIDDEN: Final = 0.08
 HIDDEN: Final = (0.2, 0.8)
-"""Of looks for the piece, past a person who moves about it; as often in vain as plans are."""
+"""The share of looks for the piece in vain, past a person who moves about; as for plans."""
 
 P_RAISED: Final = 0.1
 RAISED_M: Final = (0.01, 0.06)
@@ -163,10 +163,10 @@ P_IN_PLANE: Final = 0.5
 
 P_BESIDE: Final = 0.12
 BESIDE_M: Final = (0.35, 0.8)
-"""Where a person stands beside the robot's way: from in it to well beside it."""
+"""The distance of a person from the robot's way: from in it to well beside it."""
 
 P_FAR_HAND: Final = 0.5
-"""That person takes the piece with either hand."""
+"""The probability that the person takes the piece with the far hand."""
 
 P_AT_LIMITS: Final = 0.2
 """Postures at the ends of the seed's ranges: its authors' corner cases of gaze and location."""
@@ -194,7 +194,7 @@ FREE: Final = (
     "P_FAR_HAND",
     "P_AT_LIMITS",
 )
-"""What no source gives: a count of disturbed tests says nothing of how often anything happens."""
+"""The parameters without a source: counts of disturbed tests say nothing about frequencies."""
 
 
 def disturbed(count: int, seed: int) -> tuple[AbstractTest, ...]:

@@ -54,7 +54,7 @@ ACTIONS: dict[Edge, Action] = {
     **{(who, "off", "bad"): SetParam(name, 0) for who, name in _POSTURES},
     **{(who, "ok", "bad"): SetParam(name, 0) for who, name in _POSTURES},
 }
-"""What the human's script does for an edge; other edges of the projection need no action."""
+"""The action of the human's script for an edge; other edges of the projection need none."""
 
 
 def model_based(_count: int, seed: int, policy: PolicyName = "likely") -> tuple[AbstractTest, ...]:

@@ -1,4 +1,4 @@
-"""How the robot behaves: the numbers and rules in which its two versions differ."""
+"""The behaviour of the robot: the numbers and rules in which its two versions differ."""
 
 from __future__ import annotations
 

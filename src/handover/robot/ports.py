@@ -1,4 +1,4 @@
-"""What the robot's code expects around it: a bus, an arm, a gripper, sensors."""
+"""The ports of the robot's code: a bus, an arm, a gripper, sensors."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ class Message(Protocol):
 
     @property
     def value(self) -> bool | float | str | None:
-        """What it says; `None` if it only says that something happened."""
+        """The content; `None` if it only reports that something happened."""
 
     @property
     def stamp(self) -> float:
-        """When it was published, seconds."""
+        """The instant of publication, seconds."""
 
 
 class Node(Protocol):
@@ -30,7 +30,7 @@ class Node(Protocol):
 
     @property
     def params(self) -> Mapping[str, Any]:
-        """What the launch file gives to the robot."""
+        """The robot's parameters from the launch file."""
 
     def now(self) -> float:
         """Seconds since the start."""
@@ -96,10 +96,10 @@ class Sensors(Protocol):
     """The camera, the trackers of the human, and the pressure at the fingers."""
 
     def piece(self) -> tuple[float, float] | None:
-        """Where the piece is, metres; `None`: not in sight."""
+        """The position of the piece, metres; `None`: not in sight."""
 
     def hand_distance(self) -> float | None:
-        """How far the hand is from the gripper, metres; `None`: not known."""
+        """The distance of the hand from the gripper, metres; `None`: not known."""
 
     def sense(self) -> Reading:
         """Read gaze, pressure and location."""

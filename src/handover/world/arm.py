@@ -123,7 +123,7 @@ class Arm:
         return beside_distance(self._scene, *grip_point(self.joints())) < p.CLEARANCE[1]
 
     def _start(self) -> Joints:
-        """Where the arm was sent to last; where it is, if it is still on its way."""
+        """The last goal of the arm, or its present joints while it is still on its way."""
         return self._goal if self._path is None else self.joints()
 
     def _path_to(self, goal: Joints) -> Trajectory | None:

@@ -70,7 +70,7 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
 
 
 def _arms(faults: SceneFaults) -> tuple[float, float] | tuple[None, None]:
-    """Where along x the arm that takes and the other one are, of a person beside the way."""
+    """The x of the taking arm and of the other one, of a person beside the way."""
     if faults.beside_m is None:
         return None, None
     near, far = (faults.beside_m + arm for arm in p.BESIDE_ARMS)

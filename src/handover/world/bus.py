@@ -38,7 +38,7 @@ class Schedule:
 
 
 Value = bool | float | str | None
-"""What a message says; `None` says only that it was published: an event."""
+"""The content of a message; `None` for an event, which only reports that it was published."""
 
 Tap = Callable[[str, Value], None]
 

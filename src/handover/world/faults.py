@@ -1,4 +1,4 @@
-"""What may be wrong with sensors and scene; by default nothing."""
+"""Faults of sensors and scene; by default none."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class SensorFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit
 
 
 class SceneFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_defaults=True):
-    """What the scene has in store for the robot.
+    """Faults of the scene.
 
     Attributes:
         friction: of the piece's surface; a slippery piece gets lost on the way.

@@ -20,7 +20,7 @@ BODIES = (
     "head",
 )
 BESIDE = ("lower_arm", "other_hand")
-"""What a person beside the robot's way has there besides."""
+"""The further bodies of a person beside the robot's way."""
 
 VIEW = (-0.62, -0.1, 1.18, 0.95)
 """Metres: from behind the robot's shoulder to behind the human's head, the table below."""
@@ -59,7 +59,7 @@ class Film:
 
 
 def outlines() -> tuple[shown.Outline, ...]:
-    """What to draw for each body and the ground, and the cone of the human's gaze."""
+    """The outlines of each body, the ground, and the cone of the human's gaze."""
     half = (p.LOWER_ARM[1] - p.LOWER_ARM[0]) / 2 - p.LOWER_ARM_RADIUS
     length, width = p.FINGER_LENGTH / 2, p.FINGER_THICKNESS / 2
     finger = ((-length, -width), (length, -width), (length, width), (-length, width))

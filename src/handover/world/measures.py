@@ -32,7 +32,7 @@ def contact_forces(body: pymunk.Body) -> dict[pymunk.Body, float]:
 
 
 def seen_piece(scene: Scene) -> tuple[float, float]:
-    """Where camera and eyes see the piece, (x, z) in metres."""
+    """The position of the piece as camera and eyes see it, (x, z) in metres."""
     x, z = scene.piece.position
     return round(x, p.SIGHT_RESOLUTION_DIGITS), round(z, p.SIGHT_RESOLUTION_DIGITS)
 

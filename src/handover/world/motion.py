@@ -14,7 +14,7 @@ DOWN = -math.pi / 2
 
 
 def grip_point(joints: Joints) -> tuple[float, float]:
-    """Where the middle of the pads is, (x, z) in metres."""
+    """The middle of the pads, (x, z) in metres."""
     a = joints[0]
     b = a + joints[1]
     c = b + joints[2]

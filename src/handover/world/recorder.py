@@ -1,4 +1,4 @@
-"""What is so in the scene at an instant, and messages and measurements as samples."""
+"""Recording: the state of the scene, messages and measurements as samples."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ class Truth:
         return {"beside_distance": round(distance, 3)}
 
     def places(self) -> dict[str, SampleValue]:
-        """Where the piece is, and how far behind it and above it the grip is: m, to 1 mm."""
+        """The position of the piece, and the grip's distance behind and above it: m, to 1 mm."""
         piece, grip = self._scene.piece.position, tool_point(self._scene)
         return {
             "piece_x": round(piece.x, 3),

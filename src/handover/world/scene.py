@@ -9,13 +9,13 @@ import pymunk
 
 @dataclass(frozen=True, slots=True)
 class Beside:
-    """What a person beside the robot's way has in its plane, besides the hand that takes.
+    """The bodies of a person beside the robot's way in its plane, besides the taking hand.
 
     Attributes:
         forearm: from the wrist to the elbow; its x axis points to the wrist.
-        elbow_target: where the elbow is pulled to.
-        elbow: where that is when the arm hangs, (x, z) in metres.
-        other_hand: keeps where it is.
+        elbow_target: the point that the elbow is pulled to.
+        elbow: its position when the arm hangs, (x, z) in metres.
+        other_hand: stays in place.
     """
 
     forearm: pymunk.Body

@@ -1,4 +1,4 @@
-"""What the robot's sensors make of the bodies in the scene."""
+"""The robot's sensors, reading the bodies in the scene."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from handover.world.scene import Scene
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What the three sensors say; `None`: this one has nothing to say yet."""
+    """The readings of the three sensors; `None`: no reading yet."""
 
     gaze: bool | None
     pressure: bool | None

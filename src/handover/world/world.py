@@ -103,7 +103,7 @@ class World:
         return reading
 
     def piece(self) -> tuple[float, float] | None:
-        """Where the robot's camera sees the piece, (x, z) in metres; `None`: it is hidden."""
+        """The piece as the robot's camera sees it, (x, z) in metres; `None`: it is hidden."""
         if self._hidden > 0 and self._rng.random() < self._hidden:
             self._note("piece_hidden")
             return None

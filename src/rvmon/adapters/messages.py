@@ -152,7 +152,7 @@ class MessageFeed:
         self._driver.found(self._names_of(topic), robot=self._robot)
 
     def _names_of(self, topic: str) -> list[str]:
-        """What a topic feeds, or may feed, of the specification that holds now."""
+        """The names of the current specification that a topic feeds, or may feed."""
         declared, own = self._driver.spec.schema, self._schema
         names = self._fed.get(topic) or [
             name for name in (*own.signals, *own.events) if topic in self._topics_of(name)

@@ -16,7 +16,7 @@ _log = logging.getLogger("rvmon.live.input")
 
 _PORT = 1883
 _DROPPED = "$SYS/broker/publish/messages/dropped"
-"""Where mosquitto says, every ten seconds, how many messages it has dropped."""
+"""The topic on which mosquitto publishes, every ten seconds, the number of dropped messages."""
 
 _PATIENCE_S = 10.0
 """Seconds in which a broker has to answer."""
@@ -24,7 +24,7 @@ _PATIENCE_S = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """Where a broker is, and what is read there.
+    """The address of a broker, with the topics to read.
 
     Attributes:
         host: of the broker.

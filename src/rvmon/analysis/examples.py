@@ -253,7 +253,7 @@ class _Search:
             yield _Node((*node.samples, Sample(t, changes)), t, number, node.stir + stir)
 
     def _sorted(self, held: Valuation) -> list[tuple[int, dict[str, Value], Valuation]]:
-        """What a sample may bring where these values are held, by its stir."""
+        """The possible samples where these values are held, those with the fewest changes first."""
         brought = (
             (self._changes(valuation, held), valuation) for valuation in self.choices.valuations
         )

@@ -29,7 +29,7 @@ START = -1
 """The state at the trigger, as long as it is none of the others."""
 
 Edges = Mapping[Cube, int]
-"""Where each letter that there can be leads."""
+"""The target of each possible letter."""
 
 
 def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:

@@ -301,7 +301,7 @@ class TriggerParts:
 
 
 class Looking:
-    """What recordings of a specification are looked through with, made once for all of them.
+    """The plans by which recordings are searched for subformulas, made once per specification.
 
     Attributes:
         plans: for `look_through`.

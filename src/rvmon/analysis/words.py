@@ -314,7 +314,7 @@ def _memory(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
 
 
 def _past(compiled: CompiledRequirement) -> str:
-    """How far the past operators of a requirement look back."""
+    """The reach of a requirement's past operators, in words."""
     trigger = compiled.obligation.trigger
     states = [*compiled.alphabet.propositions, *([] if trigger is None else [trigger])]
     nodes = graph_of(states).nodes

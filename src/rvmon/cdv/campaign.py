@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 STRATEGY = "closed"
-"""That of all tests that are made to close holes."""
+"""The strategy of all tests made to close holes."""
 
 _Option = TypeVar("_Option", bound=Hashable)
 
@@ -90,7 +90,7 @@ class Choose(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class Closing:
-    """How a campaign closes its holes; by default from its strategies and its tests alone.
+    """The way a campaign closes its holes; by default from its strategies and its tests alone.
 
     Attributes:
         strategies: those that tests are drawn from; default: all. Tests with a planted fault are
@@ -137,7 +137,7 @@ class Robot:
 
     @cached_property
     def requirements(self) -> Spec | None:
-        """What judges it, read once.
+        """The specification that judges it, read once.
 
         Raises:
             SpecError: the file is wrong.
@@ -195,7 +195,7 @@ class ExpectedFailure:
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """What the tests of a strategy have to bring together, for `--strict`.
+    """The conditions that the tests of a strategy have to meet together, for `--strict`.
 
     Attributes:
         untriggered: requirements that need not be triggered; every other one is to pass or fail.
@@ -254,7 +254,7 @@ class Campaign:
 
     @property
     def requirements(self) -> dict[str, Spec]:
-        """Of each robot that is judged, what judges it.
+        """By robot that is judged, the specification that judges it.
 
         Raises:
             SpecError: one of the files is wrong.
@@ -263,7 +263,7 @@ class Campaign:
         return {name: spec for name, spec in judging if spec is not None}
 
     def requirements_of(self, robot: str) -> Spec:
-        """What judges a robot.
+        """The specification that judges a robot.
 
         Raises:
             RvmonError: nothing does, or it is wrong.

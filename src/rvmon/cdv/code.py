@@ -30,7 +30,7 @@ class Block:
 
 @dataclass(frozen=True, slots=True)
 class Code:
-    """What is measured.
+    """The code whose coverage is measured.
 
     Attributes:
         blocks: in the order in which they are shown.

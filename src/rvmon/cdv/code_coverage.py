@@ -1,4 +1,4 @@
-"""What tests reach of states, transitions and code, with coverage.py; as files for other tools.
+"""Coverage of states, transitions and code, with coverage.py; as files for other tools.
 
 Sources: geninfo(1) of LCOV 2, section FILES; coverage-04.dtd of Cobertura.
 """
@@ -96,7 +96,7 @@ class Meter:
 
 
 def code_groups(code: Code) -> list[Group]:
-    """What there is to be covered: statements of each block, and branches where it has some.
+    """The groups to cover: statements of each block, and branches where it has some.
 
     Raises:
         RvmonError: coverage.py is not installed, or a file is no Python.
@@ -138,7 +138,7 @@ def _groups(code: Code, files: Mapping[str, _File]) -> list[tuple[Group, str]]:
 
 
 class _File:
-    """What coverage.py says of a file: its statements, and the ways on from those with several."""
+    """A file as coverage.py sees it: its statements, and the branches from those with several."""
 
     def __init__(self, meter: Coverage, path: str) -> None:
         from coverage.exceptions import CoverageException
@@ -189,7 +189,7 @@ _ARROW = " → "
 
 
 def measured_groups(campaign: Campaign) -> list[Group]:
-    """What there is to be covered; a group of which nothing is declared has no items.
+    """The groups to cover; a group of which nothing is declared has no items.
 
     Raises:
         RvmonError: code is measured, and coverage.py is not installed, or a file is no Python.
@@ -225,7 +225,7 @@ def source_and_target(transition: str) -> tuple[str, str]:
 
 
 def hits_of_states(run: Run) -> dict[str, Mapping[str, Hit]]:
-    """How often each state was entered and each transition taken, and when first."""
+    """The hits of states and transitions: how often, and when first."""
     names = [state for _, state in run.states]
     found = {STATES: _counted(run.states)}
     for group, length in ((TRANSITIONS, 2), (PAIRS, 3)):

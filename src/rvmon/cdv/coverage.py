@@ -1,4 +1,4 @@
-"""What the tests of a campaign are to show, gathered while they are played, and kept."""
+"""The coverage of a campaign's tests, collected while they are played, and stored."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CoverageFigures:
-    """What one robot's tests have covered.
+    """The coverage of one robot's tests.
 
     Attributes:
         page: its address in the campaign's folder.
         share: of the model, from 0 to 1.
         holes: items that were not hit as often as they have to be.
-        illegal: what was hit and must not be.
+        illegal: hits of items that must not be hit.
     """
 
     page: str
@@ -174,7 +174,7 @@ def write_coverage(
 
 
 def database_paths(folder: Path, robots: Mapping[str, Robot]) -> dict[str, Path]:
-    """Where the databases of a campaign lie, by robot."""
+    """The paths of a campaign's databases, by robot."""
     if len(robots) == 1:
         return dict.fromkeys(robots, folder / DATABASE)
     return {robot: folder / robot / DATABASE for robot in robots}

@@ -122,7 +122,7 @@ def judge_campaign(
 
 
 def _undecided(found: Mapping[str, Decision], *, strict: bool) -> str:
-    """What is wrong with a share of runs; empty if it holds, or need not be decided."""
+    """The complaint about a share of runs; empty if it holds, or need not be decided."""
     rejected = [
         f"under {name} it {decision}" for name, decision in found.items() if decision.holds is False
     ]
@@ -226,7 +226,7 @@ def _gate_name(campaign: Campaign, played: Played) -> str:
 def _gated(
     campaign: Campaign, requirements: Mapping[str, Sequence[str]], played: Sequence[Played]
 ) -> Iterator[tuple[str, str]]:
-    """What gates want of tests together, with what is wrong about it."""
+    """The conditions of gates on all tests together, each with its complaint."""
     groups: dict[tuple[str, str], list[Played]] = {}
     for test_run in played:
         if test_run.job.test.mutation is None:  # a planted fault says nothing about the robot

@@ -150,7 +150,7 @@ def _print_verdicts(tables: RobotTables, console: Console) -> None:
 
 
 def _shares(heads: Sequence[str], columns: Sequence[Mapping[str, BlockCoverage]]) -> Table:
-    """How much of each block ran under each strategy."""
+    """The share of each block that ran under each strategy."""
     from rich import box
     from rich.table import Table
 

@@ -222,7 +222,7 @@ def _page_of(played: Played, folder: Path, results: Results) -> _Page:
 def _writer(
     folder: Path, robots: Mapping[str, Robot], specs: Mapping[str, Spec], spool: Path | None
 ) -> Callable[[_Page], Mapping[str, Verdict]]:
-    """What writes a page, and returns the verdicts on its test."""
+    """A function that writes a page, and returns the verdicts on its test."""
     benches = {name: Bench(name, robots[name]) for name in specs}
     compared: dict[tuple[str, str], JudgedRun] = {}
 
@@ -254,7 +254,7 @@ def _writer(
 
 
 def _spooled(spool: Path | None, job: Job) -> Replay | None:
-    """What was recorded of a test as it was played; `None`: it was played elsewhere, or before."""
+    """The recording made while a test was played; `None`: it was played elsewhere, or before."""
     if spool is None or not (path := spooled(spool, job)).exists():
         return None
     recorded: Recorded = pickle.loads(path.read_bytes())  # noqa: S301 - a folder of this process
@@ -262,7 +262,7 @@ def _spooled(spool: Path | None, job: Job) -> Replay | None:
 
 
 def _address(job: Job) -> str:
-    """Of a test's page in the folder of the campaign."""
+    """The address of a test's page in the folder of the campaign."""
     return f"{RUNS}/{job.robot}-{job.test.name}.html"
 
 

@@ -1,4 +1,4 @@
-"""What a campaign plays, and what it keeps of each test that was played."""
+"""The plan of a campaign, and the outcome that it keeps of each played test."""
 
 from __future__ import annotations
 
@@ -119,13 +119,13 @@ def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What came out of one test.
+    """The outcome of one test.
 
     Attributes:
         verdicts: by requirement; empty if nothing was judged. Of a test that hung or was lost
             nothing is known: it is inconclusive.
         reasons: by requirement that failed, when and why it did first.
-        illegal: what was hit of coverage models and must not be, in words.
+        illegal: hits of items of coverage models that must not be hit, in words.
         hits: of states, transitions, code, and of coverage models.
         ending: `completed`; `crashed` if code raised an exception, in which case it is judged as
             far as it went; `hung` if it was ended; `lost` if its process was.
@@ -162,10 +162,10 @@ class Played:
 
 @dataclass(frozen=True, slots=True)
 class Results:
-    """What came out of a campaign.
+    """The results of a campaign.
 
     Attributes:
-        plan: what was to be played.
+        plan: of the campaign.
         played: in the order of the plan, whichever process was first.
         seconds: wall time.
         cut_short: why not all tests were played; empty if they were.

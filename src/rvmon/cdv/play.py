@@ -37,13 +37,13 @@ def player(
     control: Callable[[Any], Test | None] | None,
     spool: Path | None = None,
 ) -> Callable[[Job], tuple[Outcome, Outcome | None]]:
-    """What plays a job in this process: its outcome, and that of its control.
+    """A function that plays a job in this process: its outcome, and that of its control.
 
     Args:
         robots: by name.
         code: whose coverage is measured.
         control: makes the control of a test.
-        spool: a folder of this user alone that gets what was recorded, for pages of all runs.
+        spool: a folder of this user alone for the recordings, for pages of all runs.
 
     Raises:
         RvmonError: a system cannot be made, or the requirements are wrong.
@@ -159,7 +159,7 @@ def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
 
 
 def outcome_of(recorded: Recorded) -> Outcome:
-    """What a campaign keeps of a test that came to its end."""
+    """The outcome that a campaign keeps of a finished test."""
     run, report = recorded.run, recorded.report
     return Outcome(
         verdicts=report.verdicts,
@@ -299,7 +299,7 @@ class PlayerApart:
         self._results = self._begun()
 
     def play(self, test: Test) -> Outcome:
-        """What came of a test.
+        """The outcome of a test.
 
         Raises:
             TestError: it cannot be played.

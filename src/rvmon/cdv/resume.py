@@ -1,4 +1,4 @@
-"""What was played of a campaign that is not finished, in its folder: begun again, it goes on.
+"""The journal of an unfinished campaign, in its folder: started again, it goes on from there.
 
 The file stays until the campaign's tables and pages are written. Nothing of it is taken if anything
 that outcomes depend on has changed since: tests, requirements, programs.
@@ -27,7 +27,7 @@ NAME = "unfinished.journal"
 """The file in a campaign's folder."""
 
 _PACKAGES = ("coverage", "msgspec", "numpy")
-"""Those that have a part in any outcome."""
+"""The packages that can affect any outcome."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +116,7 @@ def unfinished(
 def _in_order(
     entries: Sequence[bytes], places: Mapping[tuple[str, str], int]
 ) -> Iterator[tuple[tuple[str, str], _Entry]]:
-    """What was played, up to the first that is not in its order: two may have written at once."""
+    """The entries up to the first that is out of order: two processes may have written at once."""
     last = -1
     for entry in entries:
         one = msgspec.json.decode(entry, type=_Entry)
@@ -155,7 +155,7 @@ def _inputs(plan: Plan, specs: Mapping[str, Spec]) -> str:
 
 
 def sources_of(campaign: Campaign) -> list[Path]:
-    """What outcomes of a campaign depend on: files and folders that it names, or is defined in."""
+    """The sources of a campaign's outcomes: files and folders that it names, or is defined in."""
     makers = (
         campaign.test,
         *campaign.strategies.values(),

@@ -10,10 +10,10 @@ from rvmon.language.checked.specification import RunShare
 from rvmon.verdicts import Verdict
 
 ALPHA = 0.05
-"""How probable it is at most that what holds is rejected."""
+"""The greatest probability that a true share is rejected."""
 
 BETA = 0.05
-"""How probable it is at most that what does not hold is accepted."""
+"""The greatest probability that a false share is accepted."""
 
 HALF_WIDTH = 0.05
 """Half the width of the region of indifference; less where the share is close to 0 or 1."""
@@ -21,15 +21,15 @@ HALF_WIDTH = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """What the tests of a strategy say of a share of runs.
+    """The decision of the tests of a strategy on a share of runs.
 
     Attributes:
         share: that was asked for.
         holds: whether it was accepted or rejected; `None`: there were too few tests.
-        tests: triggered ones that were taken until then.
-        inconclusive: how many of these.
-        passed: how many of these.
-        missing: tests that are to come at least, if all of them go well; 0 if it is decided.
+        tests: the number of triggered ones taken until then.
+        inconclusive: the number of these that were.
+        passed: the number of these that did.
+        missing: the least number of further tests, if all of them pass; 0 if it is decided.
         indifference: shares between which nothing is promised; if the true one is outside of them,
             it is rejected wrongly with a probability of at most `ALPHA`, and accepted wrongly with
             one of at most `BETA`.
@@ -100,7 +100,7 @@ def decide(share: RunShare, verdicts: Iterable[Verdict]) -> Decision:
 
 
 def errors_text(decision: Decision) -> str:
-    """What a decision promises, in a sentence.
+    """The error probabilities of a decision, in a sentence.
 
     >>> errors_text(decide(RunShare(at_least=True, percent=95.0), []))
     'wrong with a probability of 5 % at most, unless the true share is between 92.5 and 97.5 %'

@@ -38,7 +38,7 @@ _Test = TypeVar("_Test", bound=Test)
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """What is wrong with a run, and has to be with that of a smaller test.
+    """The failure of a run, which the run of a smaller test has to show as well.
 
     Attributes:
         requirement: that fails; empty: none, but the run does not complete.
@@ -127,7 +127,7 @@ def shrink(
 def failure_of(
     outcome: Outcome, requirement: str | None = None, known: Sequence[str] = ()
 ) -> Failure | None:
-    """What is wrong with a run; `None` if nothing is.
+    """The failure of a run; `None` if there is none.
 
     Args:
         outcome: of the run.
@@ -225,7 +225,7 @@ class _Search(Generic[_Test]):
 
 
 class _EnoughError(Exception):
-    """So many tests were played as may be."""
+    """The most tests allowed were played."""
 
 
 def _sequence(test: Test, name: str) -> Sequence[object]:
@@ -281,7 +281,7 @@ def regression_test(campaign: Campaign, job: Job, shrunk: Shrunk[Test]) -> Test:
 
 
 def small_name(test: Test) -> str:
-    """What the smallest test like this one is called."""
+    """The name of the smallest test that fails like this one."""
     return f"{test.name}-small"
 
 
@@ -303,7 +303,7 @@ def save_regression(campaign: Campaign, test: Test, folder: Path) -> tuple[Path,
 
 
 def removed(before: Test, after: Test) -> str:
-    """How much of a test is left, in words."""
+    """The parts that are left of a test, in words."""
     fields = ((name, getattr(before, name), getattr(after, name)) for name in before.removable)
     return ", ".join(f"{len(new)} of {len(old)} {name}" for name, old, new in fields)
 

@@ -182,7 +182,7 @@ def _tests_that_hit(group: str, outcomes: Sequence[Outcome]) -> Counter[str]:
 
 
 def _counted(group: Group, outcomes: Sequence[Outcome]) -> dict[str, int]:
-    """How many tests hit each item: what is to be hit, then what else was seen."""
+    """The number of tests that hit each item: the wanted items, then the others that were hit."""
     return {**dict.fromkeys(_sought(group), 0), **_tests_that_hit(group.name, outcomes)}
 
 
@@ -194,7 +194,7 @@ def _coverage(group: Group, outcomes: Sequence[Outcome]) -> BlockCoverage:
 
 
 def _sought(group: Group) -> list[str]:
-    """What tests are to hit: not what cannot be."""
+    """The items that tests should hit: without the unreachable ones."""
     return [name for name, item in group.items.items() if item.kind is BinKind.GOAL]
 
 

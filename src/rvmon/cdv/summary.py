@@ -18,7 +18,7 @@ Transition = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class BlockCoverage:
-    """How many statements of a block of code have run, or how many of its branches were taken."""
+    """The number of statements of a block of code that ran, or of its branches that were taken."""
 
     statements: int
     covered: int
@@ -91,7 +91,7 @@ class KnownAnswer:
 
     @property
     def wrong(self) -> list[str]:
-        """What is not as the test knows it, each in a sentence."""
+        """The differences from the test's expectations, a sentence each."""
         return [*differences(self.test.expected, self.verdicts), *self.missed]
 
     @property
@@ -101,7 +101,7 @@ class KnownAnswer:
 
 
 def differences(expected: Mapping[str, str], verdicts: Mapping[str, Verdict]) -> list[str]:
-    """What came out otherwise than a test knows it, each in a sentence.
+    """The verdicts that differ from a test's expectations, a sentence each.
 
     >>> differences({"R1": "F", "R2": "P"}, {"R1": Verdict.PASS, "R2": Verdict.PASS})
     ['R1 is P, not F']
@@ -114,7 +114,7 @@ def differences(expected: Mapping[str, str], verdicts: Mapping[str, Verdict]) ->
 
 
 def missed(reaches: Mapping[str, Sequence[str]], hits: Hits) -> list[str]:
-    """What a test is made to reach and did not, each in a sentence; nothing if none was measured.
+    """The items that a test aims at and missed, a sentence each; empty if none was measured.
 
     >>> from rvmon.coverage import Hit
     >>> missed({"gaze": ["no"]}, {"gaze": {"yes": Hit(1)}})

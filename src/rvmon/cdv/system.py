@@ -1,4 +1,4 @@
-"""What a system under test has to offer: it plays a test; what it reports is judged."""
+"""The interface of a system under test: it plays a test, and its reports are judged."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 
 Values = Mapping[str, Value]
-"""What changed or occurred at an instant, by name; an event is `True`, what is unknown `None`."""
+"""The updates and occurrences at an instant, by name; events are `True`, unknown values `None`."""
 
 Taker = Callable[[int, Values], None]
 """Takes one sample: nanoseconds and values."""
@@ -29,15 +29,15 @@ Taker = Callable[[int, Values], None]
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """What a system reports of a run when it is over; the samples went to the observer.
+    """A system's report of a finished run; the samples went to the observer.
 
     Attributes:
         end_ns: the instant up to which the run is judged, not before its last sample.
         states: `(t_ns, state)` of the system, at each entry of one, also from itself.
-        error: what the code under test raised, as one text, if it crashed.
+        error: the exception of the code under test, as one text, if it crashed.
         figures: of the run, by name, such as seconds of physics; a campaign adds them up.
         facts: more about the run for its page, as pairs of name and value.
-        scene: what could be seen; where the observer asks for it.
+        scene: the film of the run, if the observer asks for it.
     """
 
     end_ns: int
@@ -174,14 +174,14 @@ class Checker:
         return self._monitor.finish_ns(end_ns)
 
     def hits(self, end_ns: int) -> Hits:
-        """What a test hit that was observed up to `end_ns`."""
+        """The hits of the test that was observed up to `end_ns`."""
         hits: dict[str, Mapping[str, Hit]] = {}
         for collector in self._collectors:
             hits |= collector.finish_ns(end_ns)
         return hits
 
     def illegal(self, hits: Hits) -> list[IllegalHit]:
-        """What of these hits must not be."""
+        """Those of some hits that must not be."""
         return [
             IllegalHit(group.name, item.name, hit.count, hit.first or 0)
             for coverage in self._coverages

@@ -29,7 +29,7 @@ INTERVALS = (
 
 @dataclass(frozen=True, slots=True)
 class RobotTables:
-    """What is shown of the verdicts on one robot.
+    """The tables of the verdicts on one robot.
 
     Attributes:
         own: its counts.
@@ -252,7 +252,7 @@ def _share_document(decision: Decision) -> dict[str, object]:
 
 
 def work_done(summary: CampaignSummary) -> str:
-    """What a campaign has simulated."""
+    """The amount of simulation of a campaign, in words."""
     return f"{summary.simulated_s:,.0f} s simulated"
 
 
@@ -283,15 +283,15 @@ RobotTest = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Presentation:
-    """How figures are shown.
+    """The presentation of figures.
 
     Attributes:
         title: of the page; default: the campaign's name.
-        tests: what the tests are called, in the plural.
+        tests: the word for the tests, in the plural.
         tables: the verdicts on each robot, by its name.
         further: more tables for the files, by name.
         document: the content of `table.json`.
-        work: what was simulated, in words, for the terminal.
+        work: the amount of simulation, in words, for the terminal.
         chart: the coverage of code under one strategy, for the page.
         chart_legend: how to read it.
         sections: further ones of the page, from the tests that were played and the addresses of

@@ -20,10 +20,10 @@ if TYPE_CHECKING:
 
 
 Action = TypeVar("Action")
-"""What a test does at an instant; the tests' own type."""
+"""An action of a test at an instant; the tests' own type."""
 
 PolicyName = Literal["shortest", "fastest", "likely"]
-"""How a witness is chosen among several."""
+"""The policies that choose a witness among several."""
 
 
 class Wait(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -185,7 +185,7 @@ def templates_of(
 def project(
     network: Network, run: Run, automata: Collection[str], actions: Mapping[Edge, Action]
 ) -> tuple[tuple[TemplateStep[Action], ...], tuple[Limit, ...]]:
-    """What of a run concerns some automata, with all limits between its instants.
+    """The steps of a run that concern some automata, with all limits between their instants.
 
     The closed difference constraints of the run, restricted to those instants, are exactly the
     limits that the whole run puts on them.
@@ -228,7 +228,7 @@ def project(
 def _by_edge(
     network: Network, actions: Mapping[Edge, Action]
 ) -> dict[tuple[int, NetworkEdge], Action]:
-    """What a test does for each edge of a network."""
+    """The action of a test for each edge of a network."""
     found: dict[tuple[int, NetworkEdge], Action] = {}
     for name, action in actions.items():
         alike = {

@@ -48,7 +48,7 @@ GROUPS = {
         "export": "C that runs alone, automata, models for UPPAAL",
     },
 }
-"""What each command is for, as `rvmon --help` lists them."""
+"""The purpose of each command, as `rvmon --help` lists them."""
 
 COMMANDS = (*(name for group in GROUPS.values() for name in group), "lsp")
 """All of them: `lsp` is started by editors."""

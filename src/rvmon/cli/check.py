@@ -100,7 +100,7 @@ def _checked(
 
 
 def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic], list[str]]:
-    """What an analysis finds, and in words the timelines of conflicts and what was not decided."""
+    """The findings of an analysis, and in words timelines of conflicts and undecided questions."""
     from rvmon.analysis.examples import analyse
     from rvmon.monitor.compiled_spec import compile_spec
     from rvmon.report.explain_text import analysis_lines
@@ -110,7 +110,7 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
 
 
 def _bound(path: str, checked: CheckedSpec) -> list[str]:
-    """What a binding leaves to the names of topics, and which names it feeds with one field.
+    """Remarks on a binding: names left to the topics' names, and names fed by the same field.
 
     Raises:
         RvmonError: it does not fit the specification.

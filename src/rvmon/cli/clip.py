@@ -151,7 +151,7 @@ def _write_case(arguments: argparse.Namespace, out: str, place: str, attempt: At
 
 
 def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Report:
-    """What is known of a recording, be it that it breaks off."""
+    """The report of a recording, even of one that breaks off."""
     judged = _judged(spec, arguments, trace, name)
     if judged.report is not None:
         return judged.report
@@ -167,7 +167,7 @@ def _judged(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) ->
 
 
 def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -> Piece:
-    """What is cut out, with the values that it brings along."""
+    """The piece to cut out, with the values carried into it."""
     recording = opened(spec, arguments.data)
     ordered = spec.checked.max_delay is None
     start, stop = -TIME_LIMIT, TIME_LIMIT

@@ -107,7 +107,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
-    """What is compared with: a file, or a campaign of what is shown."""
+    """The coverage to compare with: of a file, or of a campaign in the shown file."""
     from rvmon.coverage.database import read
 
     if Path(arguments.compare).exists() or arguments.compare not in coverage.campaigns:

@@ -171,7 +171,7 @@ def _judged_again(kept: Kept, chosen: Sequence[str], jobs: int) -> Iterator[Verd
 def _differences(
     item: str, before: Sequence[Row], now: Sequence[Row], columns: Sequence[str]
 ) -> Iterator[str]:
-    """What is judged otherwise of a recording or a test, a sentence for each attempt."""
+    """The changed verdicts of a recording or a test, a sentence for each attempt."""
     was, found = _by_attempt(before), _by_attempt(now)
     for name in {**was, **found}:
         old, new = was.get(name), found.get(name)

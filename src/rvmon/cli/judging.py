@@ -36,15 +36,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How to judge.
+    """The options of judging.
 
     Attributes:
         only: ids of the requirements, or `None` for all.
         until: the instant in seconds to which recordings are judged; default their last sample.
         robustness: whether to find the robustness of each attempt as well.
         allow_missing: the names that recordings in columns may lack; `True`: all.
-        coverage: whether all that the coverage model has is watched; default: coverpoints and
-            crosses alone.
+        coverage: whether the whole coverage model is watched; default: coverpoints and crosses
+            alone.
         explains: whether anybody is told why there is no attempt, and what came late.
     """
 
@@ -59,11 +59,11 @@ class Options:
 def spec_and_options(
     arguments: argparse.Namespace, name: str | None = None
 ) -> tuple[Spec, Options]:
-    """What judges, and how.
+    """The specification that judges, and the options of judging.
 
     Args:
         arguments: those of `rvmon run`.
-        name: what messages call the specification; default its path.
+        name: of the specification in messages; default its path.
     """
     loaded = load(arguments.spec, name=name, const=constants_of(arguments.const))
     spec = reading_spec(loaded, arguments)

@@ -102,7 +102,7 @@ _SHARED: dict[str, dict[str, Any]] = {
 ONLY = ("--only", "--severity", "--tag")
 """Which requirements are meant."""
 READING = ("--time", "--map", "--nan", "--binding", "--clock")
-"""How recordings are read."""
+"""The options for reading recordings."""
 EVALUATED = ("--const", "--until", *READING, "--allow-missing")
 """The constants, how far and how recordings are evaluated, and what they may lack."""
 
@@ -163,7 +163,7 @@ def add_budget(parser: argparse.ArgumentParser) -> None:
 
 
 def budget_of(arguments: argparse.Namespace) -> Budget:
-    """When a search gives up."""
+    """The budget of a search."""
     from rvmon.models.search.meter import Budget
 
     return Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)

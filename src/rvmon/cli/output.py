@@ -1,4 +1,4 @@
-"""What commands print: text that no encoding or terminal stumbles over, and progress."""
+"""Output of commands: text that is safe in any encoding and on any terminal, and progress."""
 
 from __future__ import annotations
 
@@ -114,10 +114,10 @@ def busy(what: str) -> AbstractContextManager[object]:
 
 
 def shown_while_reading(recording: FileRecording, found: Iterator[T]) -> Iterator[T]:
-    """What is read of a recording, and how far that is.
+    """The parts of a recording as they are read, with a progress bar.
 
     Args:
-        recording: says how far.
+        recording: knows the progress.
         found: its samples, or pieces of it with many rows each.
     """
     with bar(recording.path, 1.0) as show:

@@ -1,4 +1,4 @@
-"""What is asked of a recording when its verdicts are known."""
+"""Questions to a recording once its verdicts are known."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from rvmon.verdicts.report import Report
 
 MOST_HELD = 65_536
-"""Of a recording with more rows nothing is remembered: it is read once more."""
+"""The most rows kept in memory; a longer recording is read a second time."""
 
 
 class Remembered:
@@ -40,7 +40,7 @@ class Remembered:
         self._left = MOST_HELD
 
     def passing(self, found: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
-        """What is read, unchanged."""
+        """The parts that are read, unchanged."""
         for piece in found:
             self._left -= 1 if isinstance(piece, Sample) else len(piece.times)
             if self._left >= 0:
@@ -48,7 +48,7 @@ class Remembered:
             yield piece
 
     def until(self, end: int) -> list[Batch | Sample] | None:
-        """What was read of it up to an instant; `None`: there was more than is remembered."""
+        """The parts up to an instant; `None`: there were more than are kept."""
         if self._left < 0:
             return None
         return list(pieces_up_to(self._pieces, end))
@@ -61,7 +61,7 @@ MOST_LATE_IN_ALL = 10_000
 """The same of all requirements, of which each gets its share, and at least one."""
 
 MOST_VALUES = 3
-"""Of failed parts that read more signals none is shown: `rvmon why` has them all."""
+"""The most signals of a failed part whose values are shown; `rvmon why` shows all."""
 
 
 def post_analysis(
@@ -73,7 +73,7 @@ def post_analysis(
     goals: bool,
     explains: bool = True,
 ) -> dict[str, Any]:
-    """What to add to a report: the cover goals, and what only the whole recording shows, if asked.
+    """Additions to a report: the cover goals, and on request what only the whole recording shows.
 
     That is what the triggers lacked that never came true, and what came after its deadline.
 
@@ -126,7 +126,7 @@ def post_analysis(
 
 
 class _Values:
-    """What the signals are of which the first failures speak, noted as a recording is read."""
+    """The values of the signals of the first failures, noted as a recording is read."""
 
     def __init__(self, spec: Spec, failures: Sequence[Attempt]) -> None:
         self._spec = spec
@@ -185,7 +185,7 @@ class _Values:
 
 
 class _Windows:
-    """What windows of the past came to of which the first failures speak."""
+    """The values of the past windows of the first failures."""
 
     def __init__(self, spec: Spec, failures: Sequence[Attempt], origin: int) -> None:
         from rvmon.analysis.window_values import windows_blamed

@@ -1,4 +1,4 @@
-"""How recordings call things, and what they may lack, as several commands take it."""
+"""Options of several commands: the names in recordings, and names that these may lack."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ OPTIONAL_VALUES = ("--allow-missing", "--require-triggered")
 """Options whose value can be left out, and otherwise follows a `=`."""
 
 OPTIONAL_OF_COVER = ("--bins",)
-"""Those of the command that has others, of which one begins like one of these."""
+"""The options of `rvmon cover` whose value can be left out."""
 
 
 def with_values(words: Sequence[str]) -> list[str]:
@@ -97,7 +97,7 @@ def reading_words(arguments: argparse.Namespace) -> list[str]:
 
 
 def reading_arguments(arguments: argparse.Namespace) -> SchemaArguments:
-    """What the command line says, as `Spec.reading` takes it."""
+    """The options of the command line, as `Spec.reading` takes them."""
     nan = None if arguments.nan is None else arguments.nan.replace("-", " ")
     return {
         "time": arguments.time,
@@ -152,7 +152,7 @@ ATTEMPT_HELP = (
     "an attempt such as R1#3, or R1?2 for one in doubt; R1 alone means its first failed one, else "
     "its first open one, else its first"
 )
-"""What options that take one say."""
+"""The help of options that take an attempt."""
 
 
 def named_attempt(text: str, spec: Spec) -> tuple[str, str | None]:

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rvmon.reproducer import Case
 
 ENDING = ".rvcase"
-"""Of the names of reproducers."""
+"""The suffix of reproducers."""
 
 
 def relax(parser: argparse.ArgumentParser, words: Sequence[str]) -> None:
@@ -63,12 +63,12 @@ def unpacked(arguments: argparse.Namespace) -> Iterator[Case | None]:
 
 
 def shown_name(path: str) -> str:
-    """How people know a file of a reproducer, which lies somewhere for a moment."""
+    """The name by which people know a file of a reproducer, which is unpacked only for a moment."""
     return Path(path).name
 
 
 def as_known(judged: Judged, case: Case) -> Judged:
-    """What was judged of a reproducer, with the name that its recording has for people."""
+    """The judged reproducer, with the name by which people know its recording."""
     name = shown_name(case.recording)
     report = None if judged.report is None else replace(judged.report, trace=name)
     return replace(

@@ -1,4 +1,4 @@
-"""What was judged by a run that was ended in its midst, so that the next goes on from there."""
+"""The journal of a run that was interrupted, so that the next goes on from there."""
 
 from __future__ import annotations
 
@@ -125,7 +125,7 @@ def _judged_before(
     *,
     is_moved: bool = False,
 ) -> dict[str, Judged]:
-    """What of a run was judged before, unless the file of the recording is another one since.
+    """The results of an earlier run, without recordings whose file has changed since.
 
     Args:
         entries: of a journal.
@@ -151,7 +151,7 @@ def _judged(entry: _Entry) -> Judged:
 
 
 def _stamp(trace: str) -> tuple[int, int] | None:
-    """What distinguishes the files of a recording from others; `None` if there are none."""
+    """Size and time of the files of a recording; `None` if there are none."""
     try:
         files = list(os.scandir(trace)) if form_of_folder(trace) else [Path(trace)]
         found = [file.stat() for file in [*files, *map(Path, databases_beside(trace))]]

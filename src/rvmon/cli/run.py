@@ -334,7 +334,7 @@ def _json(judged: Judged, spec: Spec) -> str:
 
 
 def _before_lines(attempts: Sequence[Attempt]) -> Iterator[str]:
-    """What a broken recording had shown before the break, a line per requirement."""
+    """The results before the break of a broken recording, a line per requirement."""
     by_requirement: dict[str, list[Attempt]] = {}
     for attempt in attempts:
         by_requirement.setdefault(attempt.requirement, []).append(attempt)

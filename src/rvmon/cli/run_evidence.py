@@ -40,7 +40,7 @@ def is_recording(path: str) -> bool:
 def begun(
     arguments: argparse.Namespace, traces: Sequence[str]
 ) -> tuple[dict[str, bytes], list[str], dict[str, str]]:
-    """What verdicts depend on, before anything is judged, and after.
+    """The inputs on which verdicts depend, before anything is judged, and after.
 
     Returns:
         What `texts_of` returns, and the SHA-256 of the recordings by path.

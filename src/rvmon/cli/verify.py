@@ -309,7 +309,7 @@ def _print_observation(observation: Observation, spec: Spec) -> None:
 
 
 def _timeline(observation: Observation, shown: Run, spec: Spec) -> list[str]:
-    """What the requirement reads along a run, judged by the monitor that judges recordings."""
+    """The timeline of a requirement along a run, judged by the monitor of recordings."""
     from rvmon.analysis.example import Example
     from rvmon.models.conform import recording_of
     from rvmon.models.requirements.observe import signals_of

@@ -347,7 +347,7 @@ def _replace(arguments: argparse.Namespace, live: Live) -> None:
 
 
 def _age(path: str) -> tuple[int, int] | None:
-    """What changes when a file is written; `None` while there is none."""
+    """Time and size of a file, which change when it is written; `None` while there is none."""
     try:
         found = os.stat(path)
     except OSError:

@@ -1,4 +1,4 @@
-"""What `rvmon watch` shows: a view, lines for people, or JSON lines."""
+"""The output of `rvmon watch`: a view, lines for people, or JSON lines."""
 
 from __future__ import annotations
 
@@ -188,11 +188,11 @@ def _line(judgement: Judgement) -> str:
 
 
 def tables(driver: Driver, height: int | None = None) -> RenderableType:
-    """How robots and requirements stand, those first that need a look.
+    """Tables of robots and requirements, those first that need a look.
 
     Args:
         driver: of the robots.
-        height: so many lines there are; what finds none is counted. `None`: all requirements.
+        height: the number of lines; requirements that do not fit are counted. `None`: all.
     """
     found = driver.status(most_open=_MOST_OPEN)
     robots = sorted(found.values(), key=lambda status: _need(fold(status.verdicts.values())))
@@ -257,7 +257,7 @@ def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> Renderable
 
 
 _KEEP = 1000
-"""So many records of each verdict are kept per requirement, as by a watch without a state."""
+"""The records of each verdict kept per requirement, as in a watch without a state."""
 
 
 def refuse_others(arguments: argparse.Namespace) -> None:

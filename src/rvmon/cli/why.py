@@ -121,7 +121,7 @@ def _window_values(
     report: Report,
     names: frozenset[str] | None,
 ) -> dict[str, Sequence[str]]:
-    """What the windows that failed came to, at the instants of the signals' values."""
+    """The values of the failed windows, at the instants of the signals' values."""
     if attempt.blame is None or attempt.decided is None:
         return {}
     windows = windows_blamed(checked, checked.requirements[attempt.requirement], attempt.blame)

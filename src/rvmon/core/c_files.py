@@ -21,13 +21,13 @@ from rvmon.trace.schema import Kind
 from rvmon.version import __version__
 
 _CORES = "rv"
-"""What the identifiers of the core itself start with."""
+"""The prefix of the core's own identifiers."""
 _PLAIN = frozenset(range(0x20, 0x7F)) - frozenset(map(ord, '"?\\'))
 """The bytes that mean themselves within a string; a `?` may begin a trigraph."""
 
 
 def prefix_of(name: str) -> str:
-    """What all identifiers of a specification start with.
+    """The prefix of all identifiers of a specification.
 
     >>> prefix_of("Base v2"), prefix_of("2nd"), prefix_of("rv"), prefix_of("名前")
     ('base_v2', 'spec_2nd', 'spec_rv', 'spec')
@@ -63,12 +63,12 @@ def string(text: str) -> str:
 
 
 def _safe(name: str) -> str:
-    """What is left of a name: ASCII letters and digits, words with one line between them."""
+    """The ASCII letters and digits of a name, with one underscore for all between them."""
     return re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
 
 
 _HARMLESS = {"\\": "/", '"': "'", "*/": "* /", "/*": "/ *"}
-"""What would end a comment or a docstring; replaced in this order."""
+"""The signs that would end a comment or a docstring; replaced in this order."""
 
 
 def comment(text: str) -> str:

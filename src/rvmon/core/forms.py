@@ -137,7 +137,7 @@ def _values(core: Literal | Constant) -> list[int]:
 
 
 class Measure(IntEnum):
-    """How the robustness of a leaf is computed."""
+    """The ways to compute the robustness of a leaf."""
 
     CONSTANT = 0
     TRUTH = auto()

@@ -272,7 +272,7 @@ def covered_groups(hits: Hits, model: Model) -> tuple[CoveredGroup, ...]:
 
 
 class Ending(StrEnum):
-    """How a test ended."""
+    """The ways in which a test ends."""
 
     COMPLETED = "completed"
     CRASHED = "crashed"

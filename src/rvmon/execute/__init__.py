@@ -18,10 +18,10 @@ from typing import Any, NamedTuple
 
 @dataclass(frozen=True, slots=True)
 class Ended:
-    """How the process of a task was ended.
+    """The end of a task's process that did not finish.
 
     Attributes:
-        timed_out: whether that was done here, as the task took too long.
+        timed_out: whether it was stopped here, as the task took too long.
         why: for people.
         seconds: wall time that the task had taken.
     """
@@ -32,7 +32,7 @@ class Ended:
 
 
 class Work(NamedTuple):
-    """What is to be done, and what is said of it; see `parallel.execute`."""
+    """The tasks, and the words for their progress; see `parallel.execute`."""
 
     tasks: Iterable[Any]
     begin: Callable[[], Callable[[Any], Any]]

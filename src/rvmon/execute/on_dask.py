@@ -68,7 +68,7 @@ def execute_on_dask(work: Work, address: str) -> Iterator[Any]:
 
 
 class _Pool:
-    """What workers have, and what they have done; see `parallel`."""
+    """The tasks given to workers, and their results; see `parallel`."""
 
     def __init__(self, client: Any, begin: bytes, work: Work) -> None:
         self._client = client
@@ -181,7 +181,7 @@ class _Pool:
 
 
 program = cache(checksum)
-"""What distinguishes a program whose results can be mixed with these from others."""
+"""A checksum of the program: only results of equal programs can be mixed."""
 
 _ONE_AT_A_TIME = threading.Lock()
 _WORK: dict[str, Callable[[Any], Any]] = {}

@@ -33,7 +33,7 @@ class Shard:
         return list(tasks[self.number - 1 :: self.count])
 
     def name(self, path: Path) -> Path:
-        """What of this share has the place that `path` has of the whole.
+        """The file of this shard in place of the file `path` of the whole.
 
         >>> Shard(2, 4).name(Path("out/verdicts.csv")).name
         'verdicts.shard-2-of-4.csv'
@@ -42,7 +42,7 @@ class Shard:
 
 
 def shards_beside(path: Path) -> list[Path]:
-    """What all shares that were done have in the place of a file, by name.
+    """The files of all finished shards in place of a file, by name.
 
     Raises:
         OSError: the folder cannot be read.

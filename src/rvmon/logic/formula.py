@@ -23,7 +23,7 @@ from rvmon.logic.state_formula import UNKNOWN, Leaf, Lost, State, StateOp
 
 
 class Sense(Enum):
-    """How a literal reads its proposition; the three are independent of each other."""
+    """The senses in which a literal reads its proposition; they are independent of each other."""
 
     TRUE = "is true"
     FALSE = "is false"

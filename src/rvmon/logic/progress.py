@@ -32,7 +32,7 @@ ReadLiteral = Callable[[Literal], Residual]
 
 
 class Phase(Enum):
-    """Where an age lies relative to a window."""
+    """The position of an age relative to a window."""
 
     BEFORE = 0
     INSIDE = 1
@@ -40,7 +40,7 @@ class Phase(Enum):
 
 
 def phase(node: Until | Release, age: int) -> Phase:
-    """Where an age in ticks lies relative to the window of `node`."""
+    """The position of an age in ticks relative to the window of `node`."""
     if age < node.low:
         return Phase.BEFORE
     return Phase.INSIDE if node.high is None or age <= node.high else Phase.OVER

@@ -72,7 +72,7 @@ class Measured(Figure):
 
 
 FIGURES = Measured, Robustness
-"""What the core makes figures of."""
+"""The records that the core fills with figures."""
 
 
 class Stream(Sequence[tuple[int, Robustness]]):

@@ -166,7 +166,7 @@ class RunChanges:
 
 
 class Changes:
-    """What a name changed to, and when.
+    """The changes of a name: values and instants.
 
     Args:
         stale_after: from when on a value counts as unknown, ticks behind its last update.

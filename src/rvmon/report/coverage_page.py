@@ -282,7 +282,7 @@ def listed_tests(summary: Summary) -> Collection[int]:
 
 
 def _columns(summary: Summary, listed: Collection[int]) -> list[str]:
-    """What of tests differs, or is known."""
+    """The columns of tests that are known and differ."""
     shown = {
         "campaign": len(summary.campaigns) > 1,
         "strategy": any(summary.strategies),
@@ -293,7 +293,7 @@ def _columns(summary: Summary, listed: Collection[int]) -> list[str]:
 
 
 def _verdicts_of(record: TestRecord) -> Iterator[tuple[str, Verdict, str]]:
-    """Who failed, and how many got each of the other verdicts: texts around letters."""
+    """The failed requirements, and the number of each other verdict: texts around letters."""
     if record.failed:
         yield "", Verdict.FAIL, f" {', '.join(record.failed)}"
     if known := record.failed_as_expected:

@@ -1,4 +1,4 @@
-"""What Foxglove shows: the layout of verdicts (states, numbers, attempts), and scenes."""
+"""The layout for Foxglove: verdicts (states, numbers, attempts), and scenes."""
 
 from __future__ import annotations
 

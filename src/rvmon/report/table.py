@@ -103,7 +103,7 @@ def plain(name: str) -> str:
 
 
 ZERO = "·"
-"""How a count of 0 is printed, so that the others stand out."""
+"""The sign for a count of 0, so that other counts stand out."""
 
 WIDTH = 4
 """The least width of a column of counts, in characters."""

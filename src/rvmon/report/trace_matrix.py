@@ -68,11 +68,11 @@ def trace_matrix(
     items: Mapping[str, Sequence[Row]],
     planted: Mapping[str, str],
 ) -> list[Traced]:
-    """What shows each requirement, in the order of the specification.
+    """The recordings and tests that show each requirement, in the order of the specification.
 
     Args:
         specs: by robot; of recordings by an empty name.
-        items: what `rows_by_item` gives.
+        items: from `rows_by_item`.
         planted: the faults of tests on a robot that had one, by robot and test.
 
     Raises:

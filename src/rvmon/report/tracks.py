@@ -70,7 +70,7 @@ def _thresholds(atom: Compare, name: str) -> Iterator[Threshold]:
 
 
 class TrackKind(StrEnum):
-    """How a track is drawn."""
+    """The kinds of drawing of a track."""
 
     SWITCH = "switch"
     EVENT = "event"

@@ -147,7 +147,7 @@ def _value_schemas(
 
 
 def _states(report: Report, begin: int) -> Iterator[_Message]:
-    """What each requirement is: at the beginning, and whenever that changes."""
+    """The state of each requirement: at the beginning, and at each change."""
     changes: dict[str, dict[int, list[tuple[int, Verdict | None]]]] = {}
     end = report.end or 0
     for attempt in report.attempts:
@@ -173,7 +173,7 @@ def _states(report: Report, begin: int) -> Iterator[_Message]:
 
 
 def _settled(attempt: Attempt, end: int) -> int:
-    """When it was decided, or the recording ended; whatever its trigger is, not before that."""
+    """The instant of its decision, or the end of the recording; never before its trigger."""
     return max(attempt.triggered, end if attempt.decided is None else attempt.decided)
 
 

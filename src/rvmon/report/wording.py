@@ -33,7 +33,7 @@ def without_attempts(verdict: Verdict, miss: str) -> str:
 
 
 def instants_of(attempt: Attempt) -> Sequence[str]:
-    """When an attempt was triggered and decided; with absolute stamps, one line for each.
+    """The instants of an attempt's trigger and decision; with absolute stamps, one line each.
 
     >>> instants_of(Attempt("R1", 1, 5, 9, Verdict.PASS))
     ('triggered 5 ns, decided 9 ns',)

@@ -81,7 +81,7 @@ def evaluate(
 
 
 def judge_views(spec: CheckedSpec, word: Word, samples: Sequence[Sample]) -> dict[str, Followings]:
-    """What is judged of each requirement on a word, with its attempts.
+    """The attempts of each requirement on a word, judged.
 
     Raises:
         TraceError: two payloads of an event, though not every requirement is a `for each`.
@@ -143,7 +143,7 @@ def _record(followed: Followed, origin: int) -> Attempt | None:
 
 
 def _settle(requirement: Requirement, start: Start) -> tuple[Verdict, Decision]:
-    """What becomes of an undecided attempt at the end of the trace.
+    """The verdict of an undecided attempt at the end of the trace, and its decision.
 
     Source: SEMANTICS, section 3 (The end, Doubt); decision records 1 (The end, Policies) and 4.
     """

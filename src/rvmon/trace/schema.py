@@ -135,7 +135,7 @@ class Bound:
 
 @dataclass(frozen=True, slots=True)
 class Binding:
-    """How recorded messages are read.
+    """The sources of declared names in recorded messages.
 
     Attributes:
         bounds: by declared name, its source.

@@ -15,7 +15,7 @@ from rvmon.verdicts import Verdict
 
 
 class Decision(StrEnum):
-    """How an attempt was settled."""
+    """The ways in which an attempt is settled."""
 
     PREFIX = "prefix"
     """Decided by a prefix of the trace, for every continuation."""

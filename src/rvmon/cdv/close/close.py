@@ -28,10 +28,10 @@ MARGIN = 2
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """When to give up.
+    """The limits at which closing gives up.
 
     Attributes:
-        tests: that are played at most.
+        tests: the most that are played.
         seconds: after which no further ones are begun; `None`: any number.
     """
 

@@ -90,7 +90,7 @@ def with_mutants(
 
 
 def _drawn(code: Code, count: int) -> list[Mutant]:
-    """So many mutants, evenly over the code."""
+    """`count` mutants, spread evenly over the code."""
     found = code_mutants(code)
     known = {} if code.equivalent is None else equivalents(code.equivalent, found)
     left = [mutant for mutant in found if mutant.identity not in known]

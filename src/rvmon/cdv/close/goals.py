@@ -1,4 +1,4 @@
-"""What is to be shown and what of it was; tests from runs of the model, proofs there is none."""
+"""Goals, with their hits so far; tests for them from runs of the model, or proofs of none."""
 
 from __future__ import annotations
 
@@ -66,17 +66,17 @@ class Goals:
 
     @property
     def sought(self) -> dict[Goal, int]:
-        """How often each item is to be hit of those that can be, as far as anybody knows."""
+        """The hits wanted of each item that is not known to be unreachable."""
         return {goal: count for goal, count in self.wanted.items() if not self._is_out(goal)}
 
     @property
     def open(self) -> list[Goal]:
-        """What is sought and was not hit as often as it is to be; in the model's order."""
+        """The items with fewer hits than wanted, in the model's order."""
         return [goal for goal in self.sought if not self.is_met(goal)]
 
     @property
     def met(self) -> int:
-        """How many of those that are sought were."""
+        """The number of wanted items with all their hits."""
         return sum(map(self.is_met, self.sought))
 
     def is_met(self, goal: Goal) -> bool:
@@ -90,7 +90,7 @@ class Goals:
         return share(hits, without(self.model, [*self.proved, *self.argued]))
 
     def holes(self) -> dict[Goal, Hole]:
-        """What is open, in words."""
+        """The open items, in words."""
         hits = merged(found for _, found in self._seen)
         nearest = nearest_tests(self.open, self._seen, self.model)
         return {goal: hole_of(goal, self.model, hits, nearest.get(goal, "")) for goal in self.open}
@@ -134,7 +134,7 @@ class Witness:
 
 @dataclass(frozen=True, slots=True)
 class Proof:
-    """That no run of the model hits an item."""
+    """The proof that no run of the model hits an item."""
 
     query: str
 

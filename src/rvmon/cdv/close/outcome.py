@@ -1,4 +1,4 @@
-"""What came of closing a campaign: data, as a document for programs, and for the terminal."""
+"""The outcome of closing a campaign: as data, as a document for programs, as text."""
 
 from __future__ import annotations
 
@@ -55,11 +55,11 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class Trade:
-    """What choices of tests cost, in faults that they do not see.
+    """The cost of smaller choices of tests, in faults that they miss.
 
     Attributes:
-        mutants: of the code, that choose.
-        held_out: that do not.
+        mutants: of the code, by which tests are chosen.
+        held_out: mutants that have no part in the choice.
         choices: from the smallest on.
     """
 
@@ -107,17 +107,17 @@ class Closed:
 
     @property
     def sizes(self) -> dict[int, int]:
-        """How many tests meet as much, by how many show each goal, up to the margin."""
+        """By the number of tests that show each goal, up to the margin: the tests needed."""
         return {times: len(names) for times, names in self.choices.items()}
 
     @property
     def needed(self) -> int:
-        """How many tests of the suite there are for what they meet."""
+        """The number of tests of the suite that are needed for their goals."""
         return self.sizes[max(self.sizes)]
 
     @property
     def met(self) -> int:
-        """How many goals were met."""
+        """The number of goals that were met."""
         return self.goals - len(self.open)
 
     @property

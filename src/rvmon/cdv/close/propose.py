@@ -86,7 +86,7 @@ class Proposer:
         self._followed: Counter[str] = Counter()
 
     def batch(self, size: int) -> list[Proposal]:
-        """So many tests, or fewer if nothing is open; each is aimed at something else if it can be.
+        """`size` tests, or fewer if nothing is open; each aims at a goal of its own where possible.
 
         Raises:
             TestError: a test cannot be made, or not be written to a file.
@@ -118,7 +118,7 @@ class Proposer:
         self._learned.learn(proposal.drawn, paid=added or is_nearer)
 
     def _rank(self, goal: Goal) -> tuple[bool, int]:
-        """What the model knows comes first, then what is specific: on the way much else is met."""
+        """Goals of the model first, then the specific ones: others are met on the way to them."""
         is_known = self._witnesses is not None and self._witnesses.knows(goal)
         subject = self._goals.model.groups[goal[0]].subject
         found = [place for place, one in enumerate(_SPECIFIC_FIRST) if one is subject]

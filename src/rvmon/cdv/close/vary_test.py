@@ -71,10 +71,10 @@ ATTEMPTS = 50
 """Changes that are tried until one gives a test: types say not all that tests demand."""
 
 CHANGES = (1, 1, 2, 3)
-"""How many there are at once."""
+"""The numbers of changes made at once, as often as they are drawn."""
 
 _KEPT = frozenset({"name", "strategy", "text", "robot", "mutation", "expected"})
-"""What a test says of itself."""
+"""The fields that describe a test and do not change its run."""
 
 DEEPEST = 5
 """Structures within structures that are looked into."""

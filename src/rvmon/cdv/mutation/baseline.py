@@ -46,7 +46,7 @@ class Recorded:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """Where a run first differs from that of the code as it is.
+    """The first difference of a run from that of the unchanged code.
 
     Attributes:
         test: that was played.
@@ -66,7 +66,7 @@ class Difference:
 
 
 def recorder(name: str, robot: Robot, code: Code | None = None) -> Callable[[Test], Recorded]:
-    """What plays tests of a robot in this process; `code`: whose statements are measured."""
+    """A function that plays tests of a robot here; `code`: whose statements are measured."""
     bench = Bench(name, robot, code)
 
     def play(test: Test) -> Recorded:
@@ -88,7 +88,7 @@ def recorder(name: str, robot: Robot, code: Code | None = None) -> Callable[[Tes
 
 
 def difference(test: str, was: Recorded, now: Recorded) -> Difference | None:
-    """Where two runs of a test first differ in what is recorded; `None`: nowhere."""
+    """The first difference between two recorded runs of a test; `None`: there is none."""
     verdicts = tuple(
         (name, verdict.value, now.verdicts[name].value)
         for name, verdict in was.verdicts.items()

@@ -87,7 +87,7 @@ class MutationReport:
         return self.shows_held_out or one.mutant.third != HELD_OUT
 
     def kills(self, suite: str) -> list[tuple[str, str, str]]:
-        """Those of them that are killed, and the mutants of requirements: name, change, by what."""
+        """The killed mutants, of code and of requirements: name, change, and the killer."""
         killed: list[tuple[Mutant | SpecMutant, str]]
         killed = [(tried.mutant, killer(tried)) for tried in self.shown(suite) if tried.killed]
         killed += [
@@ -98,7 +98,7 @@ class MutationReport:
         return [(mutant.identity, mutant.brief, what) for mutant, what in killed]
 
     def survivors(self, suite: str) -> dict[Missing, list[Tried]]:
-        """Those of them that survive and are not known to be equivalent, by what may be missing."""
+        """The survivors that are not known to be equivalent, by what may be missing."""
         found: dict[Missing, list[Tried]] = {kind: [] for kind in Missing}
         for tried in self.shown(suite):
             if not (tried.killed or tried.invalid or tried.mutant.identity in self.equivalent):
@@ -123,7 +123,7 @@ class MutationReport:
         ]
 
     def _refuted(self, tried: Tried) -> str:
-        """What distinguishes a mutant from the code as it is; empty: nothing does."""
+        """The difference of a mutant from the unchanged code; empty: there is none."""
         if tried.killed:
             return f"{killer(tried)} kills it"
         return question(tried, self.reading) if tried.difference is not None else ""
@@ -176,7 +176,7 @@ class MutationReport:
 
 
 def killer(tried: Tried) -> str:
-    """What kills a mutant, in words: a requirement that fails before anything else."""
+    """The killer of a mutant, in words: the requirement that fails first."""
     found = next((each for each in tried.findings if each.how == "requirement"), tried.findings[0])
     what = ", ".join(found.what)
     return f"{found.how} ({what})" + (f" in {found.test}" if found.test else "")
@@ -239,7 +239,7 @@ def report_text(report: MutationReport, *, most: int | None = None) -> str:
 
 
 def _survivors(report: MutationReport, suite: str) -> Iterator[tuple[str, list[list[str]]]]:
-    """What survives, by what may be missing: a heading, and the lines of each."""
+    """The survivors, by what may be missing: a heading, and the lines of each."""
     for kind, survivors in report.survivors(suite).items():
         yield TITLES[kind], [list(survivor_lines(survivor, report)) for survivor in survivors]
     if spec_survivors := report.spec_survivors(suite):
@@ -289,7 +289,7 @@ def _difference(before: str, after: str) -> Iterator[str]:
 
 
 def _killers(suite: SuiteTried) -> str:
-    """How many are killed by what first comes of: a requirement, an answer, a crash and so on."""
+    """The numbers of mutants by killer: a requirement, an answer, a crash and so on."""
     counts = dict.fromkeys(How, 0)
     for tried in suite.tried:
         if tried.killed:

@@ -69,7 +69,7 @@ class Mutant:
 
     @property
     def identity(self) -> str:
-        """What it is known by in lists: file, function, kind and ordinal."""
+        """Its name in lists: file, function, kind and ordinal."""
         return f"{self.path.stem}:{self.function}:{self.kind}:{self.ordinal}".replace(" ", "-")
 
     @property
@@ -229,7 +229,7 @@ def _meaning_of(mutant: Mutant) -> tuple[object, ...] | None:
 
 
 def _meaning(code: CodeType) -> tuple[object, ...]:
-    """What code does, wherever it stands."""
+    """The meaning of code, whatever its place in the file."""
     return code.co_name, code.co_code, code.co_names, code.co_varnames, tuple(_constants(code))
 
 

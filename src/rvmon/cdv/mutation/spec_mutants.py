@@ -216,7 +216,7 @@ class SpecMutant:
 
     @property
     def identity(self) -> str:
-        """What it is known by: requirement, kind and ordinal."""
+        """Its name in lists: requirement, kind and ordinal."""
         return f"{self.requirement.id}:{self.kind}:{self.ordinal}".replace(" ", "-")
 
     @property
@@ -242,14 +242,14 @@ class SpecMutant:
 
 @dataclass(frozen=True, slots=True)
 class SpecTried:
-    """What runs say of a mutant of a requirement.
+    """A mutant of a requirement, judged on the recorded runs.
 
     Attributes:
         mutant: the change.
         test: the first whose recorded run is judged otherwise; empty: none is.
         was: the verdict on that run by the requirement as it was.
         now: by the mutant.
-        proved: whether the analysis proved it equivalent; only asked of what no run tells apart.
+        proved: whether the analysis proved it equivalent; only asked if no run differs.
     """
 
     mutant: SpecMutant

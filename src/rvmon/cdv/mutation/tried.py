@@ -1,4 +1,4 @@
-"""What became of a mutant: a survivor as a question, and those that are declared equivalent.
+"""Tried mutants: survivors as questions, and those that are declared equivalent.
 
 Source: Voas 1992, PIE: A Dynamic Failure-Based Technique (a fault is seen if it is executed,
 infects the state, and the infection propagates).
@@ -21,7 +21,7 @@ from rvmon.texts import text_of_file
 
 
 class How(StrEnum):
-    """What distinguishes a mutant from the code as it is."""
+    """The ways in which a mutant is told from the unchanged code."""
 
     REQUIREMENT = "requirement"
     """One fails that did not."""
@@ -132,7 +132,7 @@ def scored(tried: Iterable[Tried], equivalent: Iterable[str] = ()) -> Score:
 
 
 class Missing(StrEnum):
-    """What may be missing where a mutant survives."""
+    """The likely gaps behind a surviving mutant."""
 
     REQUIREMENT = "requirement"
     OBSERVATION = "observation"
@@ -150,7 +150,7 @@ TITLES = {
 
 
 def missing(survivor: Tried) -> Missing:
-    """What may be missing where a mutant survives."""
+    """The likely gap behind a surviving mutant."""
     if not survivor.reaching:
         return Missing.STIMULUS
     return Missing.OBSERVATION if survivor.difference is None else Missing.REQUIREMENT
@@ -166,7 +166,7 @@ def readers(spec: CheckedSpec) -> dict[str, list[str]]:
 
 
 def question(survivor: Tried, reading: Mapping[str, Sequence[str]]) -> str:
-    """What a survivor asks, in a sentence.
+    """The question that a survivor asks, as a sentence.
 
     >>> from pathlib import Path
     >>> from rvmon.cdv.mutation.python_mutants import Mutant

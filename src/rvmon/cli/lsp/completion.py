@@ -1,4 +1,4 @@
-"""What may stand at a place: by the grammar, and by the names of the file."""
+"""Completion: the words that the grammar and the names of the file allow at a place."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ _OWN = re.compile(r"(?<![\w.])(?:let|each)\s+([^\W\d][\w.]*)|\Adefine\s+\w[\w.]*
 
 
 def proposals(names: Names, place: Span) -> tuple[Span, dict[str, str]]:
-    """What may stand at a place.
+    """The completions at a place.
 
     Args:
         names: of the file as it was when it could last be read.
         place: in the file as it is.
 
     Returns:
-        The word that is begun there, and what it may become, each with what that is.
+        The place of the word begun there, and its completions, each with its kind.
     """
     text = place.source.text[: place.start]
     line = _NO_CODE.sub("", text[text.rfind("\n") + 1 :])

@@ -58,7 +58,7 @@ class Text:
 
     @property
     def code(self) -> str:
-        """What is compiled: every line ends as the language has it, all offsets stay."""
+        """The text that is compiled: with the language's ends of lines, at the same offsets."""
         return self.raw.replace("\r\n", " \n").replace("\r", "\n")
 
     def position(self, offset: int) -> Position:
@@ -72,7 +72,7 @@ class Text:
         return Position(line, column)
 
     def range(self, start: int, end: int) -> Range:
-        """Where some characters are."""
+        """The range of some characters."""
         return Range(self.position(start), self.position(end))
 
     def offset(self, position: Position) -> int:
@@ -100,7 +100,7 @@ class Text:
 
 
 MOST_FIXES = 5
-"""Of so many findings at a place it is tried whether what they propose helps."""
+"""The most findings at a place whose proposed fixes are tried."""
 
 _SEVERITIES = {
     Severity.ERROR: lsp.DiagnosticSeverity.Error,
@@ -165,7 +165,7 @@ class Document:
 
     @cached_property
     def diagnostics(self) -> dict[str, list[lsp.Diagnostic]]:
-        """What is wrong, by the address of the file that it is in."""
+        """The findings, by the address of their file."""
         found: dict[str, list[lsp.Diagnostic]] = {self.uri: []}
         for finding in self.compiled.findings:
             spans = finding.spans
@@ -192,7 +192,7 @@ class Document:
         )
 
     def fixes(self, where: lsp.Range) -> Iterator[lsp.CodeAction]:
-        """What findings in a range propose to write instead, if the compiler agrees."""
+        """The fixes that findings in a range propose, if the compiler accepts them."""
         start, end = self.text.offset(where.start), self.text.offset(where.end)
         proposals = (
             (finding, finding.spans[0].span, proposed(finding.help))
@@ -213,7 +213,7 @@ class Document:
                 )
 
     def symbols(self) -> Iterator[lsp.DocumentSymbol]:
-        """What the text declares and demands; of an item that cannot be read its name."""
+        """The declarations and requirements of the text; only the name of an unreadable item."""
         read = {item.span.start: item for item in self.compiled.files[0].items}
         for start, end in split_items(self.source.text):
             head = _HEAD.match(self.source.text, start, end)
@@ -232,7 +232,7 @@ class Document:
                 )
 
     def definitions(self, position: lsp.Position) -> list[lsp.Location]:
-        """Where the name at a position is declared, or the files that are imported there."""
+        """The declaration of the name at a position, or the files that are imported there."""
         place = self.place(position)
         item = self.names.item_at(place)
         if isinstance(item, ImportItem):

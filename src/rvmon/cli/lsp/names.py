@@ -1,4 +1,4 @@
-"""Where names stand, and where what they stand for is declared; the words of the language."""
+"""The uses of names with their declarations; the words of the language."""
 
 from __future__ import annotations
 
@@ -221,7 +221,7 @@ class Names:
                     pass
 
     def _declared(self, name: Name) -> Iterator[Use]:
-        """What a name of the file stands for; that of a field names its event, too."""
+        """The declaration of a name of the file; the name of a field also uses its event."""
         target = self.declared.get(name.text)
         if target is None:
             return

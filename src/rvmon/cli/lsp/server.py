@@ -155,7 +155,7 @@ def _definition(server: Server, params: lsp.DefinitionParams) -> list[lsp.Locati
 
 
 def _places(server: Server, params: lsp.ReferenceParams | lsp.RenameParams) -> list[lsp.Location]:
-    """Where the name at a position stands, in documents that are open and what these import."""
+    """The uses of the name at a position, in open documents and their imports."""
     key = server.document(params.text_document.uri).key(params.position)
     if key is None:
         return []

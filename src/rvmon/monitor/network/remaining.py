@@ -33,7 +33,7 @@ MOST_POSITIONS = 60
 MOST_CLAUSES = 60
 
 _FEW = 8
-"""Of a stretch of more undecided positions, only this many and the last are examined."""
+"""The most undecided positions of a stretch that are examined, besides the last."""
 
 
 class Remaining:

@@ -89,7 +89,7 @@ def _whole(first: int, last: int, side: _Side, value: bool) -> Pieces:
 
 
 def _from(first: int, last: int, side: _Side, carried: Carried, value: bool) -> Pieces:
-    """When a value is known at the first position, of the side or carried from before it."""
+    """The stamp of a value at the first position, of the side or carried from before it."""
     stamps = []
     if side is not None and side[0] is value:
         stamps.append(_at(side[1], first))

@@ -87,7 +87,7 @@ _LIKELY: dict[UnaryOp | BinaryOp, int] = {
     UnaryOp.ONCE: 3,
     UnaryOp.HISTORICALLY: 3,
 }
-"""How often an operator comes among those of its kind, if not 2 times."""
+"""The weight of an operator among those of its kind, if not 2."""
 
 _STEPS = (UnaryOp.NOT, UnaryOp.NEXT, UnaryOp.PREVIOUS)
 

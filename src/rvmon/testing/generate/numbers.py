@@ -40,7 +40,7 @@ from rvmon.testing.generate import (
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """What random formulas may hold.
+    """The limits of random formulas.
 
     Attributes:
         step: whether `X` and `Y` may occur (outside held time).
@@ -78,10 +78,10 @@ _UNITS = {
     **dict.fromkeys((UnitRule.TO_ANGLE, UnitRule.DIRECTION, UnitRule.TURN), _RADIAN),
     UnitRule.PLACES: Literal(1, "m"),
 }
-"""Of the results that have one."""
+"""The units of the results that have one."""
 _CALCULATING = tuple(op for op in NumericOp if op is not NumericOp.BIT)
 _CHOOSING = (NumericOp.MIN, NumericOp.MAX)
-"""What gives one of its operands, so that no whole number leaves its 64 bits."""
+"""The operations that return one of their operands, so that whole numbers stay within 64 bits."""
 
 
 def comparison(rng: Rng, shape: Shape) -> Formula:

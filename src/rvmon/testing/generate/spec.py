@@ -61,12 +61,12 @@ from rvmon.testing.law.attempts import is_pulse
 
 @dataclass(frozen=True, slots=True)
 class Profile:
-    """What random specifications may hold.
+    """The limits of random specifications.
 
     Attributes:
         time: the time model; `None`: any.
         depth: of the deepest consequent.
-        requirements: at most so many.
+        requirements: the most of them.
         many: the per cent of specifications that hold 8 to 14, half of them on truth values and
             their past alone: plans share what such requirements have in common.
         crowded: the per cent that hold 20 to 26.
@@ -245,7 +245,7 @@ def _captures(rng: Rng, profile: Profile, time: TimeModel) -> tuple[Capture, ...
 
 
 def _simple(profile: Profile, rng: Rng, shape: Shape) -> Formula:
-    """What is counted before anything is captured."""
+    """A formula without captured values, for a count."""
     return formula(rng, replace(shape, captured=(), past=profile.past, future=False), 1)
 
 

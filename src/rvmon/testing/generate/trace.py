@@ -104,12 +104,12 @@ def _requirement(requirement: Requirement) -> Iterator[str]:
 
 @dataclass(frozen=True, slots=True)
 class TraceProfile:
-    """What random traces may hold.
+    """The limits of random traces.
 
     Attributes:
-        samples: at most so many.
-        fewest: at least so many, if the span allows.
-        span: as many ticks from the first to the last sample, about.
+        samples: the most of them.
+        fewest: the fewest, if the span allows.
+        span: ticks from the first to the last sample, about.
         long: the per cent of traces that may be three times as long, where signals come later and
             more seldom.
         sparse: the per cent of traces that have some dozens of samples, each of few names, now and
@@ -241,10 +241,10 @@ def _several(spec: CheckedSpec) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class _Values:
-    """How to draw the values of one sample; `unknown` per cent of them are not known.
+    """Draws the values of one sample; `unknown` per cent of them are not known.
 
-    Signals that are `late` have nothing to say before so many samples, or that it is not known;
-    then they say something in `often` per cent of the samples. In `sparse` traces events are rare.
+    Signals that are `late` have no update before that many samples, or only unknown ones; then they
+    are updated in `often` per cent of the samples. In `sparse` traces events are rare.
     """
 
     spec: CheckedSpec

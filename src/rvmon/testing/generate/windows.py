@@ -40,11 +40,11 @@ from rvmon.testing.generate import (
 from rvmon.testing.generate.numbers import Shape, arithmetic, field_value, input_number
 
 Draw = Callable[[Rng, Shape], Formula]
-"""What draws an operand."""
+"""A function that draws an operand."""
 
 
 def late(rng: Rng, shape: Shape) -> Formula:
-    """So long since an instant, with or without data in the duration."""
+    """A comparison of the time since an instant, with or without data in the duration."""
     after: Numeric = Literal(pick(rng, (1e-9, 2e-9, 3e-9, 5e-9, 0)))
     if chance(rng, 60):
         after = Arithmetic(
@@ -55,13 +55,13 @@ def late(rng: Rng, shape: Shape) -> Formula:
 
 
 ALONE = tuple(measured for measured in Measured if not measured.recalls)
-"""What stands beside a limit by itself."""
+"""The measures that can stand beside a limit by themselves."""
 EXPRESSION = "expression"
 """The form of windows that are numbers among others."""
 
 
 def amount(rng: Rng, shape: Shape, draw: Draw) -> Formula:
-    """So much of a formula, or of a number, in a window, or since the first instant."""
+    """A limit on a measure of a formula or number, in a window or since the first instant."""
     mode, _, form = shape.form.rpartition(" ")
     plain = replace(shape, events=False)
     several = form == EXPRESSION or (not form and chance(rng, 30))
@@ -204,7 +204,7 @@ def _held(rng: Rng, shape: Shape) -> Numeric:
 def _member(
     rng: Rng, shape: Shape, draw: Draw, measured: Measured, value: Numeric
 ) -> tuple[Formula, tuple[Compare, ...]]:
-    """Where a number is a member, and what is asked of each occurrence."""
+    """The condition on members of a number, and the comparisons for each occurrence."""
     member: Formula = itself(value)
     chosen: tuple[Compare, ...] = ()
     if isinstance(value, Literal):

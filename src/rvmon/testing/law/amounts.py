@@ -1,4 +1,4 @@
-"""What the members of windows come to, straight from their definitions."""
+"""The measures of windows, straight from their definitions."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ _OF_SOME = (
     *(Measured.MEAN, Measured.VARIANCE, Measured.DELTA),
     *(Measured.MIN, Measured.MAX, Measured.AGO),
 )
-"""What is not of nothing."""
+"""The measures that an empty window does not have."""
 _WHOLE = (
     *(Measured.COUNT, Measured.DISTINCT, Measured.SUM),
     *(Measured.DELTA, Measured.MIN, Measured.MAX, Measured.AGO),
 )
-"""What is whole if its members are."""
+"""The measures that are whole numbers if their members are."""
 UNKNOWN = Arithmetic(NumericOp.DIV, (Literal(0), Literal(0)))
 """A number that nobody knows."""
 State = Callable[[Formula, int], Truth]
@@ -135,7 +135,7 @@ class Past:
         return held[-1] if held else None
 
     def amount(self, window: WindowValue, i: int) -> int | float | None:
-        """What a window comes to, rounded once; `None` where that is not certain.
+        """The value of a window, rounded once; `None` where that is not certain.
 
         Whole numbers are counts, and what is made of whole numbers alone without a division.
         """
@@ -161,7 +161,7 @@ class Past:
         return finite(number(window.value, letter, {}, self.captured))
 
     def members(self, window: WindowValue, i: int) -> list[Member] | None:
-        """Those of the window of a position; `None` if it is not known which these are."""
+        """The members of the window of a position; `None` if it is not known which these are."""
         return self.last(window, i) if window.most else [*self.window(window, i)]
 
     def window(self, formula: WindowValue, i: int) -> Iterator[Member]:
@@ -261,7 +261,7 @@ Ends = tuple[Fraction, Fraction | None]
 
 
 def ends_of(window: WindowValue, members: Sequence[Member]) -> Ends | None:
-    """What members come to; `None`: nobody can say anything of it."""
+    """The bounds of a measure of members; `None`: nothing is known of it."""
     measured = window.measured
     if measured is Measured.DISTINCT:
         known = Fraction(
@@ -287,7 +287,7 @@ def ends_of(window: WindowValue, members: Sequence[Member]) -> Ends | None:
 
 
 def _of_sure(measured: Measured, numbers: Sequence[tuple[Fraction, bool, int]]) -> Fraction | None:
-    """What is of some members, which are known."""
+    """The measure of known members."""
     count = sum(size for _, _, size in numbers)
     if count == 0:
         return None
@@ -307,7 +307,7 @@ def _of_sure(measured: Measured, numbers: Sequence[tuple[Fraction, bool, int]]) 
 
 
 def _size(letters: Sequence[Letter], k: int, i: int, formula: WindowValue) -> int:
-    """How many positions, or ticks, of the window of `i` a position stands for."""
+    """The number of positions, or ticks, of the window of `i` that a position stands for."""
     begin = letters[k].instant
     first = begin if formula.window is None else max(begin, letters[i].instant - formula.window)
     if not formula.measured.of_time:

@@ -1,4 +1,4 @@
-"""Where attempts start, what each owes, and when a whenever episode ends."""
+"""The starts of attempts, the formula that each requires, and the ends of `whenever` episodes."""
 
 from __future__ import annotations
 
@@ -75,11 +75,11 @@ def is_pulse(formula: Formula, *, negated: bool = False) -> bool:
 
 def _binary(op: BinaryOp, left: Formula, right: Formula, negated: bool) -> bool:
     def both(left_negated: bool, right_negated: bool) -> bool:
-        """Of a disjunction both have to be pulses."""
+        """A disjunction is a pulse if both operands are."""
         return is_pulse(left, negated=left_negated) and is_pulse(right, negated=right_negated)
 
     def either(left_negated: bool, right_negated: bool) -> bool:
-        """Of a conjunction one has to be a pulse."""
+        """A conjunction is a pulse if one operand is."""
         return is_pulse(left, negated=left_negated) or is_pulse(right, negated=right_negated)
 
     match op:
@@ -141,7 +141,7 @@ class Start:
         return any(self.view.trigger[k] is Truth.UNKNOWN for k in self.owes)
 
     def restarted(self, position: int) -> Start:
-        """What goes on of the episode as a new attempt."""
+        """The rest of the episode as a new attempt."""
         owes = [k for k in self.owes if k >= position]
         known = (k for k in owes if self.blurred is None or k < self.blurred)
         return replace(self, position=position, owes=owes, sure=self.view.first_true(known))
@@ -180,7 +180,7 @@ class View:
 
     @cached_property
     def trigger(self) -> Sequence[Truth]:
-        """Of the trigger, at each position; what is not born is FALSE for it."""
+        """The truth of the trigger at each position, where unborn counts as FALSE."""
         if is_upon_end(self.requirement):
             return [Truth.FALSE for _ in self.word.letters]
         return [Truth.FALSE if truth is Truth.UNBORN else truth for truth in self._trigger]

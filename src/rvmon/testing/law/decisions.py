@@ -42,7 +42,7 @@ class Followed:
 
 @dataclass(frozen=True, slots=True)
 class Followings:
-    """What is judged of one requirement.
+    """The attempts of one requirement, followed to their decisions.
 
     Attributes:
         attempts: in the order of their starts.

@@ -33,7 +33,7 @@ def always_false(_: int) -> Truth:
 
 
 def unless_constant(part: Formula, operand: Operand, value: Truth) -> Operand:
-    """What has to last up to some position; if it is sure anyway, it asks for no position.
+    """An operand that has to last up to some position; a constant needs no position to exist.
 
     So `true U φ` is `F φ` where there may be positions, too: where every formula is unknown.
     """

@@ -40,13 +40,13 @@ def negated(value: Range) -> Range:
 
 
 def least(values: Iterable[Range]) -> Range:
-    """That of a conjunction; of nothing `TOP`."""
+    """The range of a conjunction; of an empty one `TOP`."""
     lows, highs = zip(TOP, *values, strict=True)
     return min(lows), min(highs)
 
 
 def most(values: Iterable[Range]) -> Range:
-    """That of a disjunction; of nothing `BOTTOM`."""
+    """The range of a disjunction; of an empty one `BOTTOM`."""
     lows, highs = zip(BOTTOM, *values, strict=True)
     return max(lows), max(highs)
 
@@ -168,7 +168,7 @@ class Past:
                 raise AssertionError("it speaks of the future")
 
     def _candidate(self, formula: Formula, *, positive: bool = True) -> Callable[[int], Range]:
-        """What is sought in a window, where it is not born it is none."""
+        """The operand sought in a window, which does not count where it is unborn."""
         if positive:
             return lambda k: self.range(formula, k, Truth.FALSE)
         return lambda k: negated(self.range(formula, k, Truth.TRUE))
@@ -215,7 +215,7 @@ class Past:
     def _unless_unborn(
         self, value: Range, sought: Formula, i: int, window: Interval, unborn: Truth
     ) -> Range:
-        """What is sought in a window may be born nowhere there: then the whole is not."""
+        """`value`, or unborn if the sought operand may be unborn throughout the window."""
         now = self._letters[i].instant
         states = {
             self._truths.state(sought, k)
@@ -228,7 +228,7 @@ class Past:
 
 
 def _besides(value: Range, is_unborn: bool, unborn: Truth) -> Range:
-    """What is at least `unborn` where it is not born."""
+    """The range of a value that is at least `unborn` where it is unborn."""
     return most([value, OF_TRUTH[unborn]]) if is_unborn else value
 
 
@@ -247,7 +247,7 @@ def _any(parts: Sequence[Operand]) -> Operand:
 
 
 def _all(parts: Sequence[Operand]) -> Operand:
-    """What was lost is not excused by what is not there: with it, the whole may be anything."""
+    """The conjunction of parts; where a part was lost, unborn parts do not narrow it."""
     states = {part.state for part in parts}
 
     def read(unborn: Truth) -> Range:

@@ -117,7 +117,7 @@ def _positions(
     first: int,
     end: int,
 ) -> Sequence[int]:
-    """Where there is a position, or may be one."""
+    """The instants at which there is a position, or may be one."""
     match spec.time:
         case TimeModel.HELD:
             return range(first, end + 1)
@@ -149,7 +149,7 @@ def _is_sure(spec: CheckedSpec, instant: int, begun: int | None, outages: Iterab
 
 
 def _blank(spec: CheckedSpec, instant: int) -> Letter:
-    """What is known where there may be no position."""
+    """The letter of an instant at which there may be no position."""
     unknown = SignalState(
         updated=Truth.UNKNOWN, changed=Truth.UNKNOWN, born=True, moved=True, lost=True
     )
@@ -166,13 +166,13 @@ _UNKNOWN_EVENT = EventState(Truth.UNKNOWN, (Occurrence(Truth.UNKNOWN, {}),), los
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
-    """What was said of a name.
+    """An update of a name.
 
     Attributes:
-        t: when.
-        value: what; of what was lost, `None`.
-        since: from when on it counts; before the end of an outage nobody knows what was.
-        lost: whether it stands for all that an outage swallowed.
+        t: its instant.
+        value: the new value; of a lost update, `None`.
+        since: the instant from which on it counts: the end of an outage, if it came in one.
+        lost: whether it stands for all updates that an outage swallowed.
     """
 
     t: int
@@ -183,14 +183,14 @@ class _Entry:
 
 @dataclass(frozen=True, slots=True)
 class _History:
-    """What was told of a name by a position.
+    """The history of a name up to a position.
 
     Attributes:
-        entries: what was said, in order.
-        outages: those that have begun.
-        before: the position before; what came after it falls to this one.
+        entries: its updates, in order.
+        outages: of it that have begun.
+        before: the previous position; updates after it belong to this one.
         instant: of this position.
-        has_source: whether something can say what the name is.
+        has_source: whether the name can be updated at all.
     """
 
     entries: Sequence[_Entry]
@@ -200,7 +200,7 @@ class _History:
     has_source: bool
 
     def by(self, before: int | None, instant: int) -> _History:
-        """What of it was told by an earlier position."""
+        """The part of the history up to an earlier position."""
         return _History(
             [entry for entry in self.entries if entry.since <= instant],
             [outage for outage in self.outages if outage.first <= instant],

@@ -1,4 +1,4 @@
-"""What a formula is made of."""
+"""The parts of formulas, as the law needs them."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def parts_of(expression: Numeric) -> Iterator[Numeric]:
 
 
 def constant_value(formula: Formula) -> Truth:
-    """What a formula is whatever its propositions are, by Kleene's connectives; else UNKNOWN."""
+    """The truth of a formula that holds for all values of its propositions; else UNKNOWN."""
     match formula:
         case Constant(value=value):
             return truth_of(value)

@@ -107,7 +107,7 @@ class Truths:
 
     @property
     def known(self) -> int:
-        """How many positions are known."""
+        """The number of known positions."""
         return self._known
 
     def truth(self, formula: Formula, i: int, *, positive: bool = True) -> Truth:
@@ -210,7 +210,7 @@ class Truths:
         return Truth.FALSE if True in before else Truth.UNKNOWN if before else Truth.TRUE
 
     def release_rest(self, opened: bool) -> Truth:
-        """What the rest of an unbounded `R` counts as; `opened`: whether its window has."""
+        """The truth assumed of the rest of an unbounded `R`; `opened`: whether its window has."""
         match self._rest:
             case Rest.UNKNOWN:
                 return Truth.UNKNOWN
@@ -222,7 +222,7 @@ class Truths:
                 return Truth.FALSE
 
     def _other_rest(self) -> Truth:
-        """What the rest of any other pending operator counts as."""
+        """The truth assumed of the rest of any other pending operator."""
         return self.release_rest(opened=False)
 
     def _composed(self, formula: Formula, i: int, positive: bool, sub: Sub) -> Truth:

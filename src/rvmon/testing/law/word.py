@@ -15,14 +15,14 @@ from rvmon.trace.sample import Payload, Scalar
 
 @dataclass(frozen=True, slots=True)
 class Outage:
-    """What was lost of some names, nobody knows what or how much of it.
+    """An outage: any number of updates of some names may have been lost.
 
-    The trace reaches to its last instant: that time went on is not among what was lost. Of a
-    source that is lost for good the door says how far time is known to have come.
+    The trace reaches to its last instant: the passing of time is not among the losses. If a source
+    is lost for good, its last instant is the latest that time is known to have reached.
 
     Attributes:
-        names: of the signals and events that may have said anything; there may be none, as a line
-            that says nothing is a position of sampled time all the same.
+        names: the signals and events that may have been updated; may be empty, as a line without
+            updates is a position of sampled time all the same.
         first: its first instant, ticks.
         last: its last instant, ticks; not before the first.
 
@@ -61,7 +61,7 @@ class Truth(IntEnum):
     UNKNOWN = 1
     TRUE = 2
     UNBORN = 3
-    """Of the present and past only: it speaks of signals that have had no value so far."""
+    """The truth of formulas of the present and past over signals without a value so far."""
 
 
 _NEGATION = (Truth.TRUE, Truth.UNKNOWN, Truth.FALSE, Truth.UNBORN)
@@ -130,7 +130,7 @@ class Update:
 
 @dataclass(frozen=True, slots=True)
 class SignalState:
-    """What is known of a signal at a position.
+    """The state of a signal at a position, as far as it is known.
 
     Attributes:
         value: the held one; `None` if unknown for whatever reason.
@@ -163,12 +163,12 @@ class Occurrence:
 
 @dataclass(frozen=True, slots=True)
 class EventState:
-    """What is known of an event at a position.
+    """The state of an event at a position, as far as it is known.
 
     Attributes:
-        updated: whether something was said of it.
-        occurrences: those that were, or may have been.
-        lost: so many of them stand for what was lost.
+        updated: whether it was reported, as occurring or not.
+        occurrences: the certain and the possible ones.
+        lost: the number of them that stand for lost ones.
     """
 
     updated: Truth = Truth.FALSE
@@ -212,7 +212,7 @@ class Word:
 
 
 class Rest(Enum):
-    """What is assumed of the part of an operator that lies behind the known positions."""
+    """Assumptions about the part of an operator beyond the known positions."""
 
     UNKNOWN = auto()
     """Nothing: the truth after a prefix."""
