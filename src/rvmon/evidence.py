@@ -156,7 +156,7 @@ class Kept(NamedTuple):
     """Evidence that is open.
 
     Attributes:
-        about: what it was made of.
+        about: its origin.
         entries: all that it holds, by name.
         items: the verdicts by recording; of a campaign by robot and test.
         specs: the files of the requirements, by robot, as long as it is open.

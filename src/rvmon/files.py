@@ -79,7 +79,7 @@ def place_whole(path: Path, body: bytes, *, mode: int | None = None, synced: boo
 
     Args:
         path: of the file.
-        body: what it holds.
+        body: its contents.
         mode: its rights; default: those that new files have.
         synced: whether it is on the disk before it is seen, and still there after a loss of power.
 

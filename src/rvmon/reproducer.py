@@ -53,7 +53,7 @@ class Case(msgspec.Struct, frozen=True):
         recording: path of the recording around the attempt.
         binding: path of the binding, if there is one.
         const: constants that were overridden, as `NAME=VALUE`.
-        time: how the recording is read, as the options of `rvmon run` say it; so are the next.
+        time: an option of `rvmon run` for reading the recording; so are the next.
         map: see there.
         nan: see there.
         clock: see there.

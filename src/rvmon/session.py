@@ -36,7 +36,7 @@ class Spec:
 
     Attributes:
         checked: names, types, units and formulas, as monitors read them.
-        warnings: what the compiler thinks worth a look; errors would have been raised.
+        warnings: of the compiler; errors would have been raised.
         schema: the declared names with the kinds of their values, and what recordings call them.
     """
 
@@ -339,7 +339,7 @@ def load(
 
     Args:
         path: a `.rv` file, UTF-8.
-        name: what messages call it; default its path.
+        name: its name in messages; default its path.
         const: constants to override, by name, as text of the language (`{"T": "2 s"}`).
 
     Raises:
@@ -366,7 +366,7 @@ def loads(text: str, *, name: str = "<string>", const: Mapping[str, str] | None 
 
     Args:
         text: the specification.
-        name: what messages call it.
+        name: its name in messages.
         const: constants to override, by name, as text of the language.
 
     Raises:

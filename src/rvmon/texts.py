@@ -27,7 +27,7 @@ def nearest(name: str, known: Iterable[str], likeness: float = 0.6) -> str:
 
     Args:
         name: as written.
-        known: those that exist; the first thousand are looked at.
+        known: the existing names; the first thousand are compared.
         likeness: from 0 to 1, how much alike it has to be (`difflib.SequenceMatcher.ratio`).
 
     >>> nearest("gaze_okay", ["gaze_ok", "pressure_ok"])
@@ -151,7 +151,7 @@ def text_of_file(path: str | Path, encoding: str = "utf-8") -> str:
 
     Args:
         path: of a regular file.
-        encoding: how its characters are written.
+        encoding: of its characters.
 
     Raises:
         OSError: it cannot be read, is a device or a pipe, or is too large; `strerror` says which.
@@ -196,7 +196,7 @@ def percent(part: int, whole: int) -> float:
     """A share in percent with one decimal; 0 and 100 only where exactly none or all.
 
     Args:
-        part: how many of `whole`.
+        part: the number of parts of `whole`.
         whole: at least 1; of nothing, all is covered.
 
     >>> percent(1, 3), percent(1, 5000), percent(4999, 5000), percent(7, 7)
@@ -261,7 +261,7 @@ class ImportTree:
 
     Attributes:
         root: of the project.
-        others: that a person has allowed.
+        others: folders that a person has allowed.
     """
 
     root: Path

@@ -56,8 +56,8 @@ def handover_campaign(
     Args:
         robots: `correct`, `legacy` or both, in the order of the tables.
         monitors: `False` judges nothing, to measure what judging costs.
-        conforming: so many runs of each strategy are compared with the model for the page, a second
-            each; 0: nothing is shown of the model there.
+        conforming: the number of runs of each strategy compared with the model for the page, a
+            second each; 0: nothing is shown of the model there.
 
     Raises:
         RvmonError: there is no pymunk to play with.

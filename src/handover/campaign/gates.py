@@ -47,7 +47,7 @@ def gates(robots: Collection[str]) -> dict[str, Gate]:
     """The gate of each strategy that need not trigger all.
 
     Args:
-        robots: that are tested; R1 to R5 are all that the legacy one is judged by.
+        robots: the tested robots; R1 to R5 are all that the legacy one is judged by.
 
     >>> gates(["legacy"])["constrained"].untriggered
     ('R1',)

@@ -60,7 +60,7 @@ def model_sections(
     """The section of a campaign's page, unless no run is to be compared with the model.
 
     Args:
-        tests: that were played.
+        tests: the played tests.
         addresses: of its pages.
         count: of the runs of each strategy the first so many are compared with the model.
     """

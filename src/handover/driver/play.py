@@ -27,10 +27,10 @@ class Conditions:
     """The seeded conditions of one run; the posture ranges are drawn as they are needed.
 
     Attributes:
-        human_start_s: when the human's script starts.
+        human_start_s: the instant at which the human's script starts.
         connected: whether the human's signals reach the robot at all.
         timeout_time_s: the parameter of the legacy robot.
-        poll_growth_s: how much each subscription slows a poll down.
+        poll_growth_s: the delay that each subscription adds to a poll.
         start_pose: joint angles after the reset, rad.
     """
 
@@ -82,7 +82,7 @@ class Run:
     """One simulated test, judged by nobody yet.
 
     Attributes:
-        test: what was played.
+        test: the played test.
         robot: `"correct"` or `"legacy"`.
         mutation: the change made to the robot, if any.
         samples: `(t_ns, values)`, strictly increasing, only what changed or occurred; events are
@@ -116,7 +116,7 @@ def run_test(test: AbstractTest, **options: Any) -> Run:
     The same test gives the same run in every process, whatever was run before.
 
     Args:
-        test: what the human does, and the seed of everything random.
+        test: the actions of the human, and the seed of everything random.
         **options: as for `begun`.
 
     Raises:
@@ -172,8 +172,8 @@ def begun(
     """Set up robot, human and world of a test; nothing has happened yet.
 
     Args:
-        test: what the human does, and the seed of everything random.
-        actions: what the human does instead; each is asked for when the one before is over.
+        test: the actions of the human, and the seed of everything random.
+        actions: of the human, instead; each is drawn when the one before is over.
         robot: `"correct"` or `"legacy"`; default: the robot that the test names, else correct.
         mutation: default: the one that the test names.
         startup_loss: `False` switches the fitted loss of signals to the legacy robot off in any

@@ -88,10 +88,10 @@ class AbstractTest(Test, frozen=True, kw_only=True):
         mutation: a name of `handover.robot.mutants.MUTATIONS`, or `None` for the robot as it is.
         postures: drawn from their ranges, or at the ends of these, where sensors may err.
         horizon_s: simulated seconds.
-        arrives_s: when the human begins; default: drawn, once the robot listens.
+        arrives_s: the instant at which the human begins; default: drawn, once the robot listens.
         startup_loss: whether the human's signals may get lost as the processes start.
-        faults: what is wrong with the sensors.
-        scene: what the scene has in store for the robot.
+        faults: of the sensors.
+        scene: faults of the scene.
     """
 
     strategy: Strategy

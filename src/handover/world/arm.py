@@ -17,7 +17,7 @@ class Arm:
     """Plans and follows paths; its motors are written only when their command changes.
 
     Args:
-        scene: where the motors are.
+        scene: the scene of the motors.
         rng: draws the planner's latency.
         wake: called with the seconds for which the scene is going to move.
         note: called with the name of each command, and of each plan in vain.
@@ -76,7 +76,7 @@ class Arm:
         """Move along a path; returns when it is over.
 
         Args:
-            path: where to.
+            path: the way to go.
             minds_people: stop, for good, where a part of a person comes close.
 
         Returns:

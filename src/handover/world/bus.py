@@ -48,8 +48,8 @@ class Message:
     """A message as a node receives it.
 
     Attributes:
-        value: what it says.
-        stamp: when it was published, seconds.
+        value: its content.
+        stamp: the instant of publication, seconds.
     """
 
     value: Value
@@ -89,7 +89,7 @@ class Node:
     """One process on the bus: publishes, subscribes, reads, and ends.
 
     Attributes:
-        params: what the launch file gives to it.
+        params: its parameters from the launch file.
     """
 
     def __init__(self, bus: Bus, params: Mapping[str, Any], poll_growth_s: float) -> None:

@@ -31,7 +31,7 @@ class Limb:
     """A kinematic body that is moved on minimum-jerk paths; it may be redirected in flight.
 
     Args:
-        body: what moves.
+        body: the moving body.
         turns: whether a goal has an angle (rad) after x and z (metres).
     """
 
@@ -117,7 +117,7 @@ class Human:
     """Acts on intentions after a reaction time; what comes of it, the physics decides.
 
     Args:
-        scene: where the bodies are.
+        scene: the scene of the bodies.
         wake: called with the seconds for which something is going to move.
         after: calls a function so many seconds later.
 

@@ -49,8 +49,8 @@ def gaze_is_ok(scene: Scene, error: Callable[[], float] = exactly) -> bool:
     between the line of sight and the direction from head to piece.
 
     Args:
-        scene: where the bodies are.
-        error: what to add to each measured length, m.
+        scene: the scene of the bodies.
+        error: the offset of each measured length, m.
     """
     head, piece = scene.head.position, scene.piece.position
     return (

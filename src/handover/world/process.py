@@ -24,7 +24,7 @@ class Process:
 
     Attributes:
         is_over: whether it returned or crashed.
-        error: what crashed it, as one line with its place, or `None`.
+        error: the exception that crashed it, as one line with its place, or `None`.
     """
 
     def __init__(

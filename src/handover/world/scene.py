@@ -36,8 +36,8 @@ class Scene:
         finger_motors: a positive `rate` times the side (+1, −1) closes.
         piece: the thing that is handed over.
         hand: of the human, the one that takes; never turns.
-        hand_rest: where it is at rest, (x, z) in metres.
-        hand_target: where the human's arm pulls the hand to.
+        hand_rest: its position at rest, (x, z) in metres.
+        hand_target: the point to which the human's arm pulls the hand.
         hand_pull: the pull itself, with its largest force.
         head: of the human; its angle is the direction of gaze.
         beside: the rest of a human who stands beside the way.

@@ -32,9 +32,9 @@ class Sensors:
     """Gaze, pressure, location and the distance of the hand, measured on the bodies.
 
     Args:
-        scene: where the bodies are.
-        human: whose head and hand are tracked.
-        faults: what is wrong with the sensors.
+        scene: the scene of the bodies.
+        human: the human, whose head and hand are tracked.
+        faults: of the sensors.
         rng: draws the noise.
     """
 

@@ -37,8 +37,8 @@ class World:
 
     Args:
         rng: draws what the world leaves to chance: the planner's latency, sensor noise.
-        faults: what is wrong with the sensors.
-        scene_faults: what the scene has in store for the robot.
+        faults: of the sensors.
+        scene_faults: faults of the scene.
         jump: `False` steps the physics over rest, too.
         films: keep a frame at 10 Hz while something moves.
         observer: called with each whole sample.

@@ -114,7 +114,7 @@ class JsonObjects:
 
         Args:
             where: the object's origin, for the log.
-            why: why it cannot be read.
+            why: the reason why it cannot be read.
             robot: its robot; `None`: unknown.
         """
         self.unread += 1

@@ -133,7 +133,7 @@ class MessageFeed:
 
         Args:
             topic: its name.
-            why: why a message could not be read, or did not arrive.
+            why: the reason why a message could not be read, or did not arrive.
             before: whether the outage reaches back to the last message that was read.
             for_good: whether it lasts until `find`.
         """

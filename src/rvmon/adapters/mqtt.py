@@ -91,7 +91,7 @@ class MqttSource:
 
     Args:
         objects: get what is published.
-        address: where it is.
+        address: of the broker.
         verdicts: the topic under which verdicts are published, each as JSON under the name of its
             requirement; `None`: none are.
 

@@ -270,7 +270,7 @@ def implications_among(
     Args:
         together: answers reachability queries.
         subjects: the requirements that may imply another one.
-        falling: those that can fail, and so may be implied.
+        falling: the requirements that can fail, and so may be implied.
         conflicts: sets that cannot all hold; they would imply anything, so they are excluded.
         deadline: by `time.monotonic`, seconds.
 

@@ -150,10 +150,10 @@ def shortest_examples(
 
     Args:
         compiled: the specification.
-        requirements: those of its requirements to be judged.
+        requirements: its requirements to be judged.
         goal: classifies a run.
         wanted: the kinds of examples; the search ends when all are found.
-        budget: when to give up.
+        budget: the limits at which it gives up.
 
     Cost: about 25 microseconds per run.
     """

@@ -126,7 +126,7 @@ class PartTruth:
         text: as in the specification.
         part: `trigger` or `required`.
         true: closed intervals of ticks at which it is true.
-        false: those at which it is false; elsewhere it is unknown.
+        false: the positions at which it is false; elsewhere it is unknown.
     """
 
     depth: int
@@ -233,7 +233,7 @@ class _Miss:
 
     Attributes:
         there: the operands that were true.
-        missing: those that were not.
+        missing: the others.
         at: the first such instant, ticks; `None` if no operand was ever true.
     """
 
@@ -267,7 +267,7 @@ class TriggerParts:
 
     Args:
         spec: the specification.
-        requirement: whose trigger it is.
+        requirement: the owner of the trigger.
 
     Attributes:
         question: asks for the operands; for none of `for each`, which is not explained.

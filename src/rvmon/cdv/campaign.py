@@ -57,12 +57,12 @@ class ClosingModel:
     Attributes:
         network: makes the model.
         automata: names of those that tests stand for, such as people and sensors.
-        actions: what a test does for their edges; those left out need no action.
+        actions: of a test, for their edges; those left out need no action.
         make: makes a test from a template, with a seed.
         query: what is asked of the model about an item, by its group and name; empty: nothing. A
             run that shows it (of `A`, that contradicts it) becomes a test; if there is none, the
             item is proved to be unreachable.
-        automaton: that of the system under test.
+        automaton: of the system under test.
         states: the states of the system by the locations of that automaton; those left out are
             passed over. A test shows the edges of a run of the model if the system enters the
             states of that run first, in their order.
@@ -93,15 +93,15 @@ class Closing:
     """The way a campaign closes its holes; by default from its strategies and its tests alone.
 
     Attributes:
-        strategies: those that tests are drawn from; default: all. Tests with a planted fault are
-            passed over.
+        strategies: the strategies that tests are drawn from; default: all. Tests with a planted
+            fault are passed over.
         written: strategies whose tests people have written: each is played once, before any is
             made by chance.
         fixed: fields of tests that are never changed, such as `horizon_s` or `faults.noise_m`.
         biased: makes a test whose choices are drawn by what is given to it, with a seed for the
             rest: so they can be biased towards what is open.
         model: of the system.
-        unreachable: what no test can hit.
+        unreachable: the items that no test can hit.
     """
 
     strategies: Sequence[str] = ()
@@ -125,8 +125,8 @@ class Robot:
         spec: file of its requirements; `None` judges nothing.
         coverage: files of further specifications: what their coverpoints, crosses and goals show is
             gathered, beside what those of `spec` do and what its requirements are seen to do.
-        title: what tables and pages call it; default: its name in the campaign.
-        spec_name: what they call its requirements; default: the path.
+        title: its name in tables and pages; default: its name in the campaign.
+        spec_name: the name of its requirements there; default: the path.
     """
 
     system: Callable[[], System[Any]]
@@ -177,8 +177,8 @@ class ExpectedFailure:
     That it fails no more is wrong as well: the entry is to go.
 
     Attributes:
-        requirement: that fails.
-        reason: why that is accepted, for people.
+        requirement: the failed requirement.
+        reason: the reason for accepting that, for people.
         strategy: in tests of this strategy only; empty: of any.
         test: in this test only; empty: in any.
         robot: of this robot only; empty: of any.
@@ -213,26 +213,26 @@ class Campaign:
     """All that a campaign consists of but how many tests there are.
 
     Attributes:
-        name: what people call it; the page's title.
+        name: its name for people; the page's title.
         test: the type of its tests.
         strategies: by name, in the order of the columns of a table.
         robots: by name.
-        code: whose coverage is measured.
-        states: that the robot has; what is not listed is counted, and is no goal.
-        transitions: that its code allows, likewise, and with them every pair of two that follow
+        code: the code whose coverage is measured.
+        states: of the robot; others are counted, and are no goals.
+        transitions: of its code, likewise, and with them every pair of two that follow
             each other; default: from each of `states` to each other one, where those that cannot be
             are for `Closing.unreachable`.
-        control: what is played beside a test.
-        expected_failures: that do not fail it.
+        control: a variant played beside each test.
+        expected_failures: failures that do not fail the campaign.
         gates: by strategy, what its tests have to bring; those of all strategies without one are
             compared with that of the name "" together, and without that with `Gate()`.
         timeout_s: seconds that a test may take before it is ended; `None`: any.
         sources: files and folders that runs depend on, beside those that define tests, strategies
             and systems: where one has changed, an unfinished campaign is not gone on with.
-        packages: whose versions runs depend on, likewise.
+        packages: Python packages on whose versions runs depend, likewise.
         program: the installed program that runs it; empty: the script that was started.
-        presentation: how its figures are shown.
-        closing: how its holes are closed.
+        presentation: of its figures.
+        closing: the way to close its holes.
     """
 
     name: str
@@ -286,7 +286,7 @@ def unreachable_items(
     Args:
         campaign: what says so.
         robot: of its robots the one whose tests are meant.
-        model: what there is to be covered.
+        model: the coverage model.
         closing: the model has all that is ever measured: what it lacks there is not. Of any other,
             such as one without the edges that closing measures, that is passed over. What is to be
             proved is left out: that is for closing to ask.

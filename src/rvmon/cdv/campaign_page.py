@@ -122,7 +122,7 @@ def campaign_page(
     Args:
         summary: the campaign's figures.
         tables: its verdicts, by robot.
-        presentation: what is shown of them.
+        presentation: of the figures.
         command: runs the campaign again.
         examples: addresses of pages, by the counts that they are examples of.
         tests: addresses of pages, by robot and test.

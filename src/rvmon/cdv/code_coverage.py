@@ -257,7 +257,7 @@ def lcov(code: Code, model: Model, hits: Hits) -> str:
     """The blocks of code as an LCOV tracefile; a count is the number of tests.
 
     Args:
-        code: that was measured.
+        code: the measured code.
         model: with its statements and branches; those without a goal are left out.
         hits: of all tests.
     """
@@ -282,7 +282,7 @@ def cobertura(code: Code, model: Model, hits: Hits) -> str:
     """The same as Cobertura's XML.
 
     Args:
-        code: that was measured.
+        code: the measured code.
         model: with its statements and branches; those without a goal are left out.
         hits: of all tests.
     """

@@ -28,7 +28,7 @@ class TestJudgement:
 
     Attributes:
         played: the test.
-        wrong: what is not as expected, each in a sentence.
+        wrong: the differences from the expectation, a sentence each.
         known: failures that are, each with the reason for which it is accepted.
     """
 
@@ -87,7 +87,7 @@ def judge_campaign(
     occur is wrong as well, unless no test was played in which it could.
 
     Args:
-        results: what was played; of a campaign that was cut short only the tests are judged.
+        results: of the played tests; of a campaign that was cut short only the tests are judged.
         requirements: by robot, the ids of those that were judged; none: only endings count.
         shares: what the tests of each strategy say of those that are to hold in a share of runs: a
             single test that fails them is not wrong, a strategy that rejects the share is. With

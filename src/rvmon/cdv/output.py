@@ -49,7 +49,7 @@ def print_summary(
     Args:
         summary: the campaign's figures.
         tables: its verdicts, by robot.
-        console: where it is printed.
+        console: to print on.
         foremost: requirements that are shown, and in short; default: all, with all that there is.
     """
     for name, text in next(iter(summary.robots.values())).requirements.items():
@@ -233,7 +233,7 @@ def left_over(folder: Path, before: Mapping[Path, int]) -> str:
 
     Args:
         folder: of the campaign, which is written.
-        before: what `dated_files` found there before.
+        before: the result of an earlier `dated_files`.
     """
     now = dated_files(folder)
     counts = Counter(

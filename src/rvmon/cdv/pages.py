@@ -35,7 +35,7 @@ class Replay:
     """A test that was played again.
 
     Attributes:
-        test: that was played.
+        test: the played test.
         recorded: all that came of it but what it hit, which is not measured.
     """
 
@@ -71,7 +71,7 @@ def replay_page(
     Args:
         replay: the test.
         robot: its name.
-        spec: that judged it.
+        spec: the specification that judged it.
         command: replays it.
         others: runs that a failed attempt can be compared with.
         back: address of the campaign's page.

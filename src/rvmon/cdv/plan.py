@@ -49,9 +49,9 @@ def plan(
     """Generate the tests of a campaign.
 
     Args:
-        campaign: what it is about.
+        campaign: the campaign.
         strategies: of its strategies those that make tests; default: all.
-        tests: how many of each; one that has a fixed number of them makes those.
+        tests: the number of each; one that has a fixed number of them makes those.
         seed: all tests follow from it.
 
     Raises:
@@ -129,9 +129,9 @@ class Outcome:
         hits: of states, transitions, code, and of coverage models.
         ending: `completed`; `crashed` if code raised an exception, in which case it is judged as
             far as it went; `hung` if it was ended; `lost` if its process was.
-        error: why it did not complete.
+        error: the reason why it did not complete.
         end_ns: up to which it was judged.
-        figures: what the system reports of the run, to be added up.
+        figures: of the run, reported by the system, to be added up.
         seconds: wall time that it took.
     """
 
@@ -169,7 +169,7 @@ class Results:
         played: in the order of the plan, whichever process was first.
         seconds: wall time.
         cut_short: why not all tests were played; empty if they were.
-        groups: what was measured beside what the campaign measures.
+        groups: measured besides those of the campaign.
         unreachable: why items of the coverage model cannot be hit, by group and item, beside those
             of which the campaign says so.
     """

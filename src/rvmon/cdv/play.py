@@ -41,7 +41,7 @@ def player(
 
     Args:
         robots: by name.
-        code: whose coverage is measured.
+        code: the code whose coverage is measured.
         control: makes the control of a test.
         spool: a folder of this user alone for the recordings, for pages of all runs.
 
@@ -72,11 +72,11 @@ class Recorded(NamedTuple):
     """A test that was played, with all that was asked for.
 
     Attributes:
-        run: what the system reported at its end.
+        run: the report of the system at its end.
         report: the verdicts.
         samples: instants, and what changed or occurred; where they were to be kept.
-        hits: what was hit of what is measured.
-        illegal: what of it must not be.
+        hits: of the measured items.
+        illegal: hits that must not be.
         seconds: wall time that it took, with judging.
         cpu_s: processor time of this process that playing it took.
     """
@@ -96,7 +96,7 @@ class Bench:
     Args:
         name: of the robot.
         robot: itself.
-        code: whose coverage is measured.
+        code: the code whose coverage is measured.
         covers: whether what its coverage models count is gathered.
 
     Raises:
@@ -201,10 +201,11 @@ def execute(
     process, is a result as any other.
 
     Args:
-        plan: what to play.
+        plan: of the tests.
         jobs: processes, or the address of a scheduler of Dask; default: one process per core.
         controls: also play the controls of tests.
-        kept: where each test is kept as soon as it was played; those before are not played again.
+        kept: the journal that gets each test as soon as it was played; earlier ones are not played
+            again.
         progress: called as each test is finished.
         spool: as for `player`.
 
@@ -247,7 +248,7 @@ def outcomes(
     """Play tests, in this order; each outcome comes with that of its control.
 
     Args:
-        campaign: whose tests they are.
+        campaign: of the tests.
         tests: taken from as processes have time.
         jobs: processes, or the address of a scheduler of Dask; default: one process per core.
         controls: also play the controls of tests.
@@ -288,7 +289,7 @@ class PlayerApart:
     It is begun anew after a test that ended it, or that cannot be played.
 
     Args:
-        campaign: that the tests are of; its code is not measured.
+        campaign: of the tests; its code is not measured.
         robot: of its robots the one that is tested.
     """
 

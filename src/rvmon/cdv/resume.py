@@ -54,10 +54,10 @@ class Unfinished(journal.Journal):
     """A campaign that goes on.
 
     Attributes:
-        jobs: what it plays, in the order of the plan.
-        known: what of it was played before, by test and robot.
-        seconds: that this took.
-        shard: what of the campaign this is; `None`: all.
+        jobs: in the order of the plan.
+        known: the outcomes of jobs played before, by test and robot.
+        seconds: their duration.
+        shard: the part of the campaign; `None`: all.
     """
 
     jobs: Sequence[Job] = ()
@@ -82,10 +82,10 @@ def unfinished(
 
     Args:
         folder: of the campaign.
-        plan: what it plays.
+        plan: of the tests.
         specs: by robot, what judges it; empty if nothing is judged.
-        command: that runs it.
-        shard: what is played of it; default: all, and what shards have played lies in the folder.
+        command: the command line that runs it.
+        shard: the part to play; default: all, with the results of shards in the folder.
 
     Raises:
         RvmonError: what is unfinished there is another campaign.

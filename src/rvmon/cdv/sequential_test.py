@@ -24,7 +24,7 @@ class Decision:
     """The decision of the tests of a strategy on a share of runs.
 
     Attributes:
-        share: that was asked for.
+        share: the share in question.
         holds: whether it was accepted or rejected; `None`: there were too few tests.
         tests: the number of triggered ones taken until then.
         inconclusive: the number of these that were.

@@ -41,8 +41,8 @@ class Failure:
     """The failure of a run, which the run of a smaller test has to show as well.
 
     Attributes:
-        requirement: that fails; empty: none, but the run does not complete.
-        ending: how the run ends, where no requirement is named.
+        requirement: the failed requirement; empty: none, but the run does not complete.
+        ending: the way the run ends, where no requirement is named.
         error: the kind of exception that the code raised, where it crashed.
     """
 
@@ -69,7 +69,7 @@ class Shrunk(Generic[_Test]):
     Attributes:
         test: the smallest one that was found.
         outcome: of its run.
-        failure: that it shares with the one it came from.
+        failure: in common with the original test.
         tried: tests that were played.
         seconds: wall time that it took.
         is_minimal: whether no single removal and no single simplification of the test's own type
@@ -99,11 +99,11 @@ def shrink(
     It costs about as many tests as the test has parts and values.
 
     Args:
-        test: that fails; its type says what is `removable`, and what is `simpler`.
+        test: the failing test; its type says what is `removable`, and what is `simpler`.
         outcome: of its run.
         play: plays a test; the same test is to give the same run.
-        requirement: that is to fail; default: as the run ended, or the first that fails in it, of
-            those that the test knows to fail if one does.
+        requirement: the one that has to fail; default: as the run ended, or the first that fails in
+            it, of those that the test knows to fail if one does.
         most: tests that are played at most.
 
     Raises:
@@ -131,7 +131,7 @@ def failure_of(
 
     Args:
         outcome: of the run.
-        requirement: that is looked at; default: as the run ended, or the first that fails in it.
+        requirement: the one in question; default: as the run ended, or the first that fails in it.
         known: requirements that are looked at before others.
     """
     if requirement is None and outcome.ending is not Ending.COMPLETED:

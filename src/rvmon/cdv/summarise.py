@@ -35,7 +35,7 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
     """Count verdicts, statements, branches, states and transitions.
 
     Args:
-        results: what was played.
+        results: of the played tests.
         specs: by robot, what judged it; one that is missing was not judged.
     """
     campaign = results.plan.campaign

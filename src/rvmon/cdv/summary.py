@@ -46,12 +46,12 @@ class StrategySummary:
     """All tests of one strategy against one robot.
 
     Attributes:
-        tests: how many were played.
+        tests: the number played.
         counts: of tests per verdict, by requirement.
         statements: of the measured code, by block; empty if none is measured.
         branches: by block; empty if they are not measured.
-        states: how many tests entered each, of those that are declared also none.
-        transitions: how many tests took each, likewise.
+        states: the number of tests that entered each; declared ones also if none did.
+        transitions: the number of tests that took each, likewise.
         errors: by how tests ended that did not complete, why, by test.
         figures: the sums of what the system reports of its runs.
         simulated_s: simulated seconds.
@@ -81,8 +81,8 @@ class KnownAnswer:
 
     Attributes:
         test: itself.
-        verdicts: what came out, of all requirements.
-        missed: what it is made to reach and did not, in words.
+        verdicts: of all requirements.
+        missed: the items that it aims at and did not reach, in words.
     """
 
     test: Test
@@ -133,7 +133,7 @@ class RobotSummary:
     """One robot under all strategies.
 
     Attributes:
-        title: what tables call it.
+        title: its name in tables.
         spec: name of the requirements' file.
         requirements: id → text; empty if nothing was judged.
         strategies: without the tests on mutated robots.
@@ -158,8 +158,8 @@ class CampaignSummary:
         name: of the campaign.
         seed: all tests follow from it.
         robots: by name.
-        planned: how many tests were to be played.
-        finished: how many were.
+        planned: the number of planned tests.
+        finished: the number of played ones.
         cut_short: why fewer; empty if all were.
         seconds: wall time.
         simulated_s: simulated seconds, in all tests.

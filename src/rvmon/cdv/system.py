@@ -93,8 +93,9 @@ class Observer:
 
         Args:
             t_ns: its instant.
-            values: what changed or occurred; a name that the requirements lack is passed over. An
-                event that occurred several times is a tuple of its fields, `({}, {})` without any.
+            values: the updates and occurrences; a name that the requirements lack is passed over.
+                An event that occurred several times is a tuple of its fields, `({}, {})` without
+                any.
         """
         for take in self._takers:
             take(t_ns, values)
@@ -135,8 +136,8 @@ class Checker:
     Names that a specification does not declare are passed over.
 
     Args:
-        spec: what to judge by; `None` judges nothing.
-        coverages: what is gathered of the coverage models of specifications.
+        spec: the specification to judge by; `None` judges nothing.
+        coverages: collectors for the coverage models of specifications.
     """
 
     def __init__(self, spec: Spec | None, coverages: Sequence[SpecCoverage] = ()) -> None:

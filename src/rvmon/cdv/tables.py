@@ -293,7 +293,7 @@ class Presentation:
         document: the content of `table.json`.
         work: the amount of simulation, in words, for the terminal.
         chart: the coverage of code under one strategy, for the page.
-        chart_legend: how to read it.
+        chart_legend: its legend.
         sections: further ones of the page, from the tests that were played and the addresses of
             their pages.
         foremost: requirements that the terminal shows: with others only those that failed or were

@@ -69,7 +69,7 @@ class Template(
         name: the query's id.
         remark: the query in words.
         query: its text.
-        policy: how the witness was chosen among several.
+        policy: the choice of the witness among several.
         unit_s: seconds in one unit of time.
         steps: in order.
         limits: beyond the waits of the steps.
@@ -111,7 +111,7 @@ def choose_times(template: Template[Any], rng: random.Random, patience: int) -> 
     They are fixed in turn, each within what those before it leave open.
 
     Args:
-        template: whose limits they keep.
+        template: the template whose limits they keep.
         rng: chooses.
         patience: units of time by which a wait may exceed its least one.
 
@@ -160,8 +160,8 @@ def templates_of(
         network: the model.
         queries: ids of its queries that tests are to show.
         automata: names of those that tests stand for, such as people and sensors.
-        actions: what a test does for their edges; those left out need no action.
-        policy: how a witness is chosen among several.
+        actions: of a test, for their edges; those left out need no action.
+        policy: the choice of a witness among several.
 
     Raises:
         TestError: a query has no witness.

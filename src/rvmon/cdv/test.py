@@ -25,7 +25,7 @@ class Test(
         name: unique within a campaign; also the file's name.
         strategy: which generator made it.
         seed: of everything that a run draws at random.
-        text: what the test is for.
+        text: the purpose of the test.
         robot: the only one of a campaign's robots that it is written for; `None`: any.
         mutation: the fault that is planted into the robot; `None`: it is as it is.
         expected: verdicts by requirement, for tests that know them.
@@ -103,7 +103,7 @@ def from_json(text: bytes, kind: type[_Test], *, source: str = "<bytes>") -> _Te
     Args:
         text: JSON, UTF-8.
         kind: of the test.
-        source: where it came from, for messages.
+        source: its origin, for messages.
 
     Raises:
         TestError: it is no JSON, or not that of such a test.

@@ -41,7 +41,7 @@ def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
     """Run the command line of a campaign and return its exit code.
 
     Args:
-        campaign: what it is about.
+        campaign: the campaign.
         arguments: without the program's name; default `sys.argv[1:]`.
     """
 
@@ -69,7 +69,7 @@ def add_commands(
         commands: take them.
         campaign: makes the campaign once the command line is read.
         robots: the names of its robots, for people.
-        strategies: those of its strategies.
+        strategies: of the campaign, to choose from.
         defaults: by command, the `robot` and the `strategy` that it takes if none is named.
 
     Returns:
@@ -147,8 +147,9 @@ def run_tests(campaign: Campaign, arguments: Namespace) -> int:
     """Play a campaign, show it, compare it with what was expected, and return an exit code.
 
     Args:
-        campaign: what it is about.
-        arguments: those of `add_run_options`; perhaps `strategy`, `robot`, `spec` and `format`.
+        campaign: the campaign.
+        arguments: the options of `add_run_options`; perhaps `strategy`, `robot`, `spec` and
+            `format`.
     """
     from rvmon.cli.campaign_run import conduct, show
 
@@ -206,7 +207,7 @@ def names_of(listed: str | None, known: Sequence[str], what: str) -> tuple[str, 
 
     Args:
         listed: on the command line; `None`: all.
-        known: that there are.
+        known: the existing ones.
         what: the word for one, also of its option.
 
     Raises:

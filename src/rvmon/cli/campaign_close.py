@@ -37,10 +37,10 @@ def conduct_closing(
     """Close holes, show what came of it, write the suite.
 
     Args:
-        campaign: what it is about.
+        campaign: the campaign.
         robot: of its robots the one that is tested.
-        strategies: that tests are drawn from; none: those of the campaign.
-        arguments: those of `add_closing_options`.
+        strategies: the strategies that tests are drawn from; none: those of the campaign.
+        arguments: the options of `add_closing_options`.
         words: the command that does it again, and its other options.
 
     Returns:

@@ -71,9 +71,9 @@ def conduct(
     """Plan, load the requirements, play, count, write.
 
     Args:
-        campaign: what it is about.
-        strategies: that make tests.
-        arguments: those of `add_campaign_options`.
+        campaign: the campaign.
+        strategies: the strategies that make tests.
+        arguments: the options of `add_campaign_options`.
         words: the command that runs it again, and its other options.
         stack: closes what was needed meanwhile.
 
@@ -159,9 +159,9 @@ def written(
 
     Args:
         results: of the tests.
-        specs: what judged them.
+        specs: the specifications that judged them.
         folder: for tables, tests and pages; `None` writes nothing.
-        arguments: those of `add_playing_options`.
+        arguments: the options of `add_playing_options`.
         again: the command that runs the tests again.
         spool: has what was recorded of tests, so that they are not played again for their pages.
     """

@@ -62,7 +62,7 @@ def spec_and_options(
     """The specification that judges, and the options of judging.
 
     Args:
-        arguments: those of `rvmon run`.
+        arguments: the options of `rvmon run`.
         name: of the specification in messages; default its path.
     """
     loaded = load(arguments.spec, name=name, const=constants_of(arguments.const))
@@ -91,7 +91,7 @@ class RecordingCoverage:
         spec: may have coverpoints.
         options: say what is asked for.
         trace: the path of the recording.
-        names: that have a source; `None`: all.
+        names: the names with a source; `None`: all.
         end: the instant to which the recording is judged, ticks; default its last sample.
 
     Attributes:
@@ -159,10 +159,10 @@ class Judged:
         trace: its path.
         report: the verdicts, or `None` if the recording broke off at an error.
         before: for a broken recording, the attempts decided before the place of the error.
-        error: what was wrong with the recording.
+        error: the fault of the recording.
         missing: the names that requirements read and that it lacks.
-        hits: what it hit of the coverage model, where that was asked for.
-        seconds: that it took.
+        hits: in the coverage model, where that was asked for.
+        seconds: its duration.
         text: the report as JSON, if the process that judged was asked for it.
     """
 
@@ -189,7 +189,7 @@ def judge_all(
     Args:
         spec: reads as the options say.
         traces: paths.
-        options: how to judge.
+        options: of judging.
         jobs: processes, 1 judges here; or the address of a scheduler of Dask. If one of several is
             lost, so are the verdicts on what comes behind the last that was judged in order, and
             each of these says so.
@@ -236,7 +236,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
     Args:
         spec: reads as the options say.
         trace: the path.
-        options: how to judge.
+        options: of judging.
         is_alone: whether this process judges nothing else.
     """
     before: list[Attempt] = []

@@ -41,7 +41,7 @@ class Unfinished(journal.Journal):
     """A run that goes on.
 
     Attributes:
-        stamps: what distinguished the files of recordings from others when the run began, by path.
+        stamps: size and time of the files of recordings when the run began, by path.
         known: the recordings that were judged before, by path.
     """
 
@@ -84,9 +84,9 @@ def unfinished(
     Args:
         out: the file.
         traces: paths of the recordings.
-        spec: that judges.
-        options: how.
-        reading: what says how recordings are read: words of the command line, files.
+        spec: the specification that judges.
+        options: of judging.
+        reading: the options for reading recordings: words of the command line, files.
         resume: whether it goes on from where an earlier one was ended, if there is one; what
             judges, how, and by which program has to be the same, and so has each recording.
         shards: files of shards to take what they judged from; their recordings may be elsewhere.

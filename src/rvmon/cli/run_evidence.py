@@ -66,9 +66,9 @@ def write_run(
 
     Args:
         arguments: of `rvmon run`.
-        spec: that judged.
+        spec: the specification that judged.
         judged: the recordings.
-        before: what `begun` gave before these were judged.
+        before: the result of `begun` before these were judged.
 
     Raises:
         RvmonError: it cannot be written, or what was judged has changed meanwhile.

@@ -50,7 +50,7 @@ class Output(logging.Handler):
         failures_only: whether what passed is left out.
 
     Attributes:
-        broken: why verdicts cannot be written any more, as when their reader has left.
+        broken: the reason why verdicts cannot be written any more, such as a reader that has left.
     """
 
     def __init__(self, *, failures_only: bool) -> None:
@@ -290,9 +290,9 @@ def watch_kept(
 
     Args:
         arguments: of the command.
-        spec: what the robot must do.
+        spec: the specification of the robot.
         only: ids of the requirements; default all.
-        lines: what comes.
+        lines: the input lines.
         is_file: whether they begin anew with each process: those that were taken are passed over.
     """
 

@@ -95,7 +95,7 @@ def c_files(plan: Plan) -> dict[str, str]:
     """The texts of all files by name: C99, and a header for C++11.
 
     Args:
-        plan: what is to run without rvmon.
+        plan: the plan to run without rvmon.
 
     Raises:
         RvmonError: there is no requirement, an expression is beyond the core, or there is a

@@ -82,7 +82,7 @@ class Judges:
     Attributes:
         networked: the numbers of the judges that are networks or chains.
         clocks: the most clocks of an automaton; a network needs 1, for its position.
-        undetermined: how many judges track whether their trigger was ever TRUE or FALSE.
+        undetermined: the number of judges that track whether their trigger was ever TRUE or FALSE.
     """
 
     def __init__(

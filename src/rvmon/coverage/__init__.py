@@ -292,7 +292,7 @@ class TestRecord:
         seed: the seed to replay it with.
         system: the system under test, such as a robot and its version.
         verdicts: by requirement.
-        ending: how it ended.
+        ending: of the test.
         error: the error, if it did not complete.
         number: its position in the campaign; equal ones are ordered by `when`.
         seconds: its duration in seconds.

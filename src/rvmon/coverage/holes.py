@@ -109,8 +109,8 @@ class Hole:
 
     Attributes:
         what: the item.
-        why: why it is not covered, as far as the hits of all tests show.
-        needs: what would cover it.
+        why: the reason why it is not covered, as far as the hits of all tests show.
+        needs: the condition that would cover it.
         nearest: the nearest test; "" if none came near.
     """
 

@@ -104,7 +104,7 @@ def read_entries(
     """The tests in the order of their campaigns.
 
     Args:
-        database: that they are in.
+        database: of the tests.
         path: of it, for errors.
         ids: of the items, in the order of the model.
 

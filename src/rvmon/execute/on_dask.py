@@ -41,7 +41,7 @@ def execute_on_dask(work: Work, address: str) -> Iterator[Any]:
     """Do tasks as `parallel.execute` does; what is said there of processes is of workers here.
 
     Args:
-        work: what is to be done; `instead` gives the result of a task whose worker was lost again
+        work: the tasks; `instead` gives the result of a task whose worker was lost again
             and again, or took too long.
         address: of the scheduler, such as `tcp://10.0.0.5:8786`.
 

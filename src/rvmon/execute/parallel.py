@@ -101,7 +101,7 @@ class _Worker:
         tasks: number and pickle of those that it has and did not answer, ascending.
         given: tasks of its last chunk.
         size: tasks of its next chunk.
-        since: when it had begun the first of these at the latest, on the clock that only goes on.
+        since: the latest start of the first of these, on the monotonic clock.
         is_ready: whether it has begun at all.
     """
 

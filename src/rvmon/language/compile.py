@@ -51,9 +51,9 @@ def compile_text(
 
     Args:
         text: the specification.
-        name: what messages call it.
+        name: its name in messages.
         constants: constants to override, by name, as text of the language (`{"T": "2 s"}`).
-        directory: where imports are looked up.
+        directory: of imports.
         read: gives the text of a file that is imported.
 
     Returns:
@@ -82,7 +82,7 @@ def compilation(
 
     Args:
         source: the text.
-        directory: where imports are looked up.
+        directory: of imports.
         constants: to override.
         read: gives the text of a file that is imported.
     """

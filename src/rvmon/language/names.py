@@ -58,7 +58,7 @@ class ResolvedSpec:
         delay: its `max delay` line, if it has one.
         declared: signals, events, macros and constants by name, in order.
         requirements: by id, in order.
-        properties: that stand alone, by id, in order.
+        properties: outside requirements, by id, in order.
         covers: by id, in order.
         coverpoints: by name, in order.
         crosses: by name, in order.

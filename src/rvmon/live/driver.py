@@ -46,7 +46,7 @@ class Driver:
         only: ids of the requirements; default all.
         sources: the names that can arrive; default all.
         keep: the most records kept per requirement and verdict; `None`: all.
-        lag_ns: how long samples with their own stamps may take to arrive; deadlines are decided
+        lag_ns: the longest delay of samples with their own stamps; deadlines are decided
             that much later. Default: the `max delay` of the specification, or 0.
         room: the most samples in the queue. For a sample that finds it full, signals are unknown
             until their next value and events at its instant, so that no verdict relies on it.

@@ -45,7 +45,7 @@ def construct(
     Args:
         required: `X` of what an attempt requires, as it starts before the trigger's position.
         alphabet: the alphabet of that formula.
-        budget: when to give up.
+        budget: the limits at which it gives up.
         ages: if given, collects the clock ages (ticks) with which locations were explored.
 
     Raises:

@@ -58,7 +58,7 @@ class Shapes:
         Args:
             required: as for `rvmon.logic.construct.construct`.
             alphabet: the alphabet of that formula.
-            budget: when to give up.
+            budget: the limits at which it gives up.
         """
         return self._found(required, alphabet, budget)[0]
 

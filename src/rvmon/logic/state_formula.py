@@ -145,7 +145,7 @@ class State:
         id: creation order; operands have smaller ids than the operators above them.
         op: the operator.
         args: its operands.
-        leaf: what a `LEAF` reads.
+        leaf: of a `LEAF`, the input that it reads.
         low: of `SINCE`, the least distance in ticks.
         high: of `SINCE`, the greatest distance; `None` if unbounded.
         amount: of `AMOUNT`, the measured window, with or without a limit; its operands are `args`.

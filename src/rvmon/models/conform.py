@@ -70,7 +70,7 @@ class Divergence:
         at: ticks since the start.
         label: the action that no run can do then; empty: the recording ends, but every run would
             have done something before.
-        allowed: what some run could have done after the actions before.
+        allowed: the actions possible after those before.
     """
 
     at: int
@@ -117,7 +117,7 @@ def conform(
             them that are observed, at one instant.
         end: ticks since the start; the recording goes on until then.
         tolerance: ticks by which an instant may be off either way.
-        budget: when to give up, for each action.
+        budget: the limits at which it gives up, for each action.
 
     Raises:
         ModelError: the network has no such unit, or cannot start.
@@ -322,7 +322,7 @@ def recording_of(
     Args:
         network: with a unit of time.
         run: of the network.
-        signals: how each is read off locations and variables.
+        signals: the expression of each signal over locations and variables.
 
     Returns:
         The samples, actions at one instant in one of them; the instant at which the run ends.

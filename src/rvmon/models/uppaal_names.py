@@ -91,14 +91,14 @@ class Names:
     """The new names of everything in a network.
 
     Args:
-        network: whose names are made identifiers; all that is local becomes global.
+        network: the network to name; local names become global ones.
 
     Attributes:
         clocks: in order, arrays as one thing.
         variables: likewise.
         channels: likewise.
         locals: of functions, likewise.
-        functions: those that were named so far, those that others call before them.
+        functions: the functions named so far, callees first.
         automata: a name for each.
     """
 

@@ -38,7 +38,7 @@ class Cause:
 
     Attributes:
         node: the obligation, or the literal if none lies above it.
-        start: when the obligation was instantiated: for a network the instant in ticks; for an
+        start: the instantiation of the obligation: for a network its instant in ticks; for an
             automaton the number of the clock started then, `NO_CLOCK` for the trigger, or
             `AT_DECISION`.
         over: whether the decision is that its window closed.

@@ -84,7 +84,7 @@ def evaluate_trace(
     Args:
         compiled: the specification.
         trace: as `Spec.evaluate` takes it; so are the errors.
-        reading: how it is read.
+        reading: the options for reading it.
         only: ids of the requirements; default all.
         until: the end of the trace in ticks, if after its last sample.
     """
@@ -122,7 +122,7 @@ def margins_of(
     Args:
         compiled: the specification.
         trace: as `Spec.evaluate` takes it; so are the errors.
-        reading: how it is read.
+        reading: the options for reading it.
         only: ids of the requirements; default all.
         until: the end of the trace in ticks, if after its last sample.
         streams: whether to measure every position besides the attempts.

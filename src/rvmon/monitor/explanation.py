@@ -44,7 +44,7 @@ class Doubt:
 
     Attributes:
         origin: the first instant of the run, ticks.
-        position: where they diverged, ticks.
+        position: the instant of their divergence, ticks.
         outages: of the signals and events involved; their ends may become known later.
         texts: of propositions that were unknown although all their inputs were known.
     """
@@ -172,7 +172,7 @@ class Undecided:
         triggered: the instant of its trigger, ticks.
         worse: state of the pessimistic run, which reads UNKNOWN as the worse value.
         better: state of the optimistic run.
-        doubt: when and why the two diverged, or why the trigger itself is in doubt.
+        doubt: the instant and reason of their divergence, or why the trigger itself is in doubt.
         unborn: names that it reads and that had no value so far.
         sure: whether its trigger was TRUE, so that it is not in doubt.
         cannot_pass: whether it cannot pass, as its episode ended before all its signals were born.

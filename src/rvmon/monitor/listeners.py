@@ -23,7 +23,7 @@ def checked(callback: object, takes: str) -> None:
 
     Args:
         callback: given by the user.
-        takes: what it is called with, such as "an attempt".
+        takes: its argument, such as "an attempt".
 
     Raises:
         RvmonError: it is not callable, or a coroutine function, of which a call does nothing.

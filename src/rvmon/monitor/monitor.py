@@ -330,7 +330,7 @@ def build_monitor(
         settle: `now` judges each sample at once; `next` merges samples with equal stamps and judges
             each when the next stamp settles it.
         sources: the signals and events that can arrive; the others are unknown throughout.
-        keep: so many records of each verdict, the newest, are kept per requirement; default all.
+        keep: the number of records of each verdict, the newest, kept per requirement; default all.
 
     Raises:
         UnknownNameError: `only` or `settle` names what does not exist.

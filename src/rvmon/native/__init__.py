@@ -22,7 +22,7 @@ def extension(name: str, folder: str, called: str) -> ModuleType:
     Args:
         name: of its module in `rvmon.native`.
         folder: of its sources.
-        called: what a message calls it.
+        called: its name in messages.
 
     Raises:
         CoreError: it is not built, or was built from other sources than those that lie there.

@@ -32,7 +32,7 @@ class Cells:
         values: float64[n], int64[n] or bool[n]; of labels int32[n], places in `labels`. NaN is
             unknown.
         says: uint8[n], `UNKNOWN`, `YES` or `NO_UPDATE`; `None`: there is a value in each row.
-        labels: what the places stand for; `None`: these are no labels.
+        labels: the labels by place; `None`: these are no labels.
     """
 
     values: NDArray[Any]

@@ -94,7 +94,7 @@ def cells_of_array(
     Args:
         values: of truth values, integers or floats.
         given: bool[n], where there is a value; `None`: everywhere.
-        kind: what is declared.
+        kind: the declared kind.
         gaps: values that stand for no update.
 
     Raises:
@@ -160,7 +160,7 @@ def cells_of_values(cells: Sequence[Any], kind: Kind, gaps: Gaps, nothing: objec
 
     Args:
         cells: values as samples have them.
-        kind: what is declared.
+        kind: the declared kind.
         gaps: values that stand for no update.
         nothing: stands for no update, too.
 

@@ -50,7 +50,7 @@ def coalesce(
     Args:
         samples: in source order.
         events: the names that are events; all others are signals.
-        conflicts: where differing values are counted.
+        conflicts: counts differing values.
 
     >>> pair = [Sample(1, {"go": True, "v": 1.0}), Sample(1, {"go": False, "v": 2.0})]
     >>> [dict(sample.values) for sample in coalesce(pair, {"go"}, Conflicts())]

@@ -30,11 +30,11 @@ class TableRecording:
 
     Attributes:
         columns: by name, see `rvmon.recordings.tables.columns_by_name`.
-        layout: what they are.
+        layout: of the columns.
         names: declared names that have a source.
         end: `None`: it ends with its last row.
         ignored: the columns that stand for nothing.
-        rows: what makes samples of it.
+        rows: turns its rows into samples.
 
     >>> from rvmon.trace.schema import Kind
     >>> table = TableRecording({"t": [0, 1], "v": [2, None]}, Schema({"v": Kind.REAL}, {}))

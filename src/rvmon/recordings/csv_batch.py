@@ -60,7 +60,7 @@ def csv_batches(
 
     Args:
         text: of which the header was taken.
-        layout: what that says.
+        layout: of the columns.
         ignoring: the signals that take no unknown value.
         lose: is told the names that are unknown as the last line has no end.
 

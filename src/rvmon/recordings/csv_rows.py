@@ -38,7 +38,7 @@ class Layout:
     Attributes:
         header: names of the columns.
         time: index of the time column.
-        stamps: what it holds.
+        stamps: its kind of stamps.
         signals: columns of signals.
         events: columns of events and of their payload fields.
         ignored: names of the columns that the spec does not declare.

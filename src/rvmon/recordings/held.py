@@ -16,7 +16,7 @@ class HeldRecording(Sequence[Sample]):
 
     Args:
         pieces: of the recording, in order.
-        outages: what it lost.
+        outages: its outages.
     """
 
     def __init__(self, pieces: Iterable[Batch | Sample], outages: Sequence[Outage] = ()) -> None:

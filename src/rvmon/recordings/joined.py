@@ -62,7 +62,7 @@ class Joined:
         end: the last instant, ticks, if all of them say one.
         unread: the columns that nothing is declared for.
         ignored: the same, counted.
-        outages: what was lost, in order.
+        outages: the outages, in order.
         count: 0: nobody has counted the rows.
 
     Raises:

@@ -133,7 +133,7 @@ def _collect(
         prefix: of the names in them.
         schema: the declared names.
         columns: by name the value of each line, `UNSET` where there is none.
-        others: how often names came that are not declared.
+        others: the counts of undeclared names.
 
     Returns:
         How many names stand in the objects, those of objects within them as well.

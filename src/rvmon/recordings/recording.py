@@ -60,7 +60,7 @@ class FileRecording:
         ignored: the names that are not declared, counted as they are read; not of messages, which
             are recorded for more than one purpose.
         can_be_read_again: whether it is no stream, which is gone when it was read.
-        rows: what makes samples of it.
+        rows: turns its rows into samples.
     """
 
     def __init__(self, path: str | Path, schema: Schema, *, ordered: bool = True) -> None:

@@ -82,7 +82,7 @@ class Rows:
 
     Args:
         schema: the declared names.
-        unit: what a row is called.
+        unit: the word for a row.
         ordered: whether a stamp before the one above it is an error. Under `max delay` rows are put
             in order instead.
 
@@ -90,8 +90,8 @@ class Rows:
         ordered: as given.
         count: of the rows that were read.
         first: the instants of the first rows, ticks.
-        lateness: how far time goes backwards at most, ticks; not looked at where that is an error.
-        alternations: how known and unknown values follow each other.
+        lateness: the most by which time goes backwards, ticks; not measured where that is an error.
+        alternations: of known and unknown values.
     """
 
     def __init__(self, schema: Schema, unit: str, *, ordered: bool) -> None:

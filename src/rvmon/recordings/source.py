@@ -33,7 +33,7 @@ class Source:
         until: the end of the trace in ticks, if it is not its last sample.
         is_cut: whether what comes after that end is left out.
         read: gives the samples of the recording.
-        shown: what samples and batches go through as they are read.
+        shown: passes samples and batches on as they are read, with a progress bar.
     """
 
     recording: Recording
@@ -184,7 +184,7 @@ class PairRecording:
     Attributes:
         names: `None`: any may come.
         end: `None`: it ends with its last item.
-        rows: what makes samples of it.
+        rows: turns its rows into samples.
     """
 
     names: frozenset[str] | None = None

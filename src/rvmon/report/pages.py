@@ -169,7 +169,7 @@ def table_html(
     Args:
         table: the counts.
         beside: by label, tables whose counts stand in further lines of each row.
-        link: where a count leads to.
+        link: the target of a count.
         witnesses: by requirement, the address of a run that shows what model checking says.
     """
     others = beside or {}

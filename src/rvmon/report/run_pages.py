@@ -46,7 +46,7 @@ class Listed:
         name: its display name.
         page: the address of its page; "" if it has none.
         report: the verdicts; `None` if it could not be judged.
-        error: why it could not be judged.
+        error: the reason why it could not be judged.
     """
 
     name: str

@@ -30,7 +30,7 @@ class Scene:
         bodies: in the order of each frame.
         outlines: drawn in this order.
         frames: `(ticks, (x, z, angle) of each body, flattened)`, metres and radians.
-        view: what is shown: left, bottom, right, top in metres.
+        view: the shown part: left, bottom, right, top in metres.
     """
 
     bodies: tuple[str, ...]

@@ -76,9 +76,9 @@ def round_instants(view: View, origin: int, count: int = 6) -> list[int]:
     """Round instants within a view, about `count` of them, for the labels of an axis.
 
     Args:
-        view: what is shown.
+        view: the shown part.
         origin: the instant that is shown as 0 s, ticks.
-        count: how many are wanted.
+        count: the number wanted.
 
     >>> second = 1_000_000_000
     >>> [t // second for t in round_instants(View(0, 10 * second), 0)]

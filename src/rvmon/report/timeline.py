@@ -230,7 +230,7 @@ def timeline(
     Args:
         attempt: the attempt; `None` if the requirement has none.
         tracks: of the signals and events that the requirement reads.
-        view: what is shown.
+        view: the shown part.
         origin: the instant that is shown as 0 s, ticks.
         end: the last instant of the run, ticks.
         blamed: the names that the blamed subformula reads.

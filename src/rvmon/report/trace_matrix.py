@@ -122,8 +122,8 @@ def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) 
 
     Args:
         title: of the page.
-        facts: that it says first; one that is empty is left out.
-        matrix: what it shows.
+        facts: the first lines; one that is empty is left out.
+        matrix: the matrix.
     """
     sections: dict[str, list[_Row]] = {}
     for (robot, _), rows in groupby(matrix, key=lambda one: (one.robot, one.requirement)):

@@ -92,11 +92,11 @@ class Track:
 
     Attributes:
         name: as declared.
-        kind: how to draw it.
+        kind: of drawing.
         changes: `(ticks, value)` in order: a signal has the value from then on (`None`:
             unknown); an event occurred then (`None`: perhaps).
         unit: of a number.
-        thresholds: that the requirement compares it with.
+        thresholds: the constants that the requirement compares it with.
         absent: whether it has no source, so that it is unknown throughout.
     """
 
@@ -160,7 +160,7 @@ def stretches(track: Track, view: View, end: int) -> list[Stretch]:
 
     Args:
         track: of a signal.
-        view: what is shown.
+        view: the shown part.
         end: the last instant of the run, ticks.
     """
     stop = min(view.end, end)

@@ -92,7 +92,7 @@ def write_verdicts(
 
     Args:
         path: of the MCAP file.
-        spec: that judged.
+        spec: the specification that judged.
         report: of the recording.
         samples: of the recording, up to its end, in order; none: the values are left out.
         scene: what happened, if it is known.

@@ -48,7 +48,7 @@ def evaluate(
         end: the instant given to `finish`, ticks; default the trace's own, if it has one.
         advances: the instants given to `advance`, ticks, in whatever order fits the samples.
         names: the names that have a source; default the trace's own, else all.
-        outages: what was lost, in any order.
+        outages: the outages, in any order.
 
     Returns:
         The report, without reasons.

@@ -38,8 +38,8 @@ def formulas(draw: st.DrawFn, shape: Shape = _ANY_FORMULA, *, depth: int = 3) ->
 
     Args:
         draw: given by Hypothesis.
-        shape: what they may hold.
-        depth: how deep their operators nest at most.
+        shape: their limits.
+        depth: the greatest nesting of their operators.
     """
     return formula(_Drawn(draw), shape, draw(st.integers(0, depth)))
 
@@ -50,7 +50,7 @@ def specs(draw: st.DrawFn, profile: Profile = _ANY_SPEC) -> CheckedSpec:
 
     Args:
         draw: given by Hypothesis.
-        profile: what they may hold.
+        profile: their limits.
     """
     return random_spec(_Drawn(draw), profile)
 
@@ -63,7 +63,7 @@ def traces(draw: st.DrawFn, spec: CheckedSpec, profile: TraceProfile = _ANY_TRAC
         draw: given by Hypothesis.
         spec: the checked specification (`Spec.checked`); its bounds should be a few ticks if the
             oracle is to judge.
-        profile: what they may hold.
+        profile: their limits.
     """
     return _noted(random_trace(_Drawn(draw), spec, profile))
 

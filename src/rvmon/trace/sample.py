@@ -40,7 +40,7 @@ class Health:
     Attributes:
         kind: the kind.
         name: the signal, event or column.
-        count: how often it occurred.
+        count: the number of occurrences.
         first: the first instant, ticks; `None` if it has none.
         requirements: ids of the requirements that read the name.
         remark: further explanation, or "".

@@ -64,7 +64,7 @@ class Attempt(Record):
         decided: the first instant at which the prefix decided it, ticks; the end of the trace if
             the end rule or a policy settled it; `None` for `I`.
         verdict: `P`, `F` or `I` (undecided).
-        decision: how it was settled.
+        decision: the way it was settled.
         reason: one sentence.
         deadline: the last instant before time alone decides the obligation, ticks: unless a
             position decides it earlier, it is decided one tick later.

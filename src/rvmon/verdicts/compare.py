@@ -65,7 +65,7 @@ class Comparison:
         differences: of recordings and requirements in both files; regressions first.
         failing: by recording, the requirements that fail in both files.
         only_before: recordings and requirements in the older file only, in words.
-        only_after: those in the newer file only.
+        only_after: the requirements in the newer file only.
         same: the number of equal verdicts.
     """
 

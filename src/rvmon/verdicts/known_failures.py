@@ -22,7 +22,7 @@ class KnownFailure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     Attributes:
         requirement: its id.
-        reason: why the failure is accepted.
+        reason: the reason for accepting the failure.
         until: the last day on which it is accepted.
         recording: pattern of the recordings, such as `monday/*.csv`, matched against the whole name
             or its last segments; `*` stands for any characters.

@@ -34,7 +34,7 @@ class Report:
         attempts: the decided ones by decision instant, then order in the file, then number; the
             undecided ones follow in the order of the file and by number.
         counts: by requirement, the number of its attempts by verdict: `P`, `F` and `I`.
-        health: what was unknown of the input, and why.
+        health: the unknown parts of the input, with reasons.
         trace: name of the recording, or ""; it is ignored when reports are compared.
         origin: the instant that is shown as 0 s, ticks.
         end: the last instant of the trace, ticks; `None` if it has no position.

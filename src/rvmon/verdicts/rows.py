@@ -25,7 +25,7 @@ class VerdictRow(NamedTuple):
         number: from 1 per requirement; attempts in doubt are numbered separately.
         verdict: `P`, `F` or `I` of an attempt, `NT` or `I` of a requirement without one; `None`
             where the recording has none.
-        decision: how the attempt was settled, a value of `rvmon.verdicts.attempt.Decision`.
+        decision: the way the attempt was settled, a value of `rvmon.verdicts.attempt.Decision`.
         in_doubt: whether the trigger itself is uncertain.
         triggered: instant, ns.
         decided: instant, ns; `None` if undecided.

@@ -62,13 +62,13 @@ def close(
     the same tests on any number of processes, if seconds do not end it.
 
     Args:
-        campaign: what is tested.
+        campaign: the campaign.
         robot: of its robots the one that is.
         seed: everything follows from it.
         strategies: tests are drawn from; default: those that the campaign closes with.
         margin: tests of the suite that show each goal, as far as so many were found. One is enough
             to cover it, and sees fewer faults.
-        budget: when to give up.
+        budget: the limits at which it gives up.
         jobs: processes, or the address of a scheduler of Dask; default: one process per core.
         progress: called with how far it is.
 

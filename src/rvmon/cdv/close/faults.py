@@ -33,9 +33,9 @@ def with_mutants(
     sees of them says what it would see of faults that nobody has planted.
 
     Args:
-        campaign: that was closed, with its code.
+        campaign: the closed campaign, with its code.
         robot: of its robots the one that was tested.
-        closed: what came of it.
+        closed: its outcome.
         mutants: of its code; so many are drawn from all that are not known to be equivalent.
         jobs: processes.
         progress: called with the share of this that is done.

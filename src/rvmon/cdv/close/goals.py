@@ -38,12 +38,12 @@ class Goals:
     """The items of a coverage model that are to be hit, and how often they were.
 
     Args:
-        model: what there is to be covered.
-        argued: why some of it cannot be, by item.
+        model: the coverage model.
+        argued: by item, the reason why it cannot be covered.
 
     Attributes:
         model: as it was given.
-        wanted: how often each item is to be hit.
+        wanted: the hits wanted of each item.
         proved: the query that proves an item to be unreachable, by item.
         argued: as it was given.
         wrong: unreachable items that were hit all the same, with the test that hit them first.

@@ -24,9 +24,9 @@ class Added:
 
     Attributes:
         played: the test with its outcome.
-        origin: how it was made, in words.
-        goals: what was met with it for the first time.
-        met: how many goals were met with it and those before.
+        origin: in words.
+        goals: those met with it for the first time.
+        met: the number of goals met with it and those before.
     """
 
     played: Played
@@ -42,7 +42,7 @@ class Choice:
     Attributes:
         times: each goal is shown by so many of them; `None`: by the margin, and they are chosen by
             mutants as well; 0: they are all that were played.
-        tests: how many.
+        tests: their number.
         killed: of the mutants that choose.
         held_out: of those that do not.
     """
@@ -73,19 +73,19 @@ class Closed:
     """A campaign whose holes were looked for.
 
     Attributes:
-        tests: that were played, in order.
+        tests: the played tests, in order.
         suite: of these the fewest known that meet as much with the margin that was asked for, and
             one for all that went wrong.
         choices: the names of those that meet as much, by how many show each goal, up to the margin.
         fewest: no suite of that margin has fewer; its size if it is known to be the smallest.
-        goals: how many there are, without those that cannot be met.
+        goals: their number, without those that cannot be met.
         share: of the coverage model that is covered, from 0 to 1, without what cannot be.
         proved: goals that cannot be met, each with the query that the model answers so.
-        argued: those of which the campaign says so, each with its reason.
-        open: what no test met, in words.
+        argued: unreachable by the campaign's own word, each with its reason.
+        open: the goals that no test met, in words.
         wrong: goals that cannot be met, as it is declared, and that a test met, with its name.
-        groups: what was measured beside what the campaign measures.
-        seconds: that it took.
+        groups: measured besides those of the campaign.
+        seconds: its duration.
         ended: why it ended with open goals; empty if there is none.
         trade: what the suite sees of mutants, if it was chosen by them as well.
     """

@@ -43,8 +43,8 @@ class Proposal:
 
     Attributes:
         test: itself.
-        origin: how it was made, in words.
-        goal: what it is aimed at.
+        origin: in words.
+        goal: its aim.
         drawn: the choices that made it.
         witness: the run of the model that it follows.
     """

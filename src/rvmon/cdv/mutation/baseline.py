@@ -29,7 +29,7 @@ class Recorded:
 
     Attributes:
         verdicts: by requirement.
-        run: what the system reported at its end.
+        run: the report of the system at its end.
         samples: instants, and what changed or occurred.
         lines: of each file of the code under test, the statements that ran; where it was measured.
         cpu_s: processor time of this process that it took.
@@ -49,7 +49,7 @@ class Difference:
     """The first difference of a run from that of the unchanged code.
 
     Attributes:
-        test: that was played.
+        test: the played test.
         t_ns: the instant; of a difference at the end of the run, that.
         name: the signal or event; `state`: of the robot; empty: the run's end itself.
         was: its value; empty: none.
@@ -203,7 +203,7 @@ def record_suite(
     """Play tests on a robot as it is.
 
     Args:
-        campaign: that they are of.
+        campaign: of the tests.
         robot: its name.
         tests: of the suite; those that are for another robot, or plant a fault of their own, are
             passed over.

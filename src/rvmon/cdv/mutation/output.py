@@ -33,7 +33,7 @@ class MutationReport:
 
     Attributes:
         campaign: its name.
-        robot: what people call it.
+        robot: its name for people.
         suites: by name.
         equivalent: the identities of mutants that change no behaviour, each with the argument.
         reading: the requirements that read a signal or event.
@@ -214,7 +214,7 @@ def report_text(report: MutationReport, *, most: int | None = None) -> str:
     """Scores, what killed, and the survivors of each suite as questions.
 
     Args:
-        report: what is shown.
+        report: the report to show.
         most: survivors of each kind that are listed; `None`: all, and each mutant that is killed.
     """
     lines = []

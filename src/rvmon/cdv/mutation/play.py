@@ -138,7 +138,7 @@ def play_mutants(
     own, with limits, which is ended with it. What it writes to files is not held back.
 
     Args:
-        suite: that was played on the code as it is.
+        suite: the tests as played on the unchanged code.
         mutants: of that code.
         jobs: processes.
         every: play all these tests; else until a requirement fails.

@@ -39,7 +39,7 @@ class Mutant:
 
     Attributes:
         path: the file.
-        line: where, from 1.
+        line: its line, from 1.
         kind: of change: the name of an operator.
         before: the changed code as it was.
         after: as it is.
@@ -97,7 +97,7 @@ def mutants(
 
     Args:
         path: the file, which is read and not run.
-        lines: those where functions are changed; a change where no test goes could not be seen.
+        lines: that may be changed; a change in a line that no test runs could not be seen.
         operators: names of those that are applied; default: all.
         constants: names at the file's top whose values are changed as well.
 

@@ -55,7 +55,7 @@ class Tried:
         mutant: the change.
         reaching: tests of the suite that run the changed line.
         played: of them so many were played.
-        findings: what kills it, in the order of the suite.
+        findings: its killers, in the order of the suite.
         difference: the first in a run that no finding is about.
         invalid: why it cannot be planted; empty if it can.
         failing: the first test by which a requirement fails, and its run, if runs are kept.
@@ -89,7 +89,7 @@ class Score:
         equivalent: of them so many are declared to change no behaviour, and none of them is killed.
         killed: by whatever.
         by_requirement: killed by a requirement that fails.
-        unreached: so many are in lines that no test runs.
+        unreached: the number in lines that no test runs.
     """
 
     mutants: int

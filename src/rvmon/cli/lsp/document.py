@@ -128,7 +128,7 @@ class Document:
     """A text that is being written.
 
     Args:
-        uri: what the editor calls it.
+        uri: its address in the editor.
         text: as it is now.
         read: gives the text of a file that it imports.
     """

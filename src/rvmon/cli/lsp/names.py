@@ -131,8 +131,8 @@ class Names:
     """The names of a file and of those that it imports.
 
     Attributes:
-        declared: where what formulas may name is declared; payload fields as `event.field`.
-        goals: where requirements, properties and what is covered are.
+        declared: the declarations of names in formulas; payload fields as `event.field`.
+        goals: the places of requirements, properties and coverage goals.
         types: of signals and of payload fields, as written.
         owners: the item that declares a name, by the `id` of that.
     """

@@ -185,7 +185,7 @@ class _Point:
 
     Attributes:
         checker: of the file.
-        expression: what bins are values of; `None`: each is a formula by itself.
+        expression: the expression whose values the bins are; `None`: each bin is a formula.
         labelled: whether its values are labels.
     """
 

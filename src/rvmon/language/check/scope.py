@@ -81,7 +81,7 @@ class Moment:
     """An instant that was captured, or some time behind it; `now` is compared with it.
 
     Attributes:
-        name: that it was captured by.
+        name: of the captured value.
         later: so much time behind it; `None`: none.
     """
 
@@ -147,7 +147,7 @@ class Scope:
     """The names that hold inside a macro or requirement, besides those of the file.
 
     Attributes:
-        names: what they stand for.
+        names: by name, its meaning.
         trigger: in what is required, what is captured with it.
         at_once: whether it is required at the trigger, and not at some later instant.
     """

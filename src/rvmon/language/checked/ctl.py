@@ -50,9 +50,9 @@ class PathUnary:
     Attributes:
         universal: whether the quantifier is `A`.
         op: `NEXT`, `EVENTUALLY` or `ALWAYS`.
-        operand: what holds there.
+        operand: the formula that holds there.
         interval: of durations; `None` exactly for `NEXT`.
-        span: where it is written.
+        span: its place in the text.
     """
 
     universal: bool

@@ -96,11 +96,11 @@ class WindowValue:
     none. Where x reads fields of one event each occurrence is a member that `chosen` holds of.
 
     Attributes:
-        measured: what they come to.
+        measured: the measure of the members.
         operand: φ, of the present and past.
         window: D, ticks; `None`: since the first instant.
         value: x; `None`: positions or ticks are counted.
-        most: how many of the last members count, at most; `None`: all of the window.
+        most: the greatest number of members, the last ones; `None`: all of the window.
         counted: with `most`, whether a member counts; of numbers, a comparison of x with itself.
         chosen: comparisons of fields that are asked of each occurrence.
     """
@@ -164,7 +164,7 @@ class CompareOp(StrEnum):
 
     Attributes:
         holds: compares two numbers, or arrays of them.
-        said: it as an English verb.
+        said: an English verb for it.
 
     >>> CompareOp.LE.holds(2, 3), CompareOp.LE.mirrored, CompareOp.LE.denied
     (True, <CompareOp.GE: '>='>, <CompareOp.GT: '>'>)

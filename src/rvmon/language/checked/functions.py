@@ -31,12 +31,12 @@ class Function:
 
     Attributes:
         name: of it.
-        means: what a call becomes; `None`: an age, which stands in comparisons only, or the last
+        means: the formula of a call; `None`: an age, which stands in comparisons only, or the last
             updates, which stand in windows only.
         arguments: of a call.
         doc: its value in a few words.
         more: whether further arguments like the last may follow.
-        optional: how many of the last may be left out.
+        optional: the number of last arguments that may be left out.
     """
 
     name: str

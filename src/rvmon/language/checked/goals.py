@@ -52,7 +52,7 @@ class Coverpoint:
     Attributes:
         name: of the coverpoint.
         bins: in order; they may overlap and need not be exhaustive.
-        upon: where bins are looked at; `None`: at every position.
+        upon: the formula at which bins are sampled; `None`: every position.
         goal: hits that each bin needs.
         weight: in the total, beside other coverpoints and crosses; 0: for nothing.
         span: of the item.

@@ -89,9 +89,9 @@ class Operator:
         word: as it is printed.
         tense: of it.
         window: the interval that it takes.
-        level: how tightly it binds, from 0.
+        level: its precedence, from 0.
         meaning: in a `Reading`, of that, its operands and the interval.
-        said: it as an English clause; `{left}` and `{right}` (`{it}`) are its operands,
+        said: an English clause for it; `{left}` and `{right}` (`{it}`) are its operands,
             `{no_left}` and so on what they are if they do not hold; `{some}` and `{all}` name
             its interval. Empty: `analysis/words.py` says it in a way of its own.
         denied: its negation; empty: "not so" before `said`.

@@ -42,10 +42,10 @@ class Signal:
     Attributes:
         name: of the signal.
         type: of its values.
-        role: who sets it.
-        stale_after: it is unknown so many ticks after its last update.
+        role: the side that sets it.
+        stale_after: the ticks after its last update from which on it is unknown.
         ignores_nan: whether NaN and null are no update of it, instead of an unknown value.
-        span: where its name is declared.
+        span: the place of its declaration.
     """
 
     name: str
@@ -125,7 +125,7 @@ class Requirement:
         id: unique in the spec.
         mode: `upon` or `whenever`.
         trigger: present and past only; `BoundAtom(END)` only alone.
-        consequent: what is required.
+        consequent: the required formula.
         text: the requirement in words.
         at_end: policy for undecided attempts.
         pulse: whether the trigger is a pulse (SEMANTICS 3): it starts an attempt wherever it holds.

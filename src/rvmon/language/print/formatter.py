@@ -93,7 +93,7 @@ def format_text(text: str, *, name: str = "<string>") -> str:
 
     Args:
         text: a specification whose items can all be read.
-        name: what messages call it.
+        name: its name in messages.
 
     Raises:
         SpecError: an item cannot be read.

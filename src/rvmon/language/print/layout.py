@@ -33,7 +33,7 @@ class Piece:
         text: as it is printed.
         above: comments that stand on lines of their own before it.
         behind: the comment that ends its line, or empty.
-        depth: how many brackets are open around it.
+        depth: the number of open brackets around it.
         opens_window: whether it is a round bracket that opens an interval.
     """
 

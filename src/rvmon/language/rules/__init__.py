@@ -19,7 +19,7 @@ class Rule:
     Attributes:
         code: stable, never used again for another rule.
         name: the code in words.
-        severity: what a breach is.
+        severity: of a breach.
     """
 
     code: str
@@ -46,7 +46,7 @@ def finding(rule: Rule, message: str, *places: Span | Label, fix: str = "") -> D
         rule: the rule.
         message: one sentence: what is wrong here.
         places: the offending place first.
-        fix: how to fix it, or empty.
+        fix: a way to fix it, or empty.
     """
     labels = tuple(place if isinstance(place, Label) else Label(place) for place in places)
     return Diagnostic(rule.code, rule.name, rule.severity, message, labels, fix)
@@ -66,8 +66,8 @@ class Breach:
         rule: the rule.
         message: one sentence: what is wrong; `{}` is the text of the place, shortened, `{1}` and
             so on what else is given.
-        fix: how to fix it, or empty; filled in like the message.
-        other: what is said of a second place.
+        fix: a way to fix it, or empty; filled in like the message.
+        other: a note at a second place.
     """
 
     rule: Rule

@@ -36,7 +36,7 @@ def two_sides(whole: Span, operator: Span, connective: Span, near: Span) -> Diag
     Args:
         whole: the operator with both its sides.
         operator: of the `until` family.
-        connective: that stands beside it.
+        connective: the connective beside it.
         near: the side that both may claim.
     """
     first, second = short(operator.text), short(connective.text)

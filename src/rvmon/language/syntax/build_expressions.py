@@ -36,10 +36,10 @@ class ExpressionBuilder(Transformer_NonRecursive[Token, Any]):
 
     Args:
         source: the file.
-        offset: where the text given to the parser starts in it.
+        offset: the start in it of the text given to the parser.
 
     Attributes:
-        findings: what is wrong with the way the item is written.
+        findings: on the syntax of the item.
     """
 
     makers: ClassVar[Mapping[str, Maker]] = {

@@ -68,11 +68,11 @@ def explain_unexpected(
     """Say what was found and what could have stood there.
 
     Args:
-        error: what the parser raised.
+        error: raised by the parser.
         parser: the parser.
         source: the file.
-        start: where the text given to the parser starts in it.
-        end: where it ends.
+        start: the start in it of the text given to the parser.
+        end: its end.
         rule: the start rule.
     """
     place = _place(error, source, start, end)

@@ -214,8 +214,8 @@ class ScopeClause:
     """`scope before (φ)`, `after (φ)`, `between (φ) and (ψ)`, `after (φ) until (ψ)`.
 
     Attributes:
-        opening: what opens the scope; `None`: it is open from the start.
-        closing: what closes the scope; `None`: nothing does.
+        opening: the formula that opens the scope; `None`: it is open from the start.
+        closing: the formula that closes the scope; `None`: nothing does.
         must_close: whether nothing is required unless the scope is closed.
         span: of the clause.
     """

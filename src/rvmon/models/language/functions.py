@@ -70,7 +70,7 @@ class Functions:
         variables: of the network, as far as they are declared.
         locals: the first has slot −1.
         made: by what was written, the scope it was written in, and what it refers to.
-        open: those that are being made.
+        open: the functions being made.
     """
 
     variables: list[Variable] = field(default_factory=list)

@@ -38,7 +38,7 @@ def loads_network(
 
     Args:
         text: as in a `.ta` file, or UPPAAL's XML.
-        name: what findings call it.
+        name: its name in findings.
         constants: other values for constants of the model.
 
     Raises:

@@ -40,7 +40,7 @@ def all_mistakes(
     """The mistakes that are found when each part with one is left out in turn.
 
     Args:
-        text: what could not be read.
+        text: the text that could not be read.
         rule: of the grammar, that should have read it.
         place: maps offsets of the text to spans.
         read: raises `ModelError` for the first mistake of a text.

@@ -62,10 +62,10 @@ class Resolver:
     """Resolves expressions, with what they may refer to besides the names of their scope.
 
     Attributes:
-        functions: those that can be called.
+        functions: the functions that can be called.
         automata: by name and arguments; only queries can see them.
         open_ints: whether `int` without a range is allowed.
-        diagonals: what differences of clocks become; `None` where they may not be compared.
+        diagonals: replaces differences of clocks; `None` where they may not be compared.
         unrolled: conditions that quantifiers stood for so far.
         fraction: where a number with a fraction stands, if one was met.
     """

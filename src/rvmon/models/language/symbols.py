@@ -76,7 +76,7 @@ def laid_out(
     Args:
         kind: its type.
         extents: of the array, if it is one.
-        names: what it is called.
+        names: its names.
         value: its initial value.
         placer: for single things and arrays of them.
         unnamed: the last dimensions, of which the names say nothing yet; default all.

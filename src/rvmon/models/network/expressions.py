@@ -210,7 +210,8 @@ class PathFormula:
 
     Attributes:
         bound: in units of time; `None` if there is none.
-        left: what holds until the body does, for `E<>`, `A<>` and `F`; their negations keep it.
+        left: the formula that holds until the body does, for `E<>`, `A<>` and `F`; their negations
+            keep it.
     """
 
     op: PathOp
@@ -327,7 +328,7 @@ class Function:
     Attributes:
         name: for people.
         parameters: the slots of the parameters that are passed by value, with their ranges.
-        result: where its value is put, with its range.
+        result: the slot for its value, with its range.
         body: ends with `Return` or `Missing` on every way.
         room: slots below 0 that it and what it calls may use.
         changes: whether it sets a variable that is not its own, or a clock.

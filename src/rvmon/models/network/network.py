@@ -164,7 +164,7 @@ class Chance:
     """The share of random runs that meet a condition, or keep it (`A[]`), within a horizon.
 
     Attributes:
-        runs: how many are simulated; `None`: as many as the default, or a test takes.
+        runs: the number simulated; `None`: as many as the default, or a test takes.
         sign, level: a test: whether the share is `>=` or `<=` that; `None`: an estimate.
     """
 
@@ -249,9 +249,9 @@ class Network:
 
     Attributes:
         unit: ticks of one unit of time; `None` if the model names none.
-        signals: what specifications may call by name, read off locations and variables.
-        warnings: what is odd about it but no error.
-        names: what queries may refer to.
+        signals: the names for specifications, with their expressions over locations and variables.
+        warnings: about it.
+        names: that queries may use.
         priorities: of steps; `None` if all are equal.
         has_split_edges: whether some edges were taken apart, for differences of clocks or clocks
             under `or`.
@@ -301,7 +301,7 @@ def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
 
     Args:
         network: of the clocks.
-        asked: those that a query speaks of.
+        asked: the clocks in a query.
 
     Raises:
         ModelError: there are numbers with a fraction, or such a clock is compared. Source:

@@ -107,7 +107,7 @@ class Scope:
 
     Attributes:
         prefix: put before the names of what is declared here, such as `Train(1).`.
-        places: where each name was declared.
+        places: the declaration of each name.
         families: names of automata, templates and instances.
     """
 

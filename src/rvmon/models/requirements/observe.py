@@ -63,8 +63,8 @@ class Observation:
         passing: a run with an attempt that passes.
         failing: a run with an attempt that fails.
         network: in whose unit the runs are.
-        statistics: what it cost.
-        remark: why it is not decided, or what the answer does not cover.
+        statistics: its cost.
+        remark: the reason why it is not decided, or what the answer does not cover.
     """
 
     requirement: str
@@ -95,7 +95,7 @@ def observe(
         network: with a unit of time.
         spec: in held time.
         bindings: expressions over the network by signal.
-        budget: when to give up, for each requirement.
+        budget: the limits at which it gives up, for each requirement.
         watch: called now and then.
 
     Raises:

@@ -98,15 +98,16 @@ class Observed:
         obligation: trigger and what is required.
         pulse: whether the trigger starts an attempt wherever it holds.
         automaton: of what is required.
-        signals: how each signal is read off locations and variables.
+        signals: the expression of each signal over locations and variables.
         labels: the labels of the network's actions, which are its events.
 
     Attributes:
         network: with the monitor.
-        triggered, passed, failed: where an attempt is followed, and where it has ended like this.
-        lost: where no monitor of this kind can follow it.
-        is_open: where an attempt is followed and not decided.
-        rests: where it also stays so while time passes without end.
+        triggered, passed, failed: true where an attempt is followed, and where it has ended like
+            this.
+        lost: true where no monitor of this kind can follow it.
+        is_open: true where an attempt is followed and not decided.
+        rests: true where it also stays so while time diverges.
         reads_events: whether what is required speaks of events, which actions alone have.
 
     Raises:

@@ -53,7 +53,7 @@ class Labelling:
     """Propositions as expressions over a network.
 
     Args:
-        signals: how each signal is read off locations and variables.
+        signals: the expression of each signal over locations and variables.
         event: whether an action has a name, or what that is between actions.
     """
 
@@ -261,7 +261,7 @@ class Tables:
 
         Args:
             location: of the monitor.
-            clocks: what its clocks are; `NOW`: one that begins at this instant.
+            clocks: in use; `NOW`: one that begins at this instant.
             region: of it.
             ages: to begin with.
         """

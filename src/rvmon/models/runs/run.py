@@ -67,11 +67,11 @@ class RunStep:
     """A wait, and the action behind it.
 
     Attributes:
-        window: how long the wait can last, over all runs along this path.
-        delay: how long it lasts in the concrete run.
-        action: what is done then; `None` at the end of a run, or where nothing is done but the
+        window: the bounds of the wait, over all runs along this path.
+        delay: the wait in the concrete run.
+        action: taken then; `None` at the end of a run, or where nothing is done but the
             query's formula changes its truth.
-        position: where the run is after the action.
+        position: the state after the action.
     """
 
     window: Window
@@ -107,9 +107,9 @@ class Run:
     """A path of the network and one way to run along it.
 
     Attributes:
-        start: where it starts.
+        start: its initial state.
         steps: in order.
-        ending: how it ends.
+        ending: the way it ends.
         loop: for loops the number of the first step that is repeated.
         timing: all timed runs along the path, if it is known.
     """

@@ -102,7 +102,7 @@ class Move:
     """A step between two states.
 
     Attributes:
-        edges: those that take part, the sender first.
+        edges: the edges that take part, the sender first.
         guard: clock bounds that must hold before.
         left_out: the bounds of each receiver that takes no part, which must not hold together.
         resets: clocks that are set and their values; clocks count from 1.

@@ -54,7 +54,7 @@ class Sampled:
 
     Attributes:
         query: the question.
-        runs: how many were simulated.
+        runs: the number simulated.
         value: the share of runs, or the mean.
         low, high: bounds of an estimate, with 95 % confidence; of a test there are none.
         holds: of a test; `None` if it gave up, or for an estimate.
@@ -84,7 +84,7 @@ def trajectories(
     """Answer `simulate`: the values at the start and the end of each stretch between two moves.
 
     Args:
-        network: what to simulate.
+        network: the network to simulate.
         query: `simulate [<=T; n] {e, …}`.
         seed: of all choices.
         watch: asked now and then, with the number of runs, whether to go on.
@@ -144,7 +144,7 @@ def sample(
     """Answer a query about probabilities or expected values by simulation.
 
     Args:
-        network: what to simulate.
+        network: the network to simulate.
         query: `Pr…` or `E[…](max: …)`.
         seed: of all choices.
         watch: asked now and then, with the number of runs, whether to go on.

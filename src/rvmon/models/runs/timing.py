@@ -60,7 +60,7 @@ def timing_of(
         steps: of the path.
         start: the valuations it may start from; `None`: all clocks are 0. If given, the last rows
             and columns of the result are the instants at which each clock was 0 before.
-        rounds: how often the path will be put together with itself: the grid is as much finer.
+        rounds: the number of copies of the path to be joined: the grid is that much finer.
     """
     dim = 1 if start is None else isqrt(len(start))
     size = len(steps) + dim
@@ -143,9 +143,9 @@ class PathStep:
     """One instant of a path.
 
     Attributes:
-        timed: what its time must satisfy.
+        timed: the constraints on its time.
         move: what is done; `None` if the instant matters for the query only.
-        state: where the path is then.
+        state: the state after it.
     """
 
     timed: TimedStep
@@ -194,11 +194,11 @@ def make_run(
     """The run along a path that does everything as early as possible.
 
     Args:
-        network: whose run is shown. The path may be of another that has more automata, clocks and
-            variables behind those of this one.
-        start: where it starts.
+        network: the network of the run. The path may be of another that has more automata, clocks
+            and variables behind those of this one.
+        start: its initial state.
         steps: the path.
-        ending: how the run ends.
+        ending: the way the run ends.
         loop: the first step that is repeated, of a loop.
     """
     timing = timing_of([step.timed for step in steps])

@@ -66,7 +66,7 @@ def location_bounds(
 
     Args:
         network: of the automaton.
-        automaton: whose bounds.
+        automaton: the owner of the bounds.
         asked: by location, what a query compares clocks with only while the automaton is there.
     """
     bounds = [ClockBounds() for _ in automaton.locations]

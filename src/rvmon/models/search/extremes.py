@@ -48,8 +48,8 @@ class Extreme:
         attained: whether some state has it; a clock may only come near it.
         exact: whether no state goes further; else that was not decided.
         run: to a state that has the value, or comes near it.
-        statistics: what it cost.
-        remark: why it is not exact, or has no value.
+        statistics: its cost.
+        remark: the reason why it is not exact, or has no value.
     """
 
     query: Query
@@ -69,9 +69,9 @@ def extremes(
     """Answer `sup`, `inf` or `bounds`: for each term its ends.
 
     Args:
-        network: what the query asks about.
+        network: the network in question.
         query: as resolved.
-        budget: when to give up, for each end.
+        budget: the limits at which it gives up, for each end.
         watch: called now and then.
 
     Raises:

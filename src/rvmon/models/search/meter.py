@@ -51,7 +51,7 @@ class Statistics:
 
     Attributes:
         visited: symbolic states that were kept when they were met.
-        stored: those that were not dropped later for a larger one.
+        stored: the states that were not dropped later for a larger one.
         seconds: of wall-clock time.
     """
 
@@ -81,9 +81,9 @@ class Outcome:
         query: the question.
         holds: `None` if the budget ended first.
         run: a witness where `E` holds, a counterexample where `A` or `-->` does not.
-        policy: how the run was chosen; `None` where there is no choice.
-        statistics: what it cost.
-        remark: what else people should know; why it is not decided, or that time stops.
+        policy: the choice of the run; `None` where there is no choice.
+        statistics: its cost.
+        remark: for people: the reason why it is not decided, or that time stops.
     """
 
     query: Query
@@ -99,7 +99,7 @@ class Meter:
 
     Attributes:
         visited: states so far.
-        stored: those that a search still held when it ended.
+        stored: the states that a search still held when it ended.
         stopped: which limit was met; empty while none was.
     """
 

@@ -89,8 +89,8 @@ def seek(
     """Search for a run.
 
     Args:
-        network: where it runs.
-        sought: where it leads, or stays.
+        network: the network.
+        sought: the question.
         meter: counts the states, and ends the search.
         proper_only: whether a way to stay counts only if time passes on it without bound.
 

@@ -56,10 +56,10 @@ class Suite:
     """Runs that cover what can be covered.
 
     Attributes:
-        criterion: what was to be covered.
+        criterion: the coverage criterion.
         runs: each with the items that it adds to those before.
         missing: items that no run goes through.
-        statistics: what the search cost.
+        statistics: the cost of the search.
         stopped: which budget ended the search, so that `missing` may say too much; empty if none.
     """
 

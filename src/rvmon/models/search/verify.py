@@ -65,9 +65,9 @@ def verify(
     """Decide a query, with a run that shows why where one run can.
 
     Args:
-        network: what the query asks about.
+        network: the network in question.
         query: as resolved, or as text.
-        budget: when to give up undecided.
+        budget: the limits at which it gives up undecided.
         watch: called now and then.
         policy: which run to show for `E<>` and `A[]`, if several do.
 

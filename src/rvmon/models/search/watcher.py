@@ -46,8 +46,8 @@ class Watcher:
     """A watcher in the making, and the network with it.
 
     Args:
-        network: whose moves are watched.
-        names: those of moves that it reads.
+        network: the watched network.
+        names: the names of moves that it reads.
         clocks: names of the clocks that it has.
 
     Attributes:

@@ -72,7 +72,7 @@ class Candidate:
         around: words of the topic, of its frames and of the type.
         meaning: of the field, or of the computed result.
         axis: along which it is measured; empty if along none.
-        comment_words: those of a comment on it.
+        comment_words: of a comment on it.
         implied: words that people have for it along its axis, or of a joint.
     """
 

@@ -178,7 +178,7 @@ def _unit_of(declared: str, candidate: Candidate, largest: float) -> tuple[str, 
 
     Args:
         declared: the unit of the name.
-        candidate: what feeds it.
+        candidate: the source.
         largest: of its values, without their sign.
     """
     dimension = parse_unit(declared).dimension

@@ -74,7 +74,7 @@ def clip(path: str, piece: Piece, out: str) -> Copied:
 
     Args:
         path: of the recording; its copy, where it is an address.
-        piece: what is cut out.
+        piece: the part to cut out.
         out: the new file, or folder of ROS 2; see `refuse_place`.
 
     Returns:

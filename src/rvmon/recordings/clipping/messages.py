@@ -38,7 +38,7 @@ def clip_messages(path: str, form: str, piece: Piece, out: Path) -> Copied:
     Args:
         path: of the recording.
         form: `ros1`, `ros2` or `mcap`.
-        piece: what is cut out; of each topic that feeds what it brings along, and of each that
+        piece: the part to cut out; of each topic that feeds what it brings along, and of each that
             serves late subscribers, the last message is put at its start.
         out: the new file or folder.
 

@@ -176,7 +176,7 @@ class _Lines:
 
     Args:
         file: the open text.
-        patterns: what some of its lines are like; see `_TEXTS`.
+        patterns: of some of its lines; see `_TEXTS`.
 
     Attributes:
         why: something was lost since the last frame; empty: nothing.

@@ -22,7 +22,7 @@ class ColumnTopic:
     """A topic and what is in it.
 
     Attributes:
-        topic: what is said of it.
+        topic: its topic.
         count: of its rows.
         load: gives their stamps (int64, ticks), in any order, and their columns.
     """
@@ -38,7 +38,7 @@ class ColumnMessages(Messages):
     Args:
         topics: in order.
         end: the last instant of all, ticks.
-        outages: what was lost, in order.
+        outages: the outages, in order.
         close: closes the file.
     """
 

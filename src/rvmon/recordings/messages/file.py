@@ -100,7 +100,7 @@ class MessageFile:
         end: the last instant of the recording; `None` where another clock counts.
         count: of its messages; 0 if nobody knows.
         skew: of the clocks of those who sent what was read last.
-        outages: what it lost, in order.
+        outages: its outages, in order.
 
     Raises:
         RvmonError: what reads it is not installed.

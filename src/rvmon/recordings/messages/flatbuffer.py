@@ -33,7 +33,7 @@ class _Field:
         element: that of its elements, if it has such.
         index: of the table that it, or an element, is.
         count: of the elements of an array in a struct.
-        offset: where in a struct it is, or in the table of offsets.
+        offset: its place in a struct, or in the table of offsets.
         default: of a number that is not sent.
     """
 

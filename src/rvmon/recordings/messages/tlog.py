@@ -37,7 +37,7 @@ class TelemetryMessages(Messages):
         topics: by name, one a message and sender; the name says the sender where several send it.
         end: the last stamp.
         count: of all packets.
-        outages: where there is no packet that its checksum fits.
+        outages: the stretches without a packet of a valid checksum.
 
     Raises:
         RvmonError: pymavlink is not installed.

@@ -28,7 +28,7 @@ class Topic:
             the definition names them.
         doubtful: the fields whose kind is not known: nothing was seen of them.
         units: of the fields whose unit the recording says itself, by their path.
-        comments: those of the definition on fields, by their path.
+        comments: of the definition on fields, by path.
     """
 
     name: str
@@ -52,7 +52,7 @@ class Messages(ABC):
         topics: by name.
         end: the tick of the last message of all; `None` if nobody knows.
         count: of all messages; 0 if nobody knows.
-        outages: what it lost, in order; `names` are of topics.
+        outages: its outages, in order; `names` are of topics.
     """
 
     topics: Mapping[str, Topic]

@@ -165,9 +165,9 @@ class Column:
 
     Attributes:
         name: as in the recording.
-        shape: what its values look like; of a guessed event without a kind.
+        shape: of its values; of a guessed event without a kind.
         guessed_event: whether its truth values were taken for an event.
-        updates: how often it was updated, or occurred.
+        updates: the number of updates, or occurrences.
         low: least number seen; `None` if it is no number.
         high: greatest number seen.
         rate: updates per second; 0 if there were too few.
@@ -176,7 +176,7 @@ class Column:
         first: the instant of the first update, ticks; `None` if there was none.
         gaps_in_value: whether it is unknown somewhere: at the first sample, or by a value.
         instants: of an event its occurrences, of a truth value where it became true; ticks.
-        course: how it goes over time.
+        course: of its values over time.
     """
 
     name: str
@@ -312,13 +312,13 @@ class Profile:
 
     Attributes:
         path: of the recording.
-        columns: that are declared, in order.
+        columns: the declared ones, in order.
         left_out: by name, why.
         start: the first instant, ticks.
         end: the last instant, ticks.
-        samples: how many.
+        samples: their number.
         lateness: how far its time goes backwards at most, ticks; 0 if it is in order.
-        outages: what it lost, as far as it says so.
+        outages: its outages, as far as it states them.
     """
 
     path: str

@@ -50,7 +50,7 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
 
     Args:
         path: of it.
-        stamps: where it says when; default `t` or `t_ns`.
+        stamps: the name of its time column; default `t` or `t_ns`.
 
     Raises:
         TraceError: the file cannot be read, or has no time column.

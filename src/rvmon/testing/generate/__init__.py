@@ -63,8 +63,8 @@ def signals(
     """The signals.
 
     Args:
-        stale: those that are `stale after` so many ticks.
-        ignoring: those of which NaN and null are no update.
+        stale: the signals that are `stale after` a number of ticks.
+        ignoring: the signals for which NaN and null are no update.
     """
     kinds = {
         **dict.fromkeys(BOOLS, Type(Kind.BOOL)),

@@ -51,9 +51,9 @@ class Shape:
         events: whether events may be read.
         captured: names of captured numbers that may be read.
         wide: whether whole numbers lie at the ends of 64 bits; nothing is computed with them then.
-        constants: how often a proposition is a constant, beside about 100 others.
+        constants: the weight of constants among propositions; all others have about 100.
         longest: the greatest bound of an interval, ticks.
-        amounts: how often what is measured in windows comes, beside about 120 of all others.
+        amounts: the weight of measures of windows; all others have about 120.
         instants: names of captured instants.
         form: the only one that is measured; empty: any.
     """

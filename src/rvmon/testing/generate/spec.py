@@ -73,8 +73,8 @@ class Profile:
         wide: the per cent whose whole numbers reach to the ends of 64 bits; these are compared, not
             computed with.
         numbers: whether comparisons and probes may occur.
-        constants: how often a proposition is true or false for ever, beside about 100 others.
-        amounts: how often what is measured in windows comes, beside about 120 of all others.
+        constants: the weight of constants among propositions; all others have about 100.
+        amounts: the weight of measures of windows; all others have about 120.
         form: the only one of these, at least one in each specification: a name (`mean`), or
             `expression` of several, which may
             stand behind `last` (updates), `since` (the trigger) or `each` (several occurrences).
@@ -115,7 +115,7 @@ def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
 
     Args:
         rng: `random.Random` with a seed, or what a Hypothesis strategy draws from.
-        profile: what may occur.
+        profile: their limits.
     """
     time = profile.time or pick(rng, tuple(TimeModel))
     number = rng.randint(1, profile.requirements)

@@ -27,11 +27,11 @@ class Case:
     """One thing to compare a monitor and the law on.
 
     Attributes:
-        spec: what to judge by.
-        actions: what a monitor is given, in order: a sample, or the instant of an `advance`.
-        end: what it is given by `finish`, ticks.
+        spec: the specification to judge by.
+        actions: the calls of a monitor, in order: a sample, or the instant of an `advance`.
+        end: the argument of `finish`, ticks.
         names: the names that have a source; `None`: all.
-        outages: what was lost, in any order.
+        outages: the outages, in any order.
     """
 
     spec: CheckedSpec
@@ -138,7 +138,7 @@ def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
     Args:
         rng: `random.Random` with a seed, or what a Hypothesis strategy draws from.
         spec: any; its bounds should be a few ticks if the oracle is to judge.
-        profile: what may occur.
+        profile: their limits.
     """
     gaps = _gaps(spec)
     numbers = _numbers(spec)

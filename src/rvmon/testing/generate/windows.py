@@ -108,9 +108,9 @@ def number_of_windows(rng: Rng, shape: Shape, draw: Draw, most: int = 2, mode: s
 
     Args:
         rng: see `random_spec`.
-        shape: what may occur; without `step` it is of held time.
+        shape: its limits; without `step` it is of held time.
         draw: draws what is counted.
-        most: so many operations at most.
+        most: the most operations.
         mode: of windows.
     """
 

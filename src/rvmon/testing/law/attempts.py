@@ -261,7 +261,7 @@ class Readings:
 
     Args:
         word: the trace.
-        rest: what is assumed of what is not known yet.
+        rest: the assumption about the unknown rest.
     """
 
     def __init__(self, word: Word, rest: Rest) -> None:

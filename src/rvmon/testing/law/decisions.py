@@ -26,7 +26,7 @@ class Followed:
     """One attempt, and the first instant at which the prefix decides it, with its truth then.
 
     Attributes:
-        start: where it begins and what it owes.
+        start: its position, and the formula that it requires.
         decided: instant and truth; `None` if no prefix decides it.
         number: among those whose trigger was TRUE, in the order in which it was first; 0 if in
             doubt.

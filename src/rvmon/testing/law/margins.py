@@ -31,7 +31,7 @@ def margins(
 
     Args:
         followings: by requirement, its attempts.
-        recorded: those that have a record, by which the others are left out.
+        recorded: the attempts with a record; others are left out.
         time: the model of it.
 
     Returns:

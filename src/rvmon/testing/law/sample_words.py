@@ -41,10 +41,10 @@ def word_of(
     Args:
         spec: gives the time model and the names.
         samples: with strictly increasing times.
-        end: what `finish` was given, ticks.
-        advances: what `advance` was given, ticks; the samples are taken to fit.
+        end: the argument of `finish`, ticks.
+        advances: the arguments of `advance`, ticks; the samples are taken to fit.
         names: the names that have a source; `None`: all.
-        outages: what was lost, in any order.
+        outages: the outages, in any order.
 
     Raises:
         TimeOrderError: the times do not increase.
@@ -141,7 +141,7 @@ def _is_sure(spec: CheckedSpec, instant: int, begun: int | None, outages: Iterab
         spec: gives the time model.
         instant: of the position.
         begun: the instant of the first sample that was read.
-        outages: what was lost.
+        outages: the outages.
     """
     if spec.time is TimeModel.SAMPLED:
         return not any(outage.covers(instant) for outage in outages)

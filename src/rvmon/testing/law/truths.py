@@ -70,7 +70,7 @@ class Truths:
     Args:
         word: the trace.
         captured: values of `let` and `for each`.
-        rest: what is assumed of what is not known yet.
+        rest: the assumption about the unknown rest.
         favour: whether a proposition that is not born counts in favour, or else as unknown.
 
     Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
