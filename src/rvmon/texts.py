@@ -15,26 +15,51 @@ import unicodedata
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import islice
+from itertools import islice, takewhile
 from pathlib import Path
 
 MOST_NAMES = 1_000
 """Names that a misspelt one is compared with."""
 
 
-def nearest(name: str, known: Iterable[str], likeness: float = 0.6) -> str:
+def nearest(name: str, known: Iterable[str], likeness: float = 2 / 3) -> str:
     """The known name that is most alike; empty if none is.
+
+    What both share by convention does not make them alike: dashes, folders, an ending.
 
     Args:
         name: as written.
         known: the existing names; the first thousand are compared.
         likeness: from 0 to 1, how much alike it has to be (`difflib.SequenceMatcher.ratio`).
 
-    >>> nearest("gaze_okay", ["gaze_ok", "pressure_ok"])
-    'gaze_ok'
+    >>> nearest("gaze_okay", ["gaze_ok", "pressure_ok"]), nearest("nope.csv", ["base.csv"])
+    ('gaze_ok', '')
     """
-    found = difflib.get_close_matches(name, list(islice(known, MOST_NAMES)), 1, likeness)
-    return found[0] if found else ""
+    candidates = difflib.get_close_matches(name, list(islice(known, MOST_NAMES)), 3, likeness)
+    for candidate in candidates:
+        parts = _where_they_differ(name, candidate)
+        if difflib.SequenceMatcher(None, *parts).ratio() >= likeness:
+            return candidate
+    return ""
+
+
+def _where_they_differ(name: str, other: str) -> tuple[str, str]:
+    """Both without the whole parts that they share in front and behind.
+
+    >>> _where_they_differ("monday/nope.csv", "monday/base.csv")
+    ('nope', 'base')
+    """
+    start = _shared_parts(name, other)
+    name, other = name[start:], other[start:]
+    stop = _shared_parts(name[::-1], other[::-1])
+    return name[: len(name) - stop], other[: len(other) - stop]
+
+
+def _shared_parts(name: str, other: str) -> int:
+    """The characters to the last separator of what both begin with."""
+    pairs = zip(name, other, strict=False)
+    shared = len(list(takewhile(lambda pair: pair[0] == pair[1], pairs)))
+    return max(name.rfind(separator, 0, shared) for separator in "-./") + 1
 
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
