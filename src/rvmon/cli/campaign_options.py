@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import ArgumentParser
 
 from rvmon.cli.options import declare
-from rvmon.cli.parser import duration, number_or_folder, positive, shard
+from rvmon.cli.parser import TIME_FORMS, number_or_folder, positive, shard, span_s
 
 
 def add_run_options(parser: ArgumentParser) -> None:
@@ -52,7 +52,12 @@ def add_closing_options(parser: ArgumentParser) -> None:
     """Declare when closing gives up, and where the suite goes."""
     add = parser.add_argument
     add("--tests", metavar="N", type=positive, default=400, help="play at most so many (400)")
-    add("--seconds", metavar="S", type=duration, help="begin no test after so long (default: any)")
+    add(
+        "--seconds",
+        metavar="TIME",
+        type=span_s,
+        help=f"begin no test after TIME ({TIME_FORMS}; default: any)",
+    )
     add(
         "--margin",
         metavar="N",
@@ -117,13 +122,16 @@ def add_mutate_options(parser: ArgumentParser) -> None:
 
 
 def _add_seed_and_jobs(parser: ArgumentParser) -> None:
-    parser.add_argument("--seed", metavar="S", type=int, default=1, help="all follows from it (1)")
+    parser.add_argument("--seed", metavar="N", type=int, default=1, help="all follows from it (1)")
     parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
 
 
 def _add_timeout(parser: ArgumentParser) -> None:
     parser.add_argument(
-        "--timeout", metavar="S", type=duration, help="end a test that takes longer (600)"
+        "--timeout",
+        metavar="TIME",
+        type=span_s,
+        help=f"end a test that takes longer ({TIME_FORMS}; default: 600)",
     )
 
 

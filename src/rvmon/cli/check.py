@@ -9,7 +9,7 @@ from pathlib import Path
 
 from rvmon.cli.options import constants_of, declare
 from rvmon.cli.output import busy, rendered, say, say_json, warn
-from rvmon.cli.parser import duration
+from rvmon.cli.parser import TIME_FORMS, span_s
 from rvmon.diagnostics import Diagnostic, coloured, render_concise, render_json, wants_colour
 from rvmon.errors import SpecError
 from rvmon.language.checked.specification import CheckedSpec
@@ -42,7 +42,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         help="look for requirements that can never trigger, fail or pass, that conflict, or that "
         "others imply",
     )
-    add("--seconds", metavar="S", type=duration, default=8.0, help="budget of --analyse per file")
+    add(
+        "--seconds",
+        metavar="TIME",
+        type=span_s,
+        default=8.0,
+        help=f"budget of --analyse per file ({TIME_FORMS}; default: 8)",
+    )
     declare(parser, "--max-memory")
 
 

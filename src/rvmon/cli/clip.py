@@ -11,7 +11,7 @@ from rvmon import __version__
 from rvmon.cli.judging import Judged, Options, judge
 from rvmon.cli.options import READING, constants_of, declare, refuse_over
 from rvmon.cli.output import say, warn
-from rvmon.cli.parser import span, ticks
+from rvmon.cli.parser import TIME_FORMS, span, ticks
 from rvmon.cli.reading import (
     ATTEMPT_HELP,
     allowed_names,
@@ -53,17 +53,19 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="TIME",
         type=span,
         default=10 * TICKS_PER_SECOND,
-        help="so long before its trigger, or of an episode before what failed (default: 10s)",
+        help=f"start TIME ({TIME_FORMS}; default: 10s) before the trigger, or before the failure "
+        "within an episode",
     )
     add(
         "--after",
         metavar="TIME",
         type=span,
         default=5 * TICKS_PER_SECOND,
-        help="so long after its decision, and at least to what comes next (default: 5s)",
+        help=f"end TIME ({TIME_FORMS}; default: 5s) after the decision, or at the next sample if "
+        "that is later",
     )
-    add("--from", metavar="T", type=ticks, dest="start", help="from T seconds on")
-    add("--to", metavar="T", type=ticks, dest="stop", help="to T seconds")
+    add("--from", metavar="TIME", type=ticks, dest="start", help=f"first instant ({TIME_FORMS})")
+    add("--to", metavar="TIME", type=ticks, dest="stop", help=f"last instant ({TIME_FORMS})")
     add("-o", "--out", metavar="FILE", help="the piece; a folder for a bag of ROS 2")
     add(
         "--reproducer",

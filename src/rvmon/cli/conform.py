@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 from rvmon.cli.options import add_budget, budget_of, declare
 from rvmon.cli.output import busy, say, say_json, warn
-from rvmon.cli.parser import duration
+from rvmon.cli.parser import TIME_FORMS, span
 from rvmon.errors import TraceError, UnknownNameError
 from rvmon.models.conform import Allowed, Conformance, actions_in, conform, labels_of
 from rvmon.models.language.load import load_network
@@ -18,7 +18,6 @@ from rvmon.recordings.recording import FileRecording
 from rvmon.texts import counted
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import stamps_of
-from rvmon.trace.time import ticks_of_seconds
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
@@ -42,16 +41,17 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     add(
         "--tolerance",
-        metavar="S",
-        type=duration,
-        default=0.0,
-        help="seconds either way (default: 0)",
+        metavar="TIME",
+        type=span,
+        default=0,
+        help=f"by how much an action may be early or late ({TIME_FORMS}; default: 0)",
     )
     add(
         "--until",
-        metavar="T",
-        type=duration,
-        help="compare to T seconds after the first sample, be it before or after the last one",
+        metavar="TIME",
+        type=span,
+        help=f"compare up to TIME ({TIME_FORMS}) after the first sample, whether or not the "
+        "recording goes on that long",
     )
     declare(parser, "--format")
     add_budget(parser)
@@ -105,7 +105,7 @@ def _compare(
         chosen = _some(shown, path, labels)
     elif recording.names is not None and (missing := sorted(chosen - shown)):
         raise TraceError(f"{path}: there is no column `{missing[0]}` to observe")
-    end = length if arguments.until is None else ticks_of_seconds(arguments.until)
+    end = length if arguments.until is None else arguments.until
     later = sum(action.t > end for action in actions)
     if later:
         what = "is" if later == 1 else "are"
@@ -116,7 +116,7 @@ def _compare(
         actions,
         observed=chosen,
         end=end,
-        tolerance=ticks_of_seconds(arguments.tolerance),
+        tolerance=arguments.tolerance,
         budget=budget_of(arguments),
     )
 

@@ -62,7 +62,7 @@ def add_parser(
         default=10,
         help="evaluate so many recordings or tests again, or all (%(default)s)",
     )
-    add("--seed", metavar="S", type=int, default=1, help="of the sample (1)")
+    add("--seed", metavar="N", type=int, default=1, help="of the sample (1)")
     add("--jobs", metavar="N", type=positive, default=1, help="processes (1)")
     parser.set_defaults(run=run, campaign=campaign)
 

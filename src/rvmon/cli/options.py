@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from rvmon.cli.parser import duration, instant, positive
+from rvmon.cli.parser import TIME_FORMS, instant_s, positive, span_s
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.trace.schema import READINGS_OF_NAN
 
@@ -48,9 +48,10 @@ _SHARED: dict[str, dict[str, Any]] = {
         "help": "override a constant",
     },
     "--until": {
-        "metavar": "T",
-        "type": instant,
-        "help": "evaluate to T seconds, be it before or after the last sample",
+        "metavar": "TIME",
+        "type": instant_s,
+        "help": f"evaluate up to TIME ({TIME_FORMS}), whether or not the recording goes on that "
+        "long",
     },
     "--time": {
         "metavar": "COLUMN[:UNIT]",
@@ -152,7 +153,7 @@ def add_budget(parser: argparse.ArgumentParser) -> None:
     """Declare `--max-states`, `--max-seconds` and `--max-memory`."""
     add = parser.add_argument
     add("--max-states", metavar="N", type=positive, help="give up after N states")
-    add("--max-seconds", metavar="S", type=duration, help="give up after S seconds")
+    add("--max-seconds", metavar="TIME", type=span_s, help=f"give up after TIME ({TIME_FORMS})")
     add(
         "--max-memory",
         metavar="MB",

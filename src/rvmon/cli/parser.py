@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 from rvmon.errors import TraceError
 from rvmon.execute.shards import Shard
 from rvmon.texts import did_you_mean, shown
-from rvmon.trace.time import TICKS_PER_UNIT, ticks_of_seconds, ticks_of_text
+from rvmon.trace.time import TICKS_PER_SECOND, TICKS_PER_UNIT, ticks_of_text
 
 _CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)", re.DOTALL)
 
@@ -108,63 +108,33 @@ def number_or_folder(text: str) -> int | Path:
     return Path(text)
 
 
-def duration(text: str) -> float:
-    """Read a number of seconds, at least 0.
+TIME_FORMS = "seconds, or a number with its unit: 12.5, 500ms"
+"""What the help of each option that takes an instant or a duration says of its value."""
 
-    Raises:
-        argparse.ArgumentTypeError: it is none, or too long.
-
-    >>> duration("0.1")
-    0.1
-    """
-    seconds = instant(text)
-    if seconds < 0:
-        raise argparse.ArgumentTypeError(f"expected seconds, at least 0, not {text}")
-    return seconds
-
-
-def instant(text: str) -> float:
-    """Read an instant in seconds that fits the range of time.
-
-    Raises:
-        argparse.ArgumentTypeError: it is no number, not finite, or too far away.
-
-    >>> instant("12.5")
-    12.5
-    """
-    try:
-        seconds = float(text)
-        ticks_of_seconds(seconds)
-    except (ValueError, TraceError):
-        raise argparse.ArgumentTypeError(
-            f"expected a time in seconds, such as 12.5, not {text}"
-        ) from None
-    return seconds
+_TIME = re.compile(r"\s*([+-]?[\d.]+(?:e[+-]?\d+)?)\s*([a-z]*)\s*", re.ASCII)
 
 
 def ticks(text: str) -> int:
-    """Read a time with or without a unit, exactly; seconds go without saying.
+    """Read an instant, exactly: seconds, or a number with its unit.
 
     Raises:
-        argparse.ArgumentTypeError: it is none, or too far away.
+        argparse.ArgumentTypeError: it is no time, or too far away.
 
     >>> ticks("10 s"), ticks("1700000000.000000001"), ticks("500ms")
     (10000000000, 1700000000000000001, 500000000)
     """
-    plain = text.strip()
-    unit = plain.lstrip("+-.0123456789").strip()
+    written = _TIME.fullmatch(text)
+    number, unit = written.groups() if written else ("", "")
     try:
         if unit and unit not in TICKS_PER_UNIT:
             raise TraceError("no unit of time")
-        return ticks_of_text(plain.removesuffix(unit).strip(), unit or "s")
+        return ticks_of_text(number, unit or "s")
     except TraceError:
-        raise argparse.ArgumentTypeError(
-            f"expected a time such as 12.5, 10s or 500ms, not {text}"
-        ) from None
+        raise argparse.ArgumentTypeError(f"expected {TIME_FORMS}, not {text}") from None
 
 
 def span(text: str) -> int:
-    """Read how long something lasts, at least 0, as `ticks` reads times.
+    """Read a duration of at least 0, as `ticks` reads instants.
 
     Raises:
         argparse.ArgumentTypeError: it is none, or too long.
@@ -172,10 +142,28 @@ def span(text: str) -> int:
     >>> span("2 min")
     120000000000
     """
-    found = ticks(text)
-    if found < 0:
-        raise argparse.ArgumentTypeError(f"expected a time of at least 0, not {text}")
-    return found
+    duration = ticks(text)
+    if duration < 0:
+        raise argparse.ArgumentTypeError(f"expected a duration of at least 0, not {text}")
+    return duration
+
+
+def instant_s(text: str) -> float:
+    """Read an instant as `ticks` does, in seconds.
+
+    >>> instant_s("12.5"), instant_s("-500ms")
+    (12.5, -0.5)
+    """
+    return ticks(text) / TICKS_PER_SECOND
+
+
+def span_s(text: str) -> float:
+    """Read a duration as `span` does, in seconds.
+
+    >>> span_s("0.1"), span_s("2min")
+    (0.1, 120.0)
+    """
+    return span(text) / TICKS_PER_SECOND
 
 
 def percentage(text: str) -> float:

@@ -66,7 +66,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         choices=("locations", "edges", "edge-pairs"),
         help="instead show few runs that go through all of these",
     )
-    add("--seed", metavar="S", type=int, default=1, help="of simulated runs")
+    add("--seed", metavar="N", type=int, default=1, help="of simulated runs")
     add(
         "--trace",
         choices=("shortest", "fastest", "likely"),

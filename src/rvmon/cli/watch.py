@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from rvmon.adapters.json_objects import JsonObjects, begin_of, feed_lines, read_lines
 from rvmon.cli.options import ONLY, asked_ids, constants_of, declare
 from rvmon.cli.output import warn
-from rvmon.cli.parser import positive, span
+from rvmon.cli.parser import TIME_FORMS, positive, span
 from rvmon.cli.reading import mapped_names, refuse_empty
 from rvmon.cli.watch_output import Output, output_named, refuse_others, watch_kept
 from rvmon.errors import RvmonError, SpecError
@@ -72,12 +72,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     add(
         "--realtime",
-        metavar="LAG",
+        metavar="TIME",
         nargs="?",
         type=span,
         const=_LAG_NS,
-        help="the stamps of the lines are the time of day since 1970, and lines arrive at most LAG "
-        "later (default: 500ms): deadlines pass while no line comes, too",
+        help="the stamps of the lines are the time of day since 1970, and lines arrive at most "
+        f"TIME later ({TIME_FORMS}; default: 500ms): deadlines pass while no line comes, too",
     )
     add(
         "--sim-time",

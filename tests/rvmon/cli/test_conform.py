@@ -71,8 +71,8 @@ def test_tolerance_and_end(folder, says):
         (["text.jsonl"], "nothing in it is an action of the model"),
         (["text.csv", "--observe", "dark"], "no column `dark`"),
         (["good.csv", "--until", "-1"], "at least 0"),
-        (["good.csv", "--until", "inf"], "a time in seconds"),
-        (["good.csv", "--tolerance", "nan"], "a time in seconds"),
+        (["good.csv", "--until", "inf"], "expected seconds, or a number with its unit"),
+        (["good.csv", "--tolerance", "nan"], "expected seconds, or a number with its unit"),
     ],
 )
 def test_wrong_input_exits_with_2(folder, arguments, message, says):

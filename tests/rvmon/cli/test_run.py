@@ -204,13 +204,16 @@ def test_what_was_judged_in_columns_before_a_fault_is_told(files, says):
     assert JUDGED_BEFORE in told
 
 
-@pytest.mark.parametrize(("until", "verdict"), [("2", "I"), ("3", "F"), ("30", "F")])
-def test_until_is_the_end_that_is_judged(files, capsys, until, verdict):
+@pytest.mark.parametrize(
+    ("until", "end", "verdict"),
+    [("2", 2, "I"), ("3", 3, "F"), ("3000ms", 3, "F"), ("30", 30, "F")],
+)
+def test_until_is_the_end_that_is_judged(files, capsys, until, end, verdict):
     """What comes after --until is not judged; time goes on to it where samples end before."""
     (files / "late.csv").write_text(FAIL + "6,,\n9,maybe,\n" if until != "30" else FAIL)
     main(["run", "door.rv", "late.csv", "--until", until, "--format", "json"])
     report = json.loads(capsys.readouterr().out)
-    assert report["end"] == int(until) * 10**9
+    assert report["end"] == end * 10**9
     assert report["requirements"]["D1"]["verdict"] == verdict
 
 
@@ -238,8 +241,12 @@ def test_until_is_the_end_that_is_judged(files, capsys, until, verdict):
         (["door.rv", "P.csv", "--const", "T"], "expected NAME=VALUE"),
         (["door.rv", "P.csv", "--only", ""], "there are D1"),
         (["door.rv", "P.csv", "--jobs", "0"], "at least 1, not 0"),
-        (["door.rv", "P.csv", "--until", "nan"], "a time in seconds, such as 12.5, not nan"),
-        (["door.rv", "P.csv", "--until", "1e30"], "a time in seconds"),
+        (["door.rv", "P.csv", "--untill", "3"], "did you mean `--until`?"),
+        (["door.rv", "P.csv", "--bogus"], "unrecognized arguments: --bogus\n"),
+        (["door.rv", "nope.csv"], "nope.csv: No such file or directory\n"),
+        (["door.rv", "P.csv", "--until", "nan"], "expected seconds, or a number with its unit"),
+        (["door.rv", "P.csv", "--until", "1e30"], "12.5, 500ms, not 1e30"),
+        (["door.rv", "P.csv", "--until", "3 days"], "not 3 days"),
         (["door.rv", "P.csv", "--until=-1"], "no sample up to --until -1 s"),
         (["door.rv", "P.csv", "--junit", "gone/out.xml"], "error: cannot write gone/out.xml"),
     ],
