@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from rvmon.language.checked.functions import FUNCTIONS
-from rvmon.language.syntax.words import INFIX_WORDS, RESERVED
+from rvmon.language.syntax.keywords import INFIX_WORDS, RESERVED
 
 ROOT = Path(__file__).parents[1]
 VSCODE = ROOT / "editors" / "vscode"

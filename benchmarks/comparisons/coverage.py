@@ -12,7 +12,7 @@ from tests.tools.coverage import with_random_coverage
 from rvmon.coverage import combination
 from rvmon.coverage.monitor import SpecCoverage
 from rvmon.language.checked.formula import Formula
-from rvmon.language.checked.goals import Bin
+from rvmon.language.checked.properties import Bin
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace

@@ -13,7 +13,7 @@ from pygments.token import Comment, Keyword, Name, Number, Operator, String, Whi
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.formula import Measured
 from rvmon.language.checked.functions import FUNCTIONS
-from rvmon.language.syntax.words import CLAUSE_WORDS, INFIX_WORDS, OPERATOR_TERMINALS, RESERVED
+from rvmon.language.syntax.keywords import CLAUSE_WORDS, INFIX_WORDS, OPERATOR_TERMINALS, RESERVED
 
 _READ_AS = {
     "NAME": "plain-name",

@@ -21,7 +21,7 @@ from rvmon.diagnostics import Source
 from rvmon.errors import RvmonError, writing
 from rvmon.files import beside
 from rvmon.language.rules import Findings
-from rvmon.language.syntax.imports import load_files
+from rvmon.language.syntax.parse import load_files
 from rvmon.texts import cannot_read, text_of_file
 
 FORMAT = 1

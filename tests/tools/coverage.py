@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from rvmon.language.checked.formula import Bound, BoundAtom, Formula
-from rvmon.language.checked.goals import Bin, BinKind, Coverpoint, Cross
+from rvmon.language.checked.properties import Bin, BinKind, Coverpoint, Cross
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.testing.generate import Rng, chance, pick
 from rvmon.testing.generate.formula import Shape, formula

@@ -21,7 +21,7 @@ from rvmon.coverage import (
     model_of,
 )
 from rvmon.coverage.database import Database
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.verdicts import Verdict
 
 SECOND = 1_000_000_000

@@ -44,7 +44,7 @@ class OnlineMonitor(Monitored, Protocol):
 def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt]]]:
     """Tell a monitor the actions of a case, then finish."""
     if case.outages:
-        return drive_losing(cast(Losing, monitor), case)
+        return drive_losing(cast("Losing", monitor), case)
     returned = [feed(monitor, action) for action in case.actions]
     return monitor.finish_ns(case.end), returned
 

@@ -18,7 +18,6 @@ from rvmon.language.checked.formula import (
     WindowValue,
     windows_in,
 )
-from rvmon.language.checked.measured import Dimension
 from rvmon.language.checked.specification import (
     Capture,
     CheckedSpec,
@@ -26,6 +25,7 @@ from rvmon.language.checked.specification import (
     Requirement,
     TimeModel,
 )
+from rvmon.language.checked.window_measures import Dimension
 from rvmon.language.print import format_formula
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.planned import planned_core

@@ -14,7 +14,7 @@ from rvmon.coverage import Group, Item, Model, TestRecord, merged, model_of, sha
 from rvmon.coverage.database import Database, read
 from rvmon.errors import RvmonError
 from rvmon.files import write_whole
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
 

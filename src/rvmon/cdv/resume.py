@@ -20,7 +20,7 @@ from rvmon.errors import RvmonError
 from rvmon.execute import journal
 from rvmon.execute.shards import Shard, shards_beside
 from rvmon.files import contents
-from rvmon.language.checked.plain_data import to_plain
+from rvmon.language.checked.serialise import to_plain
 from rvmon.session import Spec
 
 NAME = "unfinished.journal"

@@ -24,7 +24,7 @@ from rvmon.cdv.summary import (
     missed,
 )
 from rvmon.coverage import STATES, TRANSITIONS, Ending, Group, model_of, without
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import RunShare
 from rvmon.report.table import Counts
 from rvmon.session import Spec

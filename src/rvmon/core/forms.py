@@ -20,8 +20,8 @@ from rvmon.language.checked.formula import (
     WindowValue,
 )
 from rvmon.language.checked.formula import Literal as Number
-from rvmon.language.checked.measured import Dimension
 from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.language.checked.window_measures import Dimension
 from rvmon.logic.chain import Chain, reach_of
 from rvmon.logic.formula import Constant, Literal, Sense
 from rvmon.logic.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window

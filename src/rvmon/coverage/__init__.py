@@ -11,7 +11,7 @@ from enum import StrEnum
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
 
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.covered import CoveredBin, CoveredGroup
 

@@ -17,7 +17,7 @@ from rvmon.coverage import Group, Hit, Hits, Item, Model, Subject, combination, 
 from rvmon.coverage.requirements import WatchedRequirements
 from rvmon.language.checked.classify import is_pulse
 from rvmon.language.checked.formula import Formula
-from rvmon.language.checked.goals import BinKind, Coverpoint, Cross
+from rvmon.language.checked.properties import BinKind, Coverpoint, Cross
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.print import format_formula
 from rvmon.logic.formula import Factory

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rvmon.coverage import UNKNOWN, Coverage, Score, TestRecord, weighted
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.verdicts import Verdict
 
 if TYPE_CHECKING:

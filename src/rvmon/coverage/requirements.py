@@ -23,7 +23,7 @@ from rvmon.language.checked.formula import (
     Unary,
     UnaryOp,
 )
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec

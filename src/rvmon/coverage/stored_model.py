@@ -12,7 +12,7 @@ import msgspec
 from rvmon.coverage import Group, Item, Model, Subject
 from rvmon.coverage.schema import damaged, name_of
 from rvmon.errors import CoverageError
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,8 +14,8 @@ from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.names import overridden, resolve, unused_names
 from rvmon.language.rules import MOST, Enough, Findings
 from rvmon.language.rules.syntax import empty_file, too_many
-from rvmon.language.syntax.imports import load_files
 from rvmon.language.syntax.items import ParsedSpec
+from rvmon.language.syntax.parse import load_files
 from rvmon.texts import text_of_file
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.errors import RvmonError
 from rvmon.files import cache_folder, keep, read_kept, this_rvmon
-from rvmon.language.checked.plain_data import from_plain, to_plain
+from rvmon.language.checked.serialise import from_plain, to_plain
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.texts import text_of_file, tree_of
 

@@ -199,7 +199,7 @@ class Factory:
         found = self._known.get(key)
         if found is None:
             found = self._known[key] = State(self._next_id(), op, args, leaf, **fields)
-        return cast(State, found)
+        return cast("State", found)
 
     def leaf(self, leaf: Leaf, unborn: int = UNKNOWN) -> State:
         """An atom over the input; `unborn` is its truth value before the birth of its signals."""
@@ -291,7 +291,7 @@ class Factory:
 
     def constant(self, value: bool) -> Constant:
         """True or false."""
-        return cast(Constant, self.true if value else self.false)
+        return cast("Constant", self.true if value else self.false)
 
     def literal(self, proposition: State, sense: Sense) -> Core:
         """A proposition read in one sense; negations move into the sense."""
@@ -302,7 +302,7 @@ class Factory:
         if proposition.op is StateOp.NOT and sense is not Sense.KNOWN_FALSE:
             flipped = Sense.FALSE if sense is Sense.TRUE else Sense.TRUE
             return self.literal(proposition.args[0], flipped)
-        return cast(Core, self._core(Literal, proposition, sense))
+        return cast("Core", self._core(Literal, proposition, sense))
 
     def all_of(self, args: Iterable[Core]) -> Core:
         """All of `args`."""
@@ -321,11 +321,11 @@ class Factory:
             return zero
         if len(flat) <= 1:
             return next(iter(flat), unit)
-        return cast(Core, self._core(kind, tuple(sorted(flat, key=_id))))
+        return cast("Core", self._core(kind, tuple(sorted(flat, key=_id))))
 
     def next(self, operand: Core) -> Next:
         """`operand` at the next position, undecided until there is one."""
-        return cast(Next, self._core(Next, operand))
+        return cast("Next", self._core(Next, operand))
 
     def until(self, left: Core, right: Core, low: int, high: int | None) -> Core:
         """`left U[low, high] right`, or an equal simpler formula."""
@@ -334,7 +334,7 @@ class Factory:
         if right is self.true and low == 0:
             return right
         opened = self._core(Until, left, right, 0, high, None) if low else None
-        return cast(Core, self._core(Until, left, right, low, high, opened))
+        return cast("Core", self._core(Until, left, right, low, high, opened))
 
     def release(self, left: Core, right: Core, low: int, high: int | None) -> Core:
         """`left R[low, high] right`, or an equal simpler formula."""
@@ -343,17 +343,17 @@ class Factory:
         if right is self.false and low == 0:
             return right
         opened = self._core(Release, left, right, 0, high, None) if low else None
-        return cast(Core, self._core(Release, left, right, low, high, opened))
+        return cast("Core", self._core(Release, left, right, low, high, opened))
 
     def core_since(
         self, left: Core, right: Core, low: int, high: int | None, *, dual: bool
     ) -> Core:
         """`left S[low, high] right`, or its dual, with a future operator in an operand."""
-        return cast(Core, self._core(Since, left, right, low, high, dual))
+        return cast("Core", self._core(Since, left, right, low, high, dual))
 
     def core_previous(self, operand: Core, *, first: bool) -> Core:
         """`operand` at the position before; at the first position, the constant `first`."""
-        return cast(Core, self._core(Previous, operand, first))
+        return cast("Core", self._core(Previous, operand, first))
 
 
 def _id(node: State | Core) -> int:

@@ -123,7 +123,7 @@ def _constructed(
     """The reduced automaton of the last node, and the most ticks by which an age passed a bound."""
     ages: set[int] = set()
     try:
-        made = reduce(construct(cast(Next, nodes[-1]), alphabet, budget, ages), _itself)
+        made = reduce(construct(cast("Next", nodes[-1]), alphabet, budget, ages), _itself)
     except DoesNotCloseError:
         made = None
     return made, max((age % _STRIDE for age in ages), default=0)

@@ -13,7 +13,7 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
 
 from rvmon.files import cache_folder, keep, read_kept, this_rvmon
-from rvmon.language.checked.plain_data import identity_text
+from rvmon.language.checked.serialise import identity_text
 from rvmon.language.checked.specification import CheckedSpec
 
 if TYPE_CHECKING:

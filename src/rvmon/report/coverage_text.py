@@ -12,7 +12,7 @@ from rich.text import Text
 
 from rvmon.coverage import Group, combination
 from rvmon.coverage.questions import Comparison
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.report.coverage_summary import Summary, cell_look, is_grid, name_of, not_fine
 from rvmon.report.table import table_text
 from rvmon.report.terminal import wrapped

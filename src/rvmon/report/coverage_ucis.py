@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 
 from rvmon.coverage import Group, Item, Subject, TestRecord
 from rvmon.coverage.holes import cross_parts
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.report.coverage_summary import Summary, not_fine
 from rvmon.texts import shown
 

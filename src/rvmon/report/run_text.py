@@ -12,7 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rvmon.diagnostics import snippet
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import Terminal, wrapped

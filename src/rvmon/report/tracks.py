@@ -6,7 +6,6 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby, pairwise
-from typing import TYPE_CHECKING
 
 from rvmon.language.checked.classify import subformulas
 from rvmon.language.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
@@ -18,9 +17,6 @@ from rvmon.report.wording import value_text
 from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
 from rvmon.verdicts.attempt import Blame
-
-if TYPE_CHECKING:
-    pass
 
 
 def concerned_names(requirement: Requirement) -> tuple[str, ...]:

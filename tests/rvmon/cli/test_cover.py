@@ -10,7 +10,7 @@ from tests.tools.hostile import STEERING, hostile_names
 from rvmon.cli import main
 from rvmon.coverage import Group, Hit, Item, Subject, TestRecord, combination, group_of, model_of
 from rvmon.coverage.database import Database, read
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.verdicts import Verdict
 
 

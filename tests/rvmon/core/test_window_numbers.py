@@ -3,8 +3,8 @@
 import pytest
 
 import rvmon
-from rvmon.language.checked.measured import Measured
 from rvmon.language.checked.specification import TimeModel
+from rvmon.language.checked.window_measures import Measured
 
 HEIGHTS = "signal x, y : real [m]\nevent a, b"
 EXPRESSIONS = {

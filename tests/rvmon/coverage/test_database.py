@@ -10,7 +10,7 @@ from rvmon.coverage import Ending, Group, Hit, Item, Subject, TestRecord, group_
 from rvmon.coverage.database import Database, read
 from rvmon.coverage.questions import Answers
 from rvmon.errors import CoverageError
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.verdicts import Verdict
 
 

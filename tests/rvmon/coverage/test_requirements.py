@@ -4,7 +4,7 @@ import random
 
 from rvmon import loads
 from rvmon.coverage import score
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 
 ANSWER = """signal a, b, c : bool
 requirement R upon a then within 2 s b

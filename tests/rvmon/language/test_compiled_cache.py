@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from rvmon.errors import SpecError
-from rvmon.language.checked.plain_data import from_plain, identity_text, to_plain
+from rvmon.language.checked.serialise import from_plain, identity_text, to_plain
 from rvmon.language.compile import compile_text
 from rvmon.language.compiled_cache import compile_cached
 from rvmon.testing.generate.spec import Profile, random_spec

@@ -25,7 +25,7 @@ from rvmon.coverage import (
     without,
 )
 from rvmon.coverage.holes import Goal, Hole, hole_of, nearest_tests
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 
 if TYPE_CHECKING:
     from rvmon.cdv.test import Test

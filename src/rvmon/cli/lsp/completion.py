@@ -10,12 +10,11 @@ from rvmon.cli.lsp.names import Names, about_word
 from rvmon.diagnostics import Span
 from rvmon.language.checked.functions import FUNCTIONS
 from rvmon.language.checked.specification import CheckedSpec, EndPolicy
-from rvmon.language.syntax.expected import accepted_terminals
 from rvmon.language.syntax.expressions import Ident
-from rvmon.language.syntax.fixes import words_of
 from rvmon.language.syntax.items import ConstItem, CoverpointItem, DefineItem, RequirementItem
+from rvmon.language.syntax.keywords import ITEM_WORDS, NOT_UNITS, split_items
 from rvmon.language.syntax.parse import grammar
-from rvmon.language.syntax.words import ITEM_WORDS, NOT_UNITS, split_items
+from rvmon.language.syntax.syntax_errors import accepted_terminals, words_of
 from rvmon.units import unit_table
 
 _NO_CODE = re.compile(r'`[^`\n]*`|"(?:[^"\\\n]|\\.)*"')

@@ -29,7 +29,7 @@ from rvmon.files import cache_folder, write_whole
 from rvmon.language.compile import Compilation, compilation
 from rvmon.language.syntax.expressions import Ident
 from rvmon.language.syntax.items import EventItem, ImportItem, Item, SignalItem
-from rvmon.language.syntax.words import split_items
+from rvmon.language.syntax.keywords import split_items
 from rvmon.texts import proposed, shown
 
 _WIDTHS = {

@@ -10,7 +10,7 @@ from rvmon.language.check.ctl import checked_goal, checked_property
 from rvmon.language.check.expressions import Checker
 from rvmon.language.check.requirements import check_clauses, checked_requirement
 from rvmon.language.check.scope import EVERYWHERE, Table, close_name, close_unit
-from rvmon.language.checked.goals import Cover
+from rvmon.language.checked.properties import Cover
 from rvmon.language.checked.specification import (
     CheckedSpec,
     Event,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.diagnostics import Span
-from rvmon.language.check.moving import refuse_moving
+from rvmon.language.check.moving_windows import refuse_moving
 from rvmon.language.check.quantities import is_time, seconds_of
 from rvmon.language.check.scope import Operands, Quantity, Scope
 from rvmon.language.checked.formula import (

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import ceil
 
 from rvmon.diagnostics import Diagnostic, Span
-from rvmon.language.check.moving import above, brought_alone, by_limits
+from rvmon.language.check.moving_windows import above, brought_alone, by_limits
 from rvmon.language.check.quantities import (
     Placed,
     arithmetic,

@@ -26,8 +26,8 @@ from rvmon.language.checked.formula import (
     UnaryOp,
     UpdateFunction,
 )
-from rvmon.language.checked.goals import Bin, BinKind, Cover, Coverpoint, Cross
 from rvmon.language.checked.operators import Connectives, Tense
+from rvmon.language.checked.properties import Bin, BinKind, Cover, Coverpoint, Cross
 from rvmon.language.checked.rewrite import read
 from rvmon.language.print import format_formula
 from rvmon.language.rules import Refusal, Reported

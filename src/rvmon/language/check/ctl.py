@@ -12,7 +12,10 @@ from rvmon.diagnostics import Span
 from rvmon.language.check.expressions import Checker
 from rvmon.language.check.scope import EVERYWHERE, close_name
 from rvmon.language.checked.classify import FUTURE, subformulas
-from rvmon.language.checked.ctl import (
+from rvmon.language.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
+from rvmon.language.checked.operators import Tense
+from rvmon.language.checked.properties import (
+    Cover,
     ModelAtom,
     PathBinary,
     PathUnary,
@@ -23,9 +26,6 @@ from rvmon.language.checked.ctl import (
     StateNot,
     state_formulas,
 )
-from rvmon.language.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp
-from rvmon.language.checked.goals import Cover
-from rvmon.language.checked.operators import Tense
 from rvmon.language.checked.specification import TimeModel
 from rvmon.language.print import format_formula
 from rvmon.language.rules import Refusal, Reported, short

@@ -8,7 +8,6 @@ from functools import reduce
 from rvmon.diagnostics import Span
 from rvmon.language.check.scope import Table
 from rvmon.language.checked.classify import future_part, has_future
-from rvmon.language.checked.ctl import PathUnary, Property, StateAtom
 from rvmon.language.checked.formula import (
     Binary,
     BinaryOp,
@@ -22,6 +21,7 @@ from rvmon.language.checked.formula import (
 )
 from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.operators import Tense
+from rvmon.language.checked.properties import PathUnary, Property, StateAtom
 from rvmon.language.checked.rewrite import chain, rewritten
 from rvmon.language.checked.specification import Event, Mode, Role, Signal
 from rvmon.language.rules import Refusal

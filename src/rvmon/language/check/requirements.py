@@ -10,7 +10,7 @@ from rvmon.diagnostics import Span
 from rvmon.language.check.coverage import present
 from rvmon.language.check.ctl import linear_form, property_of
 from rvmon.language.check.expressions import Checker
-from rvmon.language.check.moving import refuse_moving
+from rvmon.language.check.moving_windows import refuse_moving
 from rvmon.language.check.normalise import (
     derived_response,
     normalised,
@@ -36,7 +36,6 @@ from rvmon.language.checked.classify import (
     subformulas,
     windows_of,
 )
-from rvmon.language.checked.ctl import Property
 from rvmon.language.checked.formula import (
     BoundAtom,
     Captured,
@@ -47,6 +46,7 @@ from rvmon.language.checked.formula import (
     fields_in,
 )
 from rvmon.language.checked.names_read import names_read
+from rvmon.language.checked.properties import Property
 from rvmon.language.checked.specification import (
     Capture,
     EndPolicy,

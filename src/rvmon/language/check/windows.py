@@ -28,10 +28,10 @@ from rvmon.language.checked.formula import (
     windows_in,
 )
 from rvmon.language.checked.functions import LAST
-from rvmon.language.checked.measured import Dimension, Members
 from rvmon.language.checked.names_read import names_in, names_read
 from rvmon.language.checked.rewrite import Formulas, chain
 from rvmon.language.checked.specification import TimeModel
+from rvmon.language.checked.window_measures import Dimension, Members
 from rvmon.language.rules import Refusal
 from rvmon.language.rules import time as time_rules
 from rvmon.language.rules import types as rules

@@ -15,10 +15,10 @@ from typing import Any
 
 from rvmon.diagnostics import Span
 from rvmon.language.checked.arithmetic import NumericOp
-from rvmon.language.checked.measured import Measured as Measured
 from rvmon.language.checked.operators import BinaryOp as BinaryOp
 from rvmon.language.checked.operators import Interval as Interval
 from rvmon.language.checked.operators import UnaryOp as UnaryOp
+from rvmon.language.checked.window_measures import Measured as Measured
 from rvmon.trace.time import TICKS_PER_SECOND
 
 # Numeric (and label) expressions, evaluated in Python floats, ints or strings.

@@ -6,7 +6,6 @@ from collections.abc import Collection, Iterable, Iterator
 
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.language.checked.classify import subformulas
-from rvmon.language.checked.ctl import StateAtom, state_formulas
 from rvmon.language.checked.formula import (
     Arithmetic,
     Compare,
@@ -20,6 +19,7 @@ from rvmon.language.checked.formula import (
     UpdateValue,
     WindowValue,
 )
+from rvmon.language.checked.properties import StateAtom, state_formulas
 from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.texts import did_you_mean
 

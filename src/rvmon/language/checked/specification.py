@@ -15,8 +15,7 @@ from rvmon.language.checked.formula import FieldValue, Formula, Numeric
 from rvmon.trace.schema import Kind, Schema
 
 if TYPE_CHECKING:
-    from rvmon.language.checked.ctl import Property
-    from rvmon.language.checked.goals import Cover, Coverpoint, Cross
+    from rvmon.language.checked.properties import Cover, Coverpoint, Cross, Property
 
 
 class Role(StrEnum):

@@ -39,7 +39,7 @@ from rvmon.language.checked.formula import (
 )
 from rvmon.language.checked.operators import PREFIXED, Window
 from rvmon.language.checked.rewrite import chain, without_spans
-from rvmon.language.syntax.words import RESERVED
+from rvmon.language.syntax.keywords import RESERVED
 from rvmon.trace.time import TICKS_PER_UNIT
 
 _SUM, _PRODUCT, _NEGATIVE, _OPERAND = 0, 1, 2, 3

@@ -10,8 +10,8 @@ from rvmon.diagnostics import Source, render_full
 from rvmon.errors import SpecError
 from rvmon.language.print.layout import WIDTH, Piece, lines_of, pieces_of, text_of
 from rvmon.language.rules import Findings
+from rvmon.language.syntax.keywords import split_items
 from rvmon.language.syntax.parse import parse_spec
-from rvmon.language.syntax.words import split_items
 
 Row = tuple[str, str, str, str, str]
 """Word, names, type, role, what it ignores and its limit of staleness."""

@@ -9,8 +9,8 @@ from itertools import pairwise
 from typing import Any
 
 from rvmon.language.checked.operators import OPERATORS
+from rvmon.language.syntax.keywords import OPERATOR_TERMINALS
 from rvmon.language.syntax.parse import grammar
-from rvmon.language.syntax.words import OPERATOR_TERMINALS
 
 _CANONICAL = {
     **{text: op.entry.word for op in OPERATORS for text in op.spellings},

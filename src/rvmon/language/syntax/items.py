@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from rvmon.diagnostics import Source, Span
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import Mode, Role, TimeModel
 from rvmon.language.syntax.expressions import Expression, Ident, Name, Number, Window
 

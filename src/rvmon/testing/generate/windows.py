@@ -27,8 +27,8 @@ from rvmon.language.checked.formula import (
     passed,
     windows_in,
 )
-from rvmon.language.checked.measured import Members
 from rvmon.language.checked.names_read import names_in
+from rvmon.language.checked.window_measures import Members
 from rvmon.testing.generate import (
     CARRIER,
     FIELD,

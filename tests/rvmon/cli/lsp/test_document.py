@@ -14,9 +14,9 @@ from rvmon.cli.lsp.completion import hover, proposals
 from rvmon.cli.lsp.document import Document, Text
 from rvmon.cli.lsp.names import _LINES, meanings
 from rvmon.diagnostics import Source, Span
-from rvmon.language.syntax.expected import accepted_terminals
+from rvmon.language.syntax.keywords import CLAUSE_WORDS, INFIX_WORDS, RESERVED, split_items
 from rvmon.language.syntax.parse import grammar
-from rvmon.language.syntax.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED, split_items
+from rvmon.language.syntax.syntax_errors import accepted_terminals
 
 ROOT = Path(__file__).parents[4]
 SPEC = """spec demo "😋 all kinds of names"

@@ -2,7 +2,7 @@
 
 import pytest
 
-from rvmon.language.checked.goals import BinKind
+from rvmon.language.checked.properties import BinKind
 from rvmon.language.print import format_formula
 
 

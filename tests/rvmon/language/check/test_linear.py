@@ -8,8 +8,14 @@ from tests.tools.ltl3 import Tableau
 from rvmon import loads
 from rvmon.errors import SpecError
 from rvmon.language.check.ctl import linear_form
-from rvmon.language.checked.ctl import PathBinary, PathUnary, StateAtom, StateBinary, StateNot
 from rvmon.language.checked.formula import BinaryOp, UnaryOp
+from rvmon.language.checked.properties import (
+    PathBinary,
+    PathUnary,
+    StateAtom,
+    StateBinary,
+    StateNot,
+)
 from rvmon.language.checked.specification import TimeModel
 from rvmon.language.compile import compile_text
 from rvmon.language.print import format_formula

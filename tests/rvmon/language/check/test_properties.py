@@ -2,8 +2,14 @@
 
 import pytest
 
-from rvmon.language.checked.ctl import ModelAtom, PathBinary, PathUnary, StateAtom, StateBinary
 from rvmon.language.checked.formula import Interval, UnaryOp
+from rvmon.language.checked.properties import (
+    ModelAtom,
+    PathBinary,
+    PathUnary,
+    StateAtom,
+    StateBinary,
+)
 from rvmon.language.checked.specification import Role
 from rvmon.language.print import format_formula
 

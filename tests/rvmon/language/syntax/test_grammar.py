@@ -13,8 +13,8 @@ from rvmon.language.checked.names_read import names_of_spec
 from rvmon.language.compile import compile_text
 from rvmon.language.print import format_formula
 from rvmon.language.print.formatter import format_text
+from rvmon.language.syntax.keywords import CLAUSE_WORDS, INFIX_WORDS, RESERVED
 from rvmon.language.syntax.parse import GRAMMAR_OPTIONS, grammar_text
-from rvmon.language.syntax.words import CLAUSE_WORDS, INFIX_WORDS, RESERVED
 
 
 def test_grammar_has_no_conflicts():

@@ -4,8 +4,8 @@ import pytest
 
 from rvmon.errors import SpecError
 from rvmon.language.compile import compile_text
-from rvmon.language.syntax.expected import _word
 from rvmon.language.syntax.parse import grammar
+from rvmon.language.syntax.syntax_errors import _word
 
 HEAD = """spec demo
 event asked, released

@@ -21,7 +21,7 @@ from rvmon.language.rules import Refusal, Reported
 from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import types as rules
 from rvmon.language.syntax.expressions import Call, Name
-from rvmon.language.syntax.fixes import NEVER
+from rvmon.language.syntax.syntax_errors import NEVER
 from rvmon.texts import did_you_mean
 from rvmon.trace.schema import Kind
 from rvmon.units import PLAIN, parse_unit, quotient

@@ -17,8 +17,8 @@ from rvmon import diagnostics
 from rvmon.diagnostics import Source, Span
 from rvmon.language.checked import formula, specification
 from rvmon.language.checked.arithmetic import NumericOp
-from rvmon.language.checked.measured import Measured
 from rvmon.language.checked.operators import BinaryOp, Interval, UnaryOp
+from rvmon.language.checked.window_measures import Measured
 from rvmon.trace.schema import Kind
 
 
@@ -37,9 +37,9 @@ def _classes() -> Mapping[str, type]:
 @cache
 def _rarer_classes() -> Mapping[str, type]:
     """The classes of properties and goals, which few specifications have."""
-    from rvmon.language.checked import ctl, goals
+    from rvmon.language.checked import properties
 
-    return dict(_own_classes(ctl, goals))
+    return dict(_own_classes(properties))
 
 
 def _own_classes(*modules: ModuleType) -> Iterator[tuple[str, type]]:
