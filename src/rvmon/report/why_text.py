@@ -118,18 +118,17 @@ def _cell(part_truth: PartTruth, breakdown: Breakdown, column: int) -> str:
     low = breakdown.start + column * span // PLOT
     high = max(breakdown.start + (column + 1) * span // PLOT - 1, low)
     true, false = _touches(part_truth.true, low, high), _touches(part_truth.false, low, high)
-    if not (true and false):
-        whole = part_truth.true if true else part_truth.false
-        known = any(a <= low and high <= b for a, b in whole)
-        return UNKNOWN if not known and not true else TRUE if true else FALSE
+    if true and not false:
+        return TRUE
+    if not true:
+        known = any(a <= low and high <= b for a, b in part_truth.false)
+        return FALSE if known else UNKNOWN
     if _inside(part_truth.true, low, high):
         return PULSE
     if _inside(part_truth.false, low, high):
         return DIP
-    begins, ends = _touches(part_truth.true, low, low), _touches(part_truth.true, high, high)
-    if begins is ends:
-        return DIP if begins else PULSE
-    return FALLS if begins else RISES
+    # Both reach out of the column, each at an end of its own.
+    return FALLS if _touches(part_truth.true, low, low) else RISES
 
 
 def _inside(spans: Sequence[tuple[int, int]], low: int, high: int) -> bool:

@@ -34,6 +34,28 @@ def test_attempts_are_shown_with_their_verdict(door, says, named, verdict):
     assert any(line.strip() == "required" for line in lines)
 
 
+def test_rows_show_truth_over_the_window(tmp_path, says):
+    """A second a column: edges, moments, and what is not known in a part of it or wholly."""
+    spec, trace = tmp_path / "a.rv", tmp_path / "a.jsonl"
+    spec.write_text(
+        "spec a\nsignal p, q : bool\nevent go\n"
+        "requirement R\n  upon go then within 44 s (p and q)\n"
+    )
+    steps = {0: False, 3: True, 4.5: False, 6.2: True, 6.4: False, 9: True, 12.3: False}
+    steps |= {12.6: True, 14.5: False, 14.7: True, 14.9: False, 17.5: None, 20: True, 22.5: None}
+    steps |= {25: True, 26.5: False, 30.5: True, 46: True}
+    trace.write_text(
+        "".join(
+            json.dumps({"t": t, "p": p, "q": False} | ({"go": True} if t == 0 else {})) + "\n"
+            for t, p in steps.items()
+        )
+    )
+    lines = says(0, "why", spec, trace, "R").out.splitlines()
+    rows = {line[:34].strip(): line[34:] for line in reversed(lines)}
+    assert rows["go"] == "●" + "▁" * 45
+    assert rows["p"] == "▁▁▁▇╲▁●▁▁▇▇▇○▇╲▁▁???▇▇▇??▇╲▁▁▁╱" + "▇" * 15
+
+
 def test_an_attempt_in_doubt_has_a_name_of_its_own(door, capsys, says):
     (door / "a.jsonl").write_text(
         '{"t": 0, "closed": true, "knock": true}\n{"t": 1, "knock": null}\n{"t": 9}\n'

@@ -81,10 +81,12 @@ MODEL = model_of(
         CROSS,
         group("transitions", Subject.TRANSITIONS, "A → B", "B → C"),
         group("pairs of transitions", Subject.TRANSITIONS, "A → B → C"),
+        group("`R` locations", Subject.STATES, "A"),
         group("`R` edges", Subject.TRANSITIONS, "A → P"),
+        group("states", Subject.STATES, "A"),
         group("statements of f", Subject.STATEMENTS, "3", "4", "9"),
         group("branches of f", Subject.BRANCHES, "3 → 4", "3 → 9"),
-        group("R", Subject.REQUIREMENT, "triggered", "passed"),
+        group("R", Subject.REQUIREMENT, "triggered", "passed", "`p` decides"),
     ]
 )
 
@@ -115,3 +117,38 @@ MODEL = model_of(
 )
 def test_what_met_more_of_the_preconditions_is_nearer(goal, near, far):
     assert 1 >= nearness(goal, near, MODEL) > nearness(goal, far, MODEL) >= 0
+
+
+WAYS = {"A → B": HIT, "B → C": HIT}
+
+
+@pytest.mark.parametrize(
+    ("goal", "hits", "why", "needs"),
+    [
+        (("both", "a × x"), {}, "each of them was seen, 0 of 2 at one instant", "all of them"),
+        (("both", "a × x"), {"both": {"a × y": HIT, "b × y": HIT}}, "seen, 1 of 2", "all of them"),
+        (("states", "A"), {}, "it was never entered", "a run that enters it"),
+        (("transitions", "A → B"), {"states": {"B": HIT}}, "`A` was never entered", "ends in `B`"),
+        (("pairs of transitions", "A → B → C"), {"states": {"A": HIT}}, "`A` was", "in `B`"),
+        (("pairs of transitions", "A → B → C"), {"transitions": {"A → B": HIT}}, "`B`", "in `C`"),
+        (("pairs of transitions", "A → B → C"), {"transitions": WAYS}, "both were", "straight on"),
+        (("statements of f", "4"), {"statements of f": {"9": HIT}}, "nothing of", "enters `f`"),
+        (
+            ("statements of f", "9"),
+            {"statements of f": {"3": HIT, "4": HIT}},
+            "line 4 before it ran, and did not lead there",
+            "a run that goes on from line 4 to it",
+        ),
+        (("branches of f", "3 → 9"), {"statements of f": {"4": HIT}}, "3 never ran", "comes to it"),
+        (("branches of f", "3 → 9"), {"statements of f": {"3": HIT}}, "3 ran, and", "this way"),
+        (("`R` locations", "A"), {}, "no attempt was there", "leads an attempt there"),
+        (("`R` edges", "A → P"), {"`R` locations": {"A": HIT}}, "1 attempt was in A", "takes it"),
+        (("`R` edges", "A → P"), {"`R` locations": {"A": Hit(2)}}, "2 attempts were", "takes it"),
+        (("R", "passed"), {}, "it was never triggered", "triggered and met"),
+        (("R", "`p` decides"), {"R": {"triggered": Hit(2)}}, "triggered 2 times", "without `p`"),
+    ],
+)
+def test_why_it_is_open_and_what_would_close_it(goal, hits, why, needs):
+    hole = hole_of(goal, MODEL, hits)
+    assert why in hole.why
+    assert needs in hole.needs

@@ -2,9 +2,10 @@
 
 import asyncio
 import threading
+import time
 
 from rvmon import Verdict, loads
-from rvmon.live import Live, LiveTasks, SimulatedClock
+from rvmon.live import Driver, Live, LiveTasks, SimulatedClock
 
 SPEC = """
 spec s
@@ -25,6 +26,22 @@ def test_a_deadline_passes_in_real_time_without_samples():
     with Live(loads(SPEC), on_failure=lambda _: failed.set()) as live:
         live.offer({"a": True})
         assert failed.wait(LONG)
+
+
+def test_a_wall_clock_that_is_coarse_gives_each_report_an_instant_of_its_own(monkeypatch):
+    """What was offered, lost and found within one of its steps keeps its order."""
+    monkeypatch.setattr(time, "monotonic_ns", lambda: 7)
+    driver = Driver(loads(SPEC))
+    driver.offer({"a": True, "x": 0.5})
+    driver.offer({"a": True})
+    driver.lose(["x"])
+    driver.offer({"a": True})
+    driver.found(["x"])
+    driver.offer({"b": True, "x": 0.5})
+    (report,) = driver.close()[""]
+    answered = [one for one in report.attempts if one.requirement == "R2"]
+    assert [(one.triggered, one.decided) for one in answered] == [(0, 5), (1, 5), (3, 5)]
+    assert [one.first for one in report.health] == [2]
 
 
 def test_samples_of_many_threads_are_all_judged():
