@@ -184,6 +184,7 @@ def normal_form(expression: Expression, positive: bool = True) -> Expression:
                 op, normal_form(left, not positive), normal_form(right, positive)
             )
         case BinaryOperation(BinaryOp.EQ | BinaryOp.NE as op, left, right):
+            # `p == q` between conditions is "both or neither", `p != q` is "one of them".
             same = (op is BinaryOp.EQ) == positive
             return BinaryOperation(
                 BinaryOp.OR,

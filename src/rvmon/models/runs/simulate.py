@@ -94,6 +94,7 @@ def stretches(
         now += stay
         move = drawn[0]
         clocks = [clock + stay * rate for clock, rate in zip(clocks, rates, strict=True)]
+        # Rates with a fraction may take a clock a rounding beyond its invariant.
         for clock, bound in state.invariant:
             clocks[clock] = min(clocks[clock], _limit(bound))
         for clock, value in move.resets:
@@ -123,6 +124,7 @@ def _draw(
             weights = [prod(edge.edge.weight for edge in choice.move.edges) for choice in possible]
             if random.random() < sum(weights):
                 (one,) = random.choices(possible, weights)
+                # The random number breaks ties between equal delays without preference.
                 draws.append((one.delay(random, mean_waits[automaton]), random.random(), one.move))
     if not draws:
         return None

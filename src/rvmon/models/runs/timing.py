@@ -64,6 +64,8 @@ def timing_of(
     """
     dim = 1 if start is None else isqrt(len(start))
     size = len(steps) + dim
+    # Each strict bound on a path lacks one grid step; with more steps in a unit than bounds on the
+    # path no cycle can lose a whole unit.
     scale = rounds * size + 1
     found: list[list[Constraint]] = [[] for _ in range(len(steps) + 1)]
     reset_at: dict[int, tuple[int, float]] = {}
@@ -208,6 +210,7 @@ def make_run(
         for step, window, wait in zip(steps, windows(timing), earliest(timing), strict=True)
     )
     run = Run(_position(network, start), run_steps, ending, loop, timing)
+    # The plain rules, which share nothing with the search, have to accept each run that is shown.
     Rules(network).replay(run)
     return run
 

@@ -43,6 +43,8 @@ class ClockBounds:
         """Add the numbers of some comparisons."""
         for compare in compares:
             table = self.lower if compare.op in (ClockOp.GE, ClockOp.GT) else self.upper
+            # The bound may be an expression over variables: the search needs one number for all its
+            # values.
             highest = value_range(compare.bound, network)[1]
             table[compare.clock] = max(table.get(compare.clock, 0), highest)
 
@@ -79,6 +81,7 @@ def location_bounds(
         if _is_kept_back(edge, network):  # who is kept back, counts the other way round
             ClockBounds(own.upper, own.lower).note(edge.guard.clocks, network)
         resets.append({update.clock for update in edge.updates if isinstance(update, Reset)})
+    # A fixed point: numbers only grow, and each is one of finitely many.
     changed = True
     while changed:
         changed = False

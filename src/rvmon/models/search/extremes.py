@@ -114,9 +114,11 @@ class _Climb:
             stopped = self._meter.stopped
             remark = f"not decided: {stopped}" if stopped else "no state counts"
             return self._told(None, run, attained=False, exact=not stopped, remark=remark)
+        # From here on some run reaches `low`, and none is sought beyond `high`.
         low, high = floor(self._value(run)), self._farthest()
         proved, stride = self._term.clock is None or not self._largest, 1
         while low < high and not self._meter.stopped:
+            # Strides double, so that a value of n takes about 2 log n searches, and not n.
             probe = min(low + stride, high) - 1
             if self._grows(run):
                 remark = "grows without bound: time may pass for ever there"

@@ -160,6 +160,8 @@ class _Tableau:
         match first:
             case PathFormula(PathOp.FINALLY, body, _, left):
                 yield from self._cases([body, *rest], case)
+                # It must be met some day: a run that waits for ever is caught by the set of
+                # acceptance for it.
                 later = _Case(label, following | {first}, waiting | {first})
                 yield from self._cases([left, *rest], later)
             case PathFormula(PathOp.GLOBALLY, body, _, left):

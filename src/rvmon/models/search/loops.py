@@ -35,6 +35,8 @@ def time_passes(loop: Sequence[TimedStep], head: Zone, dim: int) -> bool:
     sure = surely_passes(loop)
     if sure is not None:
         return sure
+    # 2^doublings rounds are more than there are clocks: if the longest time still grows then, it
+    # grows for ever.
     doublings = dim.bit_length()
     rounds = 2 << doublings
     relation, scale = _one_round(loop, dim, rounds)

@@ -169,6 +169,8 @@ class Plan:
         for compare in compares:
             row = [compare.clock + 1, _OPS[compare.op]]
             match compare.bound:
+                # Most bounds are constants: the search compares with these directly, without a
+                # program.
                 case Constant(value) if 0 <= value <= LARGEST:
                     row += [-1, value]
                 case bound:

@@ -101,6 +101,7 @@ def seek(
     paths = _Paths(network, plan, sought)
 
     def counts(path: bytes, loop: int, head: bytes) -> int:
+        # Called from C for each loop found there: rarely, and it needs relations between rounds.
         steps = [step.timed for step in paths.walk(path)[1][loop:]]
         return time_passes(steps, _zone(array("q", head)), paths.dim)
 

@@ -292,6 +292,7 @@ def _staying(
         if run is not None or meter.stopped:
             return run
     sought = Sought(Seek.STAY if first is None else Seek.STAY_AFTER, first, inside)
+    # Prefer a run on which time diverges; only if there is none, one on which time stops counts.
     answer = seek(network, sought, meter, proper_only=True)
     if answer.run is None and not meter.stopped and answer.improper:
         answer = seek(network, sought, meter)
@@ -315,6 +316,8 @@ def _accepted(question: _Question, formula: Expression) -> Run | None:
     network, meter = question.network, question.meter
     sought = Sought(Seek.RUN, ways=ways_of(formula))
     run = seek(network, sought, meter).run
+    # Time stops on this run, which real systems cannot do; a run on which time passes convinces
+    # more.
     if run is not None and run.ending in (Ending.ZENO_LOOP, Ending.TIME_LOCK):
         better = seek(network, replace(sought, progress=True), meter).run
         return run if better is None else better
