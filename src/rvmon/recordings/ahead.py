@@ -36,6 +36,7 @@ def stretches(first: bytes, file: BinaryIO) -> Iterator[bytes]:
     decoder = getincrementaldecoder("utf-8")()
     tail, piece = b"", first
     while piece:
+        # Most texts are ASCII, which needs no decoder; a character may be split between two blocks.
         if decoder.getstate()[0] or not piece.isascii():
             decoder.decode(piece)
         is_last = len(piece) < places.BLOCK

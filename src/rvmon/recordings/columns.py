@@ -203,9 +203,13 @@ def _rounded(
     parts = values - whole
     found = np.rint(parts * float(scale))
     sizes = np.spacing(np.abs(values))
+    # Where neighbouring doubles are more than a tick apart, the shortest decimal that means this
+    # double is what the writer meant.
     if (sizes * scale > 1).any():
         found = np.where(sizes * scale > 1, _of_fewest_digits(parts, sizes / 2, scale), found)
     ticks = whole.astype(np.int64) * scale + found.astype(np.int64)
+    # Near the middle of two ticks the product in doubles may round to the wrong side: these few are
+    # worked out exactly.
     unsure = np.abs(np.abs(parts * scale - np.trunc(parts * scale)) - 0.5) < 1e-5
     for row in np.flatnonzero(unsure & (sizes * scale <= 1)):
         ticks[row] = ticks_of_stamp(float(values[row]), stamps)

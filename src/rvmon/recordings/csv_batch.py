@@ -158,6 +158,8 @@ class _Reader:
         ended, rows, at, end, count, odd, labels = found.counts
         lines += text.line
         fault = None
+        # Cells that C does not read (other notations, quotes) go the way of single rows, so there
+        # is one meaning.
         for row, place, start, stop in found.odd[:odd].tolist():
             try:
                 self._read_odd(_cell(source, start, stop), place, row, numbers, says)
@@ -178,6 +180,7 @@ class _Reader:
         if fault is not None:
             raise fault
         if rows:
+            # The next call makes room for as many rows as it will find, with a tenth to spare.
             self._row_bytes = (at - text.start) / rows
         if labels == len(found.labels) and labels < _MOST_LABELS:
             self._labels = 4 * labels

@@ -102,6 +102,8 @@ class Joined:
         number = 1
         heads = [head for head in map(_Head, self._files) if head.is_there]
         while heads:
+            # Up to here all files are read: rows of later instants may still come from the file
+            # whose part ends first.
             until = min(head.last for head in heads)
             before = [own for head in heads if (own := head.take_before(until)) is not None]
             count = sum(len(batch.times) for batch in before)

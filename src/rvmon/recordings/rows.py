@@ -128,6 +128,8 @@ class Rows:
                 times, count = batch.times, len(batch.times)
                 start = 0 if held is None else int(times.searchsorted(held.t, "right"))
                 stop = count
+                # Rows at the last instant of a batch stay behind: the next piece may begin with the
+                # same instant.
                 if count and not batch.is_last:
                     stop = max(start, int(times.searchsorted(times[-1])))
                 for sample in batch.rows(0, start):

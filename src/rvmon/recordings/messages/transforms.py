@@ -101,6 +101,7 @@ class WithTransforms(Messages):
             heard = {_take(transform, frames) for transform in content.transforms}
             for made, (outer, inner) in pairs.items():
                 way = _way(outer, inner, frames)
+                # A message about frames beside the way changes nothing, and is no update.
                 if way is not None and not heard.isdisjoint(way[1]):
                     yield made, t, _content(way[0])
 
