@@ -32,7 +32,7 @@ from tests.tools.forms import Compiler, Maker
 
 from rvmon.cdv.mutation.python_mutants import Mutant
 from rvmon.core import amalgamate
-from rvmon.monitor.planned import PlannedCore, planned_core
+from rvmon.monitor.packed_plan import PlannedCore, planned_core
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.trace.sample import Sample, Scalar, Value

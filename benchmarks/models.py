@@ -41,8 +41,8 @@ from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import load_network, loads_network
 from rvmon.models.network.network import Chance, Extremes, Mean, Network, Query, Simulation
 from rvmon.models.runs.statistics import sample, trajectories
+from rvmon.models.search.budget import Budget, Meter
 from rvmon.models.search.extremes import extremes
-from rvmon.models.search.meter import Budget, Meter
 from rvmon.models.search.verify import verify
 
 HERE = Path(__file__).parent

@@ -36,8 +36,8 @@ from rvmon.coverage.monitor import Bins
 from rvmon.errors import RvmonError
 from rvmon.logic.plan import Plan
 from rvmon.monitor.compiled_spec import compile_spec
-from rvmon.monitor.planned import planned_core
-from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.packed_plan import planned_core
+from rvmon.monitor.requirement_plans import plan_alone
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 

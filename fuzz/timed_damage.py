@@ -9,7 +9,7 @@ from random import Random
 
 from rvmon.errors import ModelError
 from rvmon.models.language.load import load_network, loads_network
-from rvmon.models.search.meter import Budget
+from rvmon.models.search.budget import Budget
 from rvmon.models.search.verify import verify
 from rvmon.models.uppaal_xml import network_dot, uppaal_xml
 

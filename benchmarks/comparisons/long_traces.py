@@ -33,9 +33,9 @@ from rvmon.language.checked.specification import (
     Type,
 )
 from rvmon.language.print import format_formula
+from rvmon.logic.alphabet import Alphabet, alphabet_of
 from rvmon.logic.automaton import PASSED, Token
 from rvmon.logic.formula import Factory
-from rvmon.logic.letters import Alphabet, alphabet_of
 from rvmon.logic.lower import lower
 from rvmon.logic.state_formula import FALSE, TRUE, Elapsed, State, StateOp
 from rvmon.testing.generate import BOOLS

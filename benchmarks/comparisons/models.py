@@ -24,9 +24,9 @@ from rvmon.models.language.load import loads_network
 from rvmon.models.network.expressions import UnaryOp, UnaryOperation
 from rvmon.models.network.guards import compares_of, is_linear
 from rvmon.models.network.network import Asked, LeadsToFormula, Network
-from rvmon.models.runs.concrete import Rules
+from rvmon.models.runs.exact_times import Rules
 from rvmon.models.runs.run import Ending
-from rvmon.models.search.meter import Policy
+from rvmon.models.search.budget import Policy
 from rvmon.models.search.verify import verify
 from rvmon.models.uppaal_xml import uppaal_xml
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from bisect import bisect_right
 
 from rvmon.errors import RvmonError
+from rvmon.logic.alphabet import Alphabet, holds
 from rvmon.logic.automaton import NOW, Location, Token, location_of, normalise
 from rvmon.logic.formula import Literal, Temporal
-from rvmon.logic.letters import Alphabet, holds
 from rvmon.logic.progress import after, step, value
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClausesError
 

@@ -26,7 +26,7 @@ from rvmon.models.network.expressions import (
 )
 from rvmon.models.network.guards import is_linear, parts_of
 from rvmon.models.network.network import Network
-from rvmon.models.runs.concrete import Rules, initial_configuration
+from rvmon.models.runs.exact_times import Rules, initial_configuration
 from rvmon.models.runs.run import Run
 
 _Node = tuple[Region, frozenset[PathFormula]]

@@ -21,11 +21,11 @@ from tests.tools.build import p, requirement, start
 from rvmon.language.checked.formula import Binary, Formula, Unary
 from rvmon.language.checked.specification import Requirement
 from rvmon.language.print import format_formula
+from rvmon.logic.alphabet import alphabet_of
 from rvmon.logic.automaton import PASSED, Automaton
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
 from rvmon.logic.forecast import Forecaster
 from rvmon.logic.formula import Factory
-from rvmon.logic.letters import alphabet_of
 from rvmon.logic.lower import lower
 from rvmon.logic.reduce import reduce
 from rvmon.monitor.obligation_words import Words

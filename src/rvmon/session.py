@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rvmon.language.checked.specification import CheckedSpec, Requirement
     from rvmon.monitor.compiled_spec import CompiledSpec
     from rvmon.monitor.monitor import Monitor
-    from rvmon.monitor.planned import PlannedCore
+    from rvmon.monitor.packed_plan import PlannedCore
     from rvmon.monitor.robustness import Margins, RobustnessMonitor
     from rvmon.recordings.source import Reading, ReadingArguments, SchemaArguments, Source
     from rvmon.trace.sample import Recording
@@ -257,7 +257,7 @@ class Spec:
 
     def planned(self, only: Iterable[str] | None = None) -> PlannedCore:
         """The packed plan of some requirements, with its tables; made once."""
-        from rvmon.monitor.planned import planned_core
+        from rvmon.monitor.packed_plan import planned_core
 
         return planned_core(self._compiled, requirements_asked(self.checked, only))
 

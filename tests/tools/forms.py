@@ -13,7 +13,7 @@ from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
 from rvmon.monitor.monitor import Monitor, build_monitor, restore
-from rvmon.monitor.planned import PlannedCore, planned_core
+from rvmon.monitor.packed_plan import PlannedCore, planned_core
 from rvmon.monitor.records import report_of_run
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Health, HealthKind, Sample, Value

@@ -10,7 +10,7 @@ from typing import Any
 
 from rvmon import native
 from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.monitor.planned import PlannedCore, planned_core
+from rvmon.monitor.packed_plan import PlannedCore, planned_core
 from rvmon.monitor.records import report_of_run
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample

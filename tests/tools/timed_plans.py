@@ -17,9 +17,9 @@ from rvmon.models.network.expressions import (
 )
 from rvmon.models.network.guards import normal_form
 from rvmon.models.network.network import Asked, LeadsToFormula, Network
-from rvmon.models.search.linear import ways_of
-from rvmon.models.search.lowered import Plan, Seek, Sought
-from rvmon.models.search.meter import Policy
+from rvmon.models.search.budget import Policy
+from rvmon.models.search.ltl import ways_of
+from rvmon.models.search.search_plan import Plan, Seek, Sought
 from rvmon.models.search.watcher import Watcher
 from tests.tools.timed_generate import random_model
 

@@ -1,7 +1,7 @@
 """A slow and obvious decision procedure for small networks of timed automata: the region graph.
 
 Every question is decided by walking through all regions, one representative valuation each, with
-the plain rules of `rvmon.models.runs.concrete`. It shares no zone, no search and no abstraction
+the plain rules of `rvmon.models.runs.exact_times`. It shares no zone, no search and no abstraction
 with the model checker, and so can say whether that is right.
 
 Source: Alur and Dill, A Theory of Timed Automata, 1994, section 4.3.
@@ -33,7 +33,7 @@ from rvmon.models.network.guards import (
     is_discrete,
 )
 from rvmon.models.network.network import Network
-from rvmon.models.runs.concrete import (
+from rvmon.models.runs.exact_times import (
     Configuration,
     InvalidRunError,
     Rules,

@@ -7,13 +7,13 @@ from fractions import Fraction
 from rvmon.models.network.expressions import Expression, PathFormula, PathOp
 from rvmon.models.network.guards import has_paths, normal_form, speaks_of_deadlock, with_deadlock
 from rvmon.models.network.network import LeadsToFormula, Network
-from rvmon.models.runs.concrete import (
+from rvmon.models.runs.exact_times import (
     Configuration,
     Rules,
     initial_configuration,
 )
 from rvmon.models.runs.run import Run
-from rvmon.models.search.meter import Outcome
+from rvmon.models.search.budget import Outcome
 from tests.tools.timed_regions import RegionGraph, truth_of
 
 Instants = list[tuple[Fraction, Configuration]]

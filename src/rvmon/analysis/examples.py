@@ -22,9 +22,9 @@ from rvmon.language.checked.formula import Amount, Compare, CompareOp, windows_i
 from rvmon.language.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec, Kept
-from rvmon.monitor.planned import planned_as
-from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.packed_plan import planned_as
 from rvmon.monitor.records import report_of_run
+from rvmon.monitor.requirement_plans import plan_alone
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT
 from rvmon.verdicts import Verdict

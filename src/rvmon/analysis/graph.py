@@ -11,9 +11,9 @@ from rvmon.analysis.combinations import combinations_of
 from rvmon.language.checked.formula import Binary, BinaryOp, Constant
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.language.print import format_duration, format_formula
+from rvmon.logic.alphabet import Alphabet
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
 from rvmon.logic.formula import Core, Literal, Sense
-from rvmon.logic.letters import Alphabet
 from rvmon.logic.state_formula import FALSE, TRUE, Shown, State
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.texts import quoted

@@ -28,7 +28,7 @@ from rvmon.language.checked.specification import (
 from rvmon.language.checked.window_measures import Dimension
 from rvmon.language.print import format_formula
 from rvmon.monitor.compiled_spec import compile_spec
-from rvmon.monitor.planned import planned_core
+from rvmon.monitor.packed_plan import planned_core
 from rvmon.recordings.source import Source
 from rvmon.trace.sample import Scalar, Trace
 

@@ -37,7 +37,7 @@ from rvmon.logic.formula import horizon
 from rvmon.logic.state_formula import StateOp
 from rvmon.logic.state_graph import graph_of
 from rvmon.monitor.compile import CompiledRequirement
-from rvmon.monitor.plans import planned_rule
+from rvmon.monitor.requirement_plans import planned_rule
 from rvmon.texts import counted, listed
 
 _PROBED = {

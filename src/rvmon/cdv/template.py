@@ -166,7 +166,7 @@ def templates_of(
     Raises:
         TestError: a query has no witness.
     """
-    from rvmon.models.search.meter import Policy
+    from rvmon.models.search.budget import Policy
     from rvmon.models.search.verify import verify
 
     found = []

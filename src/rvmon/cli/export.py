@@ -91,7 +91,7 @@ def _model_text(arguments: argparse.Namespace) -> str:
 def _write_c(spec: Spec, ids: Sequence[str] | None, output: str | None) -> None:
     from rvmon.core.c_files import c_files
     from rvmon.monitor.compiled_spec import compile_spec
-    from rvmon.monitor.plans import plan_alone
+    from rvmon.monitor.requirement_plans import plan_alone
 
     if output is None:
         raise RvmonError("C is several files: name a folder with -o DIR")

@@ -13,7 +13,7 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.trace.schema import READINGS_OF_NAN
 
 if TYPE_CHECKING:
-    from rvmon.models.search.meter import Budget
+    from rvmon.models.search.budget import Budget
     from rvmon.session import Spec
 
 
@@ -165,7 +165,7 @@ def add_budget(parser: argparse.ArgumentParser) -> None:
 
 def budget_of(arguments: argparse.Namespace) -> Budget:
     """The budget of a search."""
-    from rvmon.models.search.meter import Budget
+    from rvmon.models.search.budget import Budget
 
     return Budget(arguments.max_states, arguments.max_seconds, arguments.max_memory)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rvmon.core.sections import Section, Sections
+from rvmon.logic.alphabet import Alphabet, LetterClasses, LetterDiagram, Tree
 from rvmon.logic.automaton import Automaton, end_clauses
-from rvmon.logic.letters import Alphabet, LetterClasses, LetterDiagram, Tree
 
 
 class Automata:

@@ -22,10 +22,10 @@ from rvmon.language.checked.formula import (
 from rvmon.language.checked.formula import Literal as Number
 from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.language.checked.window_measures import Dimension
-from rvmon.logic.chain import Chain, reach_of
 from rvmon.logic.formula import Constant, Literal, Sense
 from rvmon.logic.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, State, events_of
+from rvmon.logic.window_chains import Chain, reach_of
 from rvmon.trace.schema import Kind
 from rvmon.units import parse_unit
 

@@ -18,11 +18,11 @@ from rvmon.core.sections import Section, Sections
 from rvmon.language.checked.formula import NowValue
 from rvmon.language.checked.specification import EndPolicy, Mode
 from rvmon.logic.automaton import Automaton
-from rvmon.logic.chain import Chain, chain_of
 from rvmon.logic.network_plan import NetworkPlan, plan_of
 from rvmon.logic.plan import Plan, PlannedRule
 from rvmon.logic.state_formula import State, StateOp
 from rvmon.logic.state_graph import Reach, begins_with_attempt, graph_of, reach_of, varying
+from rvmon.logic.window_chains import Chain, chain_of
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Decision
 

@@ -11,8 +11,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import permutations
 
+from rvmon.logic.alphabet import Alphabet, LetterClasses
 from rvmon.logic.formula import Release, Until
-from rvmon.logic.letters import Alphabet, LetterClasses
 from rvmon.logic.residual import NO_CLOCK, Residual
 
 FAILED, PASSED = 0, 1

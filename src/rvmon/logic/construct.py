@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
+from rvmon.logic.alphabet import Alphabet, Diagrams, Node, TooManyClassesError
 from rvmon.logic.automaton import NOW, Automaton, Location, layout_of, location_of, normalise
 from rvmon.logic.formula import Literal, Temporal
-from rvmon.logic.letters import Alphabet, Diagrams, Node, TooManyClassesError
 from rvmon.logic.progress import after, holds_at_end, step, value
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClausesError
 

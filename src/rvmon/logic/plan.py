@@ -16,9 +16,9 @@ from rvmon.language.checked.formula import (
     WindowValue,
 )
 from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.logic.alphabet import Alphabet
 from rvmon.logic.automaton import Automaton
 from rvmon.logic.formula import Core, literals
-from rvmon.logic.letters import Alphabet
 from rvmon.logic.state_formula import State, Unborn, inputs_of, operands
 from rvmon.logic.state_graph import Graph, graph_of
 from rvmon.trace.sample import Scalar

@@ -10,8 +10,8 @@ from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
+from rvmon.logic.alphabet import LetterClasses, LetterDiagram
 from rvmon.logic.automaton import PASSED, Automaton, Location, end_clauses, layout_of
-from rvmon.logic.letters import LetterClasses, LetterDiagram
 from rvmon.logic.residual import Residual
 
 Label = Callable[[Residual], Hashable]

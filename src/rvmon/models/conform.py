@@ -34,11 +34,11 @@ from rvmon.models.network.guards import together
 from rvmon.models.network.network import Network, check_clocks
 from rvmon.models.network.refine import finer
 from rvmon.models.network.rules import model_error
+from rvmon.models.runs.moves import check_start
 from rvmon.models.runs.run import Action, Position, Run
-from rvmon.models.runs.space import check_start
-from rvmon.models.search.lowered import Seek, Sought
-from rvmon.models.search.meter import UNLIMITED, Budget, Meter
-from rvmon.models.search.native import seek
+from rvmon.models.search.budget import UNLIMITED, Budget, Meter
+from rvmon.models.search.native_search import seek
+from rvmon.models.search.search_plan import Seek, Sought
 from rvmon.models.search.watcher import Watcher
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import TICKS_PER_UNIT

@@ -14,8 +14,8 @@ from rvmon.models.network.network import Network, Query, Simulation
 from rvmon.models.requirements.observe import Observation
 from rvmon.models.runs.run import Action, Ending, Position, Run, RunStep, Window
 from rvmon.models.runs.statistics import ERROR, Sampled, Trajectory
+from rvmon.models.search.budget import Outcome
 from rvmon.models.search.extremes import Extreme
-from rvmon.models.search.meter import Outcome
 from rvmon.models.search.suite import Suite, item_text
 from rvmon.trace.time import TICKS_PER_SECOND
 

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple, assert_never
 
+from rvmon.logic.alphabet import TruthValue, holds
 from rvmon.logic.formula import (
     And,
     Constant,
@@ -22,7 +23,6 @@ from rvmon.logic.formula import (
     Since,
     Until,
 )
-from rvmon.logic.letters import TruthValue, holds
 from rvmon.logic.progress import Phase, after, instance, phase, step
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual
 from rvmon.logic.state_formula import FALSE, TRUE, State

@@ -8,20 +8,20 @@ from functools import cached_property, partial
 from rvmon.errors import RvmonError
 from rvmon.language.checked.formula import Compare
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
+from rvmon.logic.alphabet import Alphabet, alphabet_of
 from rvmon.logic.automaton import Automaton, moves_in_runs
-from rvmon.logic.chain import reach_of
+from rvmon.logic.automaton_shapes import Shapes
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
 from rvmon.logic.forecast import Forecaster
 from rvmon.logic.formula import Core, Factory
-from rvmon.logic.letters import Alphabet, alphabet_of
 from rvmon.logic.lower import Obligation, UnmonitorableError, lower
 from rvmon.logic.network_plan import NetworkPlan, plan_of
 from rvmon.logic.normal_form import expanded
 from rvmon.logic.reduce import reduce
 from rvmon.logic.residual import Residual
-from rvmon.logic.shapes import Shapes
 from rvmon.logic.state_formula import State, events_of, inputs_of
 from rvmon.logic.state_graph import graph_of, leaf_count, leaf_texts
+from rvmon.logic.window_chains import reach_of
 from rvmon.monitor.obligation_words import Words
 
 MOST_SEEN = 19

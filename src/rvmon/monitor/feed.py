@@ -11,7 +11,7 @@ from rvmon.errors import SnapshotError, TraceError, UnknownNameError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.monitor.health import Losses, of_intake
 from rvmon.monitor.intake import Intake, Turn, Validator, refuse_earlier
-from rvmon.monitor.planned import PlannedCore
+from rvmon.monitor.packed_plan import PlannedCore
 from rvmon.trace.sample import Health, Sample, Value
 from rvmon.trace.time import ticks_of_seconds
 

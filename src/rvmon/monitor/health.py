@@ -12,7 +12,7 @@ from rvmon import native
 from rvmon.language.checked.names_read import sources_asked
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.monitor.intake import MOST_HELD, Intake, Turn
-from rvmon.monitor.planned import PlannedCore
+from rvmon.monitor.packed_plan import PlannedCore
 from rvmon.trace.sample import Health, HealthKind, Value, payloads_of
 from rvmon.trace.time import TIME_LIMIT, format_instant, whole_ticks
 

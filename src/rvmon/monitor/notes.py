@@ -29,7 +29,7 @@ from rvmon.monitor.explanation import (
     why_settled,
 )
 from rvmon.monitor.network_reasons import explained_by_network
-from rvmon.monitor.replayed import Letters, at_decision, at_moment
+from rvmon.monitor.network_replay import Letters, at_decision, at_moment
 from rvmon.trace.sample import HealthKind
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt, Decision

@@ -12,7 +12,7 @@ from rvmon.errors import TimeOrderError, TraceError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.monitor.health import Findings, Losses
 from rvmon.monitor.intake import Turn, Validator
-from rvmon.monitor.planned import PlannedCore
+from rvmon.monitor.packed_plan import PlannedCore
 from rvmon.monitor.records import report_of_run
 from rvmon.recordings.batch import NO_UPDATE, YES
 from rvmon.recordings.source import Source

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rvmon import native
-from rvmon.monitor.planned import DECISIONS, VERDICTS, PlannedCore
+from rvmon.monitor.packed_plan import DECISIONS, VERDICTS, PlannedCore
 from rvmon.trace.sample import Health
 from rvmon.verdicts import Verdict, fold
 from rvmon.verdicts.attempt import Attempt, Decision, LazyAttempts

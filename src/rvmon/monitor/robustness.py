@@ -10,7 +10,7 @@ from rvmon.errors import TraceError
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.feed import FedMonitor, Feed
 from rvmon.monitor.listeners import OneCall
-from rvmon.monitor.planned import planned_core
+from rvmon.monitor.packed_plan import planned_core
 from rvmon.native import Bounds, Figure
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdicts import Verdict

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon import native
 from rvmon.errors import SnapshotError
 from rvmon.language.checked.serialise import identity_text
-from rvmon.monitor.planned import PlannedCore
+from rvmon.monitor.packed_plan import PlannedCore
 from rvmon.verdicts import LAW
 
 if TYPE_CHECKING:

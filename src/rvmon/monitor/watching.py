@@ -12,7 +12,7 @@ from rvmon.logic.formula import Core
 from rvmon.logic.network_plan import plan_of_all
 from rvmon.logic.plan import plan_of_truths
 from rvmon.monitor.compiled_spec import Kept
-from rvmon.monitor.planned import planned_as
+from rvmon.monitor.packed_plan import planned_as
 from rvmon.recordings.source import Source
 from rvmon.trace.sample import Sample, Scalar, Trace
 

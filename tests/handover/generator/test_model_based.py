@@ -19,7 +19,7 @@ from handover.generator.model_based import (
 from handover.model import handover_network
 from rvmon.cdv import TestError
 from rvmon.cdv.template import Wait, choose_times, load_template, project, save_template
-from rvmon.models.search.meter import Policy
+from rvmon.models.search.budget import Policy
 from rvmon.models.search.verify import verify
 
 

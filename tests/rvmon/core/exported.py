@@ -15,9 +15,9 @@ import numpy as np
 
 from rvmon.core.c_files import core_files, plan_files, prefix_of
 from rvmon.monitor.compiled_spec import compile_spec
-from rvmon.monitor.planned import PlannedCore, planned_core
-from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.packed_plan import PlannedCore, planned_core
 from rvmon.monitor.records import NUMBER, RECORD
+from rvmon.monitor.requirement_plans import plan_alone
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind

@@ -14,7 +14,7 @@ from tests.tools.forms import Compiler, column_of
 
 from rvmon import native
 from rvmon.language.checked.specification import CheckedSpec
-from rvmon.monitor.planned import DECISIONS, PlannedCore, planned_core
+from rvmon.monitor.packed_plan import DECISIONS, PlannedCore, planned_core
 from rvmon.monitor.records import NUMBER, RECORD
 from rvmon.recordings.coalesce import Conflicts, coalesce, updates_in
 from rvmon.testing.generate.trace import TraceProfile, random_trace

@@ -15,7 +15,7 @@ from rvmon.core.c_files import FEWEST, c_files, identifiers
 from rvmon.core.plan import pack
 from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import compile_spec
-from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.requirement_plans import plan_alone
 from rvmon.native import memory_of
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile

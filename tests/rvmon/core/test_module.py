@@ -13,7 +13,7 @@ import pytest
 
 import rvmon
 from rvmon.monitor.compiled_spec import compile_spec
-from rvmon.monitor.planned import PlannedCore, planned_core
+from rvmon.monitor.packed_plan import PlannedCore, planned_core
 from rvmon.native import Monitor as Run
 
 SPEC = """

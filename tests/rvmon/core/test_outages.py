@@ -14,7 +14,7 @@ import rvmon
 from rvmon import native
 from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import CompiledSpec, compile_spec
-from rvmon.monitor.planned import PlannedCore, planned_core
+from rvmon.monitor.packed_plan import PlannedCore, planned_core
 from rvmon.monitor.records import report_of_run
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile

@@ -35,8 +35,8 @@ from rvmon.core.sections import Packed, Section
 from rvmon.errors import RvmonError
 from rvmon.logic.plan import Plan as Planned
 from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.monitor.planned import planned_core
-from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.packed_plan import planned_core
+from rvmon.monitor.requirement_plans import plan_alone
 from rvmon.testing.generate.spec import Profile, random_spec
 
 ROOT = Path(__file__).parents[3]
@@ -123,7 +123,7 @@ def test_packing_is_deterministic():
     script = (
         "import hashlib, rvmon\n"
         "from rvmon.core.plan import pack\n"
-        "from rvmon.monitor.plans import plan_alone\n"
+        "from rvmon.monitor.requirement_plans import plan_alone\n"
         f"spec = rvmon.load({str(ROOT / 'specs' / 'handover_truth.rv')!r})\n"
         "print(hashlib.sha256(pack(plan_alone(spec._compiled)).data).hexdigest())\n"
     )

@@ -17,7 +17,7 @@ from tests.tools.special_specs import random_chain
 
 from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import compile_spec
-from rvmon.monitor.planned import PlannedCore
+from rvmon.monitor.packed_plan import PlannedCore
 from rvmon.monitor.records import report_of_run
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace

@@ -19,8 +19,8 @@ from rvmon.logic.network_plan import plan_of_all
 from rvmon.logic.normal_form import Lowering
 from rvmon.logic.plan import WatchGroup
 from rvmon.monitor.compiled_spec import Kept, compile_spec
-from rvmon.monitor.planned import planned_as
-from rvmon.monitor.plans import plan_alone
+from rvmon.monitor.packed_plan import planned_as
+from rvmon.monitor.requirement_plans import plan_alone
 from rvmon.monitor.watching import known_truths
 from rvmon.testing.generate.spec import Profile
 from rvmon.trace.sample import Sample

@@ -2,8 +2,8 @@
 
 from tests.tools.build import always, eventually, no, p, q, requirement, two
 
+from rvmon.logic.alphabet import alphabet_of, holds
 from rvmon.logic.formula import Factory, Sense
-from rvmon.logic.letters import alphabet_of, holds
 from rvmon.logic.lower import lower
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN
 

@@ -4,9 +4,9 @@ import pytest
 from tests.tools.build import always, eventually, no, p, q, r, requirement, two
 
 from rvmon.language.checked.formula import SignalAtom
+from rvmon.logic.alphabet import LetterDiagram, alphabet_of
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
 from rvmon.logic.formula import Factory
-from rvmon.logic.letters import LetterDiagram, alphabet_of
 from rvmon.logic.lower import lower
 from rvmon.logic.reduce import reduce
 

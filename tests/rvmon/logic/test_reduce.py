@@ -6,10 +6,10 @@ from hypothesis import strategies as st
 from tests.tools.build import always, eventually, false, no, p, q, r, requirement, two
 from tests.tools.stepped import TableMachine
 
+from rvmon.logic.alphabet import alphabet_of
 from rvmon.logic.automaton import PASSED, Automaton
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
 from rvmon.logic.formula import Factory
-from rvmon.logic.letters import alphabet_of
 from rvmon.logic.lower import lower
 from rvmon.logic.reduce import reduce
 from rvmon.logic.state_formula import FALSE, UNKNOWN

@@ -8,7 +8,7 @@ from tests.tools.timed_generate import random_model
 from rvmon.errors import ModelError
 from rvmon.models.conform import Allowed, Recorded, conform
 from rvmon.models.language.load import loads_network
-from rvmon.models.runs.concrete import Rules
+from rvmon.models.runs.exact_times import Rules
 from rvmon.models.search.suite import Criterion, build_suite
 from rvmon.trace.time import TICKS_PER_SECOND
 

@@ -82,7 +82,9 @@ def test_what_coverage_judges_is_kept_apart(folder, monkeypatch):
     rvmon.loads(TEXT).evaluate(SAMPLES)
     assert len(kept_in(folder)) == 3
     planned = []
-    monkeypatch.setattr("rvmon.monitor.plans.plan_alone", lambda *_, **__: planned.append(1))
+    monkeypatch.setattr(
+        "rvmon.monitor.requirement_plans.plan_alone", lambda *_, **__: planned.append(1)
+    )
     assert rvmon.loads(TEXT).coverage(SAMPLES) == first
     assert {"R", "S", "`R` edges"} <= first.keys()
     assert not planned

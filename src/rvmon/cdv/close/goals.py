@@ -160,7 +160,7 @@ class Witnesses:
 
     @cached_property
     def _suite(self) -> Suite:
-        from rvmon.models.search.meter import Budget
+        from rvmon.models.search.budget import Budget
         from rvmon.models.search.suite import Criterion, build_suite
 
         return build_suite(self._network, Criterion.EDGES, budget=Budget(states=MOST_STATES))
@@ -258,7 +258,7 @@ class Witnesses:
         return None if suite.stopped else Proof(f"the edge {name}")
 
     def _asked(self, query: str) -> Witness | Proof | None:
-        from rvmon.models.search.meter import Budget
+        from rvmon.models.search.budget import Budget
         from rvmon.models.search.verify import verify
 
         outcome = verify(self._network, query, budget=Budget(states=MOST_STATES))

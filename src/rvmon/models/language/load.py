@@ -9,7 +9,7 @@ from pathlib import Path
 from rvmon.diagnostics import Source
 from rvmon.models.language.elaborate import elaborate
 from rvmon.models.language.parse import parse_document
-from rvmon.models.language.uppaal import read_uppaal
+from rvmon.models.language.uppaal_reader import read_uppaal
 from rvmon.models.network.network import Network
 from rvmon.models.network.rules import model_error
 from rvmon.texts import cannot_read, text_of_file

@@ -10,7 +10,6 @@ from rvmon.diagnostics import Span
 from rvmon.errors import ModelError
 from rvmon.models.language import operations, syntax
 from rvmon.models.language.diagonals import Diagonals, difference, terms_of
-from rvmon.models.language.foreign import refuse_foreign, type_reason
 from rvmon.models.language.symbols import (
     INT16,
     INT32,
@@ -23,6 +22,7 @@ from rvmon.models.language.symbols import (
     value_of,
     values_of,
 )
+from rvmon.models.language.unsupported import refuse_foreign, type_reason
 from rvmon.models.network.evaluate import evaluator
 from rvmon.models.network.expressions import (
     MAX_TIME,

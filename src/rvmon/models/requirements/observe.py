@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+from rvmon.logic.alphabet import alphabet_of
 from rvmon.logic.construct import Budget as TableBudget
 from rvmon.logic.construct import DoesNotCloseError, construct
 from rvmon.logic.formula import (
@@ -18,7 +19,6 @@ from rvmon.logic.formula import (
     looks_back,
     nodes_of,
 )
-from rvmon.logic.letters import alphabet_of
 from rvmon.logic.lower import Obligation, lower
 from rvmon.models.conform import labels_of
 from rvmon.models.language.elaborate import signal_on
@@ -37,11 +37,11 @@ from rvmon.models.network.rules import model_error
 from rvmon.models.network.scope import PlacedSymbol
 from rvmon.models.requirements.observer import Observed
 from rvmon.models.requirements.propositions import NotExpressibleError
+from rvmon.models.runs.moves import check_start
 from rvmon.models.runs.run import Run
-from rvmon.models.runs.space import check_start
-from rvmon.models.search.lowered import Seek, Sought
-from rvmon.models.search.meter import UNLIMITED, Budget, Meter, Statistics, Watch
-from rvmon.models.search.native import seek
+from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Statistics, Watch
+from rvmon.models.search.native_search import seek
+from rvmon.models.search.search_plan import Seek, Sought
 from rvmon.trace.time import TICKS_PER_UNIT
 
 MET_IN_THE_END = "none stays open for ever while time passes on"

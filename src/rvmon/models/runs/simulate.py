@@ -26,8 +26,8 @@ from rvmon.models.network.expressions import Expression
 from rvmon.models.network.fractions import GRID, number_in
 from rvmon.models.network.network import Location, Network
 from rvmon.models.network.rules import model_error
+from rvmon.models.runs.moves import Move, Space, State, pieces_of
 from rvmon.models.runs.run import Atom
-from rvmon.models.runs.space import Move, Space, State, pieces_of
 
 CHECK_EVERY = 256
 """Moves between two looks at the clock."""

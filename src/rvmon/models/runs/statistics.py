@@ -25,8 +25,8 @@ from rvmon.models.network.fractions import GRID, number_in
 from rvmon.models.network.guards import is_plain, normal_form
 from rvmon.models.network.network import Chance, Mean, Network, Query, Simulation
 from rvmon.models.network.rules import model_error
+from rvmon.models.runs.moves import Space, State, check_start
 from rvmon.models.runs.simulate import CutShortError, stretches, trial_of
-from rvmon.models.runs.space import Space, State, check_start
 
 RUNS = 1_000
 """Runs of an estimate that does not say how many."""

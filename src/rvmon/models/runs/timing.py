@@ -18,7 +18,8 @@ from itertools import pairwise, product
 from math import ceil, inf, isqrt
 
 from rvmon.models.network.network import Network
-from rvmon.models.runs.concrete import Rules
+from rvmon.models.runs.exact_times import Rules
+from rvmon.models.runs.moves import Move, State
 from rvmon.models.runs.run import (
     Action,
     Atom,
@@ -31,7 +32,6 @@ from rvmon.models.runs.run import (
     Window,
     Zone,
 )
-from rvmon.models.runs.space import Move, State
 
 
 @dataclass(frozen=True, slots=True)

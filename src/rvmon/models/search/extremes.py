@@ -23,13 +23,13 @@ from rvmon.models.network.expressions import (
 from rvmon.models.network.guards import compares_of, is_discrete, normal_form
 from rvmon.models.network.network import Extremes, Network, Query, Term, check_clocks
 from rvmon.models.network.rules import model_error
-from rvmon.models.runs.concrete import Rules
+from rvmon.models.runs.exact_times import Rules
+from rvmon.models.runs.moves import Space, check_start
 from rvmon.models.runs.run import Run
-from rvmon.models.runs.space import Space, check_start
+from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Statistics, Watch
 from rvmon.models.search.clock_bounds import value_range
-from rvmon.models.search.lowered import Seek, Sought
-from rvmon.models.search.meter import UNLIMITED, Budget, Meter, Statistics, Watch
-from rvmon.models.search.native import seek
+from rvmon.models.search.native_search import seek
+from rvmon.models.search.search_plan import Seek, Sought
 
 FARTHEST = 1_000_000
 """A clock that goes beyond so many units is said to do so; a larger bound is not looked for."""

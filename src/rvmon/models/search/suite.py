@@ -27,11 +27,11 @@ from rvmon.models.network.expressions import (
     VariableValue,
 )
 from rvmon.models.network.network import Network, check_clocks
+from rvmon.models.runs.moves import check_start
 from rvmon.models.runs.run import Run
-from rvmon.models.runs.space import check_start
-from rvmon.models.search.lowered import Seek, Sought
-from rvmon.models.search.meter import UNLIMITED, Budget, Meter, Statistics, Watch
-from rvmon.models.search.native import seek
+from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Statistics, Watch
+from rvmon.models.search.native_search import seek
+from rvmon.models.search.search_plan import Seek, Sought
 
 
 class Criterion(StrEnum):

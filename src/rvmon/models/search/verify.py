@@ -37,12 +37,12 @@ from rvmon.models.network.network import (
     check_clocks,
 )
 from rvmon.models.network.rules import model_error
+from rvmon.models.runs.moves import check_start
 from rvmon.models.runs.run import Ending, Run
-from rvmon.models.runs.space import check_start
-from rvmon.models.search.linear import check_linear, ways_of
-from rvmon.models.search.lowered import Seek, Sought
-from rvmon.models.search.meter import UNLIMITED, Budget, Meter, Outcome, Policy, Watch
-from rvmon.models.search.native import seek
+from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Outcome, Policy, Watch
+from rvmon.models.search.ltl import check_linear, ways_of
+from rvmon.models.search.native_search import seek
+from rvmon.models.search.search_plan import Seek, Sought
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ from tests.tools.timed_regions import RegionGraph, TooManyRegionsError
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on, signal_on
 from rvmon.models.language.load import loads_network
-from rvmon.models.runs.concrete import Configuration, Rules
+from rvmon.models.runs.exact_times import Configuration, Rules
 from rvmon.models.runs.statistics import sample
 from rvmon.models.search.verify import verify
 

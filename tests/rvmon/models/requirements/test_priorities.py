@@ -5,7 +5,7 @@ import pytest
 import rvmon
 from rvmon.models.language.load import loads_network
 from rvmon.models.requirements.observe import observe
-from rvmon.models.runs.concrete import InvalidRunError, Rules
+from rvmon.models.runs.exact_times import InvalidRunError, Rules
 
 MODEL = """
 unit 1 s

@@ -7,7 +7,7 @@ import pytest
 from tests.tools.timed_generate import random_model
 
 from rvmon.models.language.load import load_network, loads_network
-from rvmon.models.search.meter import Budget, Policy, Progress
+from rvmon.models.search.budget import Budget, Policy, Progress
 from rvmon.models.search.verify import verify
 
 MODEL = Path(__file__).parents[4] / "examples" / "models" / "train_gate.ta"

@@ -7,7 +7,7 @@ from tests.tools.timed_regions import TooManyRegionsError
 from tests.tools.timed_runs import shows
 
 from rvmon.models.language.load import loads_network
-from rvmon.models.search.meter import Policy
+from rvmon.models.search.budget import Policy
 from rvmon.models.search.verify import verify
 
 pytestmark = pytest.mark.law

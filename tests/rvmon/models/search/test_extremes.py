@@ -12,9 +12,9 @@ from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import loads_network
 from rvmon.models.network.expressions import ClockCompare, ClockOp, Constant
-from rvmon.models.runs.concrete import Rules
+from rvmon.models.runs.exact_times import Rules
+from rvmon.models.search.budget import Budget
 from rvmon.models.search.extremes import FARTHEST, extremes
-from rvmon.models.search.meter import Budget
 from rvmon.models.search.verify import verify
 
 LAMP = """

@@ -6,7 +6,7 @@ import pytest
 from tests.tools.timed_runs import shows
 
 from rvmon.models.language.load import load_network, loads_network
-from rvmon.models.search.meter import Policy
+from rvmon.models.search.budget import Policy
 from rvmon.models.search.verify import verify
 
 MODELS = Path(__file__).parents[4] / "examples" / "models"

@@ -7,7 +7,7 @@ import pytest
 
 from rvmon.models.runs.run import bound_of, universe
 from rvmon.models.runs.timing import TimedStep, timing_of
-from rvmon.models.search.loops import surely_passes, time_passes
+from rvmon.models.search.native_search import surely_passes, time_passes
 
 DIM = 3
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from rvmon.models.language.load import load_network, loads_network
-from rvmon.models.runs.concrete import Rules
-from rvmon.models.search.meter import Budget
+from rvmon.models.runs.exact_times import Rules
+from rvmon.models.search.budget import Budget
 from rvmon.models.search.suite import Criterion, all_items, build_suite, item_text
 
 MODELS = Path(__file__).parents[4] / "examples" / "models"

@@ -7,10 +7,10 @@ from dataclasses import replace
 from functools import cache
 
 from rvmon.language.checked.names_read import requirements_asked
+from rvmon.logic.alphabet import Alphabet, alphabet_of
 from rvmon.logic.automaton import Automaton
 from rvmon.logic.construct import Budget, construct
 from rvmon.logic.formula import Core, Factory, Literal
-from rvmon.logic.letters import Alphabet, alphabet_of
 from rvmon.logic.network_plan import plan_of as network_of
 from rvmon.logic.plan import Plan, PlannedRule, plan_in_units
 from rvmon.logic.state_formula import State

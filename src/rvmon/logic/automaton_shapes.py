@@ -15,6 +15,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Any, TypeAlias, cast
 
+from rvmon.logic.alphabet import Alphabet
 from rvmon.logic.automaton import Automaton, Location
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
 from rvmon.logic.formula import (
@@ -29,7 +30,6 @@ from rvmon.logic.formula import (
     looks_back,
     parts_of,
 )
-from rvmon.logic.letters import Alphabet
 from rvmon.logic.reduce import reduce
 from rvmon.logic.residual import Residual
 

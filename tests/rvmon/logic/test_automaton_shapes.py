@@ -7,13 +7,13 @@ import pytest
 from tests.tools.build import scaled
 
 from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.logic.alphabet import Alphabet, LetterDiagram, alphabet_of
 from rvmon.logic.automaton import Automaton, end_clauses
+from rvmon.logic.automaton_shapes import Shapes
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
 from rvmon.logic.formula import Factory, Next
-from rvmon.logic.letters import Alphabet, LetterDiagram, alphabet_of
 from rvmon.logic.lower import Obligation, lower
 from rvmon.logic.reduce import reduce
-from rvmon.logic.shapes import Shapes
 from rvmon.testing.generate.spec import Profile, random_spec
 
 BUDGET = Budget(locations=30, clocks=3, rows=200, clauses=12)

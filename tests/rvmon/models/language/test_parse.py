@@ -4,7 +4,7 @@ import pytest
 
 from rvmon.errors import ModelError
 from rvmon.models.language.load import loads_network
-from rvmon.models.language.mistakes import MOST
+from rvmon.models.language.parse import MOST
 
 TEXT = """network wrong
 clock x, y

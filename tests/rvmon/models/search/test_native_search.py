@@ -22,7 +22,7 @@ from rvmon.models.network.expressions import (
 )
 from rvmon.models.network.network import LeadsToFormula
 from rvmon.models.network.refine import finer
-from rvmon.models.search.native import search
+from rvmon.models.search.native_search import search
 from rvmon.models.search.verify import verify
 
 MODELS = Path(__file__).parents[4] / "examples" / "models"
@@ -136,7 +136,7 @@ def test_a_query_without_memory_is_not_decided(monkeypatch):
     def poor(*arguments):
         return search(*arguments[:5], 20_000, arguments[6])
 
-    monkeypatch.setattr("rvmon.models.search.native.search", poor)
+    monkeypatch.setattr("rvmon.models.search.native_search.search", poor)
     network = load_network(MODELS / "train_gate.ta", constants={"N": 4})
     outcome = verify(network, network.queries[0])
     assert (outcome.holds, outcome.remark) == (None, "not decided: memory ran out")

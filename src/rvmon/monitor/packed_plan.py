@@ -298,7 +298,7 @@ def _made(
     compiled: CompiledSpec, ids: tuple[str, ...], traced: tuple[str, ...], measured: bool
 ) -> Kept:
     # Imported on use: with a cached plan the compiler is not needed.
-    from rvmon.monitor.plans import plan_alone
+    from rvmon.monitor.requirement_plans import plan_alone
 
     plan = plan_alone(compiled, ids, traced=traced, measured=measured)
     return kept_of(plan, compiled.chosen(ids))

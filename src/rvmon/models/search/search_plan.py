@@ -35,10 +35,10 @@ from rvmon.models.network.guards import (
 )
 from rvmon.models.network.network import Edge, Guard, Network
 from rvmon.models.network.rules import model_error
+from rvmon.models.search.budget import Policy
+from rvmon.models.search.bytecode import Programs
 from rvmon.models.search.clock_bounds import ClockBounds, location_bounds
-from rvmon.models.search.linear import Ways, WayState
-from rvmon.models.search.meter import Policy
-from rvmon.models.search.programs import Programs
+from rvmon.models.search.ltl import Ways, WayState
 
 MAGIC = 0x5A4E3031
 MOST_CLOCKS = 5000
