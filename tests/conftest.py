@@ -1,5 +1,6 @@
 """What tests share: programs that CI always has, and golden files."""
 
+import gc
 import os
 import shutil
 import sys
@@ -15,8 +16,15 @@ from tests.seconds import Seconds
 
 def pytest_configure(config: pytest.Config) -> None:
     """Have the seconds of each folder added up where the results arrive."""
+    gc.disable()  # what is collected stays
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(Seconds())
+
+
+def pytest_collection_finish() -> None:
+    """Have modules and tests, which stay to the end, never looked through for garbage."""
+    gc.freeze()
+    gc.enable()
 
 
 _MARK_OF_FIXTURE = {

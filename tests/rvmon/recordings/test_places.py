@@ -139,7 +139,7 @@ def server(tmp_path):
     pytest.importorskip("aiohttp")
     handler = partial(Quiet, directory=str(tmp_path))
     with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as served:
-        thread = Thread(target=served.serve_forever)
+        thread = Thread(target=served.serve_forever, args=(0.01,))  # how soon it ends
         thread.start()
         yield f"http://127.0.0.1:{served.server_port}"
         served.shutdown()
