@@ -78,6 +78,7 @@ class RecordingRun:
         absent = frozenset() if names is None else declared - names
         self._checked = checked
         self._planned = planned
+        self._rows = getattr(source.recording, "rows", None)
         self._expected = declared - absent
         self._findings = Findings(checked, planned, absent) if finds else None
         self.core = planned.monitor(absent & planned.numbers.keys())
@@ -104,13 +105,17 @@ class RecordingRun:
         else:
             self._take_batch(piece)
 
-    def _take_sample(self, sample: Sample) -> None:
+    def _take_sample(self, sample: Sample, batch: Batch | None = None) -> None:
+        """Judge a sample, made of rows of a batch, or as the recording gave it."""
         t = whole_ticks(sample.t)
         values = sample.values
         if self._turns:
             self._lose_until(t)
         if not self.core.judge(t, values, False):
-            values = self._validator.check(t, values)
+            try:
+                values = self._validator.check(t, values)
+            except TraceError as error:
+                raise TraceError(f"{self._place(t, batch)}{error}") from None
             if not self.core.judge(t, self._planned.plain(t, values), True):
                 raise TimeOrderError(
                     f"row {self._row} at {format_ticks(t)} is not after the one before: sort the "
@@ -119,6 +124,16 @@ class RecordingRun:
         if self._findings is not None:
             self._findings.note_sample(t, values)
         self._row += 1
+
+    def _place(self, t: int, batch: Batch | None) -> str:
+        """Where the sample at `t` stands in the recording, if its rows are counted."""
+        if self._rows is None:
+            return ""
+        if batch is None:
+            return f"{self._rows.place}: "
+        first = int(batch.times.searchsorted(t))
+        last = int(batch.times.searchsorted(t, "right")) - 1
+        return f"{self._rows.place_of(batch.number_of(first), batch.number_of(last))}: "
 
     def _lose_until(self, t: int) -> None:
         """Apply the turns of outages up to `t`, before the sample at `t`."""
@@ -152,7 +167,7 @@ class RecordingRun:
                 last = batch.times[done if columns is not None else -1]
                 end = int(batch.times.searchsorted(last, "right"))
                 for sample in batch.samples(done, end):
-                    self._take_sample(sample)
+                    self._take_sample(sample, batch)
                 done = end
 
     def _laid(self, batch: Batch) -> tuple[Any, ...] | None:

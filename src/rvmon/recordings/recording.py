@@ -50,6 +50,10 @@ JOINED = "joined"
 """The format of several files that are one recording: `odom.csv + status.csv`."""
 
 
+_UNITS = {"parquet": "row", JOINED: "joined row"}
+"""What messages call a row; of text it is a line."""
+
+
 class FileRecording:
     """A recording, read as a stream: memory does not grow with its length.
 
@@ -91,7 +95,7 @@ class FileRecording:
         if not self.can_be_read_again and self._format in ("csv", "parquet"):
             message = "is a pipe: pipes hold JSON lines; keep other recordings in a file"
             raise TraceError(f"{self.path}: {message}")
-        unit = "message" if self.is_of_messages else "row" if self._format == "parquet" else "line"
+        unit = "message" if self.is_of_messages else _UNITS.get(self._format, "line")
         self.rows = Rows(schema, unit, ordered=ordered)
         self._open_file: BinaryIO | None = None
         self._stamps = schema.stamps or stamps_of("t")

@@ -120,6 +120,7 @@ class Rows:
 
         self._begin()
         held: Sample | None = None
+        first = last = 0  # the numbers of the rows that `held` was made of
         for piece in pieces:
             rows: Iterable[Sample]
             if isinstance(piece, Batch):
@@ -134,37 +135,56 @@ class Rows:
                     stop = max(start, int(times.searchsorted(times[-1])))
                 for sample in batch.rows(0, start):
                     held = self._merged(held or sample, sample)
+                if start:
+                    last = batch.number_of(start - 1)
                 if start < stop:
                     if held is not None:
-                        yield self._noted(held)
+                        yield self._noted(held, first, last)
                         held = None
                     middle = batch.cut(start, stop) if stop - start < count else batch
                     note_batch(middle, self.alternations, self._conflicts)
                     yield middle
-                rows = self._then_backwards(batch.rows(stop, count), whole, count)
+                rows = self._then_backwards(whole, stop, count)
             else:
                 rows = self._in_order(piece)
             for sample in rows:
                 if held is None:
-                    held = sample
+                    held, first = sample, self._number
                 elif sample.t == held.t:
                     held = self._merged(held, sample)
                 else:
-                    yield self._noted(held)
-                    held = sample
+                    yield self._noted(held, first, last)
+                    held, first = sample, self._number
+                last = self._number
         if held is not None:
-            yield self._noted(held)
+            yield self._noted(held, first, last)
 
     def _begin(self) -> None:
         self._conflicts, self.alternations = Conflicts(), Alternations()
         self.count = self.lateness = 0
         self.first: list[int] = []
         self._last: int | None = None
+        self._number = 0
+        self._given = 0, 0
         self._leaps: list[tuple[int, int]] = []
 
-    def _noted(self, sample: Sample) -> Sample:
+    def _noted(self, sample: Sample, first: int, last: int) -> Sample:
         self.alternations.note(sample.values)
+        self._given = first, last
         return sample
+
+    @property
+    def place(self) -> str:
+        """The rows that the latest sample was made of, for a message."""
+        return self.place_of(*self._given)
+
+    def place_of(self, first: int, last: int) -> str:
+        """Rows by their numbers, for a message.
+
+        >>> Rows(Schema({}, {}), "line", ordered=True).place_of(3, 3)
+        'line 3'
+        """
+        return f"{self._unit} {first}" if first == last else f"{self._unit}s {first} to {last}"
 
     def _merged(self, held: Sample, sample: Sample) -> Sample:
         return Sample(held.t, merged(held, sample.values, self._schema.events, self._conflicts))
@@ -190,12 +210,14 @@ class Rows:
             self.first += times[: LOOKED_AT - len(self.first)].tolist()
         return batch
 
-    def _then_backwards(self, rows: Iterator[Sample], batch: Batch, row: int) -> Iterator[Sample]:
-        """The same; then it is an error if the batch has a further row, which is out of order."""
-        yield from rows
-        if row < len(batch.times):
+    def _then_backwards(self, batch: Batch, start: int, stop: int) -> Iterator[Sample]:
+        """Rows of a batch; it is an error if it has a further row, which is out of order."""
+        for row, sample in enumerate(batch.rows(start, stop), start):
+            self._number = batch.number_of(row)
+            yield sample
+        if stop < len(batch.times):
             times = batch.times
-            raise self._backwards(batch.number_of(row), int(times[row - 1]), int(times[row]))
+            raise self._backwards(batch.number_of(stop), int(times[stop - 1]), int(times[stop]))
 
     def _backwards(self, number: int, last: int, t: int) -> TimeOrderError:
         return TimeOrderError(
@@ -211,6 +233,7 @@ class Rows:
                     raise self._backwards(number, self._last, t)
                 self._leaps.append((self._last, t))
             self._last = t
+            self._number = number
             self.count += 1
             if len(self.first) < LOOKED_AT:
                 self.first.append(t)

@@ -171,7 +171,7 @@ def _of_columns_or_lines(
         ]
         for number, table in enumerate(tables, 1):
             table.path = f"table {number}"
-        return Joined(tables, Rows(schema, "row", ordered=ordered))
+        return Joined(tables, Rows(schema, "joined row", ordered=ordered))
     columns = columns_by_name(trace)
     return None if columns is None else TableRecording(columns, schema, ordered=ordered)
 

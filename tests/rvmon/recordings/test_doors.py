@@ -131,6 +131,23 @@ def test_what_is_not_declared_so_is_refused(name, wrong):
         judged(base(), {"t": [0, 1], name: [None, wrong]})
 
 
+@pytest.mark.parametrize(
+    ("name", "text", "place"),
+    [
+        ("a.csv", "t,mode\n0,idle\n1,off\n2,off\n", "line 3: "),
+        ("a.csv", "t,mode\n0,idle\n\n1,busy\n1,off\n2,idle\n", "lines 4 to 5: "),
+        ("a.csv", 't,mode\n0,idle\n1,"off\n"\n2,idle\n', "line 4: "),
+        ("a.jsonl", '{"t": 0, "mode": "idle"}\n\n{"t": 1, "mode": "off"}\n', "line 3: "),
+    ],
+)
+@pytest.mark.parametrize("header", ["", "max delay 1 s\n"])
+def test_a_label_that_is_not_declared_is_named_with_its_line(tmp_path, name, text, place, header):
+    """Within a column, and row by row, as where late rows are put in order."""
+    (tmp_path / name).write_text(text)
+    with pytest.raises(TraceError, match=f"^{place}sample at 1 s: `mode`: expected one of"):
+        judged(rvmon.loads(BASE.replace("signal", f"{header}signal", 1)), tmp_path / name)
+
+
 MERGED = {
     "t": [float(t) for t in range(8)],
     "speed": [1.0, NAN] * 4,
