@@ -29,7 +29,7 @@ from handover.generator.model_based import model_based
 from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.model import handover_network
 from handover.robot.mutants import MUTATIONS
-from rvmon.cdv.plan import Played, plan
+from rvmon.cdv.campaign_plan import Played, plan
 from rvmon.cdv.play import execute
 from rvmon.models.network.network import Network
 from rvmon.verdicts import Verdict

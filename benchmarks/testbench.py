@@ -47,14 +47,14 @@ from handover.robot import handover as code
 from handover.robot.handover import HandoverRobot
 from handover.robot.mutants import MUTATIONS
 from rvmon.cdv import Campaign, Gate
+from rvmon.cdv.campaign_plan import Job, plan
 from rvmon.cdv.close import Budget, close
 from rvmon.cdv.coverage import covered_share
 from rvmon.cdv.gate import judge_campaign
 from rvmon.cdv.mutation.baseline import record_suite
 from rvmon.cdv.mutation.play import play_mutants
 from rvmon.cdv.mutation.python_mutants import Mutant
-from rvmon.cdv.mutation.tried import How, Tried
-from rvmon.cdv.plan import Job, plan
+from rvmon.cdv.mutation.survivors import How, Tried
 from rvmon.cdv.play import execute, player
 from rvmon.cdv.shrink import Shrunk, shrink
 from rvmon.session import load

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from rvmon.analysis.codes import every_rule, page_of
+from rvmon.analysis.diagnostic_codes import every_rule, page_of
 
 _SAYS = re.compile(r"\*\w+\* · ([^\n]+(?:\n[^\n]+)*)")
 

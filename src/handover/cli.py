@@ -102,7 +102,7 @@ def _campaign(arguments: Namespace) -> Campaign:
 
 def _demo(arguments: Namespace) -> int:
     from handover.campaign.campaign import handover_campaign
-    from rvmon.cdv.pages import REPORT
+    from rvmon.cdv.replay_pages import REPORT
 
     campaign = handover_campaign(("legacy", "correct"), conforming=arguments.conform)
     code = run_tests(campaign, arguments)

@@ -6,8 +6,8 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rvmon.analysis.codes import every_page
-from rvmon.analysis.examples import analyse
+from rvmon.analysis.diagnostic_codes import every_page
+from rvmon.analysis.shortest_examples import analyse
 from rvmon.diagnostics import Diagnostic, render_full
 from rvmon.errors import ModelError, SpecError
 from rvmon.language.compile import compile_text

@@ -19,7 +19,7 @@ from typing import Generic, TypeVar, assert_never
 import numpy as np
 from numpy.typing import NDArray
 
-from rvmon.analysis.choices import Silence, is_solved, truths_tried, values_of
+from rvmon.analysis.representative_inputs import Silence, is_solved, truths_tried, values_of
 from rvmon.language.checked.formula import Compare, Constant, EventAtom, SignalAtom
 from rvmon.language.checked.specification import CheckedSpec, TimeModel
 from rvmon.logic.state_formula import TRUE, Elapsed, Lapsed, Leaf, State, StateOp

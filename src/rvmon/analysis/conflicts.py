@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 
 from rvmon.analysis.product import Aim, Together
-from rvmon.analysis.requirement import Conflict, Implication, Member, Subject
+from rvmon.analysis.vacuity import Subject
 
 MOST_OFFSETS = 12
 """The most distances between the triggers of two requirements that are examined."""
@@ -23,6 +24,35 @@ LARGEST_SET = 5
 
 MOST_SETS = 2000
 """If there are more sets of one size above three, that size is skipped."""
+
+
+@dataclass(frozen=True, slots=True)
+class Member:
+    """A requirement of a set, triggered `offset` ticks after the first trigger of the set."""
+
+    subject: Subject
+    offset: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Conflict:
+    """Requirements that cannot all hold.
+
+    Attributes:
+        ids: a minimal set; a requirement that is triggered twice occurs twice.
+        offsets: for each, the ticks from the first trigger to its own.
+    """
+
+    ids: tuple[str, ...]
+    offsets: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Implication:
+    """A requirement that fails only where one of `by` fails; `by` is minimal."""
+
+    implied: str
+    by: tuple[str, ...]
 
 
 class ConflictSearch:

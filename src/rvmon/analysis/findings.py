@@ -6,10 +6,9 @@ import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rvmon.analysis.conflicts import ConflictSearch, implications_among
+from rvmon.analysis.conflicts import Conflict, ConflictSearch, Implication, implications_among
 from rvmon.analysis.product import Together
-from rvmon.analysis.requirement import Conflict, Implication, Subject
-from rvmon.analysis.vacuity import Possible, possible
+from rvmon.analysis.vacuity import Possible, Subject, possible
 from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 from rvmon.language.checked.classify import FUTURE, subformulas
 from rvmon.language.checked.formula import Binary, BoundAtom, Constant, Formula, Unary

@@ -14,10 +14,10 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.combinations import Letters, Table, Truths
-from rvmon.analysis.requirement import Regions, Subject, after_edge
-from rvmon.analysis.vacuity import automaton_letter
+from rvmon.analysis.vacuity import Regions, Subject, automaton_letter
 from rvmon.language.checked.specification import CheckedSpec, EndPolicy, TimeModel
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
+from rvmon.logic.clock_regions import region_bounds
 
 MOST_STATES = 4000
 FOREVER = 1 << 63
@@ -216,7 +216,7 @@ class _Search:
             edge = automaton.edges[row * automaton.classes + class_]
             if edge >= 0:
                 since = [cell if s == NOW else began[s] for s in automaton.sources[edge]]
-                kept = after_edge(automaton, location, at, edge)
+                kept = _after_edge(automaton, location, at, edge)
                 yield automaton.targets[edge], kept, tuple(since)
 
     def _regions(self, index: int, spot: Spot, cell: int) -> Iterator[Regions]:
@@ -267,3 +267,14 @@ def _cuts(automaton: Automaton) -> set[int]:
     later = (sources for edge, sources in enumerate(automaton.sources) if edge not in first)
     restarts = any(NOW in sources for sources in later)
     return cuts | {a + b for a in cuts for b in cuts} if restarts else cuts
+
+
+def _after_edge(automaton: Automaton, location: int, regions: Regions, edge: int) -> Regions:
+    """The least possible regions after an edge, by the cuts of the target location."""
+    ours = automaton.locations[location].cuts
+    theirs = automaton.locations[automaton.targets[edge]].cuts
+    found = []
+    for source, cuts in zip(automaton.sources[edge], theirs, strict=True):
+        age = 0 if source == NOW else region_bounds(ours[source], regions[source])[0]
+        found.append(bisect_right(cuts, age))
+    return tuple(found)

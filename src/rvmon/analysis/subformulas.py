@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rvmon.analysis.example import small_step
-from rvmon.analysis.spans import distinct, hold, outside, within
+from rvmon.analysis.interval_sets import distinct, hold, outside, within
 from rvmon.analysis.truths import (
     Question,
     RecordedTruths,

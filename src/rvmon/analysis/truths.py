@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
 
-from rvmon.analysis.spans import FOREVER, distinct, joined, outside, within
+from rvmon.analysis.interval_sets import FOREVER, distinct, joined, outside, within
 from rvmon.language.checked.classify import is_end
 from rvmon.language.checked.formula import (
     Amount,

@@ -8,14 +8,56 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.analysis.combinations import combinations_of
-from rvmon.analysis.requirement import Regions
-from rvmon.language.checked.specification import CheckedSpec, EndPolicy
+from rvmon.language.checked.formula import BoundAtom, Constant
+from rvmon.language.checked.specification import CheckedSpec, EndPolicy, Mode, Requirement
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
 from rvmon.logic.clock_regions import region_bounds, regions_between
 from rvmon.logic.state_formula import FALSE, TRUE, State
 
 _STARTED = -1
 """The pseudo-region of a clock that was started at this position."""
+
+Regions = tuple[int, ...]
+"""For each clock of a location, the number of its cuts that its age has reached."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Subject:
+    """A requirement to be analysed.
+
+    Attributes:
+        requirement: as checked.
+        trigger: starts an attempt; `None` if it is the end of the trace.
+        automaton: the automaton of the requirement; `None` if it does not close.
+        names: the signals and events that it reads.
+    """
+
+    requirement: Requirement
+    trigger: State | None
+    automaton: Automaton | None
+    names: frozenset[str]
+
+    @property
+    def id(self) -> str:
+        """The requirement's id."""
+        return self.requirement.id
+
+    @property
+    def is_always(self) -> bool:
+        """Whether it is `whenever true`, so that an attempt is open at every instant."""
+        trigger = self.requirement.trigger
+        always = isinstance(trigger, Constant) and trigger.value
+        return always and self.requirement.mode is Mode.WHENEVER
+
+    @property
+    def starts_late(self) -> bool:
+        """Whether an attempt can start at another instant than the first."""
+        return not self.is_always and not isinstance(self.requirement.trigger, BoundAtom)
+
+    @property
+    def starts_anew(self) -> bool:
+        """Whether an attempt starts at every instant at which its trigger holds."""
+        return self.requirement.pulse and self.requirement.mode is Mode.UPON
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from rvmon.cdv.code import Code
+from rvmon.cdv.code_under_test import Code
 from rvmon.cdv.system import System
 from rvmon.cdv.tables import Presentation
 from rvmon.cdv.template import Edge, Template

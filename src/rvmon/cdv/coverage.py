@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cdv.campaign import unreachable_items
+from rvmon.cdv.campaign_plan import accepted_failures
 from rvmon.cdv.code_coverage import cobertura, lcov, measured_groups
-from rvmon.cdv.plan import accepted_failures
 from rvmon.coverage import Group, Item, Model, TestRecord, merged, model_of, share, without
 from rvmon.coverage.database import Database, read
 from rvmon.errors import RvmonError
@@ -20,7 +20,7 @@ from rvmon.report.coverage_summary import Summary
 
 if TYPE_CHECKING:
     from rvmon.cdv.campaign import Campaign, Robot
-    from rvmon.cdv.plan import Played, Results
+    from rvmon.cdv.campaign_plan import Played, Results
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from rvmon.cdv.campaign import Campaign, Robot
-from rvmon.cdv.code import Code
+from rvmon.cdv.campaign_plan import Job, Outcome, Plan, Played, Results
 from rvmon.cdv.code_coverage import Meter, hits_of_states
-from rvmon.cdv.plan import Job, Outcome, Plan, Played, Results
+from rvmon.cdv.code_under_test import Code
 from rvmon.cdv.resume import Unfinished
 from rvmon.cdv.system import Checker, Observer, Run, System, Taker, Values
 from rvmon.cdv.test import TestError, blamed

@@ -15,7 +15,7 @@ from pathlib import Path
 import msgspec
 
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.plan import Job, Outcome, Plan, Played
+from rvmon.cdv.campaign_plan import Job, Outcome, Plan, Played
 from rvmon.errors import RvmonError
 from rvmon.execute import journal
 from rvmon.execute.shards import Shard, shards_beside

@@ -15,7 +15,7 @@ from typing import Generic, TypeVar
 from msgspec import structs
 
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.plan import Job, Outcome
+from rvmon.cdv.campaign_plan import Job, Outcome
 from rvmon.cdv.test import Test, TestError, VerdictName, from_json, save, to_json
 from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError

@@ -7,13 +7,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from rvmon.cdv.campaign import unreachable_items
+from rvmon.cdv.campaign_plan import Outcome, Played, Results
 from rvmon.cdv.code_coverage import (
     branches_name,
     measured_groups,
     source_and_target,
     statements_name,
 )
-from rvmon.cdv.plan import Outcome, Played, Results
 from rvmon.cdv.sequential_test import decide
 from rvmon.cdv.summary import (
     BlockCoverage,

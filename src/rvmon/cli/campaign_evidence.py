@@ -8,8 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.campaign_plan import Job, Outcome, Results
 from rvmon.cdv.coverage import coverage_model
-from rvmon.cdv.plan import Job, Outcome, Results
 from rvmon.cdv.play import outcomes
 from rvmon.cdv.resume import sources_of
 from rvmon.cdv.summary import CampaignSummary

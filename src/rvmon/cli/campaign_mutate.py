@@ -11,19 +11,19 @@ from pathlib import Path
 from typing import NamedTuple
 
 from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.campaign_plan import plan
 from rvmon.cdv.mutation.baseline import mutated_code, record_suite
-from rvmon.cdv.mutation.output import (
+from rvmon.cdv.mutation.play import play_mutants
+from rvmon.cdv.mutation.python_mutants import Mutant, code_mutants
+from rvmon.cdv.mutation.report import (
     MutationReport,
     SuiteTried,
     list_text,
     mutation_page,
     report_text,
 )
-from rvmon.cdv.mutation.play import play_mutants
-from rvmon.cdv.mutation.python_mutants import Mutant, code_mutants
 from rvmon.cdv.mutation.spec_mutants import SpecMutant, spec_mutants, try_spec_mutants
-from rvmon.cdv.mutation.tried import equivalents, failing_runs, readers
-from rvmon.cdv.plan import plan
+from rvmon.cdv.mutation.survivors import equivalents, failing_runs, readers
 from rvmon.cdv.tables import to_json
 from rvmon.cdv.test import Test, load
 from rvmon.cli.output import bar, say, say_json, warn

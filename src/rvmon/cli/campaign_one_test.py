@@ -9,11 +9,11 @@ from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_page import comparable_jobs
+from rvmon.cdv.campaign_plan import Job, Played
+from rvmon.cdv.campaign_text import typed
 from rvmon.cdv.gate import judge_test
-from rvmon.cdv.output import typed
-from rvmon.cdv.pages import Replay, play_again, replay_page
-from rvmon.cdv.plan import Job, Played
 from rvmon.cdv.play import Bench, PlayerApart, outcome_of
+from rvmon.cdv.replay_pages import Replay, play_again, replay_page
 from rvmon.cdv.shrink import Shrunk, regression_test, removed, save_regression, shrink
 from rvmon.cdv.test import Test, to_json
 from rvmon.cdv.test import load as load_test

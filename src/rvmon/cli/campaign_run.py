@@ -12,12 +12,19 @@ from tempfile import TemporaryDirectory
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_page import choose_examples
+from rvmon.cdv.campaign_plan import Plan, Results, plan, plan_of_folder
+from rvmon.cdv.campaign_text import (
+    dated_files,
+    left_over,
+    print_summary,
+    typed,
+    write_tables,
+    write_tests,
+)
 from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.gate import CampaignJudgement, RobotRequirement, judge_campaign
-from rvmon.cdv.output import dated_files, left_over, print_summary, typed, write_tables, write_tests
-from rvmon.cdv.pages import write_pages
-from rvmon.cdv.plan import Plan, Results, plan, plan_of_folder
 from rvmon.cdv.play import INTERRUPTED, execute
+from rvmon.cdv.replay_pages import write_pages
 from rvmon.cdv.resume import unfinished
 from rvmon.cdv.sequential_test import Decision
 from rvmon.cdv.summarise import summarise

@@ -107,7 +107,7 @@ def _checked(
 
 def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic], list[str]]:
     """The findings of an analysis, and in words timelines of conflicts and undecided questions."""
-    from rvmon.analysis.examples import analyse
+    from rvmon.analysis.shortest_examples import analyse
     from rvmon.monitor.compiled_spec import compile_spec
     from rvmon.report.explain_text import analysis_lines
 

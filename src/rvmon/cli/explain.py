@@ -42,7 +42,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
 def run(arguments: argparse.Namespace) -> int:
     """Explain, and return the exit code."""
     if not Path(arguments.subject).exists() and _CODE.fullmatch(arguments.subject):
-        from rvmon.analysis.codes import code_list, page_of
+        from rvmon.analysis.diagnostic_codes import code_list, page_of
 
         code = arguments.subject
         say(code_list() if code == "codes" else page_of(code), end="")

@@ -9,10 +9,10 @@ from rich.console import RenderableType
 from rich.text import Text
 
 from rvmon.analysis.example import Budget, Example, Found
-from rvmon.analysis.examples import Analysis, difference_of, shortest_examples, verdict_of
 from rvmon.analysis.graph import graph_lines, graph_of
+from rvmon.analysis.plain_english import facts_of, requirement_in_words
+from rvmon.analysis.shortest_examples import Analysis, difference_of, shortest_examples, verdict_of
 from rvmon.analysis.vacuity import Possible, possible
-from rvmon.analysis.words import facts_of, requirement_in_words
 from rvmon.language.checked.formula import BoundAtom, Constant
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.language.print import format_duration

@@ -9,7 +9,7 @@ from handover.campaign.table1 import FITTED, paper_table, table_document
 from handover.checker import spec_path
 from handover.generator.abstract_test import directed
 from rvmon.cdv.campaign_page import choose_examples, comparable_jobs
-from rvmon.cdv.plan import plan
+from rvmon.cdv.campaign_plan import plan
 from rvmon.cdv.play import execute
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import to_json

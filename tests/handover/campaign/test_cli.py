@@ -21,7 +21,7 @@ from handover.checker import spec_path
 from handover.cli import main
 from handover.generator.abstract_test import directed
 from handover.robot import behaviour
-from rvmon.cdv.plan import plan
+from rvmon.cdv.campaign_plan import plan
 from rvmon.cdv.play import execute
 from rvmon.cdv.test import save
 from rvmon.cli import campaign_run

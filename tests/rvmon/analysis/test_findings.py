@@ -8,7 +8,7 @@ from tests.tools import build
 
 import rvmon
 from rvmon.analysis.example import Budget
-from rvmon.analysis.examples import analyse, shortest_examples
+from rvmon.analysis.shortest_examples import analyse, shortest_examples
 from rvmon.analysis.vacuity import possible
 from rvmon.cli import main
 from rvmon.language.checked.specification import TimeModel

@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from rvmon.analysis.spans import hold, joined, outside, within
+from rvmon.analysis.interval_sets import hold, joined, outside, within
 from rvmon.analysis.subformulas import dissect
 from rvmon.analysis.truths import look_through, parts_of, subformulas, truths_of_parts
 from rvmon.language.checked.specification import TimeModel

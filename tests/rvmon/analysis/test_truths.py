@@ -4,8 +4,8 @@ import random
 
 import pytest
 
-from rvmon.analysis.choices import SILENT
-from rvmon.analysis.examples import Player, _choices
+from rvmon.analysis.representative_inputs import SILENT
+from rvmon.analysis.shortest_examples import Player, _choices
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import show_spec

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from rvmon.cdv import Campaign, ExpectedFailure, Robot, Run, Test
+from rvmon.cdv.campaign_plan import plan
 from rvmon.cdv.coverage import coverage_model, write_coverage
-from rvmon.cdv.plan import plan
 from rvmon.cdv.play import execute
 from rvmon.coverage import count_of, merged
 from rvmon.coverage.database import read

@@ -6,7 +6,7 @@ import msgspec
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.plan import plan
+from rvmon.cdv.campaign_plan import plan
 from rvmon.cdv.play import execute
 from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import verdict_table

@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 from rvmon import cdv
+from rvmon.cdv.campaign_plan import plan
 from rvmon.cdv.gate import judge_campaign, junit_xml, refuse_unknown
-from rvmon.cdv.plan import plan
 from rvmon.cdv.play import execute
 from rvmon.errors import UnknownNameError
 

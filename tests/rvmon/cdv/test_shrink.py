@@ -11,7 +11,7 @@ import pytest
 from msgspec import structs
 
 from rvmon import cdv
-from rvmon.cdv.plan import Job, Outcome
+from rvmon.cdv.campaign_plan import Job, Outcome
 from rvmon.cdv.shrink import Failure, failure_of, regression_test, removed, save_regression, shrink
 from rvmon.cdv.test import TestError, load, save, to_json
 from rvmon.cli.campaign import main

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tools.code_pages import page
 
-from rvmon.analysis.codes import every_page
+from rvmon.analysis.diagnostic_codes import every_page
 from rvmon.diagnostics import render_concise, render_full, render_json
 from rvmon.errors import SpecError
 from rvmon.language.compile import compile_text

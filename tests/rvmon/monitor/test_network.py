@@ -7,7 +7,7 @@ from tests.tools.differential import case_of
 from tests.tools.drive import drive
 
 import rvmon
-from rvmon.analysis.words import facts_of
+from rvmon.analysis.plain_english import facts_of
 from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.session import Spec

@@ -8,11 +8,11 @@ from contextlib import closing
 from dataclasses import dataclass, replace
 
 from rvmon.cdv.campaign import Campaign, unreachable_items
+from rvmon.cdv.campaign_plan import Job, Played
 from rvmon.cdv.close.goals import Goals, Witnesses
 from rvmon.cdv.close.outcome import Added, Closed
 from rvmon.cdv.close.propose import Proposer
 from rvmon.cdv.coverage import coverage_model
-from rvmon.cdv.plan import Job, Played
 from rvmon.cdv.play import INTERRUPTED, Waiting, outcomes
 from rvmon.coverage import Ending, model_of
 from rvmon.coverage.ranking import Smallest, smallest

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.plan import Played
+from rvmon.cdv.campaign_plan import Played
 from rvmon.coverage import Group
 from rvmon.coverage.holes import Goal, Hole
 from rvmon.report.coverage_summary import name_of

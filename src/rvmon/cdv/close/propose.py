@@ -13,9 +13,9 @@ from typing import TypeVar
 from msgspec import structs
 
 from rvmon.cdv.campaign import STRATEGY, Campaign
+from rvmon.cdv.campaign_plan import Played, plan
 from rvmon.cdv.close.goals import Goals, Proof, Witness, Witnesses
 from rvmon.cdv.close.vary_test import Draw, Learned, Mutator
-from rvmon.cdv.plan import Played, plan
 from rvmon.cdv.test import Test, TestError, blamed, from_json, to_json
 from rvmon.coverage import Subject
 from rvmon.coverage.holes import Goal, nearness

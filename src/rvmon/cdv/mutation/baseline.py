@@ -10,8 +10,8 @@ from functools import cached_property, partial
 from itertools import zip_longest
 
 from rvmon.cdv.campaign import Campaign, Robot
-from rvmon.cdv.code import Code
 from rvmon.cdv.code_coverage import code_groups, statements_name
+from rvmon.cdv.code_under_test import Code
 from rvmon.cdv.mutation.python_mutants import Mutant
 from rvmon.cdv.play import Bench
 from rvmon.cdv.system import Run, Values

@@ -20,7 +20,7 @@ from types import CodeType, FrameType, FunctionType, ModuleType
 
 from rvmon.cdv.mutation.baseline import Progress, Recorded, Suite, difference, recorder
 from rvmon.cdv.mutation.python_mutants import Mutant
-from rvmon.cdv.mutation.tried import Finding, How, Tried
+from rvmon.cdv.mutation.survivors import Finding, How, Tried
 from rvmon.cdv.play import Bench
 from rvmon.errors import RvmonError
 from rvmon.execute import Ended, parallel

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType
 
-from rvmon.cdv.code import Code
+from rvmon.cdv.code_under_test import Code
 from rvmon.cdv.mutation.python_operators import OPERATORS, Operator, Scope, Strings
 from rvmon.errors import RvmonError
 from rvmon.texts import text_of_file

@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 
 from rvmon.analysis.conflicts import starts_with
 from rvmon.analysis.product import Aim, Together
-from rvmon.analysis.requirement import Subject
+from rvmon.analysis.vacuity import Subject
 from rvmon.cdv.mutation.baseline import Recorded
 from rvmon.cdv.mutation.python_mutants import third_of
-from rvmon.cdv.mutation.tried import Score
+from rvmon.cdv.mutation.survivors import Score
 from rvmon.cdv.system import Checker
 from rvmon.language.checked.classify import is_pulse
 from rvmon.language.checked.formula import (

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 
-from rvmon.analysis.words import requirement_in_words
+from rvmon.analysis.plain_english import requirement_in_words
 from rvmon.cli.lsp.names import Names, about_word
 from rvmon.diagnostics import Span
 from rvmon.language.checked.functions import FUNCTIONS

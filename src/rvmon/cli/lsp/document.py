@@ -22,7 +22,7 @@ from lsprotocol.types import (
 )
 from pygls.uris import from_fs_path, to_fs_path
 
-from rvmon.analysis.codes import page_of
+from rvmon.analysis.diagnostic_codes import page_of
 from rvmon.cli.lsp.names import Names
 from rvmon.diagnostics import Diagnostic, Severity, Source, Span
 from rvmon.files import cache_folder, write_whole

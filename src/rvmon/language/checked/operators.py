@@ -93,7 +93,7 @@ class Operator:
         meaning: in a `Reading`, of that, its operands and the interval.
         said: an English clause for it; `{left}` and `{right}` (`{it}`) are its operands,
             `{no_left}` and so on what they are if they do not hold; `{some}` and `{all}` name
-            its interval. Empty: `analysis/words.py` says it in a way of its own.
+            its interval. Empty: `analysis/plain_english.py` says it in a way of its own.
         denied: its negation; empty: "not so" before `said`.
         doc: its value in a few words.
         dual: the sign of the operator that is `not φ` of the negations of its operands.

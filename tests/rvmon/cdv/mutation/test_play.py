@@ -15,7 +15,7 @@ from rvmon.cdv.mutation.baseline import record_suite
 from rvmon.cdv.mutation.play import plant
 from rvmon.cdv.mutation.python_mutants import HELD_OUT, code_mutants
 from rvmon.cdv.mutation.spec_mutants import spec_mutants, try_spec_mutants
-from rvmon.cdv.mutation.tried import How, Missing, failing_runs, missing, scored
+from rvmon.cdv.mutation.survivors import How, Missing, failing_runs, missing, scored
 from rvmon.errors import RvmonError
 from rvmon.execute import parallel
 from rvmon.session import load

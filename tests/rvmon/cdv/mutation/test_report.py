@@ -5,9 +5,9 @@ from pathlib import Path
 import pytest
 
 from rvmon.cdv.mutation.baseline import Difference
-from rvmon.cdv.mutation.output import MutationReport, SuiteTried, mutation_page, report_text
 from rvmon.cdv.mutation.python_mutants import HELD_OUT, Mutant
-from rvmon.cdv.mutation.tried import Finding, How, Tried, equivalents, readers
+from rvmon.cdv.mutation.report import MutationReport, SuiteTried, mutation_page, report_text
+from rvmon.cdv.mutation.survivors import Finding, How, Tried, equivalents, readers
 from rvmon.cdv.tables import to_json
 from rvmon.errors import RvmonError
 from rvmon.session import loads

@@ -9,7 +9,7 @@ from lsprotocol.types import Position, Range
 from pygls.uris import to_fs_path
 from tests.tools.code_pages import page
 
-from rvmon.analysis.codes import every_rule, page_of
+from rvmon.analysis.diagnostic_codes import every_rule, page_of
 from rvmon.cli.lsp.completion import hover, proposals
 from rvmon.cli.lsp.document import Document, Text
 from rvmon.cli.lsp.names import _LINES, meanings

@@ -9,7 +9,16 @@ from functools import partial
 
 from rvmon.cdv.mutation.python_mutants import HELD_OUT, THIRDS, Mutant
 from rvmon.cdv.mutation.spec_mutants import SpecMutant, SpecTried, spec_scored
-from rvmon.cdv.mutation.tried import TITLES, How, Missing, Score, Tried, missing, question, scored
+from rvmon.cdv.mutation.survivors import (
+    TITLES,
+    How,
+    Missing,
+    Score,
+    Tried,
+    missing,
+    question,
+    scored,
+)
 from rvmon.report.pages import render
 from rvmon.report.terminal import plain_table
 from rvmon.texts import counted, percent_text

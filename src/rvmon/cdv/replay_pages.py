@@ -12,9 +12,9 @@ from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign, Robot
 from rvmon.cdv.campaign_page import Examples, campaign_page, comparable_jobs
+from rvmon.cdv.campaign_plan import Job, Played, Results
+from rvmon.cdv.campaign_text import RUNS, TESTS, typed
 from rvmon.cdv.coverage import write_coverage
-from rvmon.cdv.output import RUNS, TESTS, typed
-from rvmon.cdv.plan import Job, Played, Results
 from rvmon.cdv.play import Bench, Recorded, spooled
 from rvmon.cdv.shrink import failure_of
 from rvmon.cdv.summary import CampaignSummary

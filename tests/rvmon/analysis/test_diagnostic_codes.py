@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from tests.tools.code_pages import findings_about, message_about, page
 
-from rvmon.analysis.codes import code_list, every_page, every_rule, page_of
+from rvmon.analysis.diagnostic_codes import code_list, every_page, every_rule, page_of
 from rvmon.errors import UnknownNameError
 
 RULES = every_rule()

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.plan import Results
+from rvmon.cdv.campaign_plan import Results
 from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary
 from rvmon.cdv.tables import (
     INTERVALS,

@@ -7,7 +7,7 @@ from tests.tools import build
 
 import rvmon
 from rvmon.analysis.example import Budget
-from rvmon.analysis.examples import shortest_examples, verdict_of
+from rvmon.analysis.shortest_examples import shortest_examples, verdict_of
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import show_spec

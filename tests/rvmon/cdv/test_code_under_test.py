@@ -77,7 +77,7 @@ def test_only_the_marked_code_is_measured_where_it_is_marked(campaign, code):
 
 
 def _job(campaign):
-    from rvmon.cdv.plan import plan
+    from rvmon.cdv.campaign_plan import plan
 
     return plan(campaign).jobs()[0]
 

@@ -11,10 +11,11 @@ from heapq import heappop, heappush
 from itertools import count
 from operator import itemgetter
 
-from rvmon.analysis.choices import SILENT, Choices, Silence, Valuation, choices_of
+from rvmon.analysis.conflicts import Conflict
 from rvmon.analysis.example import Budget, Example, Found, small_step
 from rvmon.analysis.findings import Examination, examine, findings_of
-from rvmon.analysis.requirement import Conflict, Subject
+from rvmon.analysis.representative_inputs import SILENT, Choices, Silence, Valuation, choices_of
+from rvmon.analysis.vacuity import Subject
 from rvmon.core.plan import pack
 from rvmon.diagnostics import Diagnostic
 from rvmon.language.checked.classify import subformulas

@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon import cdv
-from rvmon.cdv.plan import plan
+from rvmon.cdv.campaign_plan import plan
 from rvmon.errors import RvmonError, UnknownNameError
 
 
