@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import itertools
 import os
+import shlex
 import stat
 import threading
 import time
@@ -20,6 +21,8 @@ from rvmon.cli.reading import mapped_names, refuse_empty
 from rvmon.cli.watch_output import Output, output_named, refuse_others, watch_kept
 from rvmon.errors import RvmonError, SpecError
 from rvmon.live import Clock, Judgement, Live, SimulatedClock, WallClock
+from rvmon.recordings.messages.forms import FORMATS, form_of_folder
+from rvmon.recordings.places import endings_of
 from rvmon.session import Spec, load
 from rvmon.verdicts import Verdict
 
@@ -132,7 +135,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
     refuse_others(arguments)
-    with _opened(arguments.source) as file:
+    with _opened(arguments) as file:
         lines = read_lines(file.fileno())
         is_file = stat.S_ISREG(os.fstat(file.fileno()).st_mode)
         only = asked_ids(arguments, spec)
@@ -140,7 +143,7 @@ def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:
 
 
 def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Live:
-    with _opened(arguments.source) as file:
+    with _opened(arguments) as file:
         lines = read_lines(file.fileno())
         first, began = begin_of(lines, spec.schema)
         if not any(line.strip() for line in first):
@@ -346,6 +349,17 @@ def _replace(arguments: argparse.Namespace, live: Live) -> None:
     live.replace_spec(spec)
 
 
+def _is_recording(path: str) -> bool:
+    """Whether a path is a recording that is no text of JSON lines."""
+    if form_of_folder(path):
+        return True
+    ending, packed = endings_of(path)
+    if not os.path.isfile(path) or (FORMATS.get(ending, "jsonl") == "jsonl" and not packed):
+        return False
+    with open(path, "rb") as file:
+        return not file.read(1024).lstrip().startswith(b"{")  # a `.log` may hold anything
+
+
 def _age(path: str) -> tuple[int, int] | None:
     """Time and size of a file, which change when it is written; `None` while there is none."""
     try:
@@ -355,8 +369,17 @@ def _age(path: str) -> tuple[int, int] | None:
     return found.st_mtime_ns, found.st_ino
 
 
-def _opened(source: str) -> FileIO:
+def _opened(arguments: argparse.Namespace) -> FileIO:
+    """The lines to evaluate.
+
+    Raises:
+        RvmonError: they cannot be read, or the source is a recording of another format.
+    """
+    source: str = arguments.source
     try:
-        return FileIO(0, closefd=False) if source == "-" else FileIO(source)
+        if not _is_recording(source):
+            return FileIO(0, closefd=False) if source == "-" else FileIO(source)
     except OSError as error:
         raise RvmonError(f"error: {source}: {error.strerror}") from None
+    command = f"rvmon run {shlex.join([arguments.spec, source])}"
+    raise RvmonError(f"error: {source} is a recording, not JSON lines: evaluate it by `{command}`")

@@ -148,6 +148,9 @@ def test_a_view_of_much_fits_and_begins_with_what_failed():
         (["watch", "door.rv", "none.jsonl"], "none.jsonl"),
         (["watch", "door.rv", "empty.jsonl"], "there is no line"),
         (["watch", "door.rv", "."], "directory"),
+        (["watch", "door.rv", "a.csv"], "by `rvmon run door.rv a.csv`"),
+        (["watch", "door.rv", "a.mcap", "--state", "kept"], "by `rvmon run door.rv a.mcap`"),
+        (["watch", "door.rv", "bag"], "by `rvmon run door.rv bag`"),
         (["watch", "none.rv", "a.jsonl"], "none.rv"),
         (["watch", "door.rv", "a.jsonl", "--only", "D2"], "D2"),
         (["watch", "door.rv", "a.jsonl", "--map", "sped=x"], "sped"),
@@ -160,6 +163,10 @@ def test_a_view_of_much_fits_and_begins_with_what_failed():
 )
 def test_wrong_input_is_told(door, says, words, why):
     (door / "empty.jsonl").write_text("\n")
+    (door / "a.csv").write_text("t,x\n0,1\n")
+    (door / "a.mcap").write_bytes(b"\x89MCAP0\r\n")
+    (door / "bag").mkdir()
+    (door / "bag" / "metadata.yaml").touch()
     assert why in says(2, *words).err
 
 
