@@ -84,6 +84,16 @@ def test_a_wrong_sample_is_told(spec, t, values, message):
         monitor.step(0, {"gap": 1.0})
 
 
+@pytest.mark.parametrize("one", [1, 1.0, np.int8(1), np.True_])
+def test_a_monitor_takes_the_values_that_recordings_may_have(spec, one):
+    samples = [(0, {"closed": one, "knock": one, "gap": 1}), (5, {"closed": 1 - int(one)})]
+    monitor = spec.monitor()
+    told = [attempt.decided for t, values in samples for attempt in monitor.step(t, values)]
+    report = monitor.finish()
+    assert told == [2_000_000_001]
+    assert report.verdicts == spec.evaluate(samples).verdicts == {"D1": "F", "D2": "P"}
+
+
 @pytest.mark.parametrize("trace", [None, 5, [5], [(None, {})], [(0, 5)], [(0,)]])
 def test_a_wrong_trace_is_told(spec, trace):
     with pytest.raises(TraceError, match=r"expected|no finite number"):

@@ -162,10 +162,11 @@ class FedMonitor(ABC, Generic[T]):
         step_ns: the same at ticks, later than all samples before; it returns what the sample
             decided; more than 4,096 attempts come as a sequence that makes each on access. The
             values are the updates and occurrences: of a signal its value, `None` or NaN if it
-            became unknown; of an event `True`, or its payload. It raises `TimeOrderError` if the
-            time is not later or was excluded by `advance`; `TraceError` for a name or value unknown
-            to the specification, or a time that is no whole number; `OverlapError` if another call
-            is in progress. In all cases the monitor is unchanged.
+            became unknown; of an event `True`, or its payload. As in recordings, 0 and 1 are truth
+            values where these are declared, and 3.0 a whole number. It raises `TimeOrderError` if
+            the time is not later or was excluded by `advance`; `TraceError` for a name or value
+            unknown to the specification, or a time that is no whole number; `OverlapError` if
+            another call is in progress. In all cases the monitor is unchanged.
     """
 
     step: Callable[[float, Mapping[str, Any]], Sequence[T]]

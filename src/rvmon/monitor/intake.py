@@ -10,6 +10,7 @@ from typing import Any
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.language.checked.specification import CheckedSpec, Type
 from rvmon.recordings.coalesce import Conflicts, coalesce, updates_in
+from rvmon.recordings.values import as_declared, plain
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks
@@ -232,16 +233,16 @@ class Validator:
             raise TraceError(
                 f"sample at {format_ticks(t)}: expected values by name, found {values!r}"
             )
-        plain: dict[str, Value] = {}
+        checked: dict[str, Value] = {}
         for name, value in values.items():
             if name not in self._expected:
                 raise TraceError(self._unknown(name, t))
             type_ = self._signals.get(name)
             if type_ is None:
-                plain[name] = self._occurrence(name, value, t)
+                checked[name] = self._occurrence(name, value, t)
             else:
-                plain[name] = _scalar(value, type_, f"`{name}`", t)
-        return updates_in(plain, self._ignoring)
+                checked[name] = _scalar(value, type_, f"`{name}`", t)
+        return updates_in(checked, self._ignoring)
 
     def _unknown(self, name: str, t: int) -> str:
         where = f"sample at {format_ticks(t)}: "
@@ -250,8 +251,9 @@ class Validator:
         return f"{where}no signal or event named `{name}`: declare it in the spec, or leave it out"
 
     def _occurrence(self, name: str, value: Any, t: int) -> Value:
-        if value is None or value is True or value is False:
-            return value
+        declared = as_declared(plain(value), Kind.BOOL)
+        if declared is None or type(declared) is bool:
+            return declared
         if isinstance(value, Mapping):
             return self._payload(name, value, t)
         if isinstance(value, tuple | list):
@@ -291,17 +293,14 @@ def _scalar(value: Any, type_: Type, name: str, t: int) -> Scalar:
         return known
     if value is None:
         return None
-    # The common types are done: what follows costs only those who pass NumPy scalars or subclasses.
-    item = getattr(value, "item", None)
-    if callable(item) and type(value) not in (bool, int, float, str):
-        try:
-            plain = item()
-        except (TypeError, ValueError):  # an array of several values
-            plain = value
-        if not hasattr(plain, "item"):
-            return _scalar(plain, type_, name, t)  # a NumPy scalar
-    if isinstance(value, float | int) and isinstance(value, takes) and type(value) is not bool:
-        return value + 0  # an instance of a subclass
+    # The common types are done: what follows is of NumPy, of subclasses, or 0 and 1 of a `bool`.
+    scalar: Scalar = as_declared(plain(value), type_.kind)
+    if isinstance(scalar, float | int) and isinstance(scalar, takes) and type(scalar) is not bool:
+        scalar += 0  # may be an instance of a subclass
+    if scalar is None or (
+        type(scalar) in takes and (type_.kind is not Kind.LABEL or scalar in type_.labels)
+    ):
+        return scalar
     if type_.kind is Kind.LABEL:
         expected = "one of " + ", ".join(type_.labels)
     else:
