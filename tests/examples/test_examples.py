@@ -37,9 +37,9 @@ def play(monkeypatch, capsys):
 def test_a_stream_in_another_program(play):
     lines = play("base_live.py")
     assert [line.split(" at ")[0] for line in lines if "#" in line] == [
-        "B1 #1 FAIL",
-        "B2 #1 PASS",
-        "B2 #2 FAIL",
+        "B1#1 F",
+        "B2#1 P",
+        "B2#2 F",
     ]
     assert lines[-2:] == ["B1 F", "B2 F"]
 
@@ -147,7 +147,7 @@ def test_a_test_of_launch_testing(monkeypatch, request):
         assert not result.errors
     assert "nothing was heard" in told[None][0]
     assert told[0.8] == []
-    assert "B1 #1 FAIL" in told[0.4][0]
+    assert "B1#1 F" in told[0.4][0]
 
 
 def _drive(graph, metres):

@@ -38,7 +38,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "run",
         description="Check recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for JSON "
         "lines on standard input) against a specification: P passed, F failed, NT not triggered, "
-        "I inconclusive.",
+        "I inconclusive. Exit code 0: no requirement failed; 1: one failed, or with --strict is I "
+        "or NT; 2: wrong input.",
         epilog="examples: rvmon run examples/base.rv examples/base.csv; rvmon run "
         "examples/base.rv examples/base.csv --only B2 --report pages --junit "
         "verdicts.xml",

@@ -46,7 +46,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "watch",
         description="Evaluate JSON lines as they arrive, and report each verdict as soon as it is "
         "decided: a missed deadline is reported when it is over. A change of the specification is "
-        "taken up at once. Ends with the stream, or with Ctrl-C.",
+        "taken up at once. Ends with the stream, or with Ctrl-C. Exit code 0: every requirement is "
+        "P or NT; 1: one failed or is I; 2: wrong input.",
         epilog='example: printf \'{"t":0,"speed":0.5,"obstacle":0.4}\\n\' | '
         "rvmon watch examples/base.rv",
     )

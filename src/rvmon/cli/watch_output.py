@@ -304,7 +304,7 @@ def watch_kept(
             say_json(msgspec.json.encode(record).decode())
             sys.stdout.flush()
         else:
-            say(f"{number}  {attempt}", flush=True)
+            say(f"{number}  {_line(Judgement('', 1, attempt))}", flush=True)
 
     try:
         monitor = DurableMonitor(

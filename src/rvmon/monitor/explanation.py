@@ -86,7 +86,7 @@ def outage_in_words(outage: Outage, origin: int) -> str:
         case HealthKind.NAN:
             why = f"NaN at {since}"
         case HealthKind.NONE:
-            why = f"None at {since}"
+            why = f"given as unknown at {since}"
         case _:
             raise AssertionError(f"{outage.why} makes no signal unknown")
     return f"{name} was not known from {since} {end}: {why}"

@@ -134,7 +134,7 @@ def _verdict_lines(
         return [Text(f"  {name:<{margin - 2}}{mark.sign} NT no attempt", style=mark.terminal)]
     lines = []
     for attempt in own:
-        head = name if len(own) == 1 else f"{name} #{attempt.number}"
+        head = name if len(own) == 1 else attempt.name
         mark = MARKS[attempt.verdict]
         drawn = _attempt(attempt, example, instants, width)
         verdict = f"{mark.sign} {attempt.verdict.value}"

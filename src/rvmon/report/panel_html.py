@@ -98,7 +98,7 @@ class SpecLines(NamedTuple):
     """A requirement's lines of its file.
 
     Attributes:
-        place: name of the file, and line.
+        place: name of the file, and number of the first of the lines.
         lines: per line its number, and its text before, within and after the blamed subformula.
     """
 
@@ -111,7 +111,8 @@ def spec_lines(requirement: Requirement, blame: Blame | None) -> SpecLines | Non
     span = requirement.span
     if span is None:
         return None
-    return SpecLines(f"{span.source.name}:{span.line}", list(_lines(requirement, blame)))
+    lines = list(_lines(requirement, blame))
+    return SpecLines(f"{span.source.name}:{lines[0][0]}", lines)
 
 
 def _lines(requirement: Requirement, blame: Blame | None) -> Iterator[tuple[int, str, str, str]]:

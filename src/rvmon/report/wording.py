@@ -106,7 +106,8 @@ def health_facts(entries: Sequence[Health], origin: int) -> Iterator[tuple[str, 
             times = "once" if entry.count == 1 else f"{entry.count} times"
             remark = f": {entry.remark}" if entry.remark else ""
             readers = f"  ({', '.join(entry.requirements)})" if entry.requirements else ""
-            yield entry.name, f"{entry.kind.value} {times}{first}{remark}{readers}"
+            kind = "given as unknown" if entry.kind is HealthKind.NONE else entry.kind.value
+            yield entry.name, f"{kind} {times}{first}{remark}{readers}"
     for remark, names in ignored.items():
         yield first_of(names, SHOWN), f"ignored{f': {remark}' if remark else ''}"
 

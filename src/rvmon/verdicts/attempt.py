@@ -129,13 +129,12 @@ class Attempt(Record):
         """One line of text.
 
         >>> print(Attempt("R1", 3, 0, 2 * 10**9, Verdict.FAIL, reason="`a` false at 2 s"))
-        R1 #3 FAIL at 2 s: `a` false at 2 s
+        R1#3 F at 2 s: `a` false at 2 s
         """
         when = f"triggered at {format_instant(self.triggered, self.origin)}"
         if self.decided is not None:
             when = f"at {format_instant(self.decided, self.origin)}"
-        mark = "?" if self.in_doubt else "#"
-        headline = f"{self.requirement} {mark}{self.number} {self.verdict.name} {when}"
+        headline = f"{self.name} {self.verdict} {when}"
         return f"{headline}: {self.reason}" if self.reason else headline
 
 

@@ -73,7 +73,7 @@ def test_a_fault_in_the_robot_fails(tmp_path):
     done = run("run", "--tests", "10", "--jobs", "1", cwd=tmp_path, folder=tmp_path)
     assert done.returncode == 1
     assert "not as expected: gives-way (base): B2 is F, not P" in done.stderr
-    assert "(base): B2 #1 FAIL at" in done.stderr
+    assert "(base): B2#1 F at" in done.stderr
 
 
 def test_it_closes(tmp_path):

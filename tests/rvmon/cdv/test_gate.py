@@ -16,7 +16,7 @@ pytestmark = pytest.mark.process
 REQUIREMENTS = {"toy": ("T1", "T2", "T3")}
 LOW, HIGH = ("low", {"level": 3.0}), ("high", {"level": 6.0})
 CRASH = ("crash", {"does": "crash"})
-TOO_HIGH = "T1 #1 FAIL at 1 s: `level < 5` became false at 1 s; it had to be true at all times"
+TOO_HIGH = "T1#1 F at 1 s: `level < 5` became false at 1 s; it had to be true at all times"
 
 
 def judged(campaign, *, strict=False):

@@ -216,7 +216,7 @@ UNKNOWN = {
     ),
     "None, and stale after that": (
         [(0, {"distance": 1.0}), (0.5, {"distance": None}), (2, {"go": True}), (3, {})],
-        "`distance` was not known from 0.5 s on: None at 0.5 s",
+        "`distance` was not known from 0.5 s on: given as unknown at 0.5 s",
     ),
     "not yet": (
         [(0, {}), (2, {"go": True}), (2.5, {"distance": None}), (2.75, {"distance": 1.0})],

@@ -368,3 +368,12 @@ def test_a_list_has_totals_and_severities_and_the_most_failures_first(tmp_path):
     assert re.findall(r">(\d)</td>", rows["D1"]) == ["1", "2", "0", "0"]
     assert "severity: high" in rows["D3"]
     assert re.search(r'data-name="week/worse.csv d1 d2"', index)
+
+
+def test_the_place_of_a_requirement_is_that_of_the_line_below_it():
+    page = run_page(content(door()))
+    shown = re.findall(
+        r"<figcaption>door\.rv:(\d+)</figcaption>.*?gutter[^>]*>\s*(\d+)", page, re.S
+    )
+    assert shown
+    assert all(place == line for place, line in shown)

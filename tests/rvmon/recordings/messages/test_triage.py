@@ -30,5 +30,5 @@ def test_the_example_sorts_bags_by_what_needs_a_look(tmp_path, monkeypatch, caps
         "I   short.bag",
         "P   good.bag",
     ]
-    assert "B2 #1 FAIL" in lines[0]
+    assert "B2#1 F" in lines[0]
     assert ended.value.code == 1
