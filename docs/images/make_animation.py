@@ -18,9 +18,9 @@ from handover.checker import spec_path
 from handover.driver import run_test
 from handover.driver.play import SampleValues
 from handover.generator.abstract_test import directed
-from rvmon.report.pages import e
-from rvmon.report.run_html import UNITS, scene_svg
-from rvmon.report.style import MARKS, verdict_colours
+from rvmon.report.html import e
+from rvmon.report.run_page import UNITS, scene_svg
+from rvmon.report.wording import MARKS, verdict_colours
 from rvmon.trace.time import TICKS_PER_SECOND
 
 TESTS = ("released", "mutant-releases-anyway")

@@ -1,4 +1,4 @@
-"""Files written whole or not at all, whatever ends the process that writes them; the user's cache.
+"""Files written whole or not at all, whatever ends the process; output folders; the user's cache.
 
 The cache holds data alone that can be worked out again, and nothing of it is run; all the same a
 folder or a file that anyone else can write to is passed over, and so is what differs from its
@@ -18,6 +18,8 @@ from contextlib import contextmanager, suppress
 from functools import cache
 from operator import attrgetter
 from pathlib import Path
+
+from rvmon.errors import RvmonError, writing
 
 PREFIX, SUFFIX = ".rvmon-", ".part"
 """Prefix and suffix of the names of unfinished files."""
@@ -278,3 +280,45 @@ def _most() -> int:
     """Bytes that are kept; what `RVMON_CACHE_MB` says is passed over if it is no number."""
     limit = os.environ.get("RVMON_CACHE_MB", "")
     return 1_000_000 * int(limit if limit.isascii() and limit.isdecimal() else _MOST_MB)
+
+
+def output_folder(folder: str | Path) -> Path:
+    """Make a folder if it does not exist, and check that files can be written there.
+
+    Raises:
+        RvmonError: it cannot be made or written; the message says why.
+    """
+    path = Path(folder)
+    if path.exists() and not path.is_dir():
+        raise RvmonError(f"error: cannot write to {path}: it is a file: name a folder")
+    probe = path / ".rvmon-writes-here"
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise RvmonError(f"error: cannot write to {path}: {error.strerror}") from None
+    return path
+
+
+def refuse_no_file(path: str | Path) -> None:
+    """Refuse an output file early, before any work is done for it.
+
+    Raises:
+        RvmonError: it is a folder, or its folder does not exist.
+    """
+    path = Path(path)
+    if path.is_dir():
+        raise RvmonError(f"cannot write {path}: it is a folder: name a file")
+    if not path.parent.is_dir():
+        raise RvmonError(f"cannot write {path}: there is no folder {path.parent}")
+
+
+def write_file(path: str | Path, text: str) -> None:
+    """Write a file that the user named.
+
+    Raises:
+        RvmonError: it cannot be written; the message says why.
+    """
+    with writing(path):
+        write_whole(path, text)

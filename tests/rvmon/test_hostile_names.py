@@ -37,8 +37,8 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.models.language.load import loads_network
 from rvmon.models.uppaal_xml import uppaal_xml
+from rvmon.report.html import component, data, e, table_html
 from rvmon.report.junit import junit_xml
-from rvmon.report.pages import component, data, e, table_html
 from rvmon.report.run_text import print_reports
 from rvmon.report.table import RunGroup, VerdictTable, table_latex, tables_csv
 from rvmon.texts import quoted, shown, shown_json, shown_line

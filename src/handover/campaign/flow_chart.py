@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 from handover.collector.code import COMMON, TRANSITIONS
 from handover.robot.handover import STATES
 from rvmon.cdv.summary import BlockCoverage, StrategySummary, Transition
-from rvmon.report.pages import e
+from rvmon.report.html import e
 from rvmon.texts import percent_text
 
 LEFT, BOX_WIDTH, BOX_HEIGHT, PITCH = 34, 200, 34, 54

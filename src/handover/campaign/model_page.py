@@ -23,7 +23,7 @@ from rvmon.cdv.code_coverage import hits_of_states
 from rvmon.cdv.tables import RobotTest
 from rvmon.confidence import interval_text
 from rvmon.execute import parallel
-from rvmon.report.pages import component
+from rvmon.report.html import component
 from rvmon.report.table import checked_text
 
 if TYPE_CHECKING:

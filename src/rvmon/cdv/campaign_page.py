@@ -14,7 +14,7 @@ from rvmon.cdv.coverage import CoverageFigures
 from rvmon.cdv.summary import CampaignSummary, differences
 from rvmon.cdv.tables import INTERVALS, Presentation, RobotTables
 from rvmon.coverage import Ending
-from rvmon.report.pages import render, table_html
+from rvmon.report.html import render, table_html
 from rvmon.report.table import VerdictTable
 from rvmon.verdicts import Verdict
 

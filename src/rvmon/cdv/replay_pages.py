@@ -22,9 +22,9 @@ from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import Test
 from rvmon.execute import parallel
 from rvmon.files import write_whole
-from rvmon.report.pages import Child, e
+from rvmon.report.html import Child, e
 from rvmon.report.panels import JudgedRun, RunPage
-from rvmon.report.run_html import run_page
+from rvmon.report.run_page import run_page
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
 from rvmon.verdicts import Verdict

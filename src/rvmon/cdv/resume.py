@@ -17,8 +17,7 @@ import msgspec
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_plan import Job, Outcome, Plan, Played
 from rvmon.errors import RvmonError
-from rvmon.execute import journal
-from rvmon.execute.shards import Shard, shards_beside
+from rvmon.execute import Shard, journal, shards_beside
 from rvmon.files import contents
 from rvmon.language.checked.serialise import to_plain
 from rvmon.session import Spec

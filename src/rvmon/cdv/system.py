@@ -11,8 +11,8 @@ from rvmon.cdv.test import Test
 from rvmon.coverage import Hit, Hits, illegal
 from rvmon.report.scene import Scene
 from rvmon.trace.sample import Value
-from rvmon.verdicts.covered import IllegalHit
 from rvmon.verdicts.report import Report, report_of
+from rvmon.verdicts.run_coverage import IllegalHit
 
 if TYPE_CHECKING:
     from rvmon.coverage.monitor import SpecCoverage

@@ -15,7 +15,7 @@ from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, RobotSumm
 from rvmon.cdv.test import Test
 from rvmon.confidence import CONFIDENCE, interval
 from rvmon.coverage import Ending
-from rvmon.report.pages import component
+from rvmon.report.html import component
 from rvmon.report.table import Counts, RunGroup, VerdictTable
 from rvmon.texts import percent_text
 

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING
 from rvmon import __version__
 from rvmon.cli.options import at_most
 from rvmon.cli.output import rendered, spell, warn
-from rvmon.cli.reading import with_values
-from rvmon.cli.reproduced import relax
+from rvmon.cli.reading import relax, with_values
 from rvmon.errors import EXTRAS, DiagnosedError, RvmonError, not_installed
 from rvmon.execute import interrupted_by_sigterm
 

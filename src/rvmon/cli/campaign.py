@@ -27,7 +27,7 @@ from rvmon.cli.campaign_options import (
 from rvmon.cli.output import warn
 from rvmon.cli.parser import Parser
 from rvmon.errors import UnknownNameError
-from rvmon.report.folder import refuse_no_file, write_file
+from rvmon.files import refuse_no_file, write_file
 from rvmon.texts import counted
 
 SHOWN = 20
@@ -183,13 +183,13 @@ def _close(arguments: Namespace) -> int:
 
 
 def _replay(arguments: Namespace) -> int:
-    from rvmon.cli.campaign_one_test import replay
+    from rvmon.cli.campaign_run import replay
 
     return replay(_judged_by(arguments), arguments)
 
 
 def _shrink(arguments: Namespace) -> int:
-    from rvmon.cli.campaign_one_test import shrink_file
+    from rvmon.cli.campaign_run import shrink_file
 
     return shrink_file(_judged_by(arguments), arguments)
 

@@ -22,8 +22,7 @@ from rvmon.cdv.gate import CampaignJudgement
 from rvmon.cdv.tables import to_json
 from rvmon.cli.campaign_run import written
 from rvmon.cli.output import bar, say, say_json, warn
-from rvmon.files import write_whole
-from rvmon.report.folder import output_folder
+from rvmon.files import output_folder, write_whole
 from rvmon.report.terminal import Terminal
 
 

@@ -28,7 +28,7 @@ from rvmon.evidence import (
     texts_of,
     write_evidence,
 )
-from rvmon.report.folder import refuse_no_file
+from rvmon.files import refuse_no_file
 from rvmon.session import Spec
 from rvmon.verdicts.rows import VerdictRow
 

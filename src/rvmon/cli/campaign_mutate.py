@@ -28,8 +28,7 @@ from rvmon.cdv.tables import to_json
 from rvmon.cdv.test import Test, load
 from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.files import write_whole
-from rvmon.report.folder import output_folder
+from rvmon.files import output_folder, write_whole
 
 MOST_LISTED = 10
 """Survivors of a kind that the terminal shows; files have all."""

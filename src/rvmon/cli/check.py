@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
 from rvmon.cli.options import constants_of, declare
@@ -12,9 +12,11 @@ from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.cli.parser import TIME_FORMS, span_s
 from rvmon.diagnostics import Diagnostic, coloured, render_concise, render_json, wants_colour
 from rvmon.errors import SpecError
-from rvmon.language.checked.specification import CheckedSpec
+from rvmon.language.checked.classify import windows_of
+from rvmon.language.checked.formula import WindowValue
+from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.language.compiled_cache import compile_cached
-from rvmon.report.memory_text import memory_lines
+from rvmon.language.print import format_duration, format_window
 from rvmon.texts import cannot_read, counted, text_of_file, text_of_input
 
 
@@ -154,3 +156,46 @@ def _summary(files: int, findings: list[Diagnostic]) -> str:
     counts = ((errors, "error"), (len(findings) - errors, "warning"))
     found = ", ".join(counted(count, noun) for count, noun in counts if count)
     return f"{counted(files, 'file')}: {found or 'nothing to report'}"
+
+
+def memory_lines(spec: CheckedSpec) -> list[str]:
+    r"""A line for each window of each requirement, and one for their sum, in bytes.
+
+    >>> import rvmon
+    >>> text = "event e\nrequirement R\n  always count(e, 5 s) <= 3\n"
+    >>> memory_lines(rvmon.loads(text).checked)
+    ['memory: R keeps count(e, 5 s) in 128 bytes, and up to 64 a member in the last 5 s']
+    """
+    return [line for requirement in spec.requirements.values() for line in _lines(requirement)]
+
+
+def _lines(requirement: Requirement) -> Iterator[str]:
+    windows = {
+        format_window(window): window
+        for window in windows_of(requirement.trigger, requirement.consequent)
+    }
+    again = ""
+    if requirement.for_each is not None:
+        again = f", for each {requirement.for_each.name} anew"
+    elif requirement.captures:
+        again = ", for each open attempt anew"
+    for text, window in windows.items():
+        yield f"memory: {requirement.id} keeps {text} in {_of(window)}{again}"
+    if len(windows) > 1:
+        fixed = sum(_fixed(window) for window in windows.values())
+        yield f"memory: {requirement.id} keeps {fixed:,} bytes in all, and what is in its windows"
+
+
+def _fixed(window: WindowValue) -> int:
+    return window.measured.fixed + window.measured.each * (window.most or 0)
+
+
+def _of(window: WindowValue) -> str:
+    each = f"and up to {window.measured.each} a member"
+    if window.most is not None:
+        return f"{_fixed(window):,} bytes at most"
+    if window.window is not None:
+        return f"{_fixed(window):,} bytes, {each} in the last {format_duration(window.window)}"
+    if not window.measured.steady:
+        return f"{_fixed(window):,} bytes, {each} of another value"
+    return f"{_fixed(window):,} bytes, however long the run"

@@ -14,19 +14,19 @@ from rvmon.cli.output import say, warn
 from rvmon.cli.parser import TIME_FORMS, span, ticks
 from rvmon.cli.reading import (
     ATTEMPT_HELP,
+    ENDING,
     allowed_names,
     chosen_attempt,
     named_attempt,
     opened,
     reading_spec,
 )
-from rvmon.cli.reproduced import ENDING
 from rvmon.errors import RvmonError
+from rvmon.files import refuse_no_file
 from rvmon.language.checked.specification import Mode
 from rvmon.recordings.clipping.clip import clip, refuse_place
 from rvmon.recordings.clipping.piece import Copied, Piece, values_before
 from rvmon.recordings.places import name_of
-from rvmon.report.folder import refuse_no_file
 from rvmon.session import Spec, load
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT, format_stamp, format_stamped
 from rvmon.verdicts import LAW

@@ -12,7 +12,7 @@ from rvmon.cli.options import declare
 from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.cli.parser import percentage
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.report.folder import write_file
+from rvmon.files import write_file
 from rvmon.texts import did_you_mean
 
 if TYPE_CHECKING:

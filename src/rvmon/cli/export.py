@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from rvmon.cli.options import ONLY, asked_ids, constants_of, declare
 from rvmon.cli.output import say, warn
 from rvmon.errors import RvmonError
-from rvmon.report.folder import write_file
+from rvmon.files import write_file
 from rvmon.texts import shown_json
 
 if TYPE_CHECKING:

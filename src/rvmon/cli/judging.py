@@ -9,9 +9,9 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import asked_ids, constants_of
-from rvmon.cli.output import bar, shown_while_reading
+from rvmon.cli.output import bar, shown_while_reading, warn
 from rvmon.cli.post_analysis import Remembered, post_analysis
-from rvmon.cli.reading import allowed_names, opened, reading_spec
+from rvmon.cli.reading import allowed_names, opened, reading_spec, shown_name
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.missing import expect_names
@@ -23,13 +23,14 @@ from rvmon.session import Spec, load
 from rvmon.texts import shown_path
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import ticks_of_seconds
-from rvmon.verdicts.covered import IllegalHit
+from rvmon.verdicts.run_coverage import IllegalHit
 
 if TYPE_CHECKING:
     import argparse
 
     from rvmon.coverage import Hits
     from rvmon.coverage.monitor import CoverageMonitor
+    from rvmon.reproducer import Case
     from rvmon.verdicts.attempt import Attempt
     from rvmon.verdicts.report import Report
 
@@ -281,3 +282,24 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
     report = replace(report, trace=trace, health=health, **found)
     seconds = time.monotonic() - began
     return Judged(trace, report, missing=missing, hits=beside.hits, seconds=seconds)
+
+
+def as_known(judged: Judged, case: Case) -> Judged:
+    """The judged reproducer, with the name by which people know its recording."""
+    name = shown_name(case.recording)
+    report = None if judged.report is None else replace(judged.report, trace=name)
+    return replace(
+        judged, trace=name, report=report, error=judged.error.replace(case.recording, name)
+    )
+
+
+def compare_expected(judged: Judged, case: Case) -> None:
+    """Say whether the attempt has the verdict that it had."""
+    attempts = [] if judged.report is None else judged.report.attempts
+    found = next((attempt for attempt in attempts if attempt.name == case.attempt), None)
+    if found is None or (found.verdict, found.decided) != (case.verdict, case.decided):
+        now = "there is none now" if found is None else f"it is {found.verdict} now"
+        made = f"as rvmon {case.rvmon} (law {case.law}) decided"
+        warn(f"warning: {case.attempt} was {case.verdict}, {made}: {now}")
+    else:
+        warn(f"{case.attempt} is {case.verdict}, as when this was recorded")

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, NoReturn
 
 from rvmon.errors import TraceError
-from rvmon.execute.shards import Shard
+from rvmon.execute import Shard
 from rvmon.texts import did_you_mean, shown
 from rvmon.trace.time import TICKS_PER_SECOND, TICKS_PER_UNIT, ticks_of_text
 

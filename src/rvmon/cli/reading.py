@@ -1,12 +1,16 @@
-"""Options of several commands: the names in recordings, and names that these may lack."""
+"""Options of several commands: the names in recordings, what these may lack; reproducers."""
 
 from __future__ import annotations
 
+import argparse
 import re
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.output import warn
 from rvmon.errors import RvmonError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -14,9 +18,11 @@ if TYPE_CHECKING:
 
     from rvmon.recordings.recording import FileRecording
     from rvmon.recordings.source import SchemaArguments
+    from rvmon.reproducer import Case
     from rvmon.session import Spec
     from rvmon.verdicts.attempt import Attempt
     from rvmon.verdicts.report import Report
+
 
 OPTIONAL_VALUES = ("--allow-missing", "--require-triggered")
 """Options whose value can be left out, and otherwise follows a `=`."""
@@ -204,3 +210,53 @@ def _most_telling(attempts: Sequence[Attempt]) -> Attempt:
             if attempt.verdict.value == verdict:
                 return attempt
     return attempts[0]
+
+
+ENDING = ".rvcase"
+"""The suffix of reproducers."""
+
+
+def relax(parser: argparse.ArgumentParser, words: Sequence[str]) -> None:
+    """Let all but the first argument be left out if a reproducer is named, which brings them along.
+
+    Without one they stay as they are: argparse would take what may be left out for left out where
+    an option stands before it.
+    """
+    if any(word.endswith(ENDING) for word in words):
+        for action in parser._get_positional_actions()[1:]:
+            action.nargs, action.required = "*" if action.nargs == "+" else "?", False
+
+
+@contextmanager
+def unpacked(arguments: argparse.Namespace) -> Iterator[Case | None]:
+    """The reproducer that is named as the specification; the arguments then say what it says.
+
+    Args:
+        arguments: with `spec`, and the options `READING`, `--const` and `--allow-missing`.
+
+    Raises:
+        RvmonError: it cannot be read, or they say otherwise.
+    """
+    if not arguments.spec.endswith(ENDING):
+        yield None
+        return
+    from rvmon.reproducer import opened_case
+    from rvmon.verdicts import LAW
+
+    if arguments.const or reading_words(arguments):
+        raise RvmonError(f"{arguments.spec} defines how it is read: leave out these options")
+    with opened_case(arguments.spec) as case:
+        if case.law != LAW:
+            laws = f"made under law {case.law}, and this rvmon has law {LAW}"
+            warn(f"warning: {arguments.spec} was {laws}: verdicts may differ")
+        arguments.spec = case.spec
+        arguments.const = list(case.const)
+        arguments.time, arguments.map, arguments.nan = case.time, list(case.map), case.nan
+        arguments.binding, arguments.clock = case.binding, case.clock
+        arguments.allow_missing = case.allow_missing
+        yield case
+
+
+def shown_name(path: str) -> str:
+    """The name by which people know a file of a reproducer, which is unpacked only for a moment."""
+    return Path(path).name

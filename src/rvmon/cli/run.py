@@ -9,18 +9,24 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.judging import Judged, Options, judge_all, spec_and_options
+from rvmon.cli.judging import (
+    Judged,
+    Options,
+    as_known,
+    compare_expected,
+    judge_all,
+    spec_and_options,
+)
 from rvmon.cli.options import EVALUATED, ONLY, declare, ids_of, refuse_over
 from rvmon.cli.output import rendered, say_json, warn
 from rvmon.cli.parser import positive, shard
-from rvmon.cli.reading import reading_words, refuse_empty
-from rvmon.cli.reproduced import as_known, compare_expected, shown_name, unpacked
+from rvmon.cli.reading import reading_words, refuse_empty, shown_name, unpacked
 from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
-from rvmon.execute.shards import shards_beside
+from rvmon.execute import shards_beside
+from rvmon.files import refuse_no_file
 from rvmon.recordings.found import found_recordings
 from rvmon.recordings.places import JOINT
-from rvmon.report.folder import refuse_no_file
 from rvmon.session import Spec
 from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict
@@ -142,7 +148,7 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     _refuse_places(arguments, traces, spec)
     before = None
     if arguments.evidence is not None:
-        from rvmon.cli.run_evidence import begun, write_run
+        from rvmon.cli.evidence import begun, write_run
 
         before = begun(arguments, traces)
     must_trigger = ids_of(arguments.require_triggered or None, spec)

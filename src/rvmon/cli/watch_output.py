@@ -22,9 +22,8 @@ from rvmon.errors import RvmonError, TraceError
 from rvmon.live import Driver, Judgement, Status
 from rvmon.live.durable import DurableMonitor
 from rvmon.recordings.jsonl_rows import read_object
-from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import Terminal
-from rvmon.report.wording import health_facts
+from rvmon.report.wording import MARKS, health_facts, verdict_text
 from rvmon.session import Spec
 from rvmon.texts import counted
 from rvmon.trace.sample import HealthKind

@@ -17,8 +17,9 @@ from rvmon.cli.reading import (
     named_attempt,
     opened,
     reading_spec,
+    shown_name,
+    unpacked,
 )
-from rvmon.cli.reproduced import shown_name, unpacked
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.print import format_window

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from rvmon.language.checked.properties import BinKind
 from rvmon.verdicts import Verdict
-from rvmon.verdicts.covered import CoveredBin, CoveredGroup
+from rvmon.verdicts.run_coverage import CoveredBin, CoveredGroup
 
 if TYPE_CHECKING:
     import numpy as np

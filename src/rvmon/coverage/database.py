@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rvmon.coverage import Coverage, Hits, Model, TestRecord
-from rvmon.coverage.schema import connect, damaged, name_of, readable_errors, transaction
+from rvmon.coverage.database_file import connect, damaged, name_of, readable_errors, transaction
 from rvmon.coverage.stored_model import (
     Stored,
     model_from,

@@ -28,7 +28,7 @@ from rvmon.monitor.compiled_spec import CompiledSpec, Kept
 from rvmon.monitor.feed import refuse_settle
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.packed_plan import PlannedCore, planned_as
-from rvmon.monitor.recording import RecordingRun
+from rvmon.monitor.recording_run import RecordingRun
 from rvmon.monitor.snapshot import Options
 from rvmon.recordings.source import Source
 from rvmon.trace.sample import Recording

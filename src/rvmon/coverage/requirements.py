@@ -13,7 +13,7 @@ import numpy as np
 from rvmon import native
 from rvmon.analysis.graph import Graph, graph_of
 from rvmon.coverage import Group, Hit, Item, Subject, group_of
-from rvmon.coverage.variants import Variant, variants_of
+from rvmon.coverage.decisive_operands import Variant, variants_of
 from rvmon.language.checked.formula import (
     Binary,
     BinaryOp,

@@ -10,7 +10,7 @@ from pathlib import Path
 import msgspec
 
 from rvmon.coverage import Group, Item, Model, Subject
-from rvmon.coverage.schema import damaged, name_of
+from rvmon.coverage.database_file import damaged, name_of
 from rvmon.errors import CoverageError
 from rvmon.language.checked.properties import BinKind
 

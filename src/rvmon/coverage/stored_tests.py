@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rvmon.coverage import UNKNOWN, Ending, Entry, Hits, Row, TestRecord
-from rvmon.coverage.schema import damaged
+from rvmon.coverage.database_file import damaged
 from rvmon.errors import CoverageError
 from rvmon.verdicts import Verdict
 

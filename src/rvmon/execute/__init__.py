@@ -2,7 +2,8 @@
 
 `parallel.execute` shares tasks among processes, or the workers of a scheduler of Dask; nothing else
 starts any for Python's work. `journal` keeps results as they come, so that work which was ended
-goes on; a shard is a share of the work that knows of no other.
+goes on; a `Shard` is a share of the work for one of several machines, none of which knows of
+another: begun without a shard where all their journals are, work finds in them what was done.
 `command.run` runs a program; `interrupted_by_sigterm` has all of them cleaned up.
 """
 
@@ -10,10 +11,11 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,3 +57,49 @@ def interrupted_by_sigterm() -> Iterator[None]:
         yield
     finally:
         signal.signal(signal.SIGTERM, signal.SIG_DFL if known is None else known)
+
+
+_Task = TypeVar("_Task")
+
+
+@dataclass(frozen=True, slots=True)
+class Shard:
+    """One of several shares that are as large as each other."""
+
+    number: int
+    count: int
+
+    def __str__(self) -> str:
+        return f"{self.number}/{self.count}"
+
+    def of(self, tasks: Sequence[_Task]) -> list[_Task]:
+        """The tasks of this share; all shares together have each task once.
+
+        >>> [Shard(number, 2).of("abcde") for number in (1, 2)]
+        [['a', 'c', 'e'], ['b', 'd']]
+        """
+        return list(tasks[self.number - 1 :: self.count])
+
+    def name(self, path: Path) -> Path:
+        """The file of this shard in place of the file `path` of the whole.
+
+        >>> Shard(2, 4).name(Path("out/verdicts.csv")).name
+        'verdicts.shard-2-of-4.csv'
+        """
+        return path.with_name(f"{path.stem}.shard-{self.number}-of-{self.count}{path.suffix}")
+
+
+def shards_beside(path: Path) -> list[Path]:
+    """The files of all finished shards in place of a file, by name.
+
+    Raises:
+        OSError: the folder cannot be read.
+    """
+    pattern = f"{_literal(path.stem)}.shard-*-of-*{_literal(path.suffix)}"
+    return sorted(path.parent.glob(pattern))
+
+
+def _literal(name: str) -> str:
+    import glob
+
+    return glob.escape(name)

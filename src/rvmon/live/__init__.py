@@ -5,10 +5,10 @@ no thread and never sleeps. `runners` call it, in a thread of its own or in an e
 for middleware only call `offer`.
 """
 
-from rvmon.live.calls import as_event
 from rvmon.live.clock import Clock, SimulatedClock, WallClock
 from rvmon.live.driver import Driver
 from rvmon.live.durable import DurableMonitor
+from rvmon.live.function_calls import as_event
 from rvmon.live.robot import Judgement, Status
 from rvmon.live.runners import Live, LiveTasks
 

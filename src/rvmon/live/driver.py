@@ -12,14 +12,14 @@ from rvmon.errors import RvmonError, TraceError
 from rvmon.language.checked.names_read import several, sources_asked
 from rvmon.live.clock import FAR_NS, Clock, WallClock, refuse_far
 from rvmon.live.robot import Judgement, Robot, Status, Watch
-from rvmon.live.waiting import Dropped, Gap, NewRun, Offered, OutageReport, Timers, Waiting
+from rvmon.live.sample_queue import Dropped, Gap, NewRun, Offered, OutageReport, Timers, Waiting
 from rvmon.monitor.listeners import checked
 from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import format_ticks, whole_ticks
 from rvmon.verdicts import Verdict
 
 if TYPE_CHECKING:
-    from rvmon.live.waiting import Entry, Values
+    from rvmon.live.sample_queue import Entry, Values
     from rvmon.session import Spec
     from rvmon.verdicts.report import Report
 

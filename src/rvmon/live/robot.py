@@ -11,7 +11,7 @@ import msgspec
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.language.checked.names_read import requirements_asked
-from rvmon.live.waiting import Dropped, Gap, OutageReport, Values
+from rvmon.live.sample_queue import Dropped, Gap, OutageReport, Values
 from rvmon.trace.sample import Health, HealthKind
 from rvmon.verdicts import Verdict, fold
 from rvmon.verdicts.attempt import Attempt

@@ -12,7 +12,7 @@ import numpy as np
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.missing import expect_names
 from rvmon.monitor.packed_plan import planned_core
-from rvmon.monitor.recording import RecordingRun, judge_recording
+from rvmon.monitor.recording_run import RecordingRun, judge_recording
 from rvmon.monitor.records import with_plan
 from rvmon.monitor.robustness import FIGURES, Key, Margins, Robustness, Stream
 from rvmon.recordings.columns import TableRecording

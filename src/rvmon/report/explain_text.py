@@ -18,7 +18,7 @@ from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.language.print import format_duration
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.report.style import MARKS
+from rvmon.report.wording import MARKS
 from rvmon.trace.sample import Scalar, Value
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt

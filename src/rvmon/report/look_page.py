@@ -11,7 +11,7 @@ from rich.text import Text
 
 from rvmon.language.checked.specification import Requirement
 from rvmon.recordings.starter.column import Column, Profile, Stretch
-from rvmon.report.pages import e, render
+from rvmon.report.html import e, render
 from rvmon.report.time_axis import View, moment, round_instants
 from rvmon.report.wording import duration_text, first_of
 from rvmon.trace.sample import Outage

@@ -10,13 +10,12 @@ from typing import NamedTuple
 from rvmon.analysis.subformulas import PartTruth
 from rvmon.language.checked.specification import Requirement
 from rvmon.report.changes import Course
-from rvmon.report.pages import Child, e
+from rvmon.report.html import Child, e
 from rvmon.report.panels import Panel
-from rvmon.report.style import MARKS
 from rvmon.report.time_axis import moment, with_moments
 from rvmon.report.timeline import axis_row, guides_of, timeline, truth_row
 from rvmon.report.tracks import Track, TrackKind, blamed_names
-from rvmon.report.wording import reason_text, without_attempts
+from rvmon.report.wording import MARKS, reason_text, without_attempts
 from rvmon.trace.sample import Scalar
 from rvmon.verdicts.attempt import Blame
 from rvmon.verdicts.report import Report

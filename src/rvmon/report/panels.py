@@ -18,7 +18,7 @@ from rvmon.analysis.truths import Question, RecordedTruths, look_through, parts_
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.report.changes import Changes, changes_of
-from rvmon.report.pages import Child
+from rvmon.report.html import Child
 from rvmon.report.scene import Scene
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt

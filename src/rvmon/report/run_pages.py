@@ -10,12 +10,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
-from rvmon.files import write_whole
+from rvmon.files import output_folder, write_whole
 from rvmon.language.checked.specification import CheckedSpec, Requirement
-from rvmon.report.folder import output_folder
-from rvmon.report.pages import render
+from rvmon.report.html import render
 from rvmon.report.panels import JudgedRun, RunPage
-from rvmon.report.run_html import run_page
+from rvmon.report.run_page import run_page
 from rvmon.report.terminal import in_short
 from rvmon.trace.sample import Sample
 from rvmon.verdicts import Verdict

@@ -14,9 +14,9 @@ from rich.text import Text
 from rvmon.diagnostics import snippet
 from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import CheckedSpec, Requirement
-from rvmon.report.style import MARKS, verdict_text
 from rvmon.report.terminal import Terminal, wrapped
 from rvmon.report.wording import (
+    MARKS,
     SHOWN,
     SHOWN_PER_REQUIREMENT,
     first_of,
@@ -24,14 +24,15 @@ from rvmon.report.wording import (
     full_reason,
     health_facts,
     instants_of,
+    verdict_text,
     without_attempts,
 )
 from rvmon.texts import counted
 from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt, LazyAttempts
-from rvmon.verdicts.covered import CoveredBin, CoveredGroup
 from rvmon.verdicts.report import Report
+from rvmon.verdicts.run_coverage import CoveredBin, CoveredGroup
 
 
 def together(several: Sequence[Sequence[CoveredGroup]]) -> list[CoveredGroup]:

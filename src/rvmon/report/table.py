@@ -13,7 +13,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rvmon.confidence import interval, interval_text
-from rvmon.report.style import MARKS
+from rvmon.report.wording import MARKS
 from rvmon.texts import shown_line
 from rvmon.verdicts import Verdict
 

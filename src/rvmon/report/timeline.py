@@ -7,8 +7,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from rvmon.report.pages import Child, e
-from rvmon.report.style import MARKS
+from rvmon.report.html import Child, e
 from rvmon.report.time_axis import View, moment, round_instants, with_moments
 from rvmon.report.tracks import (
     Stretch,
@@ -19,7 +18,7 @@ from rvmon.report.tracks import (
     readable,
     stretches,
 )
-from rvmon.report.wording import duration_text
+from rvmon.report.wording import MARKS, duration_text
 from rvmon.verdicts.attempt import Attempt
 
 WIDTH, HEIGHT = 1000, 100

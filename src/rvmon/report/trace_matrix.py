@@ -9,10 +9,10 @@ from itertools import groupby
 from typing import NamedTuple
 
 from rvmon.language.checked.specification import CheckedSpec
-from rvmon.report.pages import render
-from rvmon.report.style import MARKS
+from rvmon.report.html import render
 from rvmon.report.table import plain
 from rvmon.report.terminal import in_short
+from rvmon.report.wording import MARKS
 from rvmon.verdicts import Verdict, fold
 from rvmon.verdicts.rows import VerdictRow
 from rvmon.verdicts.table_file import csv_table

@@ -12,7 +12,7 @@ from rvmon.texts import did_you_mean
 from rvmon.trace.sample import Health, HealthKind
 from rvmon.verdicts import LAW, Verdict, fold
 from rvmon.verdicts.attempt import Attempt, LazyAttempts
-from rvmon.verdicts.covered import CoveredGroup, IllegalHit
+from rvmon.verdicts.run_coverage import CoveredGroup, IllegalHit
 
 if TYPE_CHECKING:
     import pandas

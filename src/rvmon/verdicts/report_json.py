@@ -12,7 +12,7 @@ from rvmon.trace.sample import Health
 from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdicts import LAW, Verdict
 from rvmon.verdicts.attempt import Attempt
-from rvmon.verdicts.covered import CoveredGroup, IllegalHit
+from rvmon.verdicts.run_coverage import CoveredGroup, IllegalHit
 
 if TYPE_CHECKING:
     from rvmon.language.checked.specification import Requirement

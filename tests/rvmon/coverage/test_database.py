@@ -6,7 +6,17 @@ import pytest
 from tests.tools.covered import door_model, dump, fill, hits_of
 from tests.tools.hostile import hostile_names
 
-from rvmon.coverage import Ending, Group, Hit, Item, Subject, TestRecord, group_of, model_of, schema
+from rvmon.coverage import (
+    Ending,
+    Group,
+    Hit,
+    Item,
+    Subject,
+    TestRecord,
+    database_file,
+    group_of,
+    model_of,
+)
 from rvmon.coverage.database import Database, read
 from rvmon.coverage.questions import Answers
 from rvmon.errors import CoverageError
@@ -190,7 +200,7 @@ def test_a_place_where_nothing_can_be_written_is_read(path, monkeypatch):
     """As from a medium that is read only: SQLite keeps nothing beside the file then."""
     with Database.open(path) as database:
         fill(database)
-    monkeypatch.setattr(schema.os, "access", lambda *_: False)
+    monkeypatch.setattr(database_file.os, "access", lambda *_: False)
     before = path.read_bytes()
     assert len(read([path]).entries) == 4
     assert path.read_bytes() == before

@@ -8,7 +8,7 @@ import sys
 import pytest
 from tests.tools.covered import door_model, hits_of
 
-from rvmon.coverage import TestRecord, schema
+from rvmon.coverage import TestRecord, database_file
 from rvmon.coverage.database import Database, read
 from rvmon.errors import CoverageError
 
@@ -71,7 +71,7 @@ def test_a_killed_process_leaves_a_whole_database(tmp_path, seen):
 
 def test_who_waits_too_long_is_told(tmp_path, monkeypatch):
     path = tmp_path / "a.cov"
-    monkeypatch.setattr(schema, "PATIENCE_S", 0.01)
+    monkeypatch.setattr(database_file, "PATIENCE_S", 0.01)
     with Database.open(path) as database:
         holder = sqlite3.connect(path, isolation_level=None)
         holder.execute("BEGIN IMMEDIATE")

@@ -6,9 +6,9 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from rvmon.report.pages import table_html
-from rvmon.report.style import MARKS
+from rvmon.report.html import table_html
 from rvmon.report.table import RunGroup, VerdictTable, escape, table_latex, table_text, tables_csv
+from rvmon.report.wording import MARKS
 from rvmon.verdicts import Verdict
 
 

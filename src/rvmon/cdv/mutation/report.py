@@ -19,7 +19,7 @@ from rvmon.cdv.mutation.survivors import (
     question,
     scored,
 )
-from rvmon.report.pages import render
+from rvmon.report.html import render
 from rvmon.report.terminal import plain_table
 from rvmon.texts import counted, percent_text
 

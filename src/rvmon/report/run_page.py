@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import groupby, islice
 
-from rvmon.report.pages import e, render
+from rvmon.report.html import e, render
 from rvmon.report.panel_html import (
     has_unknown,
     headline,
