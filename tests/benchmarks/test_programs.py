@@ -31,6 +31,7 @@ def test_each_helps(
     assert len(capsys.readouterr().out.splitlines()) > 3
 
 
+@pytest.mark.slow
 def test_hard_streams_have_neighbours() -> None:
     lines = list(cliffs.lines(60, 1))
     assert len(lines) == 2 + 15

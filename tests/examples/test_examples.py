@@ -44,6 +44,7 @@ def test_a_stream_in_another_program(play):
     assert lines[-2:] == ["B1 F", "B2 F"]
 
 
+@pytest.mark.slow
 def test_a_loop_of_asyncio(play):
     (line,) = play("asyncio_loop/drive.py")
     assert line.startswith("B2#1 F `for 1 s speed <= 0.001 m/s` had to come true")

@@ -67,6 +67,7 @@ def test_it_is_judged_and_explained_anywhere(base, tmp_path_factory, monkeypatch
     assert b"rvmon-" not in base.__class__("v.csv").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_bag_with_a_binding_comes_along(base, says):
     pytest.importorskip("rosbags")
     from tests.tools.bags import DEFINITIONS, START, write_ros2
@@ -187,6 +188,7 @@ def test_a_wrong_or_newer_description_is_told(tmp_path, says, case, told):
     assert told in says(2, "why", path).err
 
 
+@pytest.mark.slow
 def test_damage_is_told(base, capsys, says):
     assert clip("a.csv", *READING) == 0
     whole = (base / "a.rvcase").read_bytes()

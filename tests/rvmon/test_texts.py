@@ -2,6 +2,7 @@
 
 import json
 
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tools.hostile import STEERING, hostile_names
@@ -9,6 +10,7 @@ from tests.tools.hostile import STEERING, hostile_names
 from rvmon.texts import percent, percent_text, shown, shown_json, shown_line
 
 
+@pytest.mark.slow
 def test_nothing_that_steers_is_left():
     for name in hostile_names(5000):
         assert not STEERING.search(shown(f"{name}\n"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from collections.abc import Callable, Mapping, Sequence
+from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -126,7 +127,7 @@ def write_ros1(
     from rosbags.rosbag1 import Writer
     from rosbags.typesys import Stores
 
-    store = _store(Stores.ROS1_NOETIC, own)
+    store = _store(Stores.ROS1_NOETIC, tuple(own.items()))
     writer = Writer(path)
     if compression:
         writer.set_compression(Writer.CompressionFormat[compression.upper()])
@@ -143,11 +144,13 @@ def write_ros2(path: Path, sent: Sequence[Sent], plugin: str, version: Any = 9) 
     return _write_ros(path, sent, writer, store, store.serialize_cdr)
 
 
-def _store(which: Any, own: Types = NONE) -> Any:
+@lru_cache(maxsize=8)
+def _store(which: Any, own: tuple[tuple[str, str], ...] = ()) -> Any:
+    """The messages of a distribution, and these: what packs each is made once."""
     from rosbags.typesys import get_types_from_msg, get_typestore
 
     store = get_typestore(which)
-    for name, text in {**DEFINITIONS, **own}.items():
+    for name, text in {**DEFINITIONS, **dict(own)}.items():
         store.register(get_types_from_msg(text, name))
     return store
 

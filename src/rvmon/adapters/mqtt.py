@@ -134,7 +134,7 @@ class MqttSource:
             raise RvmonError(f"no broker of MQTT answers at {where}: {error}") from None
         self._client.loop_start()
         if not self._connected.wait(_PATIENCE_S) or self._refusal:
-            self._client.loop_stop()
+            self.__exit__()
             why = self._refusal or f"it did not answer in {_PATIENCE_S:.0f} s"
             raise RvmonError(f"the broker of MQTT at {where} refuses: {why}")
         return self

@@ -25,6 +25,7 @@ def test_both_robots_are_judged_by_the_same_requirements(robot):
     assert [texts[name] for name in REQUIREMENTS] == [words[name].text for name in REQUIREMENTS]
 
 
+@pytest.mark.campaign
 def test_judging_online_equals_judging_the_recording(spec):
     checker = Checker(spec)
     late = "mutant-releases-late"

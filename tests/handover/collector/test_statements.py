@@ -50,6 +50,7 @@ def test_a_release_runs_the_whole_release_and_nobody_none_of_it(measured):
     assert nobody.covered == 0
 
 
+@pytest.mark.campaign
 def test_tests_are_kept_apart(measured):
     _, hits = measured
 
@@ -61,6 +62,7 @@ def test_tests_are_kept_apart(measured):
     assert max(alone) < both < sum(len(group.items) for group in GROUPS.values())
 
 
+@pytest.mark.campaign
 def test_measuring_changes_nothing(measured):
     runs, _ = measured
     assert runs["released"] == run_test(TESTS["released"])

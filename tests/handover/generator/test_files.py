@@ -57,6 +57,7 @@ TESTS = st.builds(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=50, deadline=None)
 @given(TESTS)
 def test_written_tests_read_back(test: AbstractTest) -> None:

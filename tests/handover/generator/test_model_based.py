@@ -126,6 +126,7 @@ def test_a_template_changed_by_hand_is_taken_as_it_is(tmp_path):
         load_template(tmp_path / "broken.json", Action)
 
 
+@pytest.mark.slow
 def test_projection_keeps_only_human_and_sensors():
     network = handover_network()
     run = verify(network, "E<> robot.done and withheld").run
@@ -134,6 +135,7 @@ def test_projection_keeps_only_human_and_sensors():
     assert {step.does.split(":")[0] for step in steps} <= set(PROJECTED)
 
 
+@pytest.mark.campaign
 @pytest.mark.parametrize(("requirement", "event"), [(0, "released"), (1, "withheld")])
 def test_the_robot_does_what_the_witness_shows(requirement, event):
     """Played against the robot, R1's test ends in a release, R2's in a refusal."""

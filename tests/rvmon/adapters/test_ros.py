@@ -228,9 +228,11 @@ def linked(monkeypatch):
 
 
 @pytest.mark.parametrize("fault", ["a connection", "nonsense of the master", "rospy itself"])
-def test_what_looks_after_connections_of_ros_1_never_ends_in_silence(linked, fault):
+def test_what_looks_after_connections_of_ros_1_never_ends_in_silence(linked, fault, monkeypatch):
     """Nobody knows any more whether something is lost: that is lost."""
     from rvmon.adapters.ros1 import Ros1Source
+
+    monkeypatch.setattr("rvmon.adapters.ros1._TURN_S", 0.001)
 
     spec = loads(SPEC)
     driver = Driver(spec, clock=SimulatedClock())

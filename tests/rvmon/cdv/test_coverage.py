@@ -87,6 +87,7 @@ def test_states_give_transitions_by_themselves(campaign):
     assert not coverage_model(replace(three, transitions=()), "new").groups["transitions"].items
 
 
+@pytest.mark.slow
 def test_a_database_and_a_page_each(campaign, tmp_path):
     results = execute(plan(campaign, tests=3), jobs=1)
     pages = {("new", "lift-1"): "runs/new-lift-1.html"}

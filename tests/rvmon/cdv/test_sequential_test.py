@@ -37,6 +37,7 @@ def test_a_share_is_decided_by_as_few_tests_as_it_takes(share, verdicts, holds, 
     assert (found.holds, found.tests) == (holds, tests)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("share", [LEAST, MOST, RunShare(at_least=True, percent=50.0)])
 def test_errors_are_as_stated(share):
     """At both ends of the indifference, of 1,500 campaigns with some inconclusive tests."""

@@ -59,6 +59,7 @@ def bound(words, capsys):
     return told.out.replace(open_, 'labels = { 0 = "idle", 1 = "busy" }')
 
 
+@pytest.mark.slow
 def test_what_is_proposed_runs(words, tmp_path, capsys, says):
     proposed = bound(words, capsys)
     for line in (

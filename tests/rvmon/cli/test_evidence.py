@@ -75,6 +75,7 @@ def rewritten(path, change):
         file.write(pack(entries))
 
 
+@pytest.mark.slow
 def test_the_same_run_gives_the_same_bytes(base):
     assert run(*TRACES) == 2
     assert run(*TRACES, "--jobs", "2", "--out", "v.csv", out="f.zip") == 2

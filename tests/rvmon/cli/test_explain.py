@@ -60,6 +60,7 @@ def test_what_is_measured_is_said(tmp_path, says, measured, said):
     assert "`upon`" not in text
 
 
+@pytest.mark.slow
 def test_all_requirements_within_80_columns(door, says):
     text = says(0, "explain", "door.rv").out
     assert all(len(line) <= 80 for line in text.splitlines()), text

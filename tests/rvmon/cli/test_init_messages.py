@@ -84,6 +84,7 @@ def test_a_joint_whose_name_is_no_word_is_said_to_be_left_out(tmp_path, capsys):
     assert ": its name is no word: bind it" in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
 def test_topics_on_which_nothing_was_said_are_left_out(tmp_path, capsys, plugin):
     from rosbags.rosbag2 import StoragePlugin, Writer

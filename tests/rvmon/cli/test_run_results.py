@@ -95,6 +95,7 @@ def test_what_has_changed_is_judged_again(folder, says, monkeypatch, changed, ke
     assert ("evaluated before" in told) is bool(kept)
 
 
+@pytest.mark.slow
 def test_shards_are_joined(folder, says):
     """Wherever each was judged; what broke off, and a shard that is missing, is judged here."""
     recordings = ["good.csv", "bad.csv", "cut.csv", "more.csv", "last.csv"]
@@ -140,6 +141,7 @@ def test_what_is_judged_is_not_written_over(folder, capsys, option):
     assert (folder / "good.csv").read_text() == before
 
 
+@pytest.mark.slow
 def test_many_attempts_have_the_rows_that_few_have(folder):
     rows = "".join(f"{t},{t % 3 > 0:d}\n" for t in range(3000))
     (folder / "many.csv").write_text(f"t,p\n{rows}")

@@ -98,6 +98,7 @@ def test_a_change_that_names_what_nobody_listens_to_is_not_taken_up(door, says, 
     assert "The former specification goes on. door.rv has changed: the new one holds" in said
 
 
+@pytest.mark.slow
 def test_a_watch_of_too_many_robots_is_no_success(door, says):
     lines = [json.dumps({"t": 0, "robot": n, "closed": True}) for n in range(1_001)]
     (door / "a.jsonl").write_text("\n".join(lines) + "\n")
@@ -121,6 +122,7 @@ def test_of_many_complaints_of_a_kind_few_are_told(door, capsys):
     assert "the 100th of this kind" in told[-1]
 
 
+@pytest.mark.slow
 def test_a_view_of_much_fits_and_begins_with_what_failed():
     text = "spec s\nsignal x : real\nevent e\n" + "".join(
         f"requirement R{number}\n  upon e\n  then within {100 + number} s x > {number}\n"

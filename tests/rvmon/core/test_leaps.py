@@ -45,6 +45,7 @@ def outcome_of(attempt):
     return attempt.number, attempt.triggered, attempt.decided, attempt.verdict
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled every 500 ms"])
 @pytest.mark.parametrize("form", FORMS.values(), ids=FORMS)
 def test_what_is_counted_is_what_would_be_told(form, time):

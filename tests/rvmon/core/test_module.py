@@ -102,6 +102,7 @@ def test_samples_of_all_kinds_most_of_them_wrong():
     assert all(repr(one) for one in kept)
 
 
+@pytest.mark.slow
 def test_the_collector_steps_in_the_midst_of_a_step():
     """Attempts are made of copies: what the core holds may move while they are."""
     monitor = rvmon.loads(WAITING).monitor()
@@ -343,6 +344,7 @@ def test_nothing_is_left_behind(planned):
     assert min(found[1:]) <= found[0] + 15  # a leak in any way leaves 20
 
 
+@pytest.mark.slow
 def test_other_threads_run_while_rows_are_judged(planned):
     times = np.arange(1, 200_001) * 1000
     p = times // 1000 % 2 == 0

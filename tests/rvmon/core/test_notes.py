@@ -3,6 +3,8 @@
 import gc
 import pickle
 
+import pytest
+
 import rvmon
 
 MS = 1_000_000
@@ -23,6 +25,7 @@ requirement W "lasting"
 """
 
 
+@pytest.mark.slow
 def test_a_reason_can_be_read_long_after(tmp_path):
     monitor = spec_of(RESPONSE).monitor()
     monitor.step_ns(0, {"p": False, "q": False})
@@ -47,6 +50,7 @@ def test_a_reason_can_be_read_long_after(tmp_path):
     assert pickle.loads(pickle.dumps(copies[1])) == failed  # noqa: S301
 
 
+@pytest.mark.slow
 def test_many_open_attempts_say_what_they_wait_for():
     spec = spec_of("event p\nsignal q : bool\nrequirement R\n  upon p\n  then within 200 s q\n")
     monitor = spec.monitor()

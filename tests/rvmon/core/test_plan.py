@@ -40,7 +40,10 @@ from rvmon.monitor.requirement_plans import plan_alone
 from rvmon.testing.generate.spec import Profile, random_spec
 
 ROOT = Path(__file__).parents[3]
-WRITTEN = sorted([*ROOT.glob("specs/*.rv"), *ROOT.glob("examples/**/*.rv")])
+WRITTEN = [
+    *(pytest.param(path, marks=pytest.mark.slow) for path in sorted(ROOT.glob("specs/*.rv"))),
+    *sorted(ROOT.glob("examples/**/*.rv")),
+]
 
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic")
 

@@ -78,7 +78,7 @@ def test_what_is_no_database_is_named(path):
         "UPDATE tests SET hits = 'text'",
         "UPDATE tests SET hits = x'00'",
         "UPDATE tests SET hits = substr(hits, 1, length(hits) - 2)",
-        "UPDATE tests SET hits = zeroblob(9000000)",
+        pytest.param("UPDATE tests SET hits = zeroblob(9000000)", marks=pytest.mark.slow),
         "DELETE FROM items WHERE name = 'yes'",
         "INSERT INTO reasons VALUES (99, 'why')",
         "INSERT INTO unreachable VALUES (99, 'why')",
@@ -91,6 +91,7 @@ def test_what_was_never_written_is_damage(path, words):
     assert "restore a copy of it, or delete it and record again" in told
 
 
+@pytest.mark.slow
 def test_a_bomb_is_not_unpacked(path):
     import zlib
 

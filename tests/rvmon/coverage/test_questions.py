@@ -53,6 +53,7 @@ def test_growth_and_what_each_test_adds(door):
     assert named(door, answers.growth([2, 3])[1].added) == [("gaze", "no")]
 
 
+@pytest.mark.slow
 def test_a_ranking_covers_all_with_few_tests():
     """As much as the whole campaign, each test adding to it, rarely more than the least."""
     for seed in range(25):

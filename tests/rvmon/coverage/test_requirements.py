@@ -2,6 +2,8 @@
 
 import random
 
+import pytest
+
 from rvmon import loads
 from rvmon.coverage import score
 from rvmon.language.checked.properties import BinKind
@@ -67,6 +69,7 @@ requirement A4 upon a and b then always[0 s, 2 s] once[0 s, 3 s] (b and c)
 """
 
 
+@pytest.mark.slow
 def test_parts_that_only_a_failure_tells_are_no_goals():
     """No run without a failure shows one, and runs with failures show each."""
     rng = random.Random(1)

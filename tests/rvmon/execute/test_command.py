@@ -20,6 +20,7 @@ with interrupted_by_sigterm():
 """
 
 
+@pytest.mark.process
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_nothing_outlives_a_parent_that_is_killed(ends_with_its_parent, kind):
     ends_with_its_parent(COMMAND, [], kind)

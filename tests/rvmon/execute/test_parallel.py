@@ -21,7 +21,8 @@ pytestmark = pytest.mark.skipif(
     multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
 )
 
-JOBS = pytest.mark.parametrize("jobs", [1, 2, 5])
+FIVE = pytest.param(5, marks=pytest.mark.slow)
+JOBS = pytest.mark.parametrize("jobs", [1, 2, FIVE])
 
 PARENT = """
 import multiprocessing, os, sys, time
@@ -160,7 +161,7 @@ def test_a_task_that_cannot_be_sent_is_named():
     assert "use one process (jobs)" in str(error)
 
 
-@pytest.mark.parametrize("jobs", [2, 5])
+@pytest.mark.parametrize("jobs", [2, FIVE])
 def test_a_worker_that_is_lost_is_told_with_its_task(jobs):
     found, error = given(execute([*range(0, 200, 2), 13, 8], doing(halved), jobs=jobs, what="run"))
     assert found == [*range(100)]
@@ -254,6 +255,7 @@ def test_to_begin_takes_no_time_of_a_task(tmp_path):
     assert found == ["1", "2"]
 
 
+@pytest.mark.slow
 def test_a_report_is_handed_over_without_the_plan(tmp_path):
     """What goes from process to process grows with the attempts, not with the specification."""
     many = "".join(f"requirement N{n}\n  always x < {n + 10}\n" for n in range(200))

@@ -29,6 +29,7 @@ def kept_in(folder):
     return sorted(folder.glob("spec-*.json"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", sorted(ROOT.glob("specs/*.rv")), ids=lambda path: path.name)
 def test_what_is_stored_is_restored(path):
     compiled = compile_text(path.read_text(), name=str(path), directory=path.parent)
@@ -38,12 +39,14 @@ def test_what_is_stored_is_restored(path):
     assert len({id(span.source) for span in spans}) <= len({span.source.name for span in spans})
 
 
+@pytest.mark.slow
 def test_random_specifications_are_restored():
     for seed in range(200):
         spec = random_spec(random.Random(seed), Profile())
         assert from_plain(to_plain(spec)) == spec
 
 
+@pytest.mark.slow
 def test_random_specifications_are_told_apart():
     """By their texts, which are the same for those that are equal; spans do not count."""
     known = {}

@@ -2,6 +2,8 @@
 
 import random
 
+import pytest
+
 from rvmon.monitor.network.piecewise import (
     FAR,
     PAST,
@@ -42,6 +44,7 @@ def at(pieces, position):
     return NEVER if found is None else found
 
 
+@pytest.mark.slow
 def test_points():
     for seed in CASES:
         rng = random.Random(seed)

@@ -263,6 +263,7 @@ def test_two_events_of_which_one_has_no_source(form, time, sources):
     assert not disagreements(case, Maker(form), online=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [38, 57])
 def test_a_network_learns_of_an_until_in_order(seed):
     """What becomes known at once of several stretches is known as of its stamp, not before."""

@@ -130,6 +130,7 @@ def test_a_cell_is_read_as_in_rows(text, tmp_path):
     assert read(SPEC.recording(path)) == read(samples_of_csv(SPEC, path))
 
 
+@pytest.mark.slow
 def test_numbers_are_the_nearest(tmp_path):
     rng = random.Random(1)
     texts = [number(rng) for _ in range(20_000)]

@@ -138,6 +138,7 @@ def test_of_many_tests_those_have_a_line_that_are_spoken_of(door, monkeypatch):
     assert read.dangling() == set()
 
 
+@pytest.mark.slow
 def test_names_are_no_markup():
     def elements(names):
         axes = {names[0]: names[:9], names[1]: names[9:12], names[2]: names[:2]}

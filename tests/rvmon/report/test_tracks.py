@@ -111,6 +111,7 @@ def test_the_view_holds_the_whole_attempt():
     assert view.end > 12 * SECOND
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.integers(-(10**18), 10**18), st.integers(1, 10**15), st.integers(-(10**18), 10**18))
 def test_an_axis_has_a_few_round_instants(start, length, origin):
@@ -123,6 +124,7 @@ def test_an_axis_has_a_few_round_instants(start, length, origin):
     assert all((one - origin) % step == 0 for one in instants for step in steps)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.lists(st.tuples(st.integers(1, 10**6), st.integers(-50, 50)), max_size=3000))
 def test_dense_numbers_keep_their_peaks(steps):
@@ -152,6 +154,7 @@ def test_a_fast_switch_is_busy_not_lost():
     assert drawn[0].right == drawn[1].left
 
 
+@pytest.mark.slow
 def test_many_events_keep_their_places():
     events = Track("x", TrackKind.EVENT, Course.of([(t, True) for t in range(100_000)]))
     shown = [place for place, _ in occurrences(events, View(0, 99_999))]

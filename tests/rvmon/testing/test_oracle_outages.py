@@ -86,6 +86,7 @@ def test_what_is_asked_of_updates(judge: Any, what: str) -> None:
     assert found == [f"0 {one}" for one in expected[what]]
 
 
+@pytest.mark.slow
 def test_what_looks_at_two_updates(judge: Any) -> None:
     """`prev`, `delta` and `rate` are unknown until the second update behind it."""
     told = {"x": "11...2.3", "lost": [("x", 2, 3)], "end": 8}

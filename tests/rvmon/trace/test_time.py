@@ -67,6 +67,7 @@ requirement Told
 """
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=30)
 @given(
     st.lists(
@@ -92,6 +93,7 @@ def test_a_stamp_of_few_digits_is_exact_by_all_doors(stamps):
         assert [ticks_of_stamp(one, named) for one in column.tolist()] == exact
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(
     st.from_regex(

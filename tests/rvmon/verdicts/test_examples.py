@@ -62,6 +62,7 @@ def test_the_notebook_runs(folder, monkeypatch):
     assert names["failed"]["attempt"].tolist() == ["B1#1", "B2#2"] * 2
 
 
+@pytest.mark.slow
 def test_the_job_runs(folder, capsys):
     job = (NIGHTLY / "ci.yml").read_text(encoding="utf-8")
     commands = re.findall(r"- run: rvmon (.*)", job)

@@ -5,6 +5,7 @@ import random
 from typing import Annotated, Literal
 
 import msgspec
+import pytest
 
 from rvmon import cdv
 from rvmon.cdv.close.vary_test import Learned, Mutator
@@ -67,6 +68,7 @@ def changed(tests, count, *, fixed=()):
     return tests
 
 
+@pytest.mark.slow
 def test_whatever_is_changed_is_a_test_of_its_type():
     tests = changed([Odd(name="a", strategy="s", seed=1)], 800)
     for one in tests:

@@ -41,6 +41,7 @@ def test_every_operator_is_tried():
     assert {kind for kind, _, _ in CHANGES} == set(SPEC_OPERATORS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", ["specs/handover.rv", "specs/handover_legacy.rv"])
 def test_what_is_printed_is_the_mutant(path):
     """Read again, the text of each is the formulas that are judged."""
@@ -77,6 +78,7 @@ def test_a_run_with_another_verdict_kills():
     assert (alive.test, alive.proved) == ("", False)
 
 
+@pytest.mark.slow
 def test_what_is_equivalent_is_proved():
     """In bounded time only: what is open for ever neither fails nor is met."""
     found = tried("upon go then within 3 s (stop or stop and p)")

@@ -147,6 +147,7 @@ def test_words_of_the_language():
     assert text == meanings()["stale after"]
 
 
+@pytest.mark.slow
 def test_half_written_texts():
     """Wherever a text ends, or something is missing from it, all questions have an answer."""
     for cut in range(0, len(SPEC), 37):
@@ -264,6 +265,7 @@ def test_what_is_not_offered():
     assert "requirement" not in offered("requirement R always s > ")[1]["keyword"]
 
 
+@pytest.mark.slow
 def test_words_that_are_offered_can_stand_there():
     """By the grammar the text goes on with each word that is offered, or a new item starts."""
     for cut in range(0, len(SPEC), 29):

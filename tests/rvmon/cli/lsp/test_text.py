@@ -2,6 +2,7 @@
 
 import re
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from lsprotocol.types import (
@@ -28,6 +29,7 @@ def position(text, offset, encoding):
     return Position(len(lines) - 1, UNITS[encoding](lines[-1]))
 
 
+@pytest.mark.slow
 @given(LINES, TEXTS, TEXTS, st.sampled_from(sorted(UNITS)), st.data())
 def test_edits_fall_where_the_editor_means(lines, last, new, encoding, data):
     raw = "".join(map("".join, lines)) + last

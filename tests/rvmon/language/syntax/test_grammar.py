@@ -17,6 +17,7 @@ from rvmon.language.syntax.keywords import CLAUSE_WORDS, INFIX_WORDS, RESERVED
 from rvmon.language.syntax.parse import GRAMMAR_OPTIONS, grammar_text
 
 
+@pytest.mark.slow
 def test_grammar_has_no_conflicts():
     """Building the parser in debug mode logs no conflict."""
     log = io.StringIO()
@@ -200,6 +201,7 @@ def test_both_readings_are_shown(message):
     assert "`always (not a and speed < 1 m/s)` or `(always not a) and speed < 1 m/s`" in text
 
 
+@pytest.mark.slow
 def test_reserved_words_are_no_names(codes):
     """Words of the language cannot be declared, but quoted they can, and dotted they are others."""
     for name in sorted(RESERVED):
@@ -208,6 +210,7 @@ def test_reserved_words_are_no_names(codes):
         assert codes(text) == [], name
 
 
+@pytest.mark.slow
 def test_reserved_words_are_no_names_of_requirements(codes):
     """With a text or nothing behind it a word is taken for the name, and refused as one."""
     for name in sorted(RESERVED):

@@ -82,7 +82,12 @@ def test_what_has_no_meaning_is_refused(functions, update, code):
     ("functions", "update", "message"),
     [
         ("int[0,9] f(int[0,9] n) { if (n > 5) return 1; }", "v = f(1)", "ends without a value"),
-        ("void f() { while (true) v = 1; }", "f()", "go round more than 1,000,000 times"),
+        pytest.param(
+            "void f() { while (true) v = 1; }",
+            "f()",
+            "go round more than 1,000,000 times",
+            marks=pytest.mark.slow,
+        ),
         ("int[0,9] f(int[0,9] n) { return n; }", "v = f(10)", "outside [0, 9]"),
         ("void f() { v = a[v + 3]; }", "f()", "index 3 is outside the array"),
         ("void f() { v = 1 << (v + 40); }", "f()", "a shift by 40 bits"),

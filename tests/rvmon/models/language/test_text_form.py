@@ -29,6 +29,7 @@ def one(text):
     return diagnostic
 
 
+@pytest.mark.slow
 def test_the_grammar_has_no_conflicts(caplog):
     from importlib import resources
 
@@ -219,6 +220,7 @@ def test_all_that_is_wrong_appears_at_once_in_order_of_place(text, found):
     assert findings(text) == [(f"TA{code:03}", line, column) for code, line, column in places]
 
 
+@pytest.mark.slow
 def test_what_is_damaged_is_told_and_nothing_else():
     for seed in range(15):
         rng = random.Random(seed)

@@ -53,6 +53,7 @@ def test_both_ways_say_the_same():
     assert 100 < possible < 500
 
 
+@pytest.mark.slow
 def test_runs_of_a_thousand_steps_have_their_windows():
     network = loads_network("""
     clock x, y

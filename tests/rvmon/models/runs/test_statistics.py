@@ -38,6 +38,7 @@ def sampled(query, seed=1):
     return figure(COIN, query, seed)
 
 
+@pytest.mark.slow
 def test_estimates_have_bounds():
     """The true probability is 0.3, or 0.7 of staying away; a run lasts as long as is said."""
     one = sampled("Pr[<=2; 2000](<> A.heads)")
@@ -51,6 +52,7 @@ def test_estimates_have_bounds():
     assert sampled("Pr[<=2](<> A.heads)") != sampled("Pr[<=2](<> A.heads)", seed=8)
 
 
+@pytest.mark.slow
 def test_bounds_are_kept_about_as_often_as_they_say():
     missed = sum(
         not one.low <= 0.3 <= one.high
@@ -90,9 +92,10 @@ def test_bounds_are_clopper_and_pearsons(successes, runs):
     assert high == 1 if successes == runs else at_most == pytest.approx(0.05)
 
 
-def test_a_run_in_which_no_time_passes_is_refused():
+def test_a_run_in_which_no_time_passes_is_refused(monkeypatch):
+    monkeypatch.setattr("rvmon.models.runs.simulate.MOST_MOVES", 1_000)
     hasty = "clock x automaton A { location a invariant x <= 0 start a edge a -> a }"
-    with pytest.raises(ModelError, match="moves in 0 units of time"):
+    with pytest.raises(ModelError, match="made 1,000 moves in 0 units of time"):
         figure(hasty, "Pr[<=5; 9](<> x > 3)")
 
 
@@ -113,6 +116,7 @@ def test_tests_take_as_many_runs_as_they_need(query, expected):
     assert 5 < one.runs < 5_000
 
 
+@pytest.mark.slow
 def test_tests_are_wrong_as_seldom_as_they_say():
     """At the edge of what they need not tell, 5 % of the tests may be wrong."""
     level = 0.3 - 4 * MARGIN
@@ -247,6 +251,7 @@ def test_clocks_stop_and_run_at_other_rates(query, share):
     assert figure(STOPPED, query).value == share
 
 
+@pytest.mark.slow
 def test_a_wait_without_end_has_the_rate_of_its_location():
     """A location with rate 1:4 is left within 4 units in 1 - 1/e of the runs."""
     found = figure(STOPPED, "Pr[<=14; 4000](<> left)")

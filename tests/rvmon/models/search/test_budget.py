@@ -43,6 +43,7 @@ def test_progress_is_told():
     assert [p.visited for p in heard] == sorted(p.visited for p in heard)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [3, 18, 40])
 def test_no_budget_turns_an_answer_round(seed):
     network = loads_network(random_model(seed))

@@ -73,6 +73,7 @@ def asked(plan, numbers=None, most_bytes=-1, most_states=-1):
     return found[0]
 
 
+@pytest.mark.slow
 def test_a_damaged_plan_is_refused_or_does_no_harm():
     random, states = Random(5), set()
     for plan in search_plans(range(12)):
@@ -95,6 +96,7 @@ def test_what_is_no_plan_is_refused(numbers):
         search(numbers, b"", lambda *_: True, lambda *_: True, -1, -1, False)
 
 
+@pytest.mark.slow
 def test_memory_that_ends_anywhere_is_an_answer():
     random, without = Random(6), 0
     for plan in search_plans(range(12)):

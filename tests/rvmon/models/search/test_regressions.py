@@ -16,7 +16,7 @@ from rvmon.models.search.verify import verify
         (1163, 5),
         (2995, 8),  # a difference of two strict bounds was taken for tighter than one strict bound
         (3108, 9),
-        (4929, 8),
+        pytest.param(4929, 8, marks=pytest.mark.slow),
     ],
 )
 def test_it_is_right_now(seed, query):

@@ -37,6 +37,7 @@ def flat(tables, prefix=""):
             yield from flat(table, f"{prefix}{key}.")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ROBOTS)
 def test_what_is_proposed_is_right_or_left_open(name, tmp_path, capsys):
     """Right for all that a recording says; open for the rest; it passes `check`, and runs."""

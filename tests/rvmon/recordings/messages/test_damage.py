@@ -222,6 +222,7 @@ def test_a_value_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):
         spec.evaluate(path)
 
 
+@pytest.mark.slow
 def test_a_bag_that_lists_fewer_files_or_ends_later_than_it_says_is_told(tmp_path, capsys):
     """As of a recorder that was killed in its second file, or ended as one that was."""
     fast = ("/speed", START + 9 * 10**9, {"data": 9.0})

@@ -111,6 +111,7 @@ def samples_of(spec, path, binding):
     return list(rvmon.load(spec).recording(path, binding=binding))
 
 
+@pytest.mark.slow
 def test_damaged_flatbuffers_are_told(tmp_path):
     rng = random.Random(5)
     fields = {"x": 1.5, "name": "map", "inner": {"y": 2.0, "on": True}, "all": [1.0, 2.0]}
@@ -158,6 +159,7 @@ def test_a_file_of_json_without_schemas_or_index_is_read(tmp_path):
         assert report.end == START + 8 * 10**7
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
 def test_a_folder_is_read_as_the_command_reads_it(tmp_path, capsys, plugin):
     sent = sent_at_random(random.Random(1), 60)

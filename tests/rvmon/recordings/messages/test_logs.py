@@ -223,6 +223,7 @@ def test_a_group_of_mdf_that_has_fewer_records_than_it_counts_is_told(tmp_path):
         spec_of("drive", "a.mf4").evaluate(path)
 
 
+@pytest.mark.slow
 def test_numbers_to_scale_are_the_nearest_doubles(tmp_path):
     """33709 hundredths are 337.09, as mavlogdump writes them, and not 337.09000000000003."""
     pytest.importorskip("pymavlink")

@@ -41,6 +41,7 @@ def topics_of_ros():
                 yield ros_topic("/topic", name, ("msg", text), False, {})[0]
 
 
+@pytest.mark.slow
 def test_each_field_of_the_standard_packages_is_listed():
     """A number is measured, or it is said why it is not; `?` is of those that senders decide."""
     left_open = set()

@@ -50,6 +50,7 @@ def test_clocks_that_agree_are_not_spoken_of(tmp_path):
     assert doubts(path, tmp_path) == {}
 
 
+@pytest.mark.slow
 def test_a_clock_that_is_behind_another(tmp_path):
     path = recording(tmp_path / "a", lambda n: 1500 + n % 7, lambda n: 2 + n % 5, write=ros2)
     expected = (

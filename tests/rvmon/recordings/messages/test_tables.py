@@ -71,6 +71,7 @@ def test_each_file_says_what_it_says_at_its_own_instants(tmp_path):
     assert found[3:] == [(15 * 10**8, {"battery.armed": True}), (2 * 10**9, {"mode": "fly"})]
 
 
+@pytest.mark.slow
 def test_the_same_report_as_of_one_file_of_all(tmp_path):
     rng = random.Random(3)
     kinds = {

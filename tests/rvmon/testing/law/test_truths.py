@@ -14,6 +14,7 @@ from rvmon.testing.law.sample_words import word_of
 from rvmon.testing.law.word import Rest, Truth
 
 
+@pytest.mark.law
 @pytest.mark.parametrize("time", TimeModel)
 def test_memory_changes_nothing(time: TimeModel) -> None:
     """Each decision is the first instant at which a fresh evaluation gives a value."""
