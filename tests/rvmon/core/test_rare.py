@@ -211,6 +211,11 @@ CASES |= {
                 "sum(if g.k > 1 and false then g.k else 0, 2 ns) > 0",
             )
         ),
+        # Nor does a signal that is known have its value at a position that may be none.
+        *(
+            ("sampled", f"always {amount} <= 2", "0 x=3; 4 x=1", 8, (("q", 1, 1),))
+            for amount in ("sum(x, 9 ns)", "integral(x, 9 ns) / 1 ns")
+        ),
         # Time makes enough of what may be a member since the loss: no trigger is missed.
         *(
             (
@@ -234,6 +239,8 @@ CASES |= {
         ("upon max(x, 3 ns) <= x then false", "0 x=5; 1 x=3"),
         ("upon x + 2 <= ago(x, 3 ns) then false", "0 x=5; 1 x=3"),
         ("always count(e, 10 ns) < 3", "0 e; 1 ?e; 2 e"),
+        # What is unknown may be one more number, for ever.
+        ("always distinct(x) <= 2", "0 x=1; 1 ?x; 2 x=2"),
         *(
             ("always sum(if p then h.m else 0, 10 ns) <= 5", f"0 p h=/{m}; 1 ?p h=/3")
             for m in (2, 3, 6)

@@ -6,6 +6,7 @@ import random
 import numpy as np
 import pytest
 from tests.rvmon.core.tables import planned_for, random_table, rows_differ
+from tests.tools.compare import outcomes
 from tests.tools.forms import Compiler
 
 import rvmon
@@ -81,3 +82,19 @@ def test_rows_equal_steps():
             assert not rows_differ(planned, spec, table), f"seed {seed}"
             judged += len(table.rows)
     assert judged > 2_000
+
+
+@pytest.mark.parametrize("limit", [0, 2, 2.5, 2**53 + 1, -(2**62) + 1, 1e19])
+@pytest.mark.parametrize("kind", ["int", "real"])
+def test_rows_in_which_no_comparison_changes_are_those_that_are_passed_over(kind, limit):
+    required = "".join(
+        f"requirement R{n}\n  always x {op} {limit}\n" for n, op in enumerate(("<", "<=", "=="))
+    )
+    spec = rvmon.loads(f"spec s\nsignal x : {kind}\n{required}")
+    rng = random.Random(kind)
+    near = [min(round(limit), 2**63 - 9) + step for step in range(-4, 5)]
+    dtype = np.int64 if kind == "int" else np.float64
+    x = np.array([rng.choice(near) for _ in range(70) for _ in range(rng.randint(1, 3))], dtype)
+    rows = spec.evaluate({"t_ns": np.arange(len(x)), "x": x})
+    steps = spec.evaluate([(t * 1e-9, {"x": one.item()}) for t, one in enumerate(x)])
+    assert outcomes(rows) == outcomes(steps)
