@@ -10,7 +10,6 @@ rows have it. The exit code is 0 if all claims hold, 1 if one does not, 2 if a r
 
 from __future__ import annotations
 
-import argparse
 import os
 import re
 import shlex
@@ -23,6 +22,7 @@ from functools import cache
 from pathlib import Path
 
 from benchmarks.process import Cost, measured
+from benchmarks.program import program
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "claims.md"
@@ -94,19 +94,15 @@ def claims_of(page: str, *, long: bool) -> list[Claim]:
     return claims
 
 
-def main() -> int:
-    """Run what the command line names and print how it went."""
-    parser = argparse.ArgumentParser(description="Do the claims of docs/claims.md hold?")
-    parser.add_argument("--long", action="store_true", help="those that take long, too")
-    parser.add_argument("--only", metavar="WORD", default="", help="in the claim or its command")
-    options = parser.parse_args()
+def main(*, long: bool = False, only: str = "") -> int:
+    """Run the claims that have a word, those that take long only if asked for; say how it went."""
     try:
-        claims = claims_of(PAGE.read_text(encoding="utf-8"), long=options.long)
+        claims = claims_of(PAGE.read_text(encoding="utf-8"), long=long)
     except ClaimError as error:
         print(f"docs/claims.md: {error}", file=sys.stderr)
         return 2
     failed = 0
-    chosen = [claim for claim in claims if options.only in claim.text + claim.command]
+    chosen = [claim for claim in claims if only in claim.text + claim.command]
     for claim in chosen:
         began = time.perf_counter()
         lines = list(_complaints(claim))
@@ -146,4 +142,4 @@ def _ran(command: str) -> Cost:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(program(__doc__, main))

@@ -12,7 +12,6 @@ that survives, and the counts of each file; exits 1 if any does.
 
 from __future__ import annotations
 
-import argparse
 import itertools
 import random
 import re
@@ -26,6 +25,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from benchmarks.process import measured
+from benchmarks.program import program
 from tests.tools.differential import cases_of, disagreements
 from tests.tools.drive import Found, Lost, told
 from tests.tools.forms import Compiler, Maker
@@ -237,39 +237,40 @@ def _changes(line: str) -> Iterator[tuple[str, int, int, str]]:
             yield kind, found.start(), found.end(), text
 
 
-def draw(found: Iterable[Mutant], options: argparse.Namespace) -> list[Mutant]:
+def draw(found: Iterable[Mutant], count: int, seed: int) -> list[Mutant]:
     """A seeded sample, the kinds of change in turn; what is drawn depends on no other mutant."""
     kinds: dict[str, list[Mutant]] = {}
     for mutant in found:
         kinds.setdefault(mutant.kind, []).append(mutant)
     for members in kinds.values():
-        members.sort(key=lambda mutant: random.Random(f"{options.seed} {mutant.change}").random())
+        members.sort(key=lambda mutant: random.Random(f"{seed} {mutant.change}").random())
     rounds = itertools.chain.from_iterable(itertools.zip_longest(*kinds.values()))
-    return [*itertools.islice(filter(None, rounds), options.count)]
+    return [*itertools.islice(filter(None, rounds), count)]
 
 
-def main(words: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.core_mutants")
-    parser.add_argument("files", nargs="*", help="names of files of the core; default: all")
-    parser.add_argument("--count", type=int, default=30, help="of each file")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--pairs", type=int, default=1_200)
-    parser.add_argument("--cases", type=Path, metavar="FILE", help="write the cases, and no more")
-    options = parser.parse_args(words)
-    if unknown := set(options.files) - {path.name for path in sources()}:
-        parser.error(f"no file of the core is called {', '.join(sorted(unknown))}")
-    if options.cases:
-        options.cases.write_bytes(recorded(options.pairs, options.seed))
+def main(
+    files: Sequence[str] = (),
+    *,
+    count: int = 30,
+    seed: int = 1,
+    pairs: int = 1_200,
+    cases: Path | None = None,
+) -> int:
+    """So many changes of each file that is named, or of all."""
+    if unknown := {*files} - {path.name for path in sources()}:
+        raise SystemExit(f"no file of the core is called {', '.join(sorted(unknown))}")
+    if cases is not None:
+        cases.write_bytes(recorded(pairs, seed))
         return 0
     total: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as directory:
-        trial = Trial(Path(directory), recorded(options.pairs, options.seed))
+        trial = Trial(Path(directory), recorded(pairs, seed))
         for path in sources():
-            if options.files and path.name not in options.files:
+            if files and path.name not in files:
                 continue
             found: Counter[str] = Counter()
             possible = [*c_mutants(path)]
-            for mutant in draw(possible, options):
+            for mutant in draw(possible, count, seed):
                 outcome = trial.outcome(mutant)
                 found[outcome] += 1
                 if outcome == "survived":
@@ -288,4 +289,4 @@ def _told(found: Counter[str]) -> str:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(program(__doc__, main))

@@ -4,7 +4,7 @@ r"""Ours against something independent on random cases: one command line, one ta
     python -m benchmarks.differential verdicts --set "forms=c,c rows,c+next" traces=8 outages=100
     python -m benchmarks.differential fillings long --count 1000
 
-`python -m benchmarks.differential --help` lists what is compared with what. Prints what the cases
+Prints what the cases
 were made of, and every disagreement with its seed; exits 1 if there is one. Ranges of numbers of
 one seed hold different cases: runs add up. `--set` gives the settings of a comparison, and fields
 of `Profile` and `TraceProfile` (rvmon.testing.generate) where it draws specifications and traces.
@@ -12,7 +12,6 @@ of `Profile` and `TraceProfile` (rvmon.testing.generate) where it draws specific
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from collections import Counter
@@ -24,6 +23,7 @@ from typing import Any, get_type_hints
 import msgspec
 from benchmarks.comparisons import doors, models, monitors, peers
 from benchmarks.comparisons.comparison import Comparison
+from benchmarks.program import program
 
 from rvmon.execute.parallel import execute
 
@@ -54,55 +54,46 @@ def settings_of(comparison: Comparison, given: Sequence[str]) -> list[Any]:
     return found
 
 
-def parse(argv: Sequence[str]) -> tuple[argparse.Namespace, dict[str, list[Any]]]:
-    """The command line, and the settings of each comparison."""
-    parser = argparse.ArgumentParser(
-        prog="python -m benchmarks.differential",
-        description="Ours against something independent, on random cases.",
-        epilog="\n".join(f"{name:16} {one.about}" for name, one in COMPARISONS.items()),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    parser.add_argument("comparisons", nargs="+", choices=COMPARISONS, metavar="COMPARISON")
-    parser.add_argument("--count", type=int, default=100, help="of each comparison")
-    parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--from", type=int, default=0, dest="first", metavar="N")
-    parser.add_argument("--jobs", type=int, default=1, help="processes")
-    parser.add_argument("--show", type=int, default=5, help="disagreements that are printed")
-    parser.add_argument("--set", nargs="+", default=[], metavar="NAME=VALUE", dest="given")
-    options = parser.parse_args(argv)
+def main(
+    comparisons: Sequence[str],
+    *,
+    count: int = 100,
+    seed: int = 1,
+    from_: int = 0,
+    jobs: int = 1,
+    show: int = 5,
+    set_: Sequence[str] = (),
+) -> int:
+    """Compare so many of each, from that number on, in some processes; show some disagreements."""
+    if unknown := {*comparisons} - COMPARISONS.keys():
+        raise SystemExit(f"no comparison `{min(unknown)}`: there are {', '.join(COMPARISONS)}")
     try:
-        return options, {
-            name: settings_of(COMPARISONS[name], options.given) for name in options.comparisons
-        }
+        settings = {name: settings_of(COMPARISONS[name], set_) for name in comparisons}
     except (ValueError, msgspec.ValidationError) as error:
-        parser.error(str(error))
-
-
-def main(argv: Sequence[str]) -> int:
-    options, settings = parse(argv)
+        raise SystemExit(str(error)) from None
     wrong = 0
-    for name in options.comparisons:
+    for name in comparisons:
         one, began = COMPARISONS[name], time.perf_counter()
-        last = options.first + options.count
-        starts = range(options.first, last, one.part)
-        parts = [range(start, min(start + one.part, last)) for start in starts]
-        begin = partial(partial, one.judge, options.seed, *settings[name])
+        last = from_ + count
+        parts = [range(at, min(at + one.part, last)) for at in range(from_, last, one.part)]
+        begin = partial(partial, one.judge, seed, *settings[name])
         counts, texts = Counter[str](), list[str]()
-        for counted, found in execute(parts, begin, jobs=options.jobs, what="part"):
+        for counted, found in execute(parts, begin, jobs=jobs, what="part"):
             counts += counted
             texts += found
         seconds = time.perf_counter() - began
         print(f"{name}: {one.about}")
-        print(f"  {options.count} {one.unit} from {options.first} on, seed {options.seed}", end="")
-        print(f", {seconds:.0f} s")
+        print(f"  {count} {one.unit} from {from_} on, seed {seed}, {seconds:.0f} s")
         for what in sorted(counts):
             print(f"  {what:45} {counts[what]:>12,}")
         print(f"  {'disagreements':45} {len(texts):>12,}", flush=True)
-        for text in texts[: options.show]:
+        for text in texts[:show]:
             print(f"\n{'=' * 72}\n{text}\n")
         wrong += len(texts)
     return int(wrong > 0)
 
 
+LISTED = "\n".join(f"    {name:16} {one.about}" for name, one in COMPARISONS.items())
+
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(program(f"{__doc__}\n{LISTED}", main))

@@ -15,7 +15,6 @@ what they write is compared with what they write undisturbed. Exits 1 if anythin
 
 from __future__ import annotations
 
-import argparse
 import math
 import random
 import re
@@ -32,6 +31,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from benchmarks.program import program
 from tests.tools import killed_watch
 from tests.tools.forked import Forked
 
@@ -136,10 +136,10 @@ def live(seconds: int, first: int, only: Sequence[str]) -> tuple[dict[str, Any],
     return {**found, "bins": bins, "longest": longest}, said
 
 
-def soak(options: argparse.Namespace) -> int:
-    """Feed, compare, print, and return 1 if a verdict is wrong."""
-    seconds = max(10, options.samples // ROWS)
-    names = [one for one in KNOWN if not options.only or one in options.only]
+def soak(*, samples: int = 1_000_000, only: Sequence[str] = (*KNOWN,)) -> int:
+    """A monitor that lives long; 1 if a verdict is wrong."""
+    seconds = max(10, samples // ROWS)
+    names = [one for one in KNOWN if one in only]
     began = time.perf_counter()
     lived, _ = live(seconds, 0, names)
     print(f"{lived['taken']:,} samples in {time.perf_counter() - began:.0f} s")
@@ -263,35 +263,18 @@ WRONG = ("changed", "left behind", "lost", "of nobody")
 """What must not be counted."""
 
 
-def kills(options: argparse.Namespace) -> int:
-    """Kill, compare, print, and return 1 if anything is wrong."""
+def kills(*, kills: int = 50, seed: int = 1, only: Sequence[str] = (*KINDS,)) -> int:
+    """Processes that are killed, so often each; 1 if anything is wrong."""
     bad = 0
-    for kind in options.only or KINDS:
+    for kind in only:
         with tempfile.TemporaryDirectory() as folder:
-            dice = random.Random(options.seed)
-            found = KINDS[kind](kind, Path(folder), options.kills, dice)
-        print(f"{kind}: {options.kills} kills")
+            found = KINDS[kind](kind, Path(folder), kills, random.Random(seed))
+        print(f"{kind}: {kills} kills")
         for what, count in sorted(found.items()):
             print(f"  {what}: {count:,}", flush=True)
         bad += sum(found[what] for what in WRONG)
     return int(bad > 0)
 
 
-def main(argv: Sequence[str]) -> int:
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    commands = parser.add_subparsers(required=True)
-    long, killed = commands.add_parser("soak"), commands.add_parser("kills")
-    long.set_defaults(run=soak)
-    long.add_argument("--samples", type=int, default=1_000_000)
-    long.add_argument("--only", nargs="+", choices=KNOWN)
-    killed.set_defaults(run=kills)
-    killed.add_argument("--kills", type=int, default=50, help="of each kind")
-    killed.add_argument("--seed", type=int, default=1)
-    killed.add_argument("--only", choices=KINDS, nargs="+", metavar="KIND")
-    options = parser.parse_args(argv)
-    code: int = options.run(options)
-    return code
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(program(__doc__, soak, kills))

@@ -20,7 +20,6 @@ reason, and how many of their queries are decided, undecided within the time, an
 
 from __future__ import annotations
 
-import argparse
 import hashlib
 import json
 import re
@@ -28,11 +27,12 @@ import resource
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 from benchmarks.process import measured
+from benchmarks.program import program
 from benchmarks.tchecker import asked, translated
 
 from handover.model import handover_network
@@ -61,15 +61,11 @@ SEARCH = ("-a", "aLU-covreach", "-s", "bfs")
 SIZES = {"fischer": (7, 8, 9, 10), "csma_cd": (7, 8, 9), "train_gate": (5, 6), "fddi": (5, 8, 10)}
 
 
-def cost(options: argparse.Namespace) -> None:
-    if options.only:
-        name, size = options.only
-        for network, query in _queries(name, int(size)):
-            _measure(network, query, options.repeat, options.seconds)
-        return
+def cost(*, repeat: int = 3, seconds: float = 60.0) -> None:
+    """Textbook networks and the handover: the best of some searches, which give up in time."""
     print(f"{'query':22} {'visited':>10} {'stored':>10} {'seconds':>9} {'B/state':>8}")
     for name, size in [*((n, s) for n, sizes in SIZES.items() for s in sizes), ("handover", 0)]:
-        for told in _told(name, size, options):
+        for told in _told(name, size, repeat, seconds):
             label = f"{name} {size}" if size else f"{name} {told['query']}"
             held = f"{told['bytes']:8.0f}" if size and told["stored"] > 5_000 else f"{'':8}"
             figures = f"{told['visited']:10,} {told['stored']:10,} {told['seconds']:9.3f} {held}"
@@ -77,13 +73,18 @@ def cost(options: argparse.Namespace) -> None:
             print(f"{label:22} {figures}{unknown}".rstrip(), flush=True)
 
 
-def _told(name: str, size: int, options: argparse.Namespace) -> Iterator[dict[str, Any]]:
+def _told(name: str, size: int, repeat: int, seconds: float) -> Iterator[dict[str, Any]]:
     """What the queries of a network cost, in a process of its own."""
-    words = [sys.executable, "-m", "benchmarks.models", "cost", "--only", name, str(size)]
-    words += ["--repeat", str(options.repeat), "--seconds", str(options.seconds)]
-    done = measured(words)
+    words = [sys.executable, "-m", "benchmarks.models", "one", name, str(size)]
+    done = measured([*words, str(repeat), str(seconds)])
     assert done.code == 0, done.said
     yield from map(json.loads, done.output.splitlines())
+
+
+def one(name: str, size: int, repeat: int, seconds: float) -> None:
+    """A network of that name and size, as JSON; `cost` and `tchecker` start it."""
+    for network, query in _queries(name, size):
+        _measure(network, query, repeat, seconds)
 
 
 def _queries(name: str, size: int) -> list[tuple[Network, Query]]:
@@ -123,20 +124,22 @@ def _measure(network: Network, query: Query, repeat: int, limit: float) -> None:
     print(json.dumps(told))
 
 
-def tchecker(options: argparse.Namespace) -> None:
-    """Search by both, and print a table."""
+def tchecker(
+    checker: str, models: Sequence[Path], *, repeat: int = 3, seconds: float = 60.0
+) -> None:
+    """Models of TChecker's, searched by both."""
     print(f"{'model':20} {'stored':>10} {'seconds':>8} {'B/state':>8}   TChecker: the same, times")
-    for model in options.models:
-        [told] = _told(str(model), 0, options)
+    for model in models:
+        [told] = _told(str(model), 0, repeat, seconds)
         labels = asked(model.read_text("utf-8"))
-        words = [options.program, *SEARCH, *(["-l", ",".join(labels)] if labels else [])]
+        words = [checker, *SEARCH, *(["-l", ",".join(labels)] if labels else [])]
         done = measured([*words, str(model)])
         found = re.search(r"STORED_STATES (\d+)", done.output)
         assert found is not None, done.said
-        stored, seconds = told["stored"], told["seconds"]
-        print(f"{model.stem:20} {stored:10,} {seconds:8.3f} {told['bytes']:8.0f}", end="   ")
+        stored, ours = told["stored"], told["seconds"]
+        print(f"{model.stem:20} {stored:10,} {ours:8.3f} {told['bytes']:8.0f}", end="   ")
         their, used = int(found[1]), done.mebibytes * 2**20
-        times = done.cpu / max(seconds, 1e-3)
+        times = done.cpu / max(ours, 1e-3)
         print(f"{their:10,} {done.cpu:8.2f} {used / their:8.0f} {times:6.1f}", flush=True)
 
 
@@ -166,11 +169,12 @@ def _end(network: Network, query: Query, budget: Budget) -> str:
         return "refused"
 
 
-def originals(options: argparse.Namespace) -> None:
+def originals(folder: Path, *, seconds: float = 2.0, most: int | None = None) -> None:
+    """Models of public repositories: how many are read, and their queries decided in time."""
     models, seen = known(), set[str]()
     read, reasons, queries = 0, Counter[tuple[str, str]](), Counter[str]()
-    for path in sorted(options.folder.rglob("*.xml")):
-        if not path.is_file() or (options.most and len(seen) >= options.most):
+    for path in sorted(folder.rglob("*.xml")):
+        if not path.is_file() or (most and len(seen) >= most):
             continue
         name = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
         if name not in models or name in seen:
@@ -184,7 +188,7 @@ def originals(options: argparse.Namespace) -> None:
         read += 1
         queries["left out"] += sum(warning.code == "TA020" for warning in network.warnings)
         for query in network.queries:
-            queries[_end(network, query, Budget(seconds=options.seconds))] += 1
+            queries[_end(network, query, Budget(seconds=seconds))] += 1
     print(f"{len(models)} models in the manifest, {len(seen)} found, {read} read")
     for (code, reason), count in reasons.most_common(20):
         print(f"  {count:5}  {code} {reason}")
@@ -192,25 +196,5 @@ def originals(options: argparse.Namespace) -> None:
         print(f"{count:6} queries {end}")
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    commands = parser.add_subparsers(dest="what", required=True)
-    own, beside = commands.add_parser("cost"), commands.add_parser("tchecker")
-    for one in (own, beside):
-        one.add_argument("--repeat", type=int, default=3, help="searches of each, the best counts")
-        one.add_argument(
-            "--seconds", type=float, default=60.0, help="a search gives up after these"
-        )
-    own.add_argument("--only", nargs=2, metavar=("MODEL", "SIZE"), help=argparse.SUPPRESS)
-    beside.add_argument("program", help="tck-reach")
-    beside.add_argument("models", nargs="+", type=Path, metavar="MODEL")
-    theirs = commands.add_parser("originals")
-    theirs.add_argument("folder", type=Path)
-    theirs.add_argument("--seconds", type=float, default=2.0, help="for each query")
-    theirs.add_argument("--most", type=int, help="models to look at")
-    options = parser.parse_args()
-    {"cost": cost, "tchecker": tchecker, "originals": originals}[options.what](options)
-
-
 if __name__ == "__main__":
-    main()
+    sys.exit(program(__doc__, cost, one, tchecker, originals))

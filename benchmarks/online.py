@@ -12,20 +12,30 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
-from benchmarks.results import ONLINE, parser_of, show
-from benchmarks.timing import kinds
+from benchmarks.program import program
+from benchmarks.results import ONLINE, show
+from benchmarks.timing.kinds import measure
 
 
-def main(argv: Sequence[str]) -> int:
-    parser = parser_of(__doc__, ONLINE)
-    parser.add_argument("--kinds", nargs="*", metavar="WORD", help="ours alone, by requirement")
-    kinds.add_options(parser)
-    options = parser.parse_args(argv)
-    if options.kinds is not None:
-        return kinds.measure(options)
-    return show("online", argv, options)
+def main(
+    *,
+    quick: bool = False,
+    only: Sequence[str] = ONLINE,
+    r2u2: Path | None = None,
+    out: Path | None = None,
+    kinds: Sequence[str] | None = None,
+    rows: int = 4000,
+    time: str = "held",
+    unknown: float = 0,
+) -> None:
+    """Some sections, or ours alone by requirement; `--quick` takes a few minutes."""
+    if kinds is None:
+        show("online", quick=quick, only=only, r2u2=r2u2, out=out)
+    else:
+        measure(kinds, rows, time, unknown)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(program(__doc__, main))

@@ -12,13 +12,16 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from pathlib import Path
 
-from benchmarks.results import RECORDINGS, parser_of, show
+from benchmarks.program import program
+from benchmarks.results import RECORDINGS, show
 
 
-def main(argv: Sequence[str]) -> int:
-    return show("recordings", argv, parser_of(__doc__, RECORDINGS).parse_args(argv))
+def main(*, quick: bool = False, only: Sequence[str] = RECORDINGS, out: Path | None = None) -> None:
+    """Files and columns; `--quick` takes a few minutes."""
+    show("recordings", quick=quick, only=only, r2u2=None, out=out)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(program(__doc__, main))

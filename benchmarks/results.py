@@ -7,7 +7,6 @@ Runs `online`, `recordings`, the cliffs of `growth`, and the table of where peer
 
 from __future__ import annotations
 
-import argparse
 import csv
 import platform
 import statistics
@@ -27,6 +26,7 @@ from benchmarks.output import table
 from benchmarks.peers import differences
 from benchmarks.peers.client import Peer
 from benchmarks.peers.environment import Environment, prepare
+from benchmarks.program import program
 from benchmarks.timing import files
 from benchmarks.timing.agreement import Agreement, compare, margins_alike, peers_in
 from benchmarks.timing.r2u2 import R2u2
@@ -306,35 +306,31 @@ def _agreed(compared: Sequence[Agreement]) -> Iterator[Sequence[str]]:
         yield label, form, str(len(names)), str(len(failing)), *sums
 
 
-def parser_of(about: str | None, sections: Sequence[str]) -> argparse.ArgumentParser:
-    """The options of a program that measures some sections."""
-    parser = argparse.ArgumentParser(description=(about or "").splitlines()[0])
-    parser.add_argument("--quick", action="store_true", help="a few minutes, for a first look")
-    parser.add_argument("--only", nargs="+", choices=sections, default=sections, metavar="SECTION")
-    parser.add_argument("--r2u2", type=Path, help="a clone of its repository", metavar="FOLDER")
-    parser.add_argument("--out", type=Path, metavar="FILE", help="write the page there")
-    return parser
-
-
-def show(program: str, argv: Sequence[str], options: argparse.Namespace) -> int:
+def show(
+    name: str, *, quick: bool, only: Sequence[str], r2u2: Path | None, out: Path | None
+) -> None:
     """Measure, and write the page, or print it."""
-    shown = ["FOLDER" if Path(one) == options.r2u2 else one for one in argv]
-    command = " ".join([f"python -m benchmarks.{program}", *shown])
-    lines = run(QUICK if options.quick else Size(), options.only, options.r2u2)
+    shown = ["FOLDER" if Path(one) == r2u2 else one for one in sys.argv[1:]]
+    command = " ".join([f"python -m benchmarks.{name}", *shown])
+    lines = run(QUICK if quick else Size(), only, r2u2)
     text = "\n".join(["# Results", "", f"Written by `{command}`.", *lines, ""])
-    if options.out is None:
+    if out is None:
         print(text)
-        return 0
-    options.out.write_text(text, encoding="utf-8")
-    say(f"wrote {options.out}")
-    return 0
+    else:
+        out.write_text(text, encoding="utf-8")
+        say(f"wrote {out}")
 
 
-def main(argv: Sequence[str]) -> int:
-    parser = parser_of(__doc__, EVERY)
-    parser.set_defaults(out=OUT)
-    return show("results", argv, parser.parse_args(argv))
+def main(
+    *,
+    quick: bool = False,
+    only: Sequence[str] = EVERY,
+    r2u2: Path | None = None,
+    out: Path | None = OUT,
+) -> None:
+    """Some sections, or all; `--quick` takes a few minutes."""
+    show("results", quick=quick, only=only, r2u2=r2u2, out=out)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(program(__doc__, main))

@@ -13,15 +13,16 @@ should conform, and a mutant is rejected if some run of it does not.
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from statistics import fmean, quantiles
 
+from benchmarks.program import program
+
 from handover.campaign.campaign import handover_campaign
-from handover.campaign.table1 import FITTED, SPREAD_FILE, Spread, paper_table, write_spread
+from handover.campaign.table1 import FITTED, Spread, paper_table, write_spread
 from handover.checker.conformance import check_run
 from handover.driver import run_test
 from handover.generator.abstract_test import AbstractTest, directed
@@ -40,28 +41,28 @@ Cell = tuple[str, str, Verdict]
 """Strategy, requirement, verdict."""
 
 
-def bands(options: argparse.Namespace) -> int:
-    """Run the campaigns and print the bands."""
+def bands(*, seeds: int = 20, seed: int = 1, jobs: int | None = None, write: bool = False) -> int:
+    """The band of each cell over some campaigns, on all cores by default."""
     fitted: list[Counter[Cell]] = []
     unfitted: list[Counter[Cell]] = []
-    for seed in range(options.seed, options.seed + options.seeds):
+    for number in range(seed, seed + seeds):
         campaign = handover_campaign(("legacy",))
-        results = execute(plan(campaign, STRATEGIES, tests=100, seed=seed), jobs=options.jobs)
+        results = execute(plan(campaign, STRATEGIES, tests=100, seed=number), jobs=jobs)
         if results.cut_short:
-            print(f"{results.cut_short} in campaign {seed}", file=sys.stderr)
+            print(f"{results.cut_short} in campaign {number}", file=sys.stderr)
             return 130
         fitted.append(_count(results.played))
         unfitted.append(
             _count([replace(one, outcome=one.control or one.outcome) for one in results.played])
         )
-        print(f"campaign {seed}: {results.seconds:.1f} s", file=sys.stderr)
+        print(f"campaign {number}: {results.seconds:.1f} s", file=sys.stderr)
     _show(fitted, unfitted)
-    if options.write:
+    if write:
         spread: dict[str, dict[str, dict[str, tuple[int, int]]]] = {}
         for (strategy, requirement, verdict), counts in _by_cell(fitted).items():
             row = spread.setdefault(strategy, {}).setdefault(requirement, {})
             row[verdict.value] = min(counts), max(counts)
-        write_spread(Spread(options.seed, options.seed + options.seeds - 1, spread))
+        write_spread(Spread(seed, seed + seeds - 1, spread))
     return 0
 
 
@@ -118,22 +119,21 @@ def _band(figures: Sequence[int]) -> tuple[float, float]:
     return cuts[0], cuts[-1]
 
 
-def conformance(options: argparse.Namespace) -> int:
-    """How many runs conform; 1 if one of the correct robot does not."""
-    count, seed = options.tests, options.seed
+def conformance(*, tests: int = 20, seed: int = 1) -> int:
+    """How many runs conform, of each random strategy and others; 1 if one does not."""
     network = handover_network()
     own = [test for test in directed() if test.mutation is None and test.robot != "legacy"]
     groups = {
-        "pseudorandom": pseudorandom(count, seed),
-        "constrained": constrained(count, seed),
+        "pseudorandom": pseudorandom(tests, seed),
+        "constrained": constrained(tests, seed),
         "model-based": model_based(4, seed),
         "directed": own,
     }
     diverging = 0
-    for name, tests in groups.items():
-        bad = [test for test in tests if not _conforms(network, test, None)]
+    for name, group in groups.items():
+        bad = [test for test in group if not _conforms(network, test, None)]
         diverging += len(bad)
-        print(f"{name:14} {len(tests) - len(bad)} of {len(tests)} runs conform", flush=True)
+        print(f"{name:14} {len(group) - len(bad)} of {len(group)} runs conform", flush=True)
         print("".join(f"    not: {test.name}\n" for test in bad), end="")
     hunters = (*model_based(4, seed), *constrained(3, seed), *pseudorandom(3, seed))
     rejected = 0
@@ -151,17 +151,5 @@ def _conforms(network: Network, test: AbstractTest, mutation: str | None) -> boo
     return bool(check_run(network, run).conforms)
 
 
-def main(argv: Sequence[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else None)
-    parser.add_argument("what", choices=("bands", "conformance"))
-    parser.add_argument("--seeds", type=int, default=20, help="campaigns")
-    parser.add_argument("--seed", type=int, default=1, help="the first")
-    parser.add_argument("--tests", type=int, default=20, help="of each random strategy")
-    parser.add_argument("--jobs", type=int, help="processes (default: all cores)")
-    parser.add_argument("--write", action="store_true", help=f"write {SPREAD_FILE}")
-    options = parser.parse_args(argv)
-    return {"bands": bands, "conformance": conformance}[options.what](options)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(program(__doc__, bands, conformance))

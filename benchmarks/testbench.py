@@ -23,7 +23,6 @@ random strategy: actions before and after, tests that were played, CPU seconds o
 
 from __future__ import annotations
 
-import argparse
 import ast
 import inspect
 import os
@@ -38,6 +37,7 @@ from itertools import islice
 from pathlib import Path
 from statistics import median
 
+from benchmarks.program import program
 from msgspec import structs
 
 from handover.campaign.campaign import ROBOTS, handover_campaign
@@ -64,14 +64,14 @@ FAULTS = tomllib.loads(Path(__file__).with_name("planted_faults.toml").read_text
 STRATEGIES = ("constrained", "pseudorandom", "model-based", "model-based-fastest")
 
 
-def faults(options: argparse.Namespace) -> int:
-    """Plant, play, print; 1 if a fault cannot be planted."""
+def faults(*, tests: int = 60, seed: int = 1) -> int:
+    """What sees planted faults, by so many disturbed tests; 1 if one cannot be planted."""
     campaign = handover_campaign(("correct",))
     strategies = ("directed", "disturbed")
-    chosen = plan(campaign, strategies, tests=options.tests or 60, seed=options.seed).tests
+    chosen = plan(campaign, strategies, tests=tests, seed=seed).tests
     jobs = os.cpu_count() or 1
-    tests = [test for several in chosen.values() for test in several]
-    suite = record_suite(campaign, "correct", tests, jobs=jobs)
+    played = [test for several in chosen.values() for test in several]
+    suite = record_suite(campaign, "correct", played, jobs=jobs)
     tried = play_mutants(suite, [_mutant(name) for name in FAULTS], jobs=jobs)
     sees: Counter[str] = Counter()
     for name, one in zip(FAULTS, tried, strict=True):
@@ -95,8 +95,8 @@ def _seen(one: Tried) -> tuple[str, str]:
     return "nothing", f", {one.reaching} tests run it"
 
 
-def gates(options: argparse.Namespace) -> int:
-    """Play, judge, print; 1 if something is not as expected."""
+def gates(*, tests: int = 100, seeds: int = 3, seed: int = 1) -> int:
+    """Each strategy against its gate; 1 if something is not as expected."""
     print(
         "robot    strategy              seeds that pass  covered, of which wanted  to be triggered"
     )
@@ -106,12 +106,12 @@ def gates(options: argparse.Namespace) -> int:
         names = tuple(load(spec_path(robot)).requirements)
         for strategy in campaign.strategies:
             passed, shares, wrong = 0, [], []
-            for seed in range(options.seed, options.seed + options.seeds):
-                chosen = plan(campaign, (strategy,), tests=options.tests or 100, seed=seed)
+            for number in range(seed, seed + seeds):
+                chosen = plan(campaign, (strategy,), tests=tests, seed=number)
                 results = execute(chosen, controls=False)
                 found = judge_campaign(results, {robot: names}, strict=True).wrong
                 passed += not found
-                wrong += [f"  seed {seed}: {what}" for what in found]
+                wrong += [f"  seed {number}: {what}" for what in found]
                 own = [one for one in results.played if one.job.test.mutation is None]
                 shares.append(100 * covered_share(campaign, robot, own))
             if not chosen.jobs():
@@ -119,7 +119,7 @@ def gates(options: argparse.Namespace) -> int:
             gate = campaign.gates.get(strategy, Gate())
             covered = f"{min(shares):.1f} to {max(shares):.1f} %, {gate.coverage:g} %"
             triggered = f"{len(names) - len(gate.untriggered)} of {len(names)}"
-            passing = f"{passed} of {options.seeds}"
+            passing = f"{passed} of {seeds}"
             print(f"{robot:8} {strategy:21} {passing:15}  {covered:24}  {triggered}", flush=True)
             print(*wrong, sep="\n", end="\n" * bool(wrong))
             all_wrong += len(wrong)
@@ -144,8 +144,8 @@ def _place(source: str, line: int) -> str:
     return source.splitlines()[line - 1].split()[0]
 
 
-def closing(options: argparse.Namespace) -> int:
-    """Close both campaigns for some seeds, that of the handover also without written tests."""
+def closing(*, tests: int = 400, seeds: int = 3, seed: int = 1) -> None:
+    """Holes that are closed, of a campaign by at most so many tests."""
     sys.path.insert(0, str(EXAMPLE))
     from campaign import campaign as people  # type: ignore[import-not-found]
 
@@ -156,9 +156,8 @@ def closing(options: argparse.Namespace) -> int:
         (replace(handover, name="handover, nothing written", closing=unwritten), "correct", ()),
         (handover, "correct", ()),
     ):
-        for seed in range(options.seed, options.seed + options.seeds):
-            _timed(campaign, robot, strategies, seed, options.tests or 400)
-    return 0
+        for number in range(seed, seed + seeds):
+            _timed(campaign, robot, strategies, number, tests)
 
 
 def _timed(
@@ -188,9 +187,10 @@ def _cpu_s() -> float:
     return own.ru_utime + own.ru_stime + played.ru_utime + played.ru_stime
 
 
-def shrinking(options: argparse.Namespace) -> int:
+def shrinking(*, failures: int = 20, seed: int = 1) -> None:
+    """So many failures, shrunk."""
     times, left = [], []
-    for test, found, seconds in islice(failures(options.seed), options.failures):
+    for test, found, seconds in islice(_failures(seed), failures):
         times.append(seconds)
         left.append(len(found.test.actions))
         sizes = f"{len(test.actions):2} → {left[-1]:2} actions"
@@ -199,10 +199,9 @@ def shrinking(options: argparse.Namespace) -> int:
         f"{len(times)} failures: median {median(left):g} actions, {median(times):.2f} s, "
         f"at most {max(times):.2f} s"
     )
-    return 0
 
 
-def failures(seed: int) -> Iterator[tuple[AbstractTest, Shrunk[AbstractTest], float]]:
+def _failures(seed: int) -> Iterator[tuple[AbstractTest, Shrunk[AbstractTest], float]]:
     """Each test that fails, with the smallest one and the CPU seconds that this took."""
     campaign = handover_campaign(("correct",))
     play = player(campaign.robots, None, None)
@@ -221,21 +220,5 @@ def failures(seed: int) -> Iterator[tuple[AbstractTest, Shrunk[AbstractTest], fl
                     yield faulty, found, time.process_time() - began
 
 
-TASKS = {"faults": faults, "gates": gates, "closing": closing, "shrinking": shrinking}
-
-
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("what", choices=tuple(TASKS))
-    parser.add_argument("--seed", type=int, default=1, help="the first")
-    parser.add_argument("--seeds", type=int, default=3, help="closing, gates: so many")
-    parser.add_argument(
-        "--tests", type=int, help="disturbed ones (60), of a strategy (100), of a campaign (400)"
-    )
-    parser.add_argument("--failures", type=int, default=20, help="shrinking: so many")
-    options = parser.parse_args()
-    return TASKS[options.what](options)
-
-
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(program(__doc__, faults, gates, closing, shrinking))

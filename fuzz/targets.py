@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from fuzz.timed_damage import survives
-from tests.tools.bags import SHOP
+from tests.rvmon.recordings.shop import SHOP
 
 import rvmon
 from rvmon.diagnostics import render_full

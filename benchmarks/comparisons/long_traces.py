@@ -16,12 +16,11 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from benchmarks.comparisons.comparison import Found
-from benchmarks.comparisons.progression import Progression, TooManyObligationsError
+from benchmarks.comparisons.progression import Progression, TooManyObligationsError, settle
 from tests.tools.build import scaled
 from tests.tools.drive import drive
 from tests.tools.forms import FORMS, Compiler, Maker
 from tests.tools.generate_ltl import random_mtl
-from tests.tools.stepped import settle
 
 from rvmon.language.checked.formula import Bound, BoundAtom, Constant, SignalAtom
 from rvmon.language.checked.specification import (

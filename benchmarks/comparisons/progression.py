@@ -6,10 +6,12 @@ from bisect import bisect_right
 
 from rvmon.errors import RvmonError
 from rvmon.logic.alphabet import Alphabet, holds
-from rvmon.logic.automaton import NOW, Location, Token, location_of, normalise
+from rvmon.logic.automaton import FAILED, NOW, PASSED, Location, Token, location_of, normalise
 from rvmon.logic.formula import Literal, Temporal
 from rvmon.logic.progress import after, step, value
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClausesError
+from rvmon.logic.state_formula import UNKNOWN
+from rvmon.trace.time import NEVER
 
 MOST_CLOCKS = 16
 """Obligations with an age of their own that one attempt may owe at once.
@@ -90,3 +92,22 @@ class Progression:
         """The truth once time has come to `t` and no position came."""
         index, anchors = token
         return value(after(self._locations[index].residual, [t - anchor for anchor in anchors]))
+
+
+def settle(machine: Progression, token: Token, t: int, until: int) -> tuple[Token, int]:
+    """Let time pass from `t` to `until` without a position.
+
+    Returns the token and the instant of its decision, or the next at which it might be decided.
+    """
+    while (t := _next_cut(machine, token, t)) <= until:
+        truth = machine.time_value(token, t)
+        if truth != UNKNOWN:
+            return (PASSED if truth else FAILED, ()), t
+    return token, t
+
+
+def _next_cut(machine: Progression, token: Token, t: int) -> int:
+    """The first instant after `t` at which a clock of the token enters another region."""
+    location, anchors = token
+    cuts = zip(machine.cuts(location), anchors, strict=True) if anchors else ()
+    return min((anchor + c for own, anchor in cuts for c in own if anchor + c > t), default=NEVER)

@@ -122,6 +122,12 @@ def cost(stream: Stream) -> float:
     return spent / len(measured)
 
 
+def cliffs(*, rows: int = 20_000, repeats: int = 5) -> None:
+    """Hard streams beside their quiet neighbours."""
+    for line in lines(rows, repeats):
+        print(line, flush=True)
+
+
 def lines(count: int, repeats: int) -> Iterator[str]:
     """The table: medians of passes in turn."""
     head = ("stream", "CPU per sample", "neighbour", "CPU per sample", "ratio", "wanted", "met")

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import argparse
 import random
 import sys
 import tempfile
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from benchmarks.process import Cost, measured
@@ -21,6 +20,9 @@ ROWS = 100
 """Of a recording."""
 
 MOST_MEMORY = 6 << 30
+
+HEAD = f"{'':44}{'s':>8}{'CPU s':>8}{'MiB':>8}{'exit':>6}"
+"""Of the table of processes."""
 
 GROUPS = 10
 DIFFERENT = 100
@@ -40,20 +42,31 @@ def cost_of(
     return cost
 
 
-def scale(options: argparse.Namespace) -> None:
+def scale(
+    *,
+    recordings: int = 10_000,
+    requirements: int = 1_000,
+    tests: int = 100,
+    limit: float = 600.0,
+) -> None:
     """Recordings, requirements, tests, ten times as many each time."""
-    for work in (recordings, requirements, tests):
-        most, last, before = getattr(options, work.__name__), 0.0, 0
-        count = 10 if work is tests else 1
+    works: Sequence[tuple[str, Callable[[Path, int], list[str]], int, int]] = (
+        ("recordings", _recordings, 1, recordings),
+        ("requirements", _one_recording, 1, requirements),
+        ("tests", _tests, 10, tests),
+    )
+    print(HEAD)
+    for what, work, count, most in works:
+        last, before = 0.0, 0
         while count <= most:
             with tempfile.TemporaryDirectory() as name:
-                command, title = work(Path(name), count), f"{count:,} {work.__name__}"
                 more = count - before if before else 0
-                last = cost_of(title, command, options.limit, last, more).cpu
+                command = work(Path(name), count)
+                last = cost_of(f"{count:,} {what}", command, limit, last, more).cpu
             before, count = count, 10 * count
 
 
-def recordings(folder: Path, count: int) -> list[str]:
+def _recordings(folder: Path, count: int) -> list[str]:
     """What judges so many recordings, and writes their verdicts."""
     (folder / "s.rv").write_text(_requirements(10))
     (folder / "data").mkdir()
@@ -63,14 +76,14 @@ def recordings(folder: Path, count: int) -> list[str]:
     return [*RVMON, "run", str(folder / "s.rv"), str(folder / "data"), *out]
 
 
-def requirements(folder: Path, count: int) -> list[str]:
+def _one_recording(folder: Path, count: int) -> list[str]:
     """What judges a recording by so many requirements."""
     (folder / "s.rv").write_text(_requirements(count))
     (folder / "r.csv").write_text(_recording())
     return [*RVMON, "run", str(folder / "s.rv"), str(folder / "r.csv"), "--quiet"]
 
 
-def tests(folder: Path, count: int) -> list[str]:
+def _tests(folder: Path, count: int) -> list[str]:
     """What plays so many tests of the handover."""
     words = ["run", "--strategy", "constrained", "--tests", str(count), "--legacy"]
     return [sys.executable, "-m", "handover.cli", *words, "--out", str(folder / "out")]
@@ -97,29 +110,32 @@ def _recording() -> str:
     return "\n".join([",".join(["t", *NAMES]), *rows, ""])
 
 
-def coverage(options: argparse.Namespace) -> None:
-    """Record, then look at it and merge it."""
+def coverage(
+    *, tests: int = 10_000, items: int = 1_000, share: float = 0.2, limit: float = 600.0
+) -> None:
+    """A database of coverage: record, then look at it and merge it."""
+    print(HEAD)
     rng = random.Random(1)
-    each = [Item(f"item {item}") for item in range(options.items // GROUPS)]
+    each = [Item(f"item {item}") for item in range(items // GROUPS)]
     groups = [group_of(f"group {n}", Subject.COVERPOINT, each) for n in range(GROUPS)]
     names = [(group.name, item) for group in groups for item in group.items]
-    drawn = [_hits(rng, names, options.share) for _ in range(DIFFERENT)]
+    drawn = [_hits(rng, names, share) for _ in range(DIFFERENT)]
     with tempfile.TemporaryDirectory() as folder:
         path, page, other = (Path(folder, name) for name in ("a.cov", "a.html", "b.cov"))
         began = time.process_time()
         with Database.open(path) as database:
             database.declare(model_of(groups))
-            for number in range(options.tests):
+            for number in range(tests):
                 test = TestRecord(f"test {number}", "campaign", seed=number, number=number)
                 database.record(test, drawn[number % DIFFERENT])
-        spent = 1000 * (time.process_time() - began) / options.tests
+        spent = 1000 * (time.process_time() - began) / tests
         print(f"record: {spent:.2f} ms a test; {path.stat().st_size / 1e6:.1f} MB")
         for words in ([], ["--tests"], ["--format", "json"], ["--report", str(page)]):
             command = [*RVMON, "cover", str(path), *words]
-            cost_of(" ".join(["cover", *words[:1]]), command, options.limit)
+            cost_of(" ".join(["cover", *words[:1]]), command, limit)
         print(f"page: {page.stat().st_size / 1e6:.1f} MB")
         merge = [*RVMON, "cover", str(path), "--merge", str(other)]
-        cost_of("cover --merge", merge, options.limit)
+        cost_of("cover --merge", merge, limit)
 
 
 def _hits(rng: random.Random, names: list[tuple[str, str]], share: float) -> Hits:

@@ -10,23 +10,11 @@ are those of `benchmarks.differential peers peers-robustness`.
 
 from __future__ import annotations
 
-import argparse
 import sys
-from collections.abc import Sequence
 
-from benchmarks.peers import differences, faults
-from benchmarks.peers.environment import prepare
-
-
-def main(argv: Sequence[str]) -> int:
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("what", choices=("differences", "faults"))
-    if parser.parse_args(argv).what == "faults":
-        faults.tables(prepare())
-    else:
-        print("\n".join(differences.lines(prepare())))
-    return 0
-
+from benchmarks.peers.differences import differences
+from benchmarks.peers.faults import faults
+from benchmarks.program import program
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(program(__doc__, differences, faults))

@@ -17,7 +17,7 @@ from typing import Any
 import msgspec
 from benchmarks.output import show
 from benchmarks.peers.client import Peer, PeerError
-from benchmarks.peers.environment import Environment
+from benchmarks.peers.environment import Environment, prepare
 
 import rvmon
 from rvmon.adapters.json_objects import JsonObjects
@@ -145,7 +145,9 @@ def _answers(fault: Fault, environment: Environment) -> Iterator[tuple[str, str]
                 yield name, _of_peer(peer, kind, formula, fault).replace("\n", " ") or "nothing"
 
 
-def tables(environment: Environment) -> None:
+def faults() -> None:
+    """What each says to a fault."""
+    environment = prepare()
     logging.disable()  # what `rvmon watch` says of each verdict
     text = Path(__file__).with_suffix(".toml").read_text("utf-8")
     entries: Mapping[str, Any] = tomllib.loads(text)

@@ -11,7 +11,6 @@ only lines that have one of them.
 
 from __future__ import annotations
 
-import argparse
 import math
 import random
 import re
@@ -123,23 +122,16 @@ def _cost(spec: Spec, rows: Sequence[Row], only: str | None, filled: int) -> flo
     return best
 
 
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """What may be asked of the kinds."""
-    parser.add_argument("--rows", type=int, default=4000, help="of kinds")
-    parser.add_argument("--time", choices=("held", "sampled"), default="held", help="of kinds")
-    parser.add_argument("--unknown", type=float, default=0, help="per cent of the values of kinds")
-
-
-def measure(options: argparse.Namespace) -> int:
+def measure(words: Sequence[str], rows: int, model: str, unknown: float) -> None:
+    """Print what a sample costs, by requirement."""
     figures: list[float] = []
 
     def measured() -> Iterator[tuple[str, str]]:
-        for line in _lines(options.rows, options.time, options.unknown):
-            if not options.kinds or any(word in line[0] for word in options.kinds):
+        for line in _lines(rows, model, unknown):
+            if not words or any(word in line[0] for word in words):
                 figures.append(_cost(*line[1:]))
                 yield line[0], f"{figures[-1]:,.0f}"
 
     show(["requirement", "ns a sample"], measured())
     print(f"{len(figures)} lines, median {statistics.median(figures):,.0f} ns", end="")
     print(f", most {max(figures):,.0f} ns")
-    return 0

@@ -1,7 +1,6 @@
 """The core in C alone: what it says of recorded cases, on this machine and on a smaller one."""
 
 import subprocess
-from argparse import Namespace
 from pathlib import Path
 
 import pytest
@@ -75,7 +74,7 @@ def test_mutants_are_seen(cases: Path, tmp_path: Path) -> None:
     """Most small changes of the core are told from it by some dozens of cases."""
     trial = Trial(tmp_path, cases.read_bytes())
     path = CORE / "formulas" / "graph.c"
-    (mutant,) = draw(c_mutants(path), Namespace(seed=1, count=1))
+    (mutant,) = draw(c_mutants(path), count=1, seed=1)
     assert trial.outcome(mutant) == "killed"
 
 

@@ -3,18 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rvmon.analysis.diagnostic_codes import every_page
-from rvmon.analysis.shortest_examples import analyse
-from rvmon.diagnostics import Diagnostic, render_full
-from rvmon.errors import ModelError, SpecError
-from rvmon.language.compile import compile_text
-from rvmon.models.conform import conform
-from rvmon.models.language.load import load_network, loads_network
-from rvmon.models.search.verify import verify
-from rvmon.monitor.compiled_spec import compile_spec
 
 _FORM = re.compile(
     r"# (?P<code>\w+) (?P<name>[\w-]+)\n\n\*(?P<severity>\w+)\* · (?P<what>[^\n]+(?:\n[^\n]+)*)\n\n"
@@ -22,8 +13,6 @@ _FORM = re.compile(
     r"```text\n(?P<message>.*?)\n```\n\n## Instead\n\n```(?:rv|ta)\n(?P<instead>.*?)```\n",
     re.DOTALL,
 )
-_MOST = 5
-"""Of more findings the first and the last are shown."""
 
 
 @dataclass(frozen=True)
@@ -49,36 +38,3 @@ def page(code: str) -> Page:
     parts = found.groupdict()
     parts |= {name: parts[name].removeprefix("\n") for name in ("example", "instead")}
     return Page(text, **parts)
-
-
-def findings_about(code: str, text: str) -> Sequence[Diagnostic]:
-    """What is found in a text by the pass that a code belongs to: check, analysis, a model's."""
-    if code.startswith("TA"):
-        return _findings_in_model(text)
-    try:
-        checked, found = compile_text(text, name="demo.rv")
-    except SpecError as error:
-        return tuple(error.diagnostics)
-    if not code.startswith("RV07"):
-        return tuple(found)
-    return analyse(compile_spec(checked), timelines=0).findings
-
-
-def _findings_in_model(text: str) -> Sequence[Diagnostic]:
-    """As its queries are decided; without any, as it is held against an empty recording."""
-    try:
-        network = loads_network(text, name="demo.ta") if text else load_network("none/demo.ta")
-        for query in network.queries:
-            verify(network, query)
-        if not network.queries:
-            conform(network, (), observed=frozenset(), end=0, tolerance=0)
-    except ModelError as error:
-        return error.diagnostics
-    return network.warnings
-
-
-def message_about(found: Sequence[Diagnostic]) -> str:
-    """What is written about an example; of a long list the beginning and the end."""
-    if len(found) <= _MOST:
-        return render_full(found)
-    return f"{render_full(found[:1])}\n\n…\n\n{render_full(found[-1:])}"

@@ -4,13 +4,57 @@ import os
 from pathlib import Path
 
 import pytest
-from tests.tools.code_pages import findings_about, message_about, page
+from tests.tools.code_pages import page
 
 from rvmon.analysis.diagnostic_codes import code_list, every_page, every_rule, page_of
-from rvmon.errors import UnknownNameError
+from rvmon.analysis.shortest_examples import analyse
+from rvmon.diagnostics import render_full
+from rvmon.errors import ModelError, SpecError, UnknownNameError
+from rvmon.language.compile import compile_text
+from rvmon.models.conform import conform
+from rvmon.models.language.load import load_network, loads_network
+from rvmon.models.search.verify import verify
+from rvmon.monitor.compiled_spec import compile_spec
 
 RULES = every_rule()
 PAGES = Path(__file__).parents[3] / "src" / "rvmon" / "analysis" / "pages"
+
+
+_MOST = 5
+"""Of more findings the first and the last are shown."""
+
+
+def findings_about(code, text):
+    """What is found in a text by the pass that a code belongs to: check, analysis, a model's."""
+    if code.startswith("TA"):
+        return _findings_in_model(text)
+    try:
+        checked, found = compile_text(text, name="demo.rv")
+    except SpecError as error:
+        return tuple(error.diagnostics)
+    if not code.startswith("RV07"):
+        return tuple(found)
+    return analyse(compile_spec(checked), timelines=0).findings
+
+
+def _findings_in_model(text):
+    """As its queries are decided; without any, as it is held against an empty recording."""
+    try:
+        network = loads_network(text, name="demo.ta") if text else load_network("none/demo.ta")
+        for query in network.queries:
+            verify(network, query)
+        if not network.queries:
+            conform(network, (), observed=frozenset(), end=0, tolerance=0)
+    except ModelError as error:
+        return error.diagnostics
+    return network.warnings
+
+
+def message_about(found):
+    """What is written about an example; of a long list the beginning and the end."""
+    if len(found) <= _MOST:
+        return render_full(found)
+    return f"{render_full(found[:1])}\n\n…\n\n{render_full(found[-1:])}"
 
 
 @pytest.mark.parametrize("code", RULES)

@@ -12,7 +12,7 @@ from tests.rvmon.core.test_outages import planned
 from tests.tools.differential import case_of
 from tests.tools.drive import Found, Lost
 from tests.tools.forms import Compiler
-from tests.tools.put_away import Twins, forged, put_away
+from tests.tools.put_away import HEAD, Twins, put_away
 from tests.tools.special_specs import random_chain
 
 from rvmon.language.checked.specification import TimeModel
@@ -133,6 +133,35 @@ def test_changed_bytes_are_refused(time):
     assert not other.load(data + b"\0")
     assert other.load(data)
     assert other.save() == data
+
+
+def sealed(body: bytes, head: bytes) -> bytes:
+    """A snapshot with the size and the hash of what stands behind its head."""
+    hash_ = 0xCBF29CE484222325
+    for one in body:
+        hash_ = (hash_ ^ one) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF
+    return head[:16] + struct.pack("<QQ", HEAD + len(body), hash_) + body
+
+
+def forged(data: bytes, rng: random.Random) -> bytes:
+    """A snapshot that was changed somewhere, with a hash that fits."""
+    body = bytearray(data[HEAD:])
+    for _ in range(rng.randint(1, 3)):
+        place = rng.randrange(len(body))
+        how = rng.random()
+        if how < 0.5:
+            body[place] = rng.choice((0, 1, 2, 3, 127, 128, 255, rng.randrange(256)))
+        elif how < 0.8:
+            word = rng.choice(
+                (0, 1, -1, (1 << 62) - 1, -(1 << 62), (1 << 63) - 1, rng.randrange(99))
+            )
+            body[place : place + 8] = struct.pack("<q", word)
+        elif how < 0.9:
+            del body[place : place + rng.randint(1, 9)]
+        else:
+            other = rng.randrange(len(body))
+            body[place:place] = body[other : other + rng.randint(1, 9)]
+    return sealed(bytes(body), data[:HEAD])
 
 
 @pytest.mark.slow

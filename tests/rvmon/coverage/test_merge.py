@@ -3,7 +3,8 @@
 import random
 
 import pytest
-from tests.tools.covered import dump, merged, random_database
+from tests.rvmon.coverage.merged import merged, random_database
+from tests.tools.covered import dump
 
 ORDERS = 80
 

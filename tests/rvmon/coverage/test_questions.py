@@ -3,7 +3,8 @@
 from itertools import permutations
 
 import pytest
-from tests.tools.covered import fill, merged, random_database
+from tests.rvmon.coverage.merged import merged, random_database
+from tests.tools.covered import fill
 
 from rvmon import coverage as by_run
 from rvmon.coverage import Hit, TestRecord

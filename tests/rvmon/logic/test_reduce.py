@@ -1,13 +1,14 @@
 """Reduced automata: smaller, and the same to whoever looks."""
 
+from bisect import bisect_right
+
 import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from tests.tools.build import always, eventually, false, no, p, q, r, requirement, two
-from tests.tools.stepped import TableMachine
 
 from rvmon.logic.alphabet import alphabet_of
-from rvmon.logic.automaton import PASSED, Automaton
+from rvmon.logic.automaton import PASSED, Automaton, Token
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
 from rvmon.logic.formula import Factory
 from rvmon.logic.lower import lower
@@ -33,6 +34,41 @@ def nothing(_residual) -> None:
 
 def rows(automaton: Automaton) -> int:
     return len(automaton.time_values)
+
+
+class TableMachine:
+    """An automaton as it runs.
+
+    A token is a location with, for each clock, the instant at which it was started. A row is a
+    location with a region for each clock.
+    """
+
+    def __init__(self, automaton: Automaton) -> None:
+        self.automaton = automaton
+        self.start: Token = (automaton.initial, ())
+
+    def row(self, token: Token, t: int) -> int:
+        """The row of a token at `t`."""
+        location, anchors = token
+        cuts, strides = self.cuts(location), self.automaton.strides[location]
+        regions = (bisect_right(cuts[k], t - anchor) for k, anchor in enumerate(anchors))
+        steps = (region * stride for region, stride in zip(regions, strides, strict=True))
+        return self.automaton.bases[location] + sum(steps)
+
+    def step(self, token: Token, t: int, letter: int) -> Token:
+        """The token after a position at `t`."""
+        one = self.automaton
+        edge = one.edges[self.row(token, t) * one.classes + one.class_of[letter]]
+        anchors = tuple(t if source < 0 else token[1][source] for source in one.sources[edge])
+        return one.targets[edge], anchors
+
+    def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
+        """For each clock of a location the ages from which on it acts differently."""
+        return self.automaton.locations[location].cuts
+
+    def time_value(self, token: Token, t: int) -> int:
+        """The truth once time has come to `t` and no position came."""
+        return self.automaton.time_values[self.row(token, t)]
 
 
 def walk(automaton, word):

@@ -5,16 +5,8 @@ import json
 import random
 
 import pytest
-from tests.tools.bags import (
-    HEADER,
-    OF_MESSAGES,
-    SHOP,
-    START,
-    sent_at_random,
-    write_csv,
-    write_json_mcap,
-    write_ros2,
-)
+from tests.rvmon.recordings.shop import HEADER, OF_MESSAGES, SHOP, sent_at_random, write_csv
+from tests.tools.bags import START, write_json_mcap, write_ros2
 
 import rvmon
 from rvmon.cli import main

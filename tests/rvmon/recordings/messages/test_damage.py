@@ -5,7 +5,8 @@ import struct
 from contextlib import closing
 
 import pytest
-from tests.tools.bags import OF_MESSAGES, START, write_json_mcap, write_ros1, write_ros2
+from tests.rvmon.recordings.shop import OF_MESSAGES
+from tests.tools.bags import START, write_json_mcap, write_ros1, write_ros2
 
 import rvmon
 from rvmon.cli import main

@@ -13,17 +13,8 @@ from tests.rvmon.recordings.messages.flatbuffers import (
     schema_of,
     write_flatbuffer_mcap,
 )
-from tests.tools.bags import (
-    HEADER,
-    OF_MESSAGES,
-    SHOP,
-    START,
-    sent_at_random,
-    write_csv,
-    write_json_mcap,
-    write_ros1,
-    write_ros2,
-)
+from tests.rvmon.recordings.shop import HEADER, OF_MESSAGES, SHOP, sent_at_random, write_csv
+from tests.tools.bags import START, write_json_mcap, write_ros1, write_ros2
 
 import rvmon
 from rvmon.cli import main

@@ -5,16 +5,15 @@ import re
 import struct
 
 import pytest
-from tests.tools.logs import (
-    write_can,
+from tests.rvmon.recordings.messages.logs import (
     write_csv,
     write_dataflash,
     write_hdf5,
     write_mat,
     write_mdf,
     write_tlog,
-    write_ulog,
 )
+from tests.tools.logs import write_can, write_ulog
 
 import rvmon
 from rvmon.cli import main

@@ -1,0 +1,66 @@
+"""The command line of a benchmark: its commands are functions, their parameters the options."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable, Iterator, Sequence
+from inspect import Parameter, signature
+from types import NoneType
+from typing import Any, TypeVar, get_args, get_origin
+
+T = TypeVar("T")
+
+
+def program(
+    about: str | None, *commands: Callable[..., int | None], argv: Sequence[str] | None = None
+) -> int:
+    """Run the command that the words name; where there is one alone it goes without a name.
+
+    A keyword-only parameter is an option, of its annotation's type: `bool` is a flag, a sequence
+    takes several words, which are among those of its default if that has some. Other parameters
+    are arguments. An underscore at its end is not part of a name.
+
+    Args:
+        about: the docstring of the benchmark.
+        commands: return the exit code; `None`: 0.
+        argv: the words; default: those of the process.
+    """
+    form = argparse.RawDescriptionHelpFormatter
+    parser = argparse.ArgumentParser(description=about, formatter_class=form)
+    if len(commands) == 1:
+        _add(parser, commands[0])
+    else:
+        kinds = parser.add_subparsers(required=True, metavar="COMMAND")
+        for command in commands:
+            _add(kinds.add_parser(command.__name__, help=command.__doc__), command)
+    options = vars(parser.parse_args(argv))
+    run = options.pop("run")
+    return run(**options) or 0
+
+
+def _add(parser: argparse.ArgumentParser, command: Callable[..., int | None]) -> None:
+    parser.set_defaults(run=command)
+    for name, one in signature(command, eval_str=True).parameters.items():
+        is_option = one.kind is Parameter.KEYWORD_ONLY
+        words: dict[str, Any] = {}
+        if one.default is not Parameter.empty:
+            words["default"] = one.default
+            words["help"] = f"default: {one.default}" if one.default else None
+        kind = one.annotation
+        if NoneType in get_args(kind):
+            kind = get_args(kind)[0]
+        if get_origin(kind) is Sequence:
+            [kind] = get_args(kind)
+            words["nargs"] = "+" if words.get("default", True) else "*"
+            words["choices"] = words.get("default") or None
+        words |= (
+            {"action": "store_true"} if kind is bool else {"type": kind, "metavar": name.upper()}
+        )
+        parser.add_argument(f"--{name.replace('_', '-')}" if is_option else name, **words)
+
+
+def in_turn(contenders: Sequence[T], repeats: int) -> Iterator[tuple[int, T]]:
+    """So many passes of all, each beginning with another: what the machine does meets all alike."""
+    for number in range(repeats):
+        first = number % max(len(contenders), 1)
+        yield from ((number, one) for one in (*contenders[first:], *contenders[:first]))
