@@ -8,16 +8,17 @@ it is fixed, that input is a file more in `fuzz/corpus`, which a test reads.
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
 import re
 import subprocess
 import sys
-from dataclasses import dataclass
+from collections.abc import Sequence
 from importlib.util import find_spec
 from pathlib import Path
 
+from benchmarks.program import program
+from fuzz.driver import Found, fuzz
 from fuzz.targets import TARGETS, seeds
 
 LONGEST = {"spec": 3000, "recording": 1000, "snapshot": 20_000}
@@ -27,62 +28,37 @@ PATIENCE = 25
 """Seconds that an input may take."""
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
-    """What came of a target."""
-
-    inputs: int
-    places: str
-    answers: str
-    stumbled: tuple[Path, ...]
-
-
-def fuzz_target(name: str, out: Path, seconds: int) -> Found:
+def by_atheris(name: str, folder: Path, seconds: int) -> Found:
     """Have atheris change inputs of a target for so many seconds."""
-    folder = out / name
-    (folder / "found").mkdir(parents=True, exist_ok=True)
+    (folder / "found").mkdir(exist_ok=True)
     before = set(folder.glob("input-*"))
-    words = [sys.executable, "-m", "fuzz.one", name, str(folder)]
     for number, data in enumerate(seeds(name)):
         (folder / "found" / f"seed-{number}").write_bytes(data)
-    words += [str(folder / "found"), f"-max_total_time={seconds}"]
-    words += [f"-timeout={PATIENCE}", "-rss_limit_mb=2500", "-print_final_stats=1"]
+    words = [sys.executable, "-m", "fuzz.one", name, str(folder), str(folder / "found")]
+    words += [f"-max_total_time={seconds}", f"-timeout={PATIENCE}", "-rss_limit_mb=2500"]
     words += [f"-artifact_prefix={folder}/input-", f"-max_len={LONGEST.get(name, 12_000)}"]
     with (folder / "log.txt").open("w") as log:
-        subprocess.run(words, stdout=log, stderr=log, check=False)
+        subprocess.run([*words, "-print_final_stats=1"], stdout=log, stderr=log, check=False)
     text = (folder / "log.txt").read_text(errors="replace")
-    inputs = re.findall(r"number_of_executed_units: (\d+)|^#(\d+)", text, re.MULTILINE)
-    reached = re.findall(r"cov: (\d+)", text)
+    inputs = re.findall(r"(?:number_of_executed_units: |^#)(\d+)", text, re.MULTILINE)
+    reached = re.findall(r"cov: (\d+)", text)[-1:] or ["no"]
     answers = folder / "answers.json"
     ends = json.loads(answers.read_bytes()) if answers.exists() else {}
-    return Found(
-        max([int(a or b) for a, b in inputs], default=0),
-        f"{reached[-1]} edges" if reached else "no edges",
-        ", ".join(f"{end} {count:,}" for end, count in sorted(ends.items())),
-        tuple(sorted(set(folder.glob("input-*")) - before)),
-    )
+    ended = ", ".join(f"{end} {count:,}" for end, count in sorted(ends.items()))
+    told = f"{max(map(int, inputs), default=0):>9,} inputs, {reached[0]} edges; {ended}"
+    return Found(told, sorted(set(folder.glob("input-*")) - before))
 
 
-def main(words: list[str]) -> int:
-    """Fuzz, print, and return 1 if anything stumbled."""
-    parser = argparse.ArgumentParser(prog="python -m fuzz", description="Fuzz rvmon.")
-    parser.add_argument("--seconds", type=int, default=60, help="in all")
-    parser.add_argument("--only", nargs="+", choices=TARGETS, default=[*TARGETS])
-    parser.add_argument("--out", type=Path, default=Path("out/fuzz"))
-    options = parser.parse_args(words)
+def main(
+    *, seconds: int = 60, only: Sequence[str] = (*TARGETS,), out: Path = Path("out/fuzz")
+) -> int:
+    """Fuzz for so many seconds in all."""
     if find_spec("atheris") is None:
         print("nothing is fuzzed, as atheris is not installed")
         return 1
     os.environ["RVMON_CACHE"] = "off"
-    stumbled = 0
-    for name in options.only:
-        found = fuzz_target(name, options.out, max(1, options.seconds // len(options.only)))
-        print(f"{name:12} {found.inputs:>9,} inputs, {found.places}; {found.answers}", flush=True)
-        for path in found.stumbled:
-            print(f"  stumbled over {path}")
-        stumbled += len(found.stumbled)
-    return 1 if stumbled else 0
+    return fuzz(only, by_atheris, out, seconds)
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(program(__doc__, main))

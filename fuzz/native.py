@@ -13,17 +13,17 @@ Needs the Debian packages afl++ and libclang-rt-14-dev.
 
 from __future__ import annotations
 
-import argparse
 import os
 import random
 import shutil
 import struct
 import subprocess
 import sys
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from benchmarks.program import program
+from fuzz.driver import Found, fuzz
 from tests.tools.coverage import with_random_coverage
 from tests.tools.guarded import guarded_memory
 from tests.tools.put_away import HEAD, Twins, actions_of
@@ -59,14 +59,6 @@ SMALL = 6_000
 
 PLANS = 200
 """Of the samples."""
-
-
-@dataclass(frozen=True, slots=True)
-class Found:
-    """What came of a target."""
-
-    counted: dict[str, str]  # as AFL++ says it: runs, seconds, inputs that reached something new
-    bad: tuple[Path, ...]  # inputs at which something was wrong
 
 
 def _plan(rng: random.Random, profile: Profile, which: int) -> Plan:
@@ -123,13 +115,13 @@ def snapshots(most: int) -> Iterator[tuple[bytes, bytes]]:
         yield planned.packed.data, twins.plain.save()[HEAD:]
 
 
-def compiled(folder: Path, target: str, *, compiler: str = COMPILER) -> Path:
+def compiled(folder: Path, target: str) -> Path:
     """The program of a target, compiled into a folder.
 
     Raises:
         CalledProcessError: the compiler failed.
     """
-    program, home = folder / target, CORE
+    made, home = folder / target, CORE
     if target == "models":
         home = ZONES
         sources = [path for path in home.glob("*.c") if path.name != "module.c"]
@@ -140,9 +132,9 @@ def compiled(folder: Path, target: str, *, compiler: str = COMPILER) -> Path:
         names = [name for name in amalgamate.core_files() if name != "memory.c"]
         sources = [*(CORE / name for name in names), HARNESS, memory]
     flags = [*FLAGS, f"-I{home}", *TARGETS[target]]
-    words = [compiler, *flags, *map(str, sources), "-lm", "-o", str(program)]
+    words = [COMPILER, *flags, *map(str, sources), "-lm", "-o", str(made)]
     subprocess.run(words, check=True, capture_output=True)
-    return program
+    return made
 
 
 def begun_with(folder: Path, target: str) -> None:
@@ -167,10 +159,9 @@ def begun_with(folder: Path, target: str) -> None:
     (folder / "held").write_bytes(sized)
 
 
-def fuzz(target: str, folder: Path, seconds: int) -> Found:
+def by_afl(target: str, folder: Path, seconds: int) -> Found:
     """Fuzz one target for so long; what is found stays in its folder, and is gone on from."""
-    folder.mkdir(parents=True, exist_ok=True)
-    program = compiled(folder, target)
+    made = compiled(folder, target)
     if not (folder / "in").exists():
         begun_with(folder, target)
     environment = {
@@ -185,7 +176,7 @@ def fuzz(target: str, folder: Path, seconds: int) -> Found:
     words = ["afl-fuzz", "-i", folder / "in", "-o", folder / "out", "-m", "none", "-t", "5000"]
     with (folder / "log.txt").open("w") as log:
         subprocess.run(
-            [*map(str, words), "-V", str(seconds), "--", str(program)],
+            [*map(str, words), "-V", str(seconds), "--", str(made)],
             env=environment,
             stdout=log,
             stderr=log,
@@ -195,33 +186,22 @@ def fuzz(target: str, folder: Path, seconds: int) -> Found:
     lines = (out / "fuzzer_stats").read_text().splitlines()
     pairs = (line.partition(":") for line in lines)
     counted = {name.strip(): value.strip() for name, _, value in pairs}
-    bad = [*out.glob("crashes/id*"), *out.glob("hangs/id*")]
-    return Found(counted, tuple(sorted(bad)))
-
-
-def main(words: list[str]) -> int:
-    """Fuzz, print, and return 1 if anything stumbled."""
-    parser = argparse.ArgumentParser(prog="python -m fuzz.native", description=__doc__)
-    parser.add_argument("--seconds", type=int, default=600, help="in all")
-    parser.add_argument("--only", nargs="+", choices=TARGETS, default=[*TARGETS])
-    parser.add_argument("--out", type=Path, default=Path("out/fuzz-native"))
-    options = parser.parse_args(words)
-    if shutil.which(COMPILER) is None:
-        print(f"nothing is fuzzed: {COMPILER} is not installed (Debian's package afl++)")
-        return 1
-    bad = 0
-    for target in options.only:
-        seconds = options.seconds // len(options.only)
-        found = fuzz(target, options.out.resolve() / target, seconds)
-        said = (f"{name} {found.counted.get(name)}" for name in _TOLD)
-        print(f"{target:8} {', '.join(said)}", flush=True)
-        for path in found.bad:
-            print(f"  stumbled over {path}")
-        bad += len(found.bad)
-    return 1 if bad else 0
+    told = ", ".join(f"{name} {counted.get(name)}" for name in _TOLD)
+    return Found(told, sorted([*out.glob("crashes/id*"), *out.glob("hangs/id*")]))
 
 
 _TOLD = ("run_time", "execs_done", "execs_per_sec", "corpus_count", "bitmap_cvg", "stability")
 
+
+def main(
+    *, seconds: int = 600, only: Sequence[str] = (*TARGETS,), out: Path = Path("out/fuzz-native")
+) -> int:
+    """Fuzz for so many seconds in all."""
+    if shutil.which(COMPILER) is None:
+        print(f"nothing is fuzzed: {COMPILER} is not installed (Debian's package afl++)")
+        return 1
+    return fuzz(only, by_afl, out, seconds)
+
+
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(program(__doc__, main))

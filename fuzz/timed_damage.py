@@ -25,65 +25,46 @@ or not true false E<> A[] A<> E[] EF AG --> [<=3] -> == != <= >= ++ -- += := ! ?
 """.split()
 """Words that both text forms give a meaning to, and some that they do not."""
 
+_PIECE = re.compile(rb"([A-Za-z_]\w*)|(\d+)|(\s+)|([^\w\s]+)|(_)")
+"""What a model is made of: words, numbers, space, signs."""
+
 _NUMBERS = (b"0", b"1", b"3", b"-1", b"100", b"9999", b"16777216", b"2147483648")
-_KINDS = {
-    re.compile(rb"[A-Za-z_]\w*"): None,
-    re.compile(rb"\d+"): _NUMBERS,
-    re.compile(rb"[<>=!]=|<|>|\+|-|\*|&&|\|\|"): None,
-}
-"""What is changed for another of its kind: of another model, or of these."""
 
 
 def damaged(data: bytes, random: Random, others: Sequence[bytes]) -> bytes:
-    """A model with one to five changes, of bytes, passages and lines, or of words and numbers.
+    """A model with one to five changes of pieces: of another kind, none, often, from elsewhere.
 
     Args:
         data: of the model.
         random: the source of all choices.
-        others: models that passages and words are taken from.
+        others: models that pieces are taken from.
     """
-    text = data
-    change = random.choice((_change_bytes, _change_words, _change_words))
+    pieces = _pieces(data)
     for _ in range(random.choice((1, 1, 1, 1, 2, 5))):
-        text = change(text, random, random.choice(others))
-    return text
-
-
-def _change_words(text: bytes, random: Random, other: bytes) -> bytes:
-    """A word for another word, a number for a number, a sign for a sign, or lines moved about."""
-    if random.random() < 0.4:
-        lines = text.splitlines(keepends=True) or [b""]
-        place = random.randrange(len(lines))
-        lines[place : place + 1] = random.choice(([], [lines[place], random.choice(lines)]))
-        return b"".join(lines)
-    pattern, own = random.choice([*_KINDS.items()])
-    found, fresh = [*pattern.finditer(text)], own or pattern.findall(other)
-    if not found or not fresh:
-        return text
-    start, end = random.choice(found).span()
-    instead = random.choice(fresh)
-    return text[:start] + bytes(instead) + text[end:]
-
-
-def _change_bytes(text: bytes, random: Random, other: bytes) -> bytes:
-    """Whatever bytes can suffer: other ones, none, many times the same, a passage elsewhere."""
-    start = random.randrange(len(text) + 1)
-    end = min(len(text), start + random.choice((1, 1, 2, 5, 20, 100)))
-    begin, to = random.randrange(len(other) + 1), random.randrange(start + 1)
-    passage, token = text[start:end], random.choice(TOKENS)
-    if random.random() < 1 / 7:
-        return text[:to] + passage + text[to:start] + text[end:]
-    instead = random.choice(
-        (
-            random.randbytes(random.randint(1, 3)),
-            b"",
-            passage * random.choice((2, 3, 51)),
-            b" %b " % token,
-            token + passage,
-            other[begin : begin + random.choice((5, 30, 200))],
+        other = _pieces(random.choice(others))
+        at, begin = random.randrange(len(pieces)), random.randrange(len(other))
+        end = at + random.choice((1, 1, 1, 2, 5, 20))
+        kind, passage = pieces[at][0], pieces[at:end]
+        alike = [one for one in other if one[0] == kind] or passage
+        noise = random.choice((random.choice(TOKENS), random.choice(_NUMBERS), random.randbytes(2)))
+        instead = random.choice(
+            (
+                [random.choice(alike), *passage[1:]],
+                [random.choice(alike), *passage[1:]],
+                [],
+                passage * random.choice((2, 3, 51)),
+                [(0, noise)],
+                [(0, b" %b " % noise), *passage],
+                other[begin : begin + random.choice((2, 8, 40))],
+            )
         )
-    )
-    return text[:start] + instead + text[end:]
+        pieces[at:end] = instead or ([] if len(pieces) > len(passage) else passage)
+    return b"".join(text for _, text in pieces)
+
+
+def _pieces(data: bytes) -> list[tuple[int, bytes]]:
+    """The pieces of a model, each with its kind."""
+    return [(found.lastindex or 0, found[0]) for found in _PIECE.finditer(data)]
 
 
 def survives(path: Path) -> str:
