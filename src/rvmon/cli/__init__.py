@@ -26,25 +26,25 @@ if TYPE_CHECKING:
 
 GROUPS = {
     "write requirements": {
-        "look": "what a recording holds, over time",
-        "init": "a first specification or binding from a recording; a campaign",
-        "check": "what is wrong in specifications, or can never hold together",
-        "explain": "a requirement, or a diagnostic's code, in plain words",
-        "format": "the canonical layout",
+        "look": "show the signals and events of a recording over time",
+        "init": "write a first specification, binding or campaign",
+        "check": "find errors, warnings and conflicts in specifications",
+        "explain": "explain a requirement or a diagnostic code in words",
+        "format": "rewrite specifications in the canonical layout",
     },
     "evaluate": {
-        "run": "check recordings against a specification",
+        "run": "evaluate recordings against a specification",
         "watch": "monitor a running robot: verdicts as they are decided",
-        "why": "an attempt taken apart: why it passed, failed or stayed open",
-        "clip": "a recording cut around an attempt; a file that reproduces it",
-        "compare": "what has changed between two files of verdicts",
-        "cover": "what tests have covered, and what is missing",
-        "evidence": "whether evidence that was kept still holds",
+        "why": "explain why an attempt passed, failed or stayed open",
+        "clip": "cut a recording around an attempt, or make a reproducer",
+        "compare": "compare two files of verdicts",
+        "cover": "show what tests have covered, and what is missing",
+        "evidence": "check an evidence archive",
     },
-    "models, and elsewhere": {
+    "models and export": {
         "verify": "model-check a network of timed automata",
-        "conform": "whether recordings are runs of such a network",
-        "export": "C that runs alone, automata, models for UPPAAL",
+        "conform": "check whether recordings are runs of such a network",
+        "export": "write C monitors, automata, or models for UPPAAL",
     },
 }
 """The purpose of each command, as `rvmon --help` lists them."""

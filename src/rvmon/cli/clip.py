@@ -39,8 +39,8 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "clip",
         description="Cut a recording around an attempt, in the recording's own format. The last "
-        "values of signals before the cut are carried to its start. The piece is evaluated again; "
-        "the exit code is 1 if the attempt gets another verdict there.",
+        "values of signals before the cut are carried to its start. The cut is evaluated again; "
+        "the exit code is 1 if the attempt gets another verdict.",
         epilog="example: rvmon clip examples/base.rv examples/base.csv B2#2 --before 1s -o "
         "piece.csv",
     )
@@ -66,12 +66,12 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     )
     add("--from", metavar="TIME", type=ticks, dest="start", help=f"first instant ({TIME_FORMS})")
     add("--to", metavar="TIME", type=ticks, dest="stop", help=f"last instant ({TIME_FORMS})")
-    add("-o", "--out", metavar="FILE", help="the piece; a folder for a bag of ROS 2")
+    add("-o", "--out", metavar="FILE", help="the cut recording; a folder for a bag of ROS 2")
     add(
         "--reproducer",
         metavar="FILE",
-        help="one file (.rvcase) with the piece and its specification: `rvmon why FILE` explains "
-        "the attempt, `rvmon run FILE` evaluates it; -o FILE.rvcase is the same",
+        help="one file (.rvcase) with the cut recording and the specification: `rvmon why FILE` "
+        "explains the attempt, `rvmon run FILE` evaluates it; -o FILE.rvcase is the same",
     )
     declare(parser, "--const", *READING, "--allow-missing")
 

@@ -24,16 +24,16 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     parser = subparsers.add_parser(
         "compare",
         description="Compare the verdicts on recordings with earlier ones, by recording and "
-        "requirement: what fails now, what is fixed, what is no longer shown. Files are those of "
-        "`rvmon run --out` (.csv, .parquet, .sqlite) and of `--format json` (.json). The "
-        "exit code is 1 if less holds than before.",
+        "requirement: new failures, fixed failures, verdicts that are missing now. The files are "
+        "written by `rvmon run --out` (.csv, .parquet, .sqlite) or `--format json` (.json). The "
+        "exit code is 1 if a requirement got worse.",
         epilog="examples: rvmon run examples/base.rv examples/base.csv --out old.csv; rvmon "
         "compare old.csv old.csv",
     )
     add = parser.add_argument
     add("before", metavar="OLD", help="the earlier verdicts")
-    add("after", metavar="NEW", help="the later ones")
-    add("--all", action="store_true", help="list everything, however many")
+    add("after", metavar="NEW", help="the later verdicts")
+    add("--all", action="store_true", help="list all differences")
     declare(parser, "--format")
 
 

@@ -24,20 +24,20 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "conform",
-        description="Decide whether recordings (.csv, .jsonl) are runs of a network, as far as "
-        "they show: their events are the labels of its edges, or its channels. The first sample "
-        "is the network's start. Exit code 0: all conform; 1: some do not, or it is not decided; "
-        "2: a recording cannot be read, or shows nothing of the model.",
+        description="Decide whether recordings (.csv, .jsonl) are runs of a network of timed "
+        "automata; their events are labels of its edges, or its channels. The first sample is "
+        "the network's start. Exit code 0: all conform; 1: one does not, or is not decided; 2: a "
+        "recording cannot be read, or holds no action of the model.",
         epilog="example: rvmon conform examples/models/dock.ta examples/models/dock_monday.csv",
     )
     add = parser.add_argument
     add("model", metavar="MODEL", help="a .ta or .xml file")
-    add("traces", metavar="TRACE", nargs="+", help="recordings, folders of them")
+    add("traces", metavar="TRACE", nargs="+", help="recordings, or folders of recordings")
     declare(parser, "--time")
     add(
         "--observe",
         metavar="LABELS",
-        help="labels that a recording would show (default: those with a column, or that occur)",
+        help="labels that are observed (default: those that have a column, or that occur)",
     )
     add(
         "--tolerance",

@@ -57,23 +57,23 @@ def add_parser(
     """
     parser = subparsers.add_parser(
         "evidence",
-        help="whether evidence that was kept still holds",
-        description="See that nothing in evidence (`--evidence FILE`) was changed, that recordings "
-        "are those that were evaluated, and evaluate a sample again. Exit codes: 0 it holds, 1 it "
-        "does not, 2 something could not be checked.",
+        help="check an evidence archive",
+        description="Check that an evidence archive (`--evidence FILE`) is unchanged and that "
+        "the recordings are the evaluated ones, and evaluate a sample of them again. Exit codes: "
+        "0 all checks passed, 1 one failed, 2 something could not be checked.",
         epilog="example: %(prog)s base.zip --sample all",
     )
     add = parser.add_argument
-    add("file", metavar="FILE", help="the evidence")
+    add("file", metavar="FILE", help="the archive")
     add(
         "--sample",
         metavar="N",
         type=lambda text: None if text == "all" else positive(text),
         default=10,
-        help="evaluate so many recordings or tests again, or all (%(default)s)",
+        help="number of recordings or tests to evaluate again, or all (%(default)s)",
     )
-    add("--seed", metavar="N", type=int, default=1, help="of the sample (1)")
-    add("--jobs", metavar="N", type=positive, default=1, help="processes (1)")
+    add("--seed", metavar="N", type=int, default=1, help="random seed of the sample (1)")
+    add("--jobs", metavar="N", type=positive, default=1, help="number of processes (1)")
     parser.set_defaults(run=run, campaign=campaign)
 
 

@@ -24,9 +24,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "explain",
-        description="Explain a requirement: in plain words, its automaton, and the shortest runs "
-        "on which it passes, fails, is not triggered, stays open. Two: where they differ. "
-        "A diagnostic's code such as RV012: its page; `codes`: all codes.",
+        description="Explain a requirement: in plain words, with its automaton and the shortest "
+        "runs on which it passes, fails, is not triggered or stays open. Of two requirements, "
+        "show where they differ. Of a diagnostic code such as RV012, show its page; `codes` "
+        "lists all codes.",
         epilog="examples: rvmon explain examples/base.rv B2; rvmon explain RV001",
     )
     add = parser.add_argument
@@ -34,7 +35,11 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add("ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)")
     declare(parser, "--const")
     add(
-        "--runs", metavar="N", type=positive, default=4000, help="short runs to try (default: 4000)"
+        "--runs",
+        metavar="N",
+        type=positive,
+        default=4000,
+        help="number of short runs to try (default: 4000)",
     )
     declare(parser, "--max-memory")
 

@@ -16,13 +16,13 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "format",
-        description="Rewrite specifications in the canonical form; meaning and comments stay. "
-        "With - as SPEC, standard input is laid out on standard output.",
+        description="Rewrite specifications in the canonical layout; meaning and comments are "
+        "kept. With - as SPEC, standard input is formatted to standard output.",
         epilog="example: rvmon format --check specs/*.rv",
     )
     parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files")
     parser.add_argument(
-        "--check", action="store_true", help="change nothing; exit with 1 if a file would change"
+        "--check", action="store_true", help="do not write; exit with 1 if a file would change"
     )
 
 

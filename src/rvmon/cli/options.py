@@ -29,23 +29,23 @@ def _megabytes(text: str) -> int:
 
 
 _SHARED: dict[str, dict[str, Any]] = {
-    "--only": {"metavar": "IDS", "help": "these requirements: R1,R3"},
+    "--only": {"metavar": "IDS", "help": "only these requirements: R1,R3"},
     "--severity": {
         "metavar": "LEVELS",
-        "help": "of these, those of one of the severities: high,medium",
+        "help": "only requirements with one of these severities: high,medium",
     },
     "--tag": {
         "metavar": "TAGS",
         "action": "append",
         "default": [],
-        "help": "of these, those with one of the tags: stop,arm; given twice: with one of each "
-        "list",
+        "help": "only requirements with one of these tags: stop,arm; if given twice, with one "
+        "tag of each list",
     },
     "--const": {
         "metavar": "NAME=VALUE",
         "action": "append",
         "default": [],
-        "help": "override a constant",
+        "help": "set a constant of the specification to another value",
     },
     "--until": {
         "metavar": "TIME",
@@ -55,49 +55,50 @@ _SHARED: dict[str, dict[str, Any]] = {
     },
     "--time": {
         "metavar": "COLUMN[:UNIT]",
-        "help": "the column of stamps, and their unit: s, ms, us, ns, iso (ISO 8601), or a form of "
-        "dates such as %%d.%%m.%%Y %%H:%%M:%%S; two columns are SEC+NANOSEC; default: t in "
-        "seconds, or t_ns",
+        "help": "the column of time stamps, and their unit: s, ms, us, ns, iso (ISO 8601), or a "
+        "date format such as %%d.%%m.%%Y %%H:%%M:%%S; SEC+NANOSEC names two columns (default: t "
+        "in seconds, or t_ns)",
     },
     "--map": {
         "metavar": "NAME=COLUMN",
         "action": "append",
         "default": [],
-        "help": "the column of a declared name that is called otherwise; can be given repeatedly",
+        "help": "read the declared NAME from this column, or topic and field; repeatable",
     },
     "--nan": {
         "choices": [reading.replace(" ", "-") for reading in READINGS_OF_NAN],
-        "help": "what NaN means: unknown (default), or no update, as where topics were merged",
+        "help": "how to read NaN: as unknown (default), or as no update, which merges of topics "
+        "need",
     },
     "--binding": {
         "metavar": "FILE",
-        "help": "TOML that maps topics and fields of messages (bags, MCAP) to names; "
-        "`rvmon init DATA --for SPEC` proposes one",
+        "help": "TOML file that maps topics and fields of messages (bags, MCAP) to declared "
+        "names; `rvmon init DATA --for SPEC` proposes one",
     },
     "--clock": {
         "choices": ("log", "header"),
-        "help": "which stamps of messages count where the binding names none: log, when each "
-        "was recorded (default), or header",
+        "help": "time stamp of messages for which the binding names none: the time of recording "
+        "(log, default) or the header's stamp",
     },
     "--allow-missing": {
         "metavar": "[=NAMES]",
-        "help": "evaluate recordings in columns that lack these names (default: any): what reads "
-        "them is I, and the exit code 1",
+        "help": "accept recordings that have no column for these names (default: any); "
+        "requirements that read them are I, and the exit code is 1",
     },
     "--dask": {
         "metavar": "ADDRESS",
-        "help": "in the place of --jobs: do the work on the workers of this scheduler of Dask",
+        "help": "distribute the work over the workers of this Dask scheduler, instead of --jobs",
     },
     "--format": {
         "choices": ("text", "json"),
         "default": "text",
-        "help": "for people (default), or as data",
+        "help": "text for people (default), or JSON",
     },
     "--max-memory": {
         "dest": "most_megabytes",
         "metavar": "MB",
         "type": _megabytes,
-        "help": "give up beyond, in each process (default: as much as there is)",
+        "help": "memory limit of each process (default: none)",
     },
 }
 ONLY = ("--only", "--severity", "--tag")
@@ -152,14 +153,19 @@ def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
 def add_budget(parser: argparse.ArgumentParser) -> None:
     """Declare `--max-states`, `--max-seconds` and `--max-memory`."""
     add = parser.add_argument
-    add("--max-states", metavar="N", type=positive, help="give up after N states")
-    add("--max-seconds", metavar="TIME", type=span_s, help=f"give up after TIME ({TIME_FORMS})")
+    add("--max-states", metavar="N", type=positive, help="stop the search after N states")
+    add(
+        "--max-seconds",
+        metavar="TIME",
+        type=span_s,
+        help=f"stop the search after TIME ({TIME_FORMS})",
+    )
     add(
         "--max-memory",
         metavar="MB",
         type=positive,
         default=2048,
-        help="give up beyond (default: 2048)",
+        help="memory limit (default: 2048)",
     )
 
 

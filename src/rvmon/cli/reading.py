@@ -155,8 +155,8 @@ def opened(spec: Spec, trace: str, *, only: Collection[str] | None = None) -> Fi
 
 
 ATTEMPT_HELP = (
-    "an attempt such as R1#3, or R1?2 for one in doubt; R1 alone means its first failed one, else "
-    "its first open one, else its first"
+    "an attempt such as R1#3, or R1?2 if its trigger was not known for certain; R1 alone names "
+    "its first failed attempt, else its first open one, else its first"
 )
 """The help of options that take an attempt."""
 

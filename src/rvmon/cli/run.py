@@ -42,41 +42,46 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "run",
-        description="Check recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for JSON "
-        "lines on standard input) against a specification: P passed, F failed, NT not triggered, "
-        "I inconclusive. Exit code 0: no requirement failed; 1: one failed, or with --strict is I "
-        "or NT; 2: wrong input.",
+        description="Evaluate recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for "
+        "JSON lines on standard input) against a specification: P passed, F failed, NT not "
+        "triggered, I inconclusive. Exit code 0: no requirement failed; 1: one failed, or with "
+        "--strict is I or NT; 2: wrong input.",
         epilog="examples: rvmon run examples/base.rv examples/base.csv; rvmon run "
         "examples/base.rv examples/base.csv --only B2 --report pages --junit "
         "verdicts.xml",
     )
     add = parser.add_argument
-    add("spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest")
+    add(
+        "spec",
+        metavar="SPEC",
+        help="a .rv file, or a reproducer (.rvcase) that contains the other arguments",
+    )
     add(
         "traces", metavar="TRACE", nargs="+", help="recordings: files, folders, patterns, addresses"
     )
-    add("--only", metavar="IDS", help="evaluate these requirements: R1,R3")
+    add("--only", metavar="IDS", help="evaluate only these requirements: R1,R3")
     declare(parser, *ONLY[1:], *EVALUATED)
     add(
         "--join",
         action="store_true",
-        help="the files, or those of the folder, are one recording, joined by time: a name is a "
-        "column's, or FILE.COLUMN",
+        help="join the files, or those of the folder, by time into one recording; names are "
+        "COLUMN or FILE.COLUMN",
     )
-    add("--jobs", metavar="N", type=positive, default=1, help="processes (default: 1)")
+    add("--jobs", metavar="N", type=positive, default=1, help="number of processes (default: 1)")
     declare(parser, "--dask")
     add(
         "--robustness",
         action="store_true",
-        help="add by how much each attempt passed or failed (SI units; negative: failed)",
+        help="add the robustness of each attempt: by how much it passed or, if negative, failed "
+        "(SI units)",
     )
     declare(parser, "--format")
-    add("--quiet", action="store_true", help="as text, only how many recordings got which verdicts")
+    add("--quiet", action="store_true", help="print only the number of recordings for each verdict")
     add(
         "--coverage",
         metavar="DB",
-        help="add what the recordings hit of the coverage model to a database "
-        "(made if there is none); `rvmon cover DB` shows it",
+        help="add the coverage of the recordings to a database, which is created if needed; "
+        "`rvmon cover DB` shows it",
     )
     add(
         "--out",
@@ -86,39 +91,40 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add(
         "--resume",
         action="store_true",
-        help="with --out: go on from where the same command was ended, or join its shards",
+        help="with --out: continue the same command where it was interrupted, or join its shards",
     )
     add(
         "--shard",
         metavar="I/N",
         type=shard,
-        help="with --out: evaluate this share of the recordings, as 2/4, into FILE named so as "
-        "well; the same command with --resume in its place joins all",
+        help="with --out: evaluate one share of the recordings, such as 2/4, into a file of its "
+        "own; the same command with --resume instead joins all shares",
     )
     add(
         "--known",
         metavar="FILE",
-        help="failures that are accepted, each with a reason and a last day, in TOML",
+        help="TOML file of accepted failures, each with a reason and an expiry date",
     )
     add(
         "--mcap",
         metavar="FILE",
-        help="of one recording: write states, attempts and values over time as MCAP, and "
-        "FILE.layout.json, by which Foxglove shows them",
+        help="for one recording: write states, attempts and values over time as MCAP, with "
+        "FILE.layout.json for Foxglove",
     )
-    add("--report", metavar="DIR", help="write a page per recording to look at")
+    add("--report", metavar="DIR", help="write an HTML page per recording")
     add("--junit", metavar="FILE", help="write JUnit XML for CI")
     add(
         "--evidence",
         metavar="FILE",
-        help="keep recordings, specification and verdicts in one archive; "
-        "`rvmon evidence FILE` sees whether it holds",
+        help="keep recordings, specification and verdicts in one archive; `rvmon evidence FILE` "
+        "checks it",
     )
     add("--strict", action="store_true", help="exit with 1 also if a requirement is I or NT")
     add(
         "--require-triggered",
         metavar="[=IDS]",
-        help="exit with 1 if one of these (default: any) was triggered in no recording",
+        help="exit with 1 if one of these requirements (default: any) was triggered in no "
+        "recording",
     )
     declare(parser, "--max-memory")
 

@@ -44,10 +44,10 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "watch",
-        description="Evaluate JSON lines as they arrive, and report each verdict as soon as it is "
-        "decided: a missed deadline is reported when it is over. A change of the specification is "
-        "taken up at once. Ends with the stream, or with Ctrl-C. Exit code 0: every requirement is "
-        "P or NT; 1: one failed or is I; 2: wrong input.",
+        description="Evaluate JSON lines as they arrive, and report each verdict as soon as it "
+        "is decided; a missed deadline is reported when it has passed, not at the next line. A "
+        "changed specification is loaded at once. Ends with the stream, or with Ctrl-C. Exit "
+        "code 0: every requirement is P or NT; 1: one failed or is I; 2: wrong input.",
         epilog='example: printf \'{"t":0,"speed":0.5,"obstacle":0.4}\\n\' | '
         "rvmon watch examples/base.rv",
     )
@@ -58,21 +58,22 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         metavar="SOURCE",
         nargs="?",
         default="-",
-        help="a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, whose "
-        "first + names the robot, such as mqtt://localhost/robots/+/#, ros1: (topics of ROS 1), "
-        "ros2: (those of ROS 2) or dds:DOMAIN (the same without an installation of ROS). What "
-        "has a time (t, t_ns, --time) is evaluated at it, the rest as it arrives",
+        help="a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, "
+        "whose first + names the robot, such as mqtt://localhost/robots/+/#, ros1: (ROS 1 "
+        "topics), ros2: (ROS 2 topics) or dds:DOMAIN (ROS 2 topics without an installation of "
+        "ROS). Lines with a time stamp (t, t_ns, --time) are evaluated at that time, others when "
+        "they arrive",
     )
     declare(parser, *ONLY, "--const", "--time", "--map", "--binding")
     add(
         "--robot",
         metavar="FIELD",
-        help="the field of lines that names the robot: each has monitors of its own",
+        help="the field that names the robot; each robot has its own monitors",
     )
     add(
         "--publish",
         metavar="TOPIC",
-        help="publish each verdict, as JSON: over MQTT under TOPIC/REQUIREMENT, by ROS on TOPIC",
+        help="publish each verdict as JSON: over MQTT under TOPIC/REQUIREMENT, over ROS on TOPIC",
     )
     add(
         "--realtime",
@@ -86,27 +87,28 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     add(
         "--sim-time",
         action="store_true",
-        help="the time is that of the topic /clock (`use_sim_time`); with ros1: this is the "
-        "default where the parameter of that name is true",
+        help="take the time from the topic /clock (`use_sim_time`); the default of ros1: if the "
+        "parameter of that name is true",
     )
     add(
         "--room",
         metavar="N",
         type=positive,
         default=10_000,
-        help="so many lines may wait (default: 10000); what finds no room is lost, and counted",
+        help="length of the input queue in lines (default: 10000); further lines are counted as "
+        "lost",
     )
     add(
         "--state",
         metavar="FILE",
-        help="keep the run in a file: killed, it goes on where it was, and reports each verdict "
-        "under its number, the latest perhaps twice",
+        help="keep the run in a file: after a crash the same command continues it. Verdicts are "
+        "numbered; the latest may be reported twice",
     )
-    add("--failures", action="store_true", help="report what fails, not what passes")
+    add("--failures", action="store_true", help="report failures only")
     add(
         "--format",
         choices=("view", "text", "json"),
-        help="a view that stays (default on a terminal), a line for each verdict, or JSON lines",
+        help="a live table (default on a terminal), a line for each verdict, or JSON lines",
     )
 
 

@@ -41,11 +41,15 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "why",
-        description="Take one attempt apart: when each part of its requirement was true.",
+        description="Explain one attempt: show when each part of its requirement was true.",
         epilog="example: rvmon why examples/base.rv examples/base.csv B2#2",
     )
     add = parser.add_argument
-    add("spec", metavar="SPEC", help="a .rv file; or a reproducer (.rvcase), which brings the rest")
+    add(
+        "spec",
+        metavar="SPEC",
+        help="a .rv file, or a reproducer (.rvcase) that contains the other arguments",
+    )
     add("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
     add("attempt", metavar="ID#N", help=ATTEMPT_HELP)
     declare(parser, *EVALUATED, "--format")

@@ -74,7 +74,7 @@ def test_every_example_of_handover_is_understood(command, capsys, monkeypatch):
         ("run base.rv base.csv --repot out", "did you mean `--report`?"),
         ("run base.rv base.csv --format jsn", "did you mean `json`?"),
         ("run base.rv", "rvmon run examples/base.rv examples/base.csv\n"),
-        ("", "check recordings against a specification"),
+        ("", "evaluate recordings against a specification"),
     ],
 )
 def test_a_wrong_command_line_says_what_was_meant_or_how_it_is_done(words, told, says):

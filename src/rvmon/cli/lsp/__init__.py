@@ -19,7 +19,9 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
         "editor does.",
         epilog="example: rvmon lsp --stdio",
     )
-    parser.add_argument("--stdio", action="store_true", help="as without: some editors say it")
+    parser.add_argument(
+        "--stdio", action="store_true", help="accepted for editors that pass it; it is the default"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - it has one way to serve
