@@ -4,10 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rvmon.language.checked.formula import Bound, BoundAtom, Formula
+from rvmon.language.checked.formula import (
+    Bound,
+    BoundAtom,
+    Compare,
+    CompareOp,
+    Formula,
+    Literal,
+    SignalValue,
+)
 from rvmon.language.checked.properties import Bin, BinKind, Coverpoint, Cross
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
-from rvmon.testing.generate import Rng, chance, pick
+from rvmon.testing.generate import NUMBERS, Rng, chance, pick
 from rvmon.testing.generate.formula import Shape, formula
 from rvmon.testing.generate.spec import Profile, random_spec
 
@@ -37,11 +45,17 @@ def with_random_coverage(rng: Rng, profile: Profile) -> CheckedSpec:
 
 
 def _bins(rng: Rng, shape: Shape) -> tuple[Bin, ...]:
+    """A few bins of any formulas, or many that compare one signal."""
     kinds = (BinKind.GOAL, BinKind.GOAL, BinKind.IGNORE, BinKind.ILLEGAL)
-    return tuple(
-        Bin(f"b{place}", formula(rng, shape, rng.randint(0, 2)), pick(rng, kinds))
-        for place in range(rng.randint(1, 3))
-    )
+    if chance(rng, 30):
+        value = SignalValue(pick(rng, NUMBERS))
+        wanted: list[Formula] = [
+            Compare(pick(rng, tuple(CompareOp)), value, Literal(rng.randint(-1, 7)))
+            for _ in range(rng.randint(5, 9))
+        ]
+    else:
+        wanted = [formula(rng, shape, rng.randint(0, 2)) for _ in range(rng.randint(1, 3))]
+    return tuple(Bin(f"b{place}", one, pick(rng, kinds)) for place, one in enumerate(wanted))
 
 
 def _upon(rng: Rng, shape: Shape) -> Formula | None:

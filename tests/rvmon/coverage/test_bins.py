@@ -1,5 +1,9 @@
 """Which bins and combinations runs hit, by hand."""
 
+import math
+import operator
+import random
+
 import pytest
 
 from rvmon import loads
@@ -47,6 +51,31 @@ def test_forms_of_bins(bins, samples, expected):
     if "{" in bins and not bins.startswith("{"):
         bins = f"= {bins}"
     assert counts(f"coverpoint c {bins}", samples) == expected
+
+
+def test_many_comparisons_of_one_signal():
+    """Each follows the value, wherever it goes: by one constant, by many, to none."""
+    signs = {
+        "<": operator.lt,
+        "<=": operator.le,
+        "==": operator.eq,
+        "!=": operator.ne,
+        ">=": operator.ge,
+        ">": operator.gt,
+    }
+    asked = {f"x {sign} {c}": (holds, c) for c in range(-3, 4) for sign, holds in signs.items()}
+    bins = ", ".join(f"b{place}: {text}" for place, text in enumerate(asked))
+    rng = random.Random(1)
+    values = [
+        rng.choice([*range(-4, 5), 0.5, -0.0, math.inf, -math.inf, math.nan]) for _ in range(300)
+    ]
+    expected = {}
+    for place, (holds, constant) in enumerate(asked.values()):
+        known = [holds(value, constant) for value in values if not math.isnan(value)]
+        hits = sum(now and not before for before, now in zip([False, *known], known, strict=False))
+        expected[f"b{place}"] = hits
+    samples = [(t, {"x": float(value)}) for t, value in enumerate(values)]
+    assert counts(f"coverpoint c {{{bins}}}", samples) == expected
 
 
 STEPS = (

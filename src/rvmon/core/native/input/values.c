@@ -70,8 +70,6 @@ uint8_t remember(history *h, int64_t t, const rv_number *value)
 static void learn_span(run *r, int32_t local)
 {
     const signal_plan *s = &r->part->signals[local];
-    const list atoms = s->on_change[r->at.phase];
-    const int32_t *place = LIST(PLAN(r), atoms);
     const rv_number *value = &r->value[local];
     span *found = &r->spans[local];
     const bool may_be_quick = (r->margins == NULL) && (r->part->quick[local].kind != RV_UNKNOWN);
@@ -87,6 +85,8 @@ static void learn_span(run *r, int32_t local)
             found->high = (double)(value->as.whole + 1);
         }
     } else if (value->kind == RV_REAL) {
+        const list atoms = comparisons_between(r, local, value, value);
+        const int32_t *place = LIST(PLAN(r), atoms);
         found->low = -HUGE_VAL;
         found->high = HUGE_VAL;
         for (i = 0; i < atoms.count; i++) {
@@ -109,12 +109,13 @@ static void learn_span(run *r, int32_t local)
 static void hold(run *r, int64_t t, int32_t local, const rv_number *value)
 {
     if (!same_number(value, &r->value[local])) {
+        const list atoms = comparisons_between(r, local, &r->value[local], value);
         if (((value->kind == RV_UNKNOWN) != (r->value[local].kind == RV_UNKNOWN))
             && (r->truth_log != NULL)) {
             note_knowledge(r, t, local, value);
         }
         r->value[local] = *value;
-        if (recheck_list(r, r->part->signals[local].on_change[r->at.phase])) {
+        if (recheck_list(r, atoms)) {
             r->spans[local] = NO_SPAN; /* a signal that just changed a truth often does so again: do not
                                         * spend time on a span */
             return;

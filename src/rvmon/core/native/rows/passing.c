@@ -373,7 +373,7 @@ void learn_between(const batch *s, column_watch *w)
     for (i = 0; (w->last.kind != RV_UNKNOWN) && (i < w->reader_count); i++) {
         const run *r = root_of(s, w, i);
         const int32_t local = w->readers[i].local;
-        const list atoms = r->part->signals[local].on_change[r->at.phase];
+        const list atoms = comparisons_between(r, local, &w->last, &w->last);
         const int32_t *place = LIST(PLAN(r), atoms);
         for (k = 0; k < atoms.count; k++) {
             (void)compares_with(r, &r->part->atoms[place[k]], local, &constant);
