@@ -347,7 +347,7 @@ def load(
     """
     path = Path(path)
     if path.suffix != ".rv":
-        from rvmon.recordings.messages.forms import FORMATS
+        from rvmon.recordings.formats import FORMATS
 
         if path.suffix.lower() in FORMATS:
             expected = "a recording by its name; a specification (.rv) is expected here"

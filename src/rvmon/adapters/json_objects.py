@@ -16,8 +16,8 @@ import msgspec
 from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import SimulatedClock
 from rvmon.live.driver import Driver
+from rvmon.recordings.column_names import DEFAULT_COLUMNS
 from rvmon.recordings.jsonl_rows import TOO_DEEP, decoded, read_object
-from rvmon.recordings.naming import DEFAULT_COLUMNS
 from rvmon.recordings.places import LONGEST_LINE
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Schema

@@ -24,7 +24,7 @@ from rvmon.language.print import format_formula
 from rvmon.logic.formula import Core, Factory
 from rvmon.logic.normal_form import Lowering
 from rvmon.monitor.watching import TruthsPlan, TruthsRun
-from rvmon.recordings.held import HeldRecording
+from rvmon.recordings.source import HeldRecording
 from rvmon.trace.sample import (
     Outage,
     Payload,

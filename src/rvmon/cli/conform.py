@@ -13,7 +13,7 @@ from rvmon.errors import TraceError, UnknownNameError
 from rvmon.models.conform import Allowed, Conformance, actions_in, conform, labels_of
 from rvmon.models.language.load import load_network
 from rvmon.models.network.network import Network
-from rvmon.recordings.found import found_recordings
+from rvmon.recordings.places import found_recordings
 from rvmon.recordings.recording import FileRecording
 from rvmon.texts import counted
 from rvmon.trace.schema import Schema, Stamps

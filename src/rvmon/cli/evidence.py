@@ -32,8 +32,8 @@ from rvmon.evidence import (
     texts_of,
     write_evidence,
 )
-from rvmon.recordings.found import files_of
-from rvmon.recordings.messages.forms import form_of_folder
+from rvmon.recordings.formats import form_of_folder
+from rvmon.recordings.places import files_of
 from rvmon.report.trace_matrix import Row, rows_by_item
 from rvmon.session import Spec, load
 from rvmon.texts import shown_path

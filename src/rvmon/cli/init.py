@@ -16,7 +16,7 @@ from rvmon.files import write_whole
 from rvmon.texts import counted
 
 if TYPE_CHECKING:
-    from rvmon.recordings.starter.column import Profile
+    from rvmon.recordings.starter.observed_values import Profile
 
 
 def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:

@@ -9,7 +9,7 @@ from rvmon.cli.options import READING, constants_of, declare
 from rvmon.cli.output import busy, say
 from rvmon.cli.reading import reading_spec
 from rvmon.files import write_file
-from rvmon.recordings.starter.column import Profile
+from rvmon.recordings.starter.observed_values import Profile
 from rvmon.recordings.starter.profile import bound_profile, profile_of
 from rvmon.report.look_page import look_page, look_tables
 from rvmon.report.terminal import Terminal

@@ -15,7 +15,7 @@ from rvmon.coverage import Hit
 from rvmon.errors import RvmonError, writing
 from rvmon.execute import journal
 from rvmon.language.checked.serialise import to_plain
-from rvmon.recordings.messages.forms import databases_beside, form_of_folder
+from rvmon.recordings.formats import databases_beside, form_of_folder
 from rvmon.session import Spec
 from rvmon.verdicts.report import Report
 

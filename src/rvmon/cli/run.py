@@ -25,8 +25,7 @@ from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
 from rvmon.execute import shards_beside
 from rvmon.files import refuse_no_file
-from rvmon.recordings.found import found_recordings
-from rvmon.recordings.places import JOINT
+from rvmon.recordings.places import JOINT, found_recordings
 from rvmon.session import Spec
 from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict

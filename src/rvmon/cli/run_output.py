@@ -12,8 +12,7 @@ from rvmon.cli.judging import Judged
 from rvmon.cli.output import say
 from rvmon.cli.reading import reading_words
 from rvmon.files import write_file
-from rvmon.recordings.held import HeldRecording
-from rvmon.recordings.source import Source
+from rvmon.recordings.source import HeldRecording, Source
 from rvmon.session import Spec
 from rvmon.verdicts.rows import VerdictRow, broken_rows
 

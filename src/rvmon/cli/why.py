@@ -25,8 +25,7 @@ from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.print import format_window
 from rvmon.monitor.missing import expect_names
 from rvmon.recordings.batch import Batch
-from rvmon.recordings.held import HeldRecording
-from rvmon.recordings.source import Source, pieces_up_to
+from rvmon.recordings.source import HeldRecording, Source, pieces_up_to
 from rvmon.report.changes import changes_of
 from rvmon.report.tracks import tracks_of
 from rvmon.report.wording import value_text

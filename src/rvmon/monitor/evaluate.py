@@ -15,11 +15,11 @@ from rvmon.monitor.packed_plan import planned_core
 from rvmon.monitor.recording_run import RecordingRun, judge_recording
 from rvmon.monitor.records import with_plan
 from rvmon.monitor.robustness import FIGURES, Key, Margins, Robustness, Stream
-from rvmon.recordings.columns import TableRecording
 from rvmon.recordings.joined import Joined
 from rvmon.recordings.recording import FileRecording
 from rvmon.recordings.rows import Rows
 from rvmon.recordings.source import Reading, Source, recording_of
+from rvmon.recordings.table_recording import TableRecording
 from rvmon.texts import shown_path
 from rvmon.trace.sample import Recording, Sample
 from rvmon.verdicts.attempt import Attempt

@@ -16,8 +16,8 @@ from rvmon.recordings.values import shorten
 from rvmon.texts import MOST_NAMES, nearest
 
 if TYPE_CHECKING:
-    from rvmon.recordings.columns import TableRecording
     from rvmon.recordings.joined import Joined
+    from rvmon.recordings.table_recording import TableRecording
 
 _SHOWN = 8
 """The most unread columns listed where none resembles a name."""

@@ -16,8 +16,8 @@ from types import SimpleNamespace
 from typing import Any, BinaryIO
 
 from rvmon.errors import TraceError
+from rvmon.recordings.column_names import DEFAULT_COLUMNS, aliases_of
 from rvmon.recordings.csv_rows import split_lines
-from rvmon.recordings.naming import DEFAULT_COLUMNS, aliases_of
 from rvmon.recordings.places import opened
 from rvmon.recordings.values import shorten
 from rvmon.trace.schema import Schema, Stamps

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.recordings.naming import aliases_of, stamps_among
+from rvmon.recordings.column_names import aliases_of, stamps_among
 from rvmon.recordings.places import LONGEST_LINE
 from rvmon.recordings.values import as_declared, scalar_of_text, shorten
 from rvmon.trace.sample import Scalar, Value

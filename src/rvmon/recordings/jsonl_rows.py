@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from rvmon.errors import TraceError
-from rvmon.recordings.naming import DEFAULT_COLUMNS, aliases_of
+from rvmon.recordings.column_names import DEFAULT_COLUMNS, aliases_of
 from rvmon.recordings.values import DESCRIPTION, as_declared, double_of, fits, shorten
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Gaps, Kind, Schema

@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.errors import TraceError, needed
 from rvmon.recordings.batch import NotPlainError
-from rvmon.recordings.columns import batch_of_table, rows_of_cells, stamps_of_column
 from rvmon.recordings.csv_rows import Layout, read_layout
 from rvmon.recordings.places import is_short_of_memory
 from rvmon.recordings.rows import Row
+from rvmon.recordings.table_recording import batch_of_table, rows_of_cells, stamps_of_column
 from rvmon.recordings.tables import arrow_cells, is_of_durations, nanoseconds_of
 from rvmon.recordings.values import first_line
 from rvmon.trace.schema import Schema

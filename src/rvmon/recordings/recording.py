@@ -19,17 +19,17 @@ from rvmon.errors import TraceError
 from rvmon.recordings.csv_dialect import bare_names, opened_as_csv
 from rvmon.recordings.csv_rows import Layout, read_layout, split_lines
 from rvmon.recordings.csv_text import CsvText
-from rvmon.recordings.found import files_of
-from rvmon.recordings.joined import Joined, schemas_of
-from rvmon.recordings.messages.forms import (
+from rvmon.recordings.formats import (
     ARRAYS,
     FORMATS,
     MESSAGE_FORMS,
     form_of_folder,
 )
+from rvmon.recordings.joined import Joined, schemas_of
 from rvmon.recordings.places import (
     JOINT,
     endings_of,
+    files_of,
     is_address,
     local_path,
     named_errors,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.recordings.coalesce import updates_in
-from rvmon.recordings.held import HeldRecording
+from rvmon.recordings.source import HeldRecording
 from rvmon.trace.sample import Sample, Scalar, Value
 
 if TYPE_CHECKING:

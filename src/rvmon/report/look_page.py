@@ -10,7 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rvmon.language.checked.specification import Requirement
-from rvmon.recordings.starter.column import Column, Profile, Stretch
+from rvmon.recordings.starter.observed_values import Column, Profile, Stretch
 from rvmon.report.html import e, render
 from rvmon.report.time_axis import View, moment, round_instants
 from rvmon.report.wording import duration_text, first_of

@@ -10,7 +10,7 @@ import pytest
 from tests.tools.logs import write_ulog
 
 from rvmon.cli import main
-from rvmon.recordings.starter.column import MOST, Course
+from rvmon.recordings.starter.observed_values import MOST, Course
 
 SPEC = """
 spec base

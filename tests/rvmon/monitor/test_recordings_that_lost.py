@@ -11,8 +11,8 @@ from tests.tools.judgement import Judgement
 
 import rvmon
 from rvmon.recordings.batch import Batch
-from rvmon.recordings.columns import TableRecording
 from rvmon.recordings.source import Source
+from rvmon.recordings.table_recording import TableRecording
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace, show_case

@@ -11,7 +11,7 @@ import pytest
 import rvmon
 from rvmon.cli import main
 from rvmon.errors import TraceError
-from rvmon.recordings.found import found_recordings
+from rvmon.recordings.places import found_recordings
 
 SPEC = """
 spec door

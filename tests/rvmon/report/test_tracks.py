@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import rvmon
 from rvmon.recordings import places
-from rvmon.recordings.held import HeldRecording
+from rvmon.recordings.source import HeldRecording
 from rvmon.report.changes import Course, changes_of
 from rvmon.report.time_axis import View, round_instants, view_of
 from rvmon.report.tracks import (

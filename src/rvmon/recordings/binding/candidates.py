@@ -11,7 +11,7 @@ from typing import Any
 
 from rvmon.errors import TraceError
 from rvmon.recordings.binding.expression import number, term_of
-from rvmon.recordings.binding.words import (
+from rvmon.recordings.binding.vocabulary import (
     AXES,
     EMPTY,
     MODIFIERS,
@@ -23,11 +23,11 @@ from rvmon.recordings.binding.words import (
     unit_in_name,
     words_of,
 )
-from rvmon.recordings.messages.by_names import Get, arrays_with_names
+from rvmon.recordings.messages.field_meanings import UNKNOWN, Meaning, Sort, is_listed, meaning_of
 from rvmon.recordings.messages.fields import getter
 from rvmon.recordings.messages.file import MessageFile
-from rvmon.recordings.messages.look import MOST, Looked
-from rvmon.recordings.messages.meaning import UNKNOWN, Meaning, Sort, is_listed, meaning_of
+from rvmon.recordings.messages.first_messages import MOST, Looked
+from rvmon.recordings.messages.named_elements import Get, arrays_with_names
 from rvmon.recordings.messages.topic import Topic
 from rvmon.recordings.values import plain, shorten
 from rvmon.trace.schema import TURNS, Kind

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from rvmon.language.checked.specification import Type
 from rvmon.recordings.binding.candidates import ALONG, Candidate, foreign_words, modifiers_of
-from rvmon.recordings.binding.words import (
+from rvmon.recordings.binding.vocabulary import (
     AXES,
     EMPTY,
     MODIFIERS,
@@ -22,7 +22,7 @@ from rvmon.recordings.binding.words import (
     parts_of,
     words_of,
 )
-from rvmon.recordings.messages.meaning import Sort
+from rvmon.recordings.messages.field_meanings import Sort
 from rvmon.recordings.messages.topic import Topic
 from rvmon.trace.schema import Kind
 from rvmon.units import parse_unit

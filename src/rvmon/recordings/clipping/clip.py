@@ -10,7 +10,7 @@ from rvmon.errors import RvmonError, TraceError, writing
 from rvmon.files import beside
 from rvmon.recordings.clipping.piece import Copied, Piece, stamp_number, stamp_text
 from rvmon.recordings.csv_rows import Layout
-from rvmon.recordings.messages.forms import FORMATS, MESSAGE_FORMATS
+from rvmon.recordings.formats import FORMATS, MESSAGE_FORMATS
 from rvmon.recordings.parquet import (
     numbers_of_durations,
     parquet_batches,

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from rvmon.errors import TraceError, needed
-from rvmon.recordings.messages.columns import path_of
-from rvmon.recordings.messages.forms import DATABASES, databases_beside
+from rvmon.recordings.formats import DATABASES, databases_beside
+from rvmon.recordings.messages.column_topics import path_of
 from rvmon.recordings.messages.topic import Message, Messages, Topic, errors_as_damage
 from rvmon.recordings.values import first_line
 from rvmon.trace.sample import Outage

@@ -10,7 +10,7 @@ from operator import attrgetter
 from typing import Any, assert_never
 
 from rvmon.errors import TraceError
-from rvmon.recordings.messages.by_names import Get, by_names
+from rvmon.recordings.messages.named_elements import Get, by_names
 from rvmon.recordings.messages.topic import Topic
 from rvmon.recordings.values import plain, shorten
 from rvmon.texts import nearest

@@ -9,10 +9,9 @@ from dataclasses import replace
 from pathlib import Path
 
 from rvmon.errors import TraceError
-from rvmon.recordings.messages.match import matched
-from rvmon.recordings.messages.rows import message_rows
-from rvmon.recordings.messages.skew import Skew
+from rvmon.recordings.messages.rows import Skew, message_rows
 from rvmon.recordings.messages.topic import Message, Messages
+from rvmon.recordings.messages.topic_matching import matched
 from rvmon.recordings.messages.transforms import WithTransforms, pairs_asked, sends_transforms
 from rvmon.recordings.places import local_path
 from rvmon.recordings.rows import Row
@@ -36,7 +35,7 @@ def open_messages(path: Path, form: str, schema: Schema) -> Messages:
 
                 return mcap_messages(path, definitions)
             case "tables":
-                from rvmon.recordings.messages.tables import TableMessages
+                from rvmon.recordings.messages.table_folder import TableMessages
 
                 return TableMessages(path)
             case "ulog":
@@ -64,7 +63,7 @@ def open_messages(path: Path, form: str, schema: Schema) -> Messages:
 
                 return FrameMessages(path, definitions)
             case "hdf5" | "mat":
-                from rvmon.recordings.messages.arrays import array_messages
+                from rvmon.recordings.messages.hdf5 import array_messages
 
                 return array_messages(path, schema.stamps)
             case _:

@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.errors import TraceError, needed
-from rvmon.recordings.columns import ticks_of_column
-from rvmon.recordings.messages.columns import (
+from rvmon.recordings.messages.column_topics import (
     ColumnMessages,
     ColumnTopic,
     LateColumn,
@@ -24,6 +23,7 @@ from rvmon.recordings.messages.columns import (
     path_of,
 )
 from rvmon.recordings.messages.topic import Topic, errors_as_damage
+from rvmon.recordings.table_recording import ticks_of_column
 from rvmon.trace.schema import Stamps
 
 _STAMPS = Stamps("its time", "s", is_stated=True)

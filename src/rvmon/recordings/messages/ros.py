@@ -11,7 +11,7 @@ from typing import Any
 
 from rvmon.errors import TraceError, needed
 from rvmon.recordings.messages.comments import comments_of
-from rvmon.recordings.messages.meaning import plain_type
+from rvmon.recordings.messages.field_meanings import plain_type
 from rvmon.recordings.messages.topic import Message, Messages, Topic, by_name, errors_as_damage
 from rvmon.recordings.values import first_line
 from rvmon.trace.schema import Kind

@@ -16,16 +16,22 @@ import numpy as np
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.recordings.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells, NotPlainError
 from rvmon.recordings.cells import cells_of_values
+from rvmon.recordings.column_names import DEFAULT_COLUMNS, stamps_among
 from rvmon.recordings.csv_dialect import name_and_unit, opened_as_csv
 from rvmon.recordings.csv_rows import split_lines
-from rvmon.recordings.found import files_of
+from rvmon.recordings.formats import MESSAGE_FORMS
 from rvmon.recordings.joined import topics_of
-from rvmon.recordings.messages.forms import MESSAGE_FORMS
-from rvmon.recordings.naming import DEFAULT_COLUMNS, stamps_among
-from rvmon.recordings.places import bounded_lines, local_path, named_errors, opened
+from rvmon.recordings.places import bounded_lines, files_of, local_path, named_errors, opened
 from rvmon.recordings.recording import JOINED, FileRecording, format_of, messages_of
-from rvmon.recordings.starter.column import Column, Profile, Shape, Shapes, Updates, reasons_of
-from rvmon.recordings.starter.declared import SeenValues, message_shapes, shapes_seen
+from rvmon.recordings.starter.declarations import SeenValues, message_shapes, shapes_seen
+from rvmon.recordings.starter.observed_values import (
+    Column,
+    Profile,
+    Shape,
+    Shapes,
+    Updates,
+    reasons_of,
+)
 from rvmon.recordings.values import as_declared
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Gaps, Kind, Schema, Stamps

@@ -7,7 +7,7 @@ import pytest
 
 import rvmon
 from rvmon.recordings import places
-from rvmon.recordings.ahead import read_ahead
+from rvmon.recordings.csv_text import read_ahead
 
 SPEC = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x < 1e300\n")
 NUMBER = "0.1000000000000000055511151231257827021181583404541015625"

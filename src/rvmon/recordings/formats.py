@@ -1,4 +1,4 @@
-"""Which files hold messages; imported by what starts fast, it imports next to nothing."""
+"""Formats of recordings by file name; it imports next to nothing, as what starts fast needs it."""
 
 from __future__ import annotations
 

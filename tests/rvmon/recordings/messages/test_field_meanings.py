@@ -6,7 +6,7 @@ from importlib import resources
 import pytest
 
 from rvmon.errors import TraceError
-from rvmon.recordings.messages.meaning import Sort, expect_units, is_listed, meaning_of
+from rvmon.recordings.messages.field_meanings import Sort, expect_units, is_listed, meaning_of
 from rvmon.recordings.messages.topic import Topic
 from rvmon.trace.schema import Bound, Field, Kind, Schema
 

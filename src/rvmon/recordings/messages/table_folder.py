@@ -20,7 +20,7 @@ from typing import Any
 from rvmon.errors import TraceError
 from rvmon.recordings.csv_dialect import opened_as_csv
 from rvmon.recordings.csv_rows import read_layout, split_lines
-from rvmon.recordings.messages.forms import TOPICS
+from rvmon.recordings.formats import TOPICS
 from rvmon.recordings.messages.topic import Message, Messages, Topic
 from rvmon.recordings.places import bounded_lines, endings_of, named_errors
 from rvmon.recordings.values import FALSE_WORDS, TRUE_WORDS, double_of

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.errors import TraceError, needed
-from rvmon.recordings.columns import ticks_of_column
-from rvmon.recordings.messages.columns import (
+from rvmon.recordings.messages.column_topics import (
     ColumnMessages,
     ColumnTopic,
     LateColumn,
@@ -20,6 +19,7 @@ from rvmon.recordings.messages.columns import (
     path_of,
 )
 from rvmon.recordings.messages.topic import Topic, errors_as_damage
+from rvmon.recordings.table_recording import ticks_of_column
 from rvmon.texts import did_you_mean
 from rvmon.trace.schema import Stamps
 from rvmon.trace.stamps import stamps_of, ticks_of_stamp
