@@ -140,7 +140,7 @@ def snippet(
     number = str(span.line)
     digits = max(len(number), 2)
     gutter = " " * digits
-    underline = " " * _width(head) + mark * max(_width(body), 1)
+    underline = " " * columns_of(head) + mark * max(columns_of(body), 1)
     return "\n".join(
         (
             f"{gutter}{arrow} {shown_line(span.source.name)}:{number}:{span.column}",
@@ -155,8 +155,14 @@ def _shown(text: str) -> str:
     return shown_line(text.rstrip("\r").replace("\t", " "))
 
 
-def _width(text: str) -> int:
-    """Columns that a terminal gives to a text."""
+def columns_of(text: str) -> int:
+    """Columns that a terminal gives to a text.
+
+    >>> columns_of("speed"), columns_of("速度")
+    (5, 4)
+    """
+    if text.isascii():
+        return len(text)
     return sum(
         0 if unicodedata.combining(char) else 2 if unicodedata.east_asian_width(char) in "WF" else 1
         for char in text
@@ -250,8 +256,11 @@ _UNDERLINE = re.compile(r"( +\| +)(\^+|-+)(.*)")
 
 
 def wants_colour(stream: TextIO) -> bool:
-    """Whether a stream is a terminal and nobody asked for plain text (`NO_COLOR`)."""
-    return stream.isatty() and not os.environ.get("NO_COLOR") and os.environ.get("TERM") != "dumb"
+    """Whether a stream is a terminal, or it was asked for (`FORCE_COLOR`), unless `NO_COLOR`."""
+    if os.environ.get("NO_COLOR"):
+        return False
+    is_able = stream.isatty() and os.environ.get("TERM") != "dumb"
+    return is_able or bool(os.environ.get("FORCE_COLOR"))
 
 
 def coloured(text: str) -> str:

@@ -162,13 +162,14 @@ def _conclude(item: pytest.Item, judge: Judge) -> None:
 
 def _explained(report: Report, spec: Spec, wrong: list[str]) -> str:
     """An explanation of these requirements for people."""
-    from rvmon.report.run_text import print_report
-    from rvmon.report.terminal import Terminal
+    import io
 
-    console = Terminal(width=100, color_system=None)
-    with console.capture() as captured:
-        print_report(report, spec.checked, console)
-    return f"not as wanted: {', '.join(wrong)}\n{captured.get().strip()}"
+    from rvmon.report.printer import Printer
+    from rvmon.report.run_text import print_report
+
+    text = io.StringIO()
+    print_report(report, spec.checked, Printer(text, width=100))
+    return f"not as wanted: {', '.join(wrong)}\n{text.getvalue().strip()}"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -32,11 +32,16 @@ def test_only_colours_are_added():
 
 
 def test_who_gets_colours(monkeypatch):
-    monkeypatch.delenv("NO_COLOR", raising=False)
+    for name in ("NO_COLOR", "FORCE_COLOR"):
+        monkeypatch.delenv(name, raising=False)
     monkeypatch.setenv("TERM", "xterm")
     assert wants_colour(Terminal())
     assert not wants_colour(io.StringIO())
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    assert wants_colour(io.StringIO())
     monkeypatch.setenv("NO_COLOR", "1")
+    assert not wants_colour(io.StringIO())
+    monkeypatch.delenv("FORCE_COLOR")
     assert not wants_colour(Terminal())
     monkeypatch.delenv("NO_COLOR")
     monkeypatch.setenv("TERM", "dumb")

@@ -39,6 +39,7 @@ from rvmon.cli.campaign_evidence import begun, write_campaign
 from rvmon.cli.output import bar, busy, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.files import output_folder, refuse_no_file, write_whole
+from rvmon.report.printer import Printer
 from rvmon.report.run_text import print_report
 from rvmon.report.terminal import Terminal
 from rvmon.report.verdicts_mcap import refuse_mcap, write_verdicts
@@ -321,7 +322,7 @@ def _show(form: str, spec: Spec, played: Replay) -> None:
     if form == "json":
         say_json(report.to_json())
         return
-    console = Terminal()
-    print_report(report, spec.checked, console)
+    printer = Printer()
+    print_report(report, spec.checked, printer)
     if error is not None:
-        console.print(f"The robot's code crashed: {error}", style="bold red")
+        printer.line((f"The robot's code crashed: {error}", "bold red"))

@@ -76,7 +76,7 @@ def _print_kind(
 ) -> None:
     from rich.text import Text
 
-    from rvmon.report.terminal import wrapped
+    from rvmon.report.wording import wrapped
 
     style = "bold red" if change.is_loss else "bold green" if change.is_gain else "bold"
     console.print(Text(f"{len(differences):,} {change.value}:", style=style))
@@ -87,7 +87,7 @@ def _print_kind(
 
 
 def _line(difference: Difference) -> str:
-    from rvmon.report.terminal import in_short
+    from rvmon.report.wording import in_short
 
     if difference.before is None or difference.after is None:
         cause = in_short(difference.reason)

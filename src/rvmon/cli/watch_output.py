@@ -246,7 +246,9 @@ def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> Renderable
         counts = [str(status.counts[name, one] or "") for one in (Verdict.PASS, Verdict.FAIL)]
         waiting = f"{status.open_counts[name]:,}" if status.open_counts.get(name) else ""
         text = Text(spec.requirements[name].text, no_wrap=is_cut, overflow="ellipsis")
-        table.add_row(name, verdict_text(status.verdicts[name]), *counts, waiting, left, text)
+        table.add_row(
+            name, Text(*verdict_text(status.verdicts[name])), *counts, waiting, left, text
+        )
     when = format_stamped(status.now, status.since or 0)
     return Group(
         Text(f"{heading}{run}to {when}, {counted(status.samples, 'sample')}{lost}"),

@@ -15,8 +15,7 @@ from rvmon.coverage.questions import Comparison
 from rvmon.language.checked.properties import BinKind
 from rvmon.report.coverage_summary import Summary, cell_look, is_grid, name_of, not_fine
 from rvmon.report.table import table_text
-from rvmon.report.terminal import wrapped
-from rvmon.report.wording import first_of
+from rvmon.report.wording import first_of, wrapped
 from rvmon.texts import counted, percent_text, share_text
 from rvmon.verdicts import Verdict
 

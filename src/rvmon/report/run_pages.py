@@ -15,7 +15,7 @@ from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.report.html import render
 from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_page import run_page
-from rvmon.report.terminal import in_short
+from rvmon.report.wording import in_short
 from rvmon.trace.sample import Sample
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.known_failures import NONE_KNOWN, KnownFailures

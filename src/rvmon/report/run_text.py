@@ -6,15 +6,10 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice
 
-from rich import box
-from rich.console import Console
-from rich.table import Table
-from rich.text import Text
-
 from rvmon.diagnostics import snippet
 from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import CheckedSpec, Requirement
-from rvmon.report.terminal import Terminal, wrapped
+from rvmon.report.printer import Piece, Printer
 from rvmon.report.wording import (
     MARKS,
     SHOWN,
@@ -26,6 +21,7 @@ from rvmon.report.wording import (
     instants_of,
     verdict_text,
     without_attempts,
+    wrapped,
 )
 from rvmon.texts import counted
 from rvmon.trace.time import format_stamped
@@ -96,74 +92,69 @@ def print_reports(
 
     Every F comes with cause, window and line of the specification, every I with its obligation.
     """
-    console = Terminal()
+    printer = Printer()
     for report in () if counts_only else reports:
-        print_report(report, spec, console)
+        print_report(report, spec, printer)
     if len(reports) > 1 or (reports and counts_only):
-        console.print(_runs_table(reports))
+        printer.line((counted(len(reports), "recording"), "italic"))
+        _print_counts(reports, printer)
         for name in reports[0].goals:
             count = sum(report.goals[name] is Verdict.PASS for report in reports)
             state = f"met, shown by {count} of {len(reports)}" if count else "open"
-            console.print(f"cover goal {name}: {state}")
-        _print_coverage(together([report.coverage for report in reports]), console)
+            printer.line(f"cover goal {name}: {state}")
+        _print_coverage(together([report.coverage for report in reports]), printer)
 
 
-def print_report(report: Report, spec: CheckedSpec, console: Console) -> None:
+def print_report(report: Report, spec: CheckedSpec, printer: Printer) -> None:
     """Print the verdicts on one recording."""
     end = "" if report.end is None else f"  to {format_stamped(report.end, report.origin)}"
-    console.print(Text.assemble((report.trace or spec.name, "bold"), f"{end}  by {spec.name}"))
+    printer.line((report.trace or spec.name, "bold"), f"{end}  by {spec.name}")
     if spec.requirements:
-        console.print(_verdict_table(report, spec))
+        _print_verdicts(report, spec, printer)
     for name, found in report.verdicts.items():
         if name in report.misses:
-            why = without_attempts(found, report.misses[name])
-            console.print(_silence_text(name, found, why, console.width))
+            why = wrapped(without_attempts(found, report.misses[name]), printer.width)
+            printer.line((f"{name} ", "bold"), verdict_text(found), f"\n{why}\n")
         for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
             for attempt in islice(report.of(name, verdict), SHOWN_PER_REQUIREMENT):
-                console.print(
-                    _attempt_text(attempt, spec.requirements[name], report, console.width)
-                )
+                _print_attempt(attempt, spec.requirements[name], report, printer)
             rest = report.counts.get(name, {}).get(verdict, 0) - SHOWN_PER_REQUIREMENT
             if rest > 0:
-                console.print(f"… and {rest} more {verdict} of {name}", style="dim")
-    if report.goals:
-        console.print(_goals_text(report.goals))
-    _print_coverage(report.coverage, console)
+                printer.line((f"… and {rest} more {verdict} of {name}", "dim"))
+    _print_goals(report.goals, printer)
+    _print_coverage(report.coverage, printer)
     for hit in report.illegal:
-        console.print(hit.sentence(report.origin), style="bold red", markup=False)
+        printer.line((hit.sentence(report.origin), "bold red"))
     if report.health:
-        console.print("input health:")
+        printer.line("input health:")
     for names, fact in health_facts(report.health, report.origin):
-        console.print(f"  {names}  {fact}")
+        printer.line(wrapped(f"{names}  {fact}", printer.width))
 
 
-def _print_coverage(groups: Sequence[CoveredGroup], console: Console) -> None:
+def _print_coverage(groups: Sequence[CoveredGroup], printer: Printer) -> None:
     if groups:
-        console.print("coverage:")
+        printer.line("coverage:")
     for line in coverage_lines(groups):
-        console.print(wrapped(line, console.width), markup=False)
+        printer.line(wrapped(line, printer.width))
 
 
-def _verdict_table(report: Report, spec: CheckedSpec) -> Table:
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for heading in ("", "verdict", "attempts"):
-        table.add_column(heading, no_wrap=True)
+def _print_verdicts(report: Report, spec: CheckedSpec, printer: Printer) -> None:
     least = _least_robustness(report)
-    if least:
-        table.add_column("robustness", no_wrap=True)
     levels = any(spec.requirements[name].severity for name in report.verdicts)
-    if levels:
-        table.add_column("severity", no_wrap=True)
-    table.add_column("requirement", style="dim")
+    heads = ["", "verdict", "attempts"]
+    heads += ["robustness"] if least else []
+    heads += ["severity"] if levels else []
+    rows = []
     for name, verdict in report.verdicts.items():
         counts = report.counts[name]
         listed = "  ".join(f"{count} {kind}" for kind, count in counts.items() if count)
-        figure = [least.get(name, "–")] if least else []
+        row: list[Piece] = [name, verdict_text(verdict), listed or "–"]
+        row += [least.get(name, "–")] if least else []
         one = spec.requirements[name]
-        level = [one.severity or "–"] if levels else []
+        row += [one.severity or "–"] if levels else []
         text = f"{one.text}  [{', '.join(one.tags)}]".lstrip() if one.tags else one.text
-        table.add_row(name, verdict_text(verdict), listed or "–", *figure, *level, text)
-    return table
+        rows.append([*row, (text, "dim")])
+    printer.table([*heads, "requirement"], rows)
 
 
 def _least_robustness(report: Report) -> dict[str, str]:
@@ -178,46 +169,41 @@ def _least_robustness(report: Report) -> dict[str, str]:
     return {name: f"{value:.4g}" for name, value in least.items()}
 
 
-def _goals_text(goals: Mapping[str, Verdict]) -> Text:
+def _print_goals(goals: Mapping[str, Verdict], printer: Printer) -> None:
+    if not goals:
+        return
     words = {Verdict.PASS: "shown", Verdict.INCONCLUSIVE: "not shown, still possible at the end"}
-    text = Text("cover goals:\n")
+    printer.line("cover goals:")
     for name, verdict in goals.items():
         sign = MARKS[verdict].sign
-        text.append(f"  {name}  {verdict} {sign}  {words.get(verdict, 'not shown')}\n")
-    return text
+        printer.line(f"  {name}  {verdict} {sign}  {words.get(verdict, 'not shown')}")
+    printer.line()
 
 
-def _silence_text(name: str, verdict: Verdict, why: str, width: int) -> Text:
-    sentence = f"\n{wrapped(why, width)}\n"
-    return Text.assemble((f"{name} ", "bold"), verdict_text(verdict), sentence)
-
-
-def _attempt_text(attempt: Attempt, requirement: Requirement, report: Report, width: int) -> Text:
+def _print_attempt(
+    attempt: Attempt, requirement: Requirement, report: Report, printer: Printer
+) -> None:
     first, *rest = instants_of(attempt)
     when = "\n  ".join([f"attempt {attempt.numbered}, {first}", *rest])
     if attempt.robustness is not None:
         when += f", robustness {attempt.robustness:.4g}"
-    text = Text.assemble(
-        (f"{attempt.requirement} ", "bold"), verdict_text(attempt.verdict), f"  {when}\n"
-    )
+    printer.line((f"{attempt.requirement} ", "bold"), verdict_text(attempt.verdict), f"  {when}")
     if attempt.reason:
-        text.append(f"{wrapped(full_reason(attempt, report), width)}\n")
+        printer.line(wrapped(full_reason(attempt, report), printer.width))
     if attempt.forecast is not None:
-        text.append(f"  {forecast_sentence(attempt.forecast)}\n")
+        printer.line(f"  {forecast_sentence(attempt.forecast)}")
     span = requirement.span
     if attempt.blame is not None and span is not None:
         span = type(span)(span.source, attempt.blame.start, attempt.blame.end)
-        text.append(snippet(span, width=width))
-    return text
+        printer.line(snippet(span, width=printer.width))
+    else:
+        printer.line()
 
 
-def _runs_table(reports: Sequence[Report]) -> Table:
-    title = counted(len(reports), "recording")
-    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left")
-    table.add_column("")
-    for verdict in Verdict:
-        table.add_column(verdict.value, justify="right")
+def _print_counts(reports: Sequence[Report], printer: Printer) -> None:
+    rows = []
     for name in reports[0].verdicts:
         seen = [report.verdicts[name] for report in reports]
-        table.add_row(name, *(str(seen.count(verdict)) for verdict in Verdict))
-    return table
+        rows.append([name, *(str(seen.count(verdict)) for verdict in Verdict)])
+    heads = ["", *(verdict.value for verdict in Verdict)]
+    printer.table(heads, rows, right=range(1, len(heads)))

@@ -1,9 +1,7 @@
-"""Terminal output: a console that is safe for foreign text, plain tables, wrapped sentences."""
+"""Terminal output: a console of rich that is safe for foreign text, plain tables."""
 
 from __future__ import annotations
 
-import re
-import textwrap
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -49,41 +47,3 @@ def plain_table(rows: Sequence[Sequence[str]]) -> str:
         for row in rows
     )
     return "\n".join(lines) + "\n"
-
-
-_WITHIN_VALUE = re.compile(r"(?<=\d) (?=[A-Za-zµ°%])|(?<=\w) (?== )|(?<= =) ")
-_TOGETHER = "\N{NO-BREAK SPACE}"
-
-
-def wrapped(sentence: str, width: int) -> str:
-    """A sentence in lines, the first indented by two columns, the others by four.
-
-    A number is kept on one line with its unit, and with `name =` before it.
-
-    Args:
-        sentence: without line breaks.
-        width: columns that a line may take.
-
-    >>> print(wrapped("`released` occurred at 4.75 s, 0.75 s after the trigger", 32))
-      `released` occurred at 4.75 s,
-        0.75 s after the trigger
-    """
-    whole = _WITHIN_VALUE.sub(_TOGETHER, sentence)
-    lines = textwrap.fill(
-        whole,
-        width,
-        initial_indent="  ",
-        subsequent_indent="    ",
-        break_on_hyphens=False,
-    )
-    return lines.replace(_TOGETHER, " ")
-
-
-def in_short(message: str) -> str:
-    r"""The first line of a message, with the second one if it ends in a colon.
-
-    >>> in_short("there is no column for what is read:\n  `go`, read by R1\n  say which it is")
-    'there is no column for what is read: `go`, read by R1'
-    """
-    first, *rest = message.split("\n")
-    return f"{first} {rest[0].strip()}" if rest and first.endswith(":") else first

@@ -11,8 +11,7 @@ from typing import NamedTuple
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.report.html import render
 from rvmon.report.table import plain
-from rvmon.report.terminal import in_short
-from rvmon.report.wording import MARKS
+from rvmon.report.wording import MARKS, in_short
 from rvmon.verdicts import Verdict, fold
 from rvmon.verdicts.rows import VerdictRow
 from rvmon.verdicts.table_file import csv_table

@@ -9,9 +9,15 @@ from rich.text import Text
 
 from rvmon.analysis.subformulas import Breakdown, PartTruth
 from rvmon.language.checked.specification import Requirement
-from rvmon.report.terminal import wrapped
 from rvmon.report.tracks import Track, signal_texts
-from rvmon.report.wording import MARKS, forecast_sentence, instants_of, reason_text, verdict_text
+from rvmon.report.wording import (
+    MARKS,
+    forecast_sentence,
+    instants_of,
+    reason_text,
+    verdict_text,
+    wrapped,
+)
 from rvmon.trace.time import format_instant
 from rvmon.verdicts.attempt import Attempt
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+import re
+import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-
-from rich.text import Text
 
 from rvmon.language.print import format_duration
 from rvmon.trace.sample import Health, HealthKind, Scalar
@@ -178,7 +178,7 @@ class Mark:
     Attributes:
         word: for sentences ("R2 failed").
         sign: a shape that distinguishes it without colour.
-        terminal: a style of rich.
+        terminal: a style of `rvmon.report.printer`, and of rich.
         light: CSS colour on a light page.
         dark: CSS colour on a dark page.
     """
@@ -206,7 +206,47 @@ def verdict_colours() -> str:
     return f":root{{{light}}}@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}"
 
 
-def verdict_text(verdict: Verdict) -> Text:
-    """A verdict as styled text for the terminal: its letter, then its sign."""
+def verdict_text(verdict: Verdict) -> tuple[str, str]:
+    """A verdict for the terminal, its letter and its sign, with its style."""
     mark = MARKS[verdict]
-    return Text(f"{verdict.value:<2} {mark.sign}", style=mark.terminal)
+    return f"{verdict.value:<2} {mark.sign}", mark.terminal
+
+
+_WITHIN_VALUE = re.compile(r"(?<=\d) (?=[A-Za-zµ°%])|(?<=\w) (?== )|(?<= =) ")
+_TOGETHER = "\N{NO-BREAK SPACE}"
+
+
+def wrapped(sentence: str, width: int) -> str:
+    """A sentence in lines, the first indented by two columns, the others by four.
+
+    A number is kept on one line with its unit, and with `name =` before it.
+
+    Args:
+        sentence: without line breaks.
+        width: columns that a line may take.
+
+    >>> print(wrapped("`released` occurred at 4.75 s, 0.75 s after the trigger", 32))
+      `released` occurred at 4.75 s,
+        0.75 s after the trigger
+    """
+    if len(sentence) + 2 <= width and sentence.isprintable() and not sentence.endswith(" "):
+        return f"  {sentence}"
+    whole = _WITHIN_VALUE.sub(_TOGETHER, sentence)
+    lines = textwrap.fill(
+        whole,
+        width,
+        initial_indent="  ",
+        subsequent_indent="    ",
+        break_on_hyphens=False,
+    )
+    return lines.replace(_TOGETHER, " ")
+
+
+def in_short(message: str) -> str:
+    r"""The first line of a message, with the second one if it ends in a colon.
+
+    >>> in_short("there is no column for what is read:\n  `go`, read by R1\n  say which it is")
+    'there is no column for what is read: `go`, read by R1'
+    """
+    first, *rest = message.split("\n")
+    return f"{first} {rest[0].strip()}" if rest and first.endswith(":") else first

@@ -10,7 +10,7 @@ from rvmon.cdv.campaign_plan import Played
 from rvmon.coverage import Group
 from rvmon.coverage.holes import Goal, Hole
 from rvmon.report.coverage_summary import name_of
-from rvmon.report.terminal import wrapped
+from rvmon.report.wording import wrapped
 from rvmon.texts import counted, percent_text, share_text
 
 if TYPE_CHECKING:

@@ -1,0 +1,71 @@
+"""Lines and tables of the terminal: what is foreign is shown, columns stay below each other."""
+
+import io
+import re
+
+import pytest
+
+from rvmon.report.printer import Printer
+
+ESCAPE = "a\x1b[31m\x9b8m\u202e"
+ROWS = [
+    ("R1", ("F  ✗", "bold red"), "the hand is held still"),
+    (ESCAPE, "P  ✓", "速度 is low"),
+]
+
+
+def printed(width, rows=ROWS, right=()):
+    """A table as lines."""
+    file = io.StringIO()
+    Printer(file, width).table(["", "verdict", "requirement"], rows, right)
+    return file.getvalue().splitlines()
+
+
+def test_columns_are_aligned_by_what_is_shown():
+    blank, *lines, end = printed(80)
+    assert blank == end == ""
+    assert lines == [
+        "                         verdict   requirement",
+        " " + "─" * 56,
+        " R1                      F  ✗      the hand is held still",
+        r" a\x1b[31m\x9b8m\u202e   P  ✓      速度 is low",
+    ]
+
+
+def test_the_last_column_is_wrapped_where_it_does_not_fit():
+    rows = [("R1", "P", "the hand is held still"), ("R2", "F", "short")]
+    assert printed(34, rows)[3:] == [
+        " R1   P         the hand is held",
+        "                still",
+        " R2   F         short",
+        "",
+    ]
+
+
+def test_counts_end_below_each_other():
+    assert printed(80, [("R1", "5", ""), ("R2", "1995", "")], right=(1,))[3:5] == [
+        " R1         5",
+        " R2      1995",
+    ]
+
+
+@pytest.mark.parametrize("width", [40, 80])
+def test_colours_change_no_text(monkeypatch, width):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    plain = printed(width)
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    coloured = printed(width)
+    assert "\x1b[1;31mF  ✗\x1b[0m" in "\n".join(coloured)
+    assert [re.sub(r"\x1b\[[\d;]+m", "", line).rstrip() for line in coloured] == plain
+
+
+@pytest.mark.parametrize(("columns", "width"), [("132", 132), ("0", 80)])
+def test_it_is_as_wide_as_was_said(monkeypatch, columns, width):
+    monkeypatch.setenv("COLUMNS", columns)
+    assert Printer(io.StringIO()).width == width
+
+
+def test_texts_are_shown_and_not_obeyed():
+    file = io.StringIO()
+    Printer(file).line((ESCAPE, "bold"), ESCAPE)
+    assert file.getvalue() == r"a\x1b[31m\x9b8m\u202e" * 2 + "\n"
