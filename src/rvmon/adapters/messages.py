@@ -108,7 +108,7 @@ class MessageFeed:
         try:
             yield
         except Exception as error:  # noqa: BLE001 - nobody else would be told
-            _log.exception("no message is heard any more")
+            _log.exception("no further message is received")
             why = f"no message is heard any more ({type(error).__name__})"
             self._driver.lose(robot=self._robot, why=why)
 

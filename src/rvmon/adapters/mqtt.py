@@ -150,7 +150,9 @@ class MqttSource:
 
     def _on_subscribe(self, _: object, __: object, ___: object, reasons: Any, ____: object) -> None:
         if reasons[0].is_failure:
-            self._refusal = f"nobody may read {self._address.topics} here ({reasons[0]})"
+            self._refusal = (
+                f"the broker allows nobody to read {self._address.topics} ({reasons[0]})"
+            )
             _log.warning("the broker refuses: %s", self._refusal)  # what was lost stays so
         elif self._connected.is_set():  # again
             self._objects.driver.found()

@@ -119,7 +119,7 @@ class Ros1Source:
                 if header is not None or not self._publishes(topic, node):
                     self._end_of(link)
             elif header is not None:
-                self._feed.lose(topic, f"{node} was not heard for a while", before=True)
+                self._feed.lose(topic, f"{node} sent nothing for a while", before=True)
             elif self._publishes(topic, node):
                 self._down.add(link)
                 why = f"the connection to {node} is lost"

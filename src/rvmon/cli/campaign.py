@@ -46,7 +46,9 @@ def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
     """
 
     def parsed() -> Namespace:
-        parser: ArgumentParser = Parser(description=f"{campaign.name}: evaluated tests.")
+        parser: ArgumentParser = Parser(
+            description=f"{campaign.name}: generate, play and evaluate tests."
+        )
         commands = parser.add_subparsers(metavar="COMMAND", required=True)
         robots, strategies = ", ".join(campaign.robots), ", ".join(campaign.strategies)
         add_commands(commands, lambda _: campaign, robots=robots, strategies=strategies)
@@ -80,15 +82,17 @@ def add_commands(
         "run": commands.add_parser(
             "run",
             help="play the tests of a campaign",
-            description="Generate tests, play them on all cores, evaluate them, keep the table.",
+            description="Generate tests, play them on all cores, evaluate them, and write the "
+            "table of verdicts.",
             epilog="example: %(prog)s --tests 20 --out out/mine",
         ),
         "close": commands.add_parser(
             "close",
-            help="make tests until coverage has no holes",
-            description="Make tests aimed at what is not covered, by runs of a model if there is "
-            "one, by biased choices and by changing the nearest test; play and evaluate them until "
-            "all is covered that can be; keep the fewest that cover as much.",
+            help="generate tests until coverage has no holes",
+            description="Generate tests aimed at uncovered items: from runs of a model if there "
+            "is one, by biased choices, and by mutating the nearest test. Play and evaluate them "
+            "until everything that can be covered is; keep a smallest set of tests with the same "
+            "coverage.",
             epilog="example: %(prog)s --out out/closed",
         ),
         "replay": commands.add_parser(
@@ -99,16 +103,16 @@ def add_commands(
         ),
         "shrink": commands.add_parser(
             "shrink",
-            help="find the smallest test that fails like one",
-            description="Take away from a failing test what its failure does not need, print what "
-            "is left, and write it as a regression test.",
+            help="reduce a failing test to the smallest one that still fails",
+            description="Remove from a failing test everything that its failure does not need, "
+            "print the rest, and write it as a regression test.",
             epilog="example: %(prog)s out/mine/tests/pseudorandom-001.json --out out/small",
         ),
         "mutate": commands.add_parser(
             "mutate",
-            help="which small wrong changes of the code, and of requirements, do tests see?",
-            description="Change one small thing at a time, play the tests of each strategy, and "
-            "show what kills the mutant, or which question a survivor asks.",
+            help="measure which small faults in code and requirements the tests detect",
+            description="Plant one small fault at a time, play the tests of each strategy, and "
+            "show which test kills the mutant, or the question that a survivor raises.",
             epilog="example: %(prog)s --list",
         ),
     }
@@ -129,7 +133,7 @@ def add_commands(
     add_run_options(parsers["run"])
     add_closing_options(parsers["close"])
     for name in ("replay", "shrink"):
-        parsers[name].add_argument("test", metavar="TEST", help="a .json file")
+        parsers[name].add_argument("test", metavar="TEST", help="a test, a .json file")
     add_replay_options(parsers["replay"])
     add_shrink_options(parsers["shrink"])
     add_mutate_options(parsers["mutate"])

@@ -11,20 +11,27 @@ from rvmon.cli.parser import TIME_FORMS, number_or_folder, positive, shard, span
 def add_run_options(parser: ArgumentParser) -> None:
     """Declare how many tests are played, and where their results go."""
     add = parser.add_argument
-    add("--tests", metavar="N", type=positive, default=100, help="of each random strategy (100)")
-    add("--suite", metavar="DIR", help="play the tests of this folder in the place of strategies'")
+    add(
+        "--tests",
+        metavar="N",
+        type=positive,
+        default=100,
+        help="number of tests of each random strategy (100)",
+    )
+    add("--suite", metavar="DIR", help="play the tests of this folder instead of generated ones")
     add("--evidence", metavar="FILE", help="keep tests, verdicts and specifications in one archive")
     add(
         "--shard",
         metavar="I/N",
         type=shard,
-        help="with --out, play this share, as 2/4; the same without it joins what shards left",
+        help="with --out: play one share of the tests, such as 2/4; the same command without "
+        "--shard joins the shares",
     )
     add(
         "--strict",
         action="store_true",
-        help="exit with 1 as well if something is inconclusive, is never triggered though its "
-        "strategy has to, or too little is covered",
+        help="exit with 1 also if a requirement is inconclusive, if one was never triggered by a "
+        "strategy that must trigger it, or if coverage is too low",
     )
     _add_playing_options(parser)
 
@@ -34,24 +41,24 @@ def _add_playing_options(parser: ArgumentParser) -> None:
     declare(parser, "--dask")
     _add_timeout(parser)
     add = parser.add_argument
-    add("--junit", metavar="FILE", help="write what was expected, and what came out, as JUnit XML")
+    add("--junit", metavar="FILE", help="write expected and actual verdicts as JUnit XML")
     add(
         "--out",
         metavar="DIR",
-        help="write tables, tests and pages there; a campaign that was ended there goes on",
+        help="write tables, tests and pages into this folder; an interrupted campaign is continued",
     )
     add(
         "--pages",
         choices=("examples", "all"),
         default="examples",
-        help="of which runs to write a page: an example of each count, or all (%(default)s)",
+        help="runs to write pages of: an example of each verdict, or all (%(default)s)",
     )
 
 
 def add_closing_options(parser: ArgumentParser) -> None:
     """Declare when closing gives up, and where the suite goes."""
     add = parser.add_argument
-    add("--tests", metavar="N", type=positive, default=400, help="play at most so many (400)")
+    add("--tests", metavar="N", type=positive, default=400, help="play at most N tests (400)")
     add(
         "--seconds",
         metavar="TIME",
@@ -63,15 +70,15 @@ def add_closing_options(parser: ArgumentParser) -> None:
         metavar="N",
         type=positive,
         default=2,
-        help="keep so many tests that show each goal, where so many were found (2): one covers it, "
-        "more see more faults",
+        help="keep up to N tests for each goal (2): one covers it, more detect more faults",
     )
     add(
         "--mutants",
         metavar="N",
         type=positive,
-        help="keep also the fewest tests that kill what the suite does not of so many mutants of "
-        "the code, and show what each choice of tests sees of them and of those held out",
+        help="also keep a smallest set of tests that kills further mutants, out of N mutants of "
+        "the code, and show how many of these and of the held-out mutants each selection of "
+        "tests kills",
     )
     _add_playing_options(parser)
 
@@ -79,19 +86,25 @@ def add_closing_options(parser: ArgumentParser) -> None:
 def add_replay_options(parser: ArgumentParser) -> None:
     """Declare where the run of a test goes."""
     add = parser.add_argument
-    add("--out", metavar="DIR", help="write the recording and a page there")
+    add("--out", metavar="DIR", help="write the recording and a page into this folder")
     add("--mcap", metavar="FILE", help="write verdicts, values and the scene for Foxglove")
-    add("--expected", action="store_true", help="exit with 0 if all came out as the test expects")
+    add(
+        "--expected",
+        action="store_true",
+        help="exit with 0 if all verdicts are as the test expects",
+    )
 
 
 def add_shrink_options(parser: ArgumentParser) -> None:
     """Declare by which failure a test is shrunk, and where it goes."""
     parser.add_argument(
-        "--requirement", metavar="ID", help="that is to fail (default: the first that does)"
+        "--requirement",
+        metavar="ID",
+        help="the requirement that has to fail (default: the first that does)",
     )
     _add_timeout(parser)
     parser.add_argument(
-        "--out", metavar="DIR", help="write it there, with a test of pytest that replays it"
+        "--out", metavar="DIR", help="write it into this folder, with a pytest test that replays it"
     )
 
 
@@ -103,7 +116,7 @@ def add_mutate_options(parser: ArgumentParser) -> None:
         metavar="N|DIR",
         type=number_or_folder,
         default=100,
-        help="of each random strategy (100); or a folder of tests, which is the suite",
+        help="number of tests of each random strategy (100), or a folder of tests",
     )
     _add_seed_and_jobs(parser)
     _add_timeout(parser)
@@ -111,19 +124,27 @@ def add_mutate_options(parser: ArgumentParser) -> None:
         "--of",
         choices=("code", "spec", "both"),
         default="both",
-        help="mutants of the code, of its requirements, or %(default)s (default)",
+        help="mutate the code, its requirements, or %(default)s (default)",
     )
-    add("--only", metavar="TEXT", default="", help="mutants whose name has this")
-    add("--all", action="store_true", help="play all tests, also after a requirement failed")
-    add("--held-out", action="store_true", help="show also single mutants that are held out")
-    add("--list", action="store_true", help="list the mutants, and play nothing")
+    add("--only", metavar="TEXT", default="", help="only mutants whose name contains this")
+    add("--all", action="store_true", help="play all tests, even after a requirement has failed")
+    add("--held-out", action="store_true", help="also list the held-out mutants one by one")
+    add("--list", action="store_true", help="list the mutants without playing tests")
     add("--strict", action="store_true", help="exit with 1 unless all mutants are killed")
-    add("--out", metavar="DIR", help="write mutation.html, mutation.json and mutation.txt there")
+    add(
+        "--out",
+        metavar="DIR",
+        help="write mutation.html, mutation.json and mutation.txt into this folder",
+    )
 
 
 def _add_seed_and_jobs(parser: ArgumentParser) -> None:
-    parser.add_argument("--seed", metavar="N", type=int, default=1, help="all follows from it (1)")
-    parser.add_argument("--jobs", metavar="N", type=positive, help="processes (default: all cores)")
+    parser.add_argument(
+        "--seed", metavar="N", type=int, default=1, help="random seed of everything (1)"
+    )
+    parser.add_argument(
+        "--jobs", metavar="N", type=positive, help="number of processes (default: all cores)"
+    )
 
 
 def _add_timeout(parser: ArgumentParser) -> None:
@@ -137,5 +158,5 @@ def _add_timeout(parser: ArgumentParser) -> None:
 
 def add_judging_options(parser: ArgumentParser) -> None:
     """Declare what judges, and in which form verdicts are printed."""
-    parser.add_argument("--spec", metavar="FILE", help="check against these requirements")
+    parser.add_argument("--spec", metavar="FILE", help="evaluate these requirements")
     declare(parser, "--format")

@@ -171,8 +171,8 @@ def named_attempt(text: str, spec: Spec) -> tuple[str, str | None]:
     found = re.fullmatch(r"(?P<name>[^#?]+)((?P<mark>[#?])(?P<number>\d{1,9}))?", text)
     if found is None:
         raise RvmonError(
-            f"error: `{text}` names no attempt: write R1#3, R1?2 for one in doubt, or R1 for the "
-            "first failed"
+            f"error: `{text}` names no attempt: write R1#3, R1?2 if its trigger is uncertain, or "
+            "R1 for the first failed attempt"
         )
     name, mark, number = found["name"], found["mark"], found["number"]
     from rvmon.language.checked.names_read import requirements_asked

@@ -1,4 +1,4 @@
-"""`rvmon run`: check recordings against a specification."""
+"""`rvmon run`: evaluate recordings against a specification."""
 
 from __future__ import annotations
 
@@ -260,7 +260,7 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
         if file:
             refuse_no_file(file)
     if arguments.resume and arguments.out is None:
-        raise RvmonError("--resume goes on with a run that writes to a file: name it by --out")
+        raise RvmonError("--resume continues a run that writes to a file: name the file with --out")
     if arguments.out is not None:
         from rvmon.verdicts.table_file import refuse_format
 

@@ -175,7 +175,7 @@ def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Li
             feeding.start()
             _follow(arguments, live, shown, feeding)
         for fault in faults:
-            warn(f"{fault}: nothing more was heard")
+            warn(f"{fault}: nothing more was received")
     _warn_ignored(objects)
     return live
 
@@ -325,7 +325,7 @@ def _follow(
                     _replace(arguments, live)
                     shown.note(f"{arguments.spec} has changed: the new one holds from here on")
                 except (SpecError, RvmonError) as error:
-                    shown.note(f"{error}\nThe former specification goes on.")
+                    shown.note(f"{error}\nThe former specification stays in use.")
             shown.show(live)
     except KeyboardInterrupt:
         shown.note("ended")

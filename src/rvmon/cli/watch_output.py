@@ -312,7 +312,7 @@ def watch_kept(
             spec, arguments.state, report, only=only, keep=_KEEP, settle="next"
         )
         if monitor.taken:
-            warn(f"{arguments.state}: the run goes on behind {monitor.taken:,} lines")
+            warn(f"{arguments.state}: the run continues after {monitor.taken:,} lines")
         try:
             if is_file:
                 lines = _behind_taken(monitor, lines, arguments)
@@ -324,7 +324,7 @@ def watch_kept(
     except OSError as error:
         raise RvmonError(f"--state {arguments.state}: {error.strerror}") from None
     except KeyboardInterrupt:
-        warn("ended; the run goes on with --state")
+        warn("ended; the same command continues the run")
     # Also what earlier processes of the run lost; what it goes on to is not known yet.
     at_end = spec.restore(monitor.monitor.snapshot()).finish_ns()
     lost = [health for health in at_end.health if health.kind in _LOSSES and health.requirements]
@@ -345,7 +345,7 @@ def _behind_taken(
     """
     taken, (count, known) = monitor.taken, monitor.mark
     other = RvmonError(
-        f"{arguments.source} is another file than that of which {taken:,} lines were taken: "
+        f"{arguments.source} is not the file of which {taken:,} lines were evaluated: "
         f"name another --state, or delete {arguments.state} to start again"
     )
     number = check = 0

@@ -111,7 +111,7 @@ def lower(
             required = lowering.core(requirement.consequent, True)
             return Obligation(None, required, lowering.origins, captures_known=captures_known)
         case formula if has_future(formula):
-            raise UnmonitorableError("its trigger speaks of the future")
+            raise UnmonitorableError("its trigger refers to the future")
     reader = lowering.reader if requirement.mode is Mode.WHENEVER else truth_reader
     four = reader.four(requirement.trigger)  # an episode's robustness depends on its trigger too
     trigger = four.read(FALSE)

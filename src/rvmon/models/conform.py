@@ -129,7 +129,7 @@ def conform(
         raise model_error("TA023", "time is not in whole milliseconds", None, fix)
     if end + tolerance >= MAX_TIME * RESOLUTION:
         fix = "compare a shorter part, with --until"
-        raise model_error("TA019", "the recording goes on for more than 24 days", None, fix)
+        raise model_error("TA019", "the recording is longer than 24 days", None, fix)
     fine, labels = finer(network, network.unit // RESOLUTION), tuple(sorted(observed))
     most = len(network.automata) + 1
     chain, meter = _chain_of(actions, end, tolerance, most), Meter(budget, None)

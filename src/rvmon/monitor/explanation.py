@@ -241,4 +241,4 @@ def why_nothing(*, cut: bool) -> Explanation:
     """Why an attempt that has ended stays undecided whatever follows."""
     if cut:
         return Explanation("it is not known which values it captured")
-    return Explanation("it was over before all that it speaks of had a value")
+    return Explanation("it ended before all signals that it reads had a value")

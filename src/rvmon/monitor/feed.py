@@ -140,7 +140,9 @@ class Feed:
         """
         intake = state["intake"]
         if (intake is None) != (self._intake is None):
-            raise SnapshotError("the snapshot is damaged: it holds samples back that nobody awaits")
+            raise SnapshotError(
+                "the snapshot is damaged: it holds back samples that are not expected"
+            )
         if self._intake is not None:
             self._intake.restore_state(intake, self.check, self.losses.known)
         self.losses.restore_state(state["losses"])

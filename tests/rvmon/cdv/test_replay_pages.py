@@ -74,7 +74,7 @@ def test_pages_of_all_runs_need_no_second_play(campaign, tmp_path, spec):
         (["run", "--tests", "0"], "at least 1"),
         (["run", "--tests", "many"], "at least 1"),
         (["run", "--out", __file__], "it is a file: name a folder"),
-        (["run", "--timeout", "soon"], "expected a time in seconds"),
+        (["run", "--timeout", "soon"], "expected seconds, or a number with its unit"),
         (["run", "--junit", "/gone/x.xml"], "cannot write /gone/x.xml: there is no folder"),
         (["replay", "gone.json"], "gone.json: No such file"),
         (["fly"], "invalid choice"),

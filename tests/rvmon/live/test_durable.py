@@ -135,7 +135,7 @@ def test_a_watch_goes_on_in_no_other_file(tmp_path, says, rows, is_same):
     other = "".join(f'{{"t": {t}, "x": 9}}\n' for t in range(20, 20 + rows))
     lines.write_text(other or f'{text}{{"t": 10, "x": 1}}\n{{"t": 11, "x": 1}}\n')
     told = says(1 if is_same else 2, *command).err
-    assert ("is another file than that of which 11 lines were taken" in told) is not is_same
+    assert ("is not the file of which 11 lines were evaluated" in told) is not is_same
 
 
 @pytest.mark.process

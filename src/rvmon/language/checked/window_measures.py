@@ -89,7 +89,11 @@ class Measured(StrEnum):
     )
     AGO = (
         *("ago", Members.HELD, Dimension.SAME, "the value that x had D ago; in `time held`"),
-        *("unknown if that is; none before D has passed since the birth of x", 64, 128),
+        *(
+            "unknown if that is; no value before D has passed since the first known value of x",
+            64,
+            128,
+        ),
     )
 
     of: Members

@@ -87,7 +87,7 @@ unknown_function = Breach(UNKNOWN_FUNCTION, "no function or macro named `{1}`", 
 recursive = Breach(
     RECURSIVE,
     "`{1}` is defined by itself: {2}",
-    "for what goes on without end use `always`, `until` and the like",
+    "for a condition without end use `always`, `until` and the like",
 )
 double_item = Breach(DOUBLE_NAME, "a file has one `{1}` item", other="first here")
 

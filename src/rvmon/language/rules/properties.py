@@ -29,7 +29,7 @@ bin_needs_expression = Breach(
 )
 looks_ahead = Breach(
     BIN,
-    "`{}` speaks of the future, and bins are looked at on the spot",
+    "`{}` refers to the future, and a bin is evaluated at the present instant",
     "use `once`, `historically`, `since`",
 )
 bad_goal = Breach(BIN, "`{}` is no count of hits", "write `goal 3`")
@@ -82,7 +82,7 @@ NOT_LINEAR = Rule("RV054", "not-on-one-run", Severity.ERROR)
 
 path_outside = Breach(
     PATH_OUTSIDE,
-    "`{}` speaks of several runs and belongs into a `property`",
+    "`{}` refers to several runs and belongs into a `property`",
     "for one run write `always` or `eventually`",
 )
 bare_time = Breach(
@@ -126,7 +126,7 @@ reads_model = Breach(
 )
 some_path = Breach(
     NOT_LINEAR,
-    "`{}` speaks of some path, and a run shows one only",
+    "`{}` refers to one of several paths, and a run shows only one",
     "check it with `rvmon verify`; what some run should show is a goal: `cover ID = φ`",
 )
 not_shown = Breach(

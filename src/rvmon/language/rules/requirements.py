@@ -61,7 +61,7 @@ RUN_SHARE = Rule("RV075", "bad-run-share", Severity.ERROR)
 
 future_trigger = Breach(
     FUTURE_TRIGGER,
-    "`{}` speaks of the future, and a trigger has to be known at once",
+    "`{}` refers to the future, and a trigger has to be known at once",
     "move it behind `then`, or use `once`, `historically`, `since`",
 )
 end_not_alone = Breach(

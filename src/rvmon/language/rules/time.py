@@ -72,12 +72,12 @@ late_weak_window = Breach(
 
 step_in_held_time = Breach(
     STEP_IN_HELD_TIME,
-    "`{1}` has no meaning in `time held`: it would speak of the next nanosecond",
+    "`{1}` has no meaning in `time held`: it would refer to the next nanosecond",
     "give a duration (`within`, `once[0, D]`) or declare `time sampled`",
 )
 step_back_in_held_time = Breach(
     STEP_IN_HELD_TIME,
-    "`{1}` has no meaning in `time held`: it would speak of the nanosecond before",
+    "`{1}` has no meaning in `time held`: it would refer to the nanosecond before",
     "of a value before its last change speaks `prev(x)`; else give a duration (`once[0, D]`), or "
     "declare `time sampled`",
 )

@@ -77,7 +77,7 @@ window_in_window = Breach(
 )
 limit_of_event = Breach(
     WRONG_TYPE,
-    "`{}` is there only while its event occurs, and what adds up goes on",
+    "`{}` has a value only while its event occurs, and a sum over time needs one throughout",
     "capture it: `let limit = e.x`",
 )
 sum_of_instances = Breach(
@@ -139,7 +139,7 @@ count_of_state = Breach(
 
 amount_of_future = Breach(
     WRONG_TYPE,
-    "`{1}` is of the past, and `{0}` speaks of the future",
+    "`{1}` is of the past, and `{0}` refers to the future",
     "count what shows that it came, as in `count(e and once[0, 3 s] a, 1 min)`",
 )
 choice_alone = Breach(

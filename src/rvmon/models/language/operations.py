@@ -216,7 +216,7 @@ def linear_of(name: str, body: Expression, span: Span) -> Expression:
         case "F", _:
             return PathFormula(PathOp.FINALLY, body)
         case "X", _:
-            fix = "EX p, AX p speak of the next action"
+            fix = "EX p, AX p refer to the next action"
             raise model_error("TA020", "time is dense: runs have no next instant", span, fix)
         case _, PathFormula(op, inner, None, left) if (name, op) in _OF_CTL and not any(
             map(is_linear, (inner, left))
@@ -226,7 +226,7 @@ def linear_of(name: str, body: Expression, span: Span) -> Expression:
             return PathFormula(PathOp(name), body)
         case _:
             fix = f"as in {name} (G F p), {name} (p U q)"
-            raise model_error("TA020", f"`{name}` speaks of runs", span, fix)
+            raise model_error("TA020", f"`{name}` refers to runs", span, fix)
 
 
 # Numbers with a fraction.

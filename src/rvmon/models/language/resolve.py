@@ -140,7 +140,7 @@ class Resolver:
                 return operations.joined(op, parts, span, self.functions)
             case syntax.Path(op, body, bound, span, left):
                 if not self.automata:
-                    raise model_error("TA020", "only queries speak of runs", span)
+                    raise model_error("TA020", "only queries refer to runs", span)
                 until = TRUE if left is None else self.expression(left, scope)
                 return PathFormula(
                     op, self.expression(body, scope), self.limit(bound, scope), until

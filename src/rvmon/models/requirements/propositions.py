@@ -90,9 +90,9 @@ class Labelling:
             case StateOp.LEAF, Compare(op=op, left=left, right=right):
                 return self._comparison(op, left, right)
             case StateOp.LEAF, _:
-                raise NotExpressibleError("it speaks of updates or of the trace's ends")
+                raise NotExpressibleError("it refers to updates or to the ends of the trace")
             case _:
-                raise NotExpressibleError("it speaks of the past")
+                raise NotExpressibleError("it refers to the past")
 
     def _comparison(self, op: CompareOp, left: Numeric, right: Numeric) -> Expression:
         match left, right:

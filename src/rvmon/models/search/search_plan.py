@@ -239,7 +239,7 @@ class Plan:
             case PathOp.EVERY_NEXT:
                 return self._row(_NOT, self._row(_NEXT, self._row(_NOT, body)))
             case _:
-                raise AssertionError(f"{op} speaks of one run")
+                raise AssertionError(f"{op} refers to one run")
 
     def _stay(self, body: int, left: int, bound: int) -> int:
         """A run on which the body holds for ever, or until both it and `left` end at once."""

@@ -185,7 +185,7 @@ def _search(question: _Question, query: Query) -> _Found:
             return _at_start(question, formula)
         case _:
             fix = "begin it with E<>, A[], A<> or E[], or write p --> q"
-            raise model_error("TA020", "a query speaks of runs", query.span, fix)
+            raise model_error("TA020", "a query refers to runs", query.span, fix)
 
 
 def _at_start(question: _Question, formula: Expression) -> _Found:

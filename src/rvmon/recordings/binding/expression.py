@@ -180,7 +180,7 @@ def _term(expression: expressions.Expression) -> Term:
         case expressions.Call(function=function, args=args):
             return _applied(function.text, args)
     raise RvmonError(
-        f"`{expression.span.text}` speaks of more than one message: put it into the specification"
+        f"`{expression.span.text}` refers to more than one message: put it into the specification"
     )
 
 

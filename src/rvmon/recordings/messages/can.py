@@ -277,8 +277,8 @@ def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
     beside = databases_beside(path)
     if not texts and not beside:
         raise TraceError(
-            "holds frames of CAN, and nobody says what is in them: put the database (.dbc) beside "
-            'it, or name it in a binding, as `definitions = ["car.dbc"]`'
+            "holds CAN frames without a description of their signals: put the database (.dbc) "
+            'beside it, or name it in a binding, as `definitions = ["car.dbc"]`'
         )
     found: dict[_Key, Any] = {}
     for name in texts or beside:

@@ -126,8 +126,8 @@ class MessageFile:
         self.outages = tuple(self._of_names(source.outages))
         if source.outages and Clock.HEADER in clocks:
             raise TraceError(
-                f"{source.outages[0].why}, and when by the clock of headers nobody knows: judge it "
-                'with `clock = "log"`'
+                f"{source.outages[0].why}; its instant by the stamps of headers is not known: "
+                'evaluate it with `clock = "log"`'
             )
 
     def _of_names(self, outages: Sequence[Outage]) -> Iterator[Outage]:

@@ -59,10 +59,10 @@ def test_what_means_the_same_on_every_run_is_monitored(text):
 REFUSED = {
     "AF AG a": "means another thing on all paths together",
     "A[a U AF b]": "means another thing on all paths together",
-    "AG EF a": "`EF a` speaks of some path",
-    "E<> a": "speaks of some path",
+    "AG EF a": "`EF a` refers to one of several paths",
+    "E<> a": "refers to one of several paths",
     "(AF a) or (AG b)": "leaves open which of the two",
-    "AG (a <-> AF b)": "speaks of some path",
+    "AG (a <-> AF b)": "refers to one of several paths",
     "AG (arm.moving -> AF a)": "`arm.moving` reads a clock or location of a model",
 }
 

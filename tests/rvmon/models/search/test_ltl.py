@@ -62,7 +62,7 @@ def test_a_loop_on_which_time_passes_is_preferred():
         ("G X (A.done)", "no next instant"),
         ("G (A.asked imply AF A.done)", "CTL"),
         ("F deadlock", "deadlock"),
-        ("A (A.done)", "speaks of runs"),
+        ("A (A.done)", "refers to runs"),
         ("A.done assuming G F A.asked", "whole runs"),
         ("E<> (F A.done)", "CTL"),
     ],
