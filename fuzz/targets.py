@@ -21,7 +21,7 @@ from tests.rvmon.recordings.shop import SHOP
 import rvmon
 from rvmon.diagnostics import render_full
 from rvmon.errors import ModelError, RvmonError, SnapshotError, SpecError
-from rvmon.language.print.formatter import format_text
+from rvmon.language.formatter import format_text
 from rvmon.recordings.source import Source
 from rvmon.trace.sample import Sample
 

@@ -20,7 +20,8 @@ from rvmon.logic.formula import Factory
 from rvmon.logic.lower import lower
 from rvmon.logic.reduce import reduce
 from rvmon.monitor.obligation_words import Words
-from rvmon.testing.generate.formula import Shape, formula
+from rvmon.testing.generate.formula import formula
+from rvmon.testing.generate.numbers import Shape
 
 SHAPE = Shape(mixed=False, past=False)
 SIZES = ("locations", "clocks", "rows")

@@ -20,7 +20,7 @@ from rvmon.language.checked.specification import (
     Type,
 )
 from rvmon.session import Spec
-from rvmon.testing.generate.formula import Shape
+from rvmon.testing.generate.numbers import Shape
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind

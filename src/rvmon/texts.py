@@ -311,3 +311,13 @@ def tree_of(directory: Path) -> ImportTree:
     )
     named = os.environ.get("RVMON_ALLOW_IMPORTS", "").split(os.pathsep)
     return ImportTree(next(marked, own), tuple(Path(name).resolve() for name in named if name))
+
+
+def shorten(text: str, width: int = 40) -> str:
+    """The text on one line, cut to `width` characters, with what would steer a terminal shown.
+
+    >>> shorten("a" * 50, 5)
+    'aaaa…'
+    """
+    line = shown_line(text[: width + 1])
+    return line if len(line) <= width else line[: width - 1] + "…"

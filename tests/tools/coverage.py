@@ -16,7 +16,8 @@ from rvmon.language.checked.formula import (
 from rvmon.language.checked.properties import Bin, BinKind, Coverpoint, Cross
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.testing.generate import NUMBERS, Rng, chance, pick
-from rvmon.testing.generate.formula import Shape, formula
+from rvmon.testing.generate.formula import formula
+from rvmon.testing.generate.numbers import Shape
 from rvmon.testing.generate.spec import Profile, random_spec
 
 

@@ -6,7 +6,8 @@ from dataclasses import replace
 
 from rvmon.language.checked.formula import Binary, BoundAtom, Formula, Interval, SignalAtom, Unary
 from rvmon.testing.generate import BOOLS, Rng, pick
-from rvmon.testing.generate.formula import Shape, formula
+from rvmon.testing.generate.formula import formula
+from rvmon.testing.generate.numbers import Shape
 
 _SHAPE = Shape(past=False, numbers=False, events=False, constants=0, longest=3)
 

@@ -16,11 +16,11 @@ import msgspec
 from rvmon.errors import RvmonError, TraceError
 from rvmon.live.clock import SimulatedClock
 from rvmon.live.driver import Driver
-from rvmon.recordings.column_names import DEFAULT_COLUMNS
 from rvmon.recordings.jsonl_rows import TOO_DEEP, decoded, read_object
 from rvmon.recordings.places import LONGEST_LINE
 from rvmon.trace.sample import Value
 from rvmon.trace.schema import Schema
+from rvmon.trace.stamps import DEFAULT_COLUMNS
 from rvmon.trace.time import TICKS_PER_SECOND
 
 _log = logging.getLogger("rvmon.live.input")

@@ -24,8 +24,8 @@ from rvmon.cli.reading import (
 from rvmon.errors import RvmonError
 from rvmon.files import refuse_no_file
 from rvmon.language.checked.specification import Mode
-from rvmon.recordings.clipping.clip import clip, refuse_place
-from rvmon.recordings.clipping.piece import Copied, Piece, values_before
+from rvmon.recordings.clip import clip, refuse_place
+from rvmon.recordings.clip_piece import Copied, Piece, values_before
 from rvmon.recordings.places import name_of
 from rvmon.session import Spec, load
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT, format_stamp, format_stamped

@@ -8,7 +8,7 @@ import sys
 from rvmon.cli.output import say, warn
 from rvmon.errors import SpecError
 from rvmon.files import write_whole
-from rvmon.language.print.formatter import format_text
+from rvmon.language.formatter import format_text
 from rvmon.texts import text_of_file, text_of_input
 
 

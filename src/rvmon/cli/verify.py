@@ -33,7 +33,7 @@ from rvmon.models.search.extremes import Extreme, extremes
 from rvmon.models.search.verify import verify
 
 if TYPE_CHECKING:
-    from rvmon.models.requirements.observe import Observation
+    from rvmon.models.requirement_check import Observation
     from rvmon.session import Spec
 
 
@@ -259,7 +259,7 @@ def check_spec(
     network: Network, arguments: argparse.Namespace, budget: Budget, watch: Watch | None
 ) -> int:
     """Decide, show, and return the exit code."""
-    from rvmon.models.requirements.observe import observe
+    from rvmon.models.requirement_check import observe
     from rvmon.session import load
 
     spec = load(arguments.spec)
@@ -289,7 +289,7 @@ def _binding(text: str) -> tuple[str, str]:
 
 
 def _print_observation(observation: Observation, spec: Spec) -> None:
-    from rvmon.models.requirements.observe import UNDECIDED_IN_THE_END
+    from rvmon.models.requirement_check import UNDECIDED_IN_THE_END
 
     word = {True: "holds on all runs", False: "fails on some run", None: ""}[observation.holds]
     if observation.remark == UNDECIDED_IN_THE_END:
@@ -319,7 +319,7 @@ def _timeline(observation: Observation, shown: Run, spec: Spec) -> list[str]:
     """The timeline of a requirement along a run, judged by the monitor of recordings."""
     from rvmon.analysis.example import Example
     from rvmon.models.conform import recording_of
-    from rvmon.models.requirements.observe import signals_of
+    from rvmon.models.requirement_check import signals_of
     from rvmon.report.explain_text import picture_of
     from rvmon.report.tracks import concerned_names
     from rvmon.trace.sample import Sample

@@ -11,9 +11,8 @@ from functools import cache, cached_property
 from typing import assert_never
 
 from rvmon.core.atoms import Atoms, Names, Programs
-from rvmon.core.automata import Automata
-from rvmon.core.forms import add_form, add_margin
 from rvmon.core.nodes import NodeOp, Nodes
+from rvmon.core.obligations import Automata, add_form, add_margin
 from rvmon.core.sections import Section, Sections
 from rvmon.language.checked.formula import NowValue
 from rvmon.language.checked.specification import EndPolicy, Mode

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum, auto
 
 from rvmon.core.atoms import Atoms, Names
-from rvmon.core.forms import is_followed
+from rvmon.core.obligations import is_followed
 from rvmon.language.checked.formula import (
     Amount,
     Captured,

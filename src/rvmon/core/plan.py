@@ -9,10 +9,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import prod
 
 from rvmon.core.atoms import Atom, Atoms, Names, Programs
-from rvmon.core.automata import Automata
-from rvmon.core.forms import add_form
 from rvmon.core.judges import SHARED, Judges, Unit
 from rvmon.core.nodes import Nodes
+from rvmon.core.obligations import Automata, add_form
 from rvmon.core.sections import Listed, Numbering, Packed, Section, Sections, packed
 from rvmon.errors import RvmonError
 from rvmon.language.checked.formula import Compare, Numeric

@@ -11,7 +11,7 @@ from typing import Any
 from rvmon.models.network.expressions import Variable
 from rvmon.models.network.fractions import number_of
 from rvmon.models.network.network import Network, Query, Simulation
-from rvmon.models.requirements.observe import Observation
+from rvmon.models.requirement_check import Observation
 from rvmon.models.runs.run import Action, Ending, Position, Run, RunStep, Window
 from rvmon.models.runs.statistics import ERROR, Sampled, Trajectory
 from rvmon.models.search.budget import Outcome

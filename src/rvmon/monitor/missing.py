@@ -12,8 +12,7 @@ from rvmon.errors import MissingNameError
 from rvmon.language.checked.names_read import names_of_coverage, names_of_requirement, sources_asked
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.recordings.recording import FileRecording
-from rvmon.recordings.values import shorten
-from rvmon.texts import MOST_NAMES, nearest
+from rvmon.texts import MOST_NAMES, nearest, shorten
 
 if TYPE_CHECKING:
     from rvmon.recordings.joined import Joined

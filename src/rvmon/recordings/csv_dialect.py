@@ -16,12 +16,11 @@ from types import SimpleNamespace
 from typing import Any, BinaryIO
 
 from rvmon.errors import TraceError
-from rvmon.recordings.column_names import DEFAULT_COLUMNS, aliases_of
 from rvmon.recordings.csv_rows import split_lines
 from rvmon.recordings.places import opened
-from rvmon.recordings.values import shorten
+from rvmon.texts import shorten
 from rvmon.trace.schema import Schema, Stamps
-from rvmon.trace.stamps import UNITS, stamps_of
+from rvmon.trace.stamps import DEFAULT_COLUMNS, UNITS, stamps_of
 from rvmon.units import UnknownUnitError, parse_unit
 
 _LOOKED_AT = 1 << 13
@@ -368,7 +367,7 @@ def bare_names(header: Sequence[str], schema: Schema) -> tuple[list[str], Schema
     """
     declared = {*schema.signals, *schema.events}
     declared |= {f"{name}.{field}" for name, own in schema.events.items() for field in own}
-    aliases = aliases_of(schema)
+    aliases = schema.aliases
     written = frozenset(header)
     names: list[str] = []
     for column in header:

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.recordings.column_names import aliases_of, stamps_among
 from rvmon.recordings.places import LONGEST_LINE
-from rvmon.recordings.values import as_declared, scalar_of_text, shorten
+from rvmon.recordings.values import as_declared, scalar_of_text
+from rvmon.texts import shorten
 from rvmon.trace.sample import Scalar, Value
 from rvmon.trace.schema import Gaps, Kind, Schema, Stamps
-from rvmon.trace.stamps import ticks_of_cell
+from rvmon.trace.stamps import stamps_among, ticks_of_cell
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +94,7 @@ def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
         stamps: of the time column, one of them; it is no signal.
         schema: the declared names, and what columns are called.
     """
-    aliases = aliases_of(schema)
+    aliases = schema.aliases
     signals, events, ignored = [], [], []
     for index, column in enumerate(header):
         name = aliases.get(column, column)

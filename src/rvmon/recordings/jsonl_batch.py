@@ -16,13 +16,12 @@ from rvmon.errors import TraceError
 from rvmon.recordings import places
 from rvmon.recordings.batch import NO, YES, Batch, NotPlainError, Occurrences
 from rvmon.recordings.cells import cells_of_values
-from rvmon.recordings.column_names import DEFAULT_COLUMNS
 from rvmon.recordings.jsonl_rows import bound, count_of_names, jsonl_samples, names_in
 from rvmon.recordings.places import bounded_lines, whole_pieces
 from rvmon.recordings.rows import Row
 from rvmon.recordings.table_recording import ticks_of_column
 from rvmon.trace.schema import Kind, Schema, Stamps
-from rvmon.trace.stamps import stamps_of
+from rvmon.trace.stamps import DEFAULT_COLUMNS, stamps_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

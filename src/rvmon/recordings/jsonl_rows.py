@@ -11,11 +11,11 @@ from typing import Any, TypeVar
 import msgspec
 
 from rvmon.errors import TraceError
-from rvmon.recordings.column_names import DEFAULT_COLUMNS, aliases_of
-from rvmon.recordings.values import DESCRIPTION, as_declared, double_of, fits, shorten
+from rvmon.recordings.values import DESCRIPTION, as_declared, double_of, fits
+from rvmon.texts import shorten
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Gaps, Kind, Schema
-from rvmon.trace.stamps import stamps_of, ticks_of_stamp
+from rvmon.trace.stamps import DEFAULT_COLUMNS, stamps_of, ticks_of_stamp
 from rvmon.trace.time import TIME_LIMIT
 
 Line = TypeVar("Line", str, bytes)
@@ -156,7 +156,7 @@ def read_object(
         raise TraceError('expected an object such as {"t": 0.5, "speed": 0.2}')
     fields = dict(decoded)
     t = _ticks(fields, schema)
-    aliases = aliases_of(schema)
+    aliases = schema.aliases
     values: dict[str, Value] = {}
     if "events" not in schema.signals and isinstance(fields.get("events"), list | str):
         listed = fields.pop("events")

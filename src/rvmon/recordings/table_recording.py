@@ -11,14 +11,13 @@ import numpy as np
 from rvmon.errors import TraceError
 from rvmon.recordings.batch import Batch, NotPlainError
 from rvmon.recordings.cells import batch_of, cells_of_column
-from rvmon.recordings.column_names import stamps_among
 from rvmon.recordings.csv_rows import Layout, layout_of, row_values
 from rvmon.recordings.rows import LOOKED_AT, Row, Rows, doubt_unit
 from rvmon.recordings.tables import cells_of, is_of_dates, is_of_durations, nanoseconds_of
 from rvmon.recordings.values import plain
 from rvmon.trace.sample import Health, Sample
 from rvmon.trace.schema import NO_GAPS, Kind, Schema, Stamps
-from rvmon.trace.stamps import ticks_of_stamp
+from rvmon.trace.stamps import stamps_among, ticks_of_stamp
 from rvmon.trace.time import TICKS_PER_UNIT, TIME_LIMIT, whole_ticks
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from math import isinf
 from typing import Any, assert_never
 
 from rvmon.errors import TraceError
-from rvmon.texts import shown_line
+from rvmon.texts import shorten
 from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
 from rvmon.trace.stamps import is_whole
@@ -154,16 +154,6 @@ DESCRIPTION = {
     Kind.REAL: "a number",
     Kind.LABEL: "a label",
 }
-
-
-def shorten(text: str, width: int = 40) -> str:
-    """The text on one line, cut to `width` characters, with what would steer a terminal shown.
-
-    >>> shorten("a" * 50, 5)
-    'aaaa…'
-    """
-    line = shown_line(text[: width + 1])
-    return line if len(line) <= width else line[: width - 1] + "…"
 
 
 def first_line(error: Exception) -> str:

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from rvmon.language.checked.formula import Formula
 from rvmon.language.checked.specification import CheckedSpec
-from rvmon.testing.generate.formula import Shape, formula
+from rvmon.testing.generate.formula import formula
+from rvmon.testing.generate.numbers import Shape
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace, show_case
 

@@ -279,6 +279,16 @@ class Schema:
     )
 
     @property
+    def aliases(self) -> dict[str, str]:
+        """The declared name by column, where it has another one; what no longer counts has none.
+
+        >>> Schema({}, {}, columns={"speed": "Speed [m/s]"}).aliases
+        {'speed': '', 'Speed [m/s]': 'speed'}
+        """
+        own = {column: name for name, column in self.columns.items()}
+        return {**dict.fromkeys(self.columns, ""), **own}
+
+    @property
     def named(self) -> Mapping[str, str]:
         """By declared name, the column or topic that the user mapped to it."""
         topics = {name: bound.topic for name, bound in self.binding.bounds.items()}

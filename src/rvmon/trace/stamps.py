@@ -1,10 +1,11 @@
-"""Exact conversion of the stamps of recordings to ticks."""
+"""The stamps of recordings: their column, and exact conversion to ticks."""
 
 from __future__ import annotations
 
 import math
 import re
 import reprlib
+from collections.abc import Collection
 from contextlib import suppress
 from datetime import UTC, datetime
 from decimal import Decimal
@@ -12,7 +13,8 @@ from fractions import Fraction
 from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.trace.schema import Stamps
+from rvmon.texts import did_you_mean, shorten
+from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.time import (
     TICKS_PER_SECOND,
     TICKS_PER_UNIT,
@@ -187,3 +189,34 @@ def _other_unit(stamp: object, stamps: Stamps) -> str:
             if stamps.unit == "s" and least <= number < most:
                 return f". Are these {UNIT_WORDS[unit]}? `--time {stamps.column}:{unit}`"
     return ""
+
+
+DEFAULT_COLUMNS = ("t", "t_ns")
+"""The columns of stamps where none was named."""
+
+
+def stamps_among(names: Collection[str], schema: Schema) -> Stamps:
+    """The column of stamps of a recording that has these columns.
+
+    Raises:
+        TraceError: there is none, or there are two.
+    """
+    stamps = schema.stamps
+    listed = ", ".join(f"`{shorten(name)}`" for name in list(names)[:8]) or "nothing"
+    if stamps is not None:
+        if stamps.column in names:
+            return stamps
+        is_unit_meant = ":" in stamps.column and not stamps.is_stated
+        units = f" (the units are {', '.join(UNITS)})" if is_unit_meant else ""
+        meant = did_you_mean(stamps.column, names, f"there are {listed}")
+        raise TraceError(f"no time column `{shorten(stamps.column)}`: {meant}{units}")
+    times = [name for name in DEFAULT_COLUMNS if name in names]
+    if len(times) != 1:
+        close = [name for name in names if re.search(r"time|stamp|^sec", name, re.IGNORECASE)]
+        which = f": `{shorten(close[0])}` looks like it" if close and not times else ""
+        raise TraceError(
+            "expected one time column, `t` (seconds) or `t_ns` (integer nanoseconds), found "
+            f"{'both' if times else listed}{which}: name {'one of them' if times else 'it'} with "
+            "--time COLUMN[:UNIT], in Python time=…"
+        )
+    return stamps_of(times[0])

@@ -28,8 +28,8 @@ from tests.rvmon.core.plan_reader import (
 import rvmon
 from rvmon.core import amalgamate, sections
 from rvmon.core.atoms import DEPTH, MOST_EVENTS, NOW, OPERATIONS, WINDOW, AtomOp, Code
-from rvmon.core.forms import Measure, Operator
 from rvmon.core.nodes import NodeOp
+from rvmon.core.obligations import Measure, Operator
 from rvmon.core.plan import pack
 from rvmon.core.sections import Packed, Section
 from rvmon.errors import RvmonError

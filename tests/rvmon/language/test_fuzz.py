@@ -13,7 +13,7 @@ from rvmon.analysis.diagnostic_codes import every_page
 from rvmon.diagnostics import render_concise, render_full, render_json
 from rvmon.errors import SpecError
 from rvmon.language.compile import compile_text
-from rvmon.language.print.formatter import format_text
+from rvmon.language.formatter import format_text
 
 ROOT = Path(__file__).parents[3]
 RULES = [page(code) for code in sorted(every_page()) if code.startswith("RV")]

@@ -5,8 +5,7 @@ import random
 import pytest
 from tests.rvmon.language.generate_text import HEAD, random_text, syntax_of
 
-from rvmon.language.print.formatter import format_text
-from rvmon.language.print.layout import pieces_of
+from rvmon.language.formatter import format_text, pieces_of
 from rvmon.language.syntax.parse import grammar
 
 

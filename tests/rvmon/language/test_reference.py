@@ -8,7 +8,7 @@ import pytest
 from rvmon.errors import SpecError
 from rvmon.language.checked.functions import FUNCTIONS
 from rvmon.language.compile import compile_text
-from rvmon.language.print.formatter import format_text
+from rvmon.language.formatter import format_text
 from rvmon.language.rules import MOST
 from rvmon.language.rules.properties import MOST_COMBINATIONS
 from rvmon.language.syntax.keywords import CLAUSE_WORDS, INFIX_WORDS, ITEM_WORDS, RESERVED

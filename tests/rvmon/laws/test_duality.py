@@ -38,7 +38,8 @@ from tests.tools.build import (
 from rvmon.language.checked.formula import Formula, Interval, UnaryOp
 from rvmon.language.checked.specification import CheckedSpec, EndPolicy, TimeModel
 from rvmon.language.print import format_formula
-from rvmon.testing.generate.formula import Shape, interval
+from rvmon.testing.generate.formula import interval
+from rvmon.testing.generate.numbers import Shape
 from rvmon.testing.generate.trace import TraceProfile
 from rvmon.testing.strategies import formulas, specs, traces
 

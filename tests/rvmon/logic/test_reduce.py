@@ -15,7 +15,7 @@ from rvmon.logic.lower import lower
 from rvmon.logic.reduce import reduce
 from rvmon.logic.state_formula import FALSE, UNKNOWN
 from rvmon.monitor.obligation_words import Words
-from rvmon.testing.generate.formula import Shape
+from rvmon.testing.generate.numbers import Shape
 from rvmon.testing.strategies import formulas
 
 

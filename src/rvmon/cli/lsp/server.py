@@ -20,7 +20,7 @@ from rvmon.cli.lsp.document import Document, Text
 from rvmon.cli.lsp.names import meanings
 from rvmon.diagnostics import Source, Span
 from rvmon.errors import SpecError
-from rvmon.language.print.formatter import format_text
+from rvmon.language.formatter import format_text
 from rvmon.language.syntax.expressions import Name
 from rvmon.language.syntax.parse import parse_expression
 from rvmon.recordings.starter.skeletons import name_text

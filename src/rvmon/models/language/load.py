@@ -1,15 +1,16 @@
-"""Models from files and texts."""
+"""Models from files and texts, or built in Python: what is added becomes lines of a `.ta` text."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from rvmon.diagnostics import Source
 from rvmon.models.language.elaborate import elaborate
 from rvmon.models.language.parse import parse_document
 from rvmon.models.language.uppaal_reader import read_uppaal
+from rvmon.models.network.expressions import LocationKind
 from rvmon.models.network.network import Network
 from rvmon.models.network.rules import model_error
 from rvmon.texts import cannot_read, text_of_file
@@ -53,3 +54,108 @@ def loads_network(
     document, warnings = read_uppaal(source)
     network = elaborate(document, constants)
     return replace(network, warnings=(*network.warnings, *warnings))
+
+
+@dataclass(slots=True)
+class AutomatonBuilder:
+    """An automaton in the making; `NetworkBuilder.automaton` makes one."""
+
+    lines: list[str]
+    initial: str = ""
+
+    def location(
+        self,
+        name: str,
+        *,
+        invariant: str = "",
+        kind: LocationKind = LocationKind.NORMAL,
+        initial: bool = False,
+    ) -> AutomatonBuilder:
+        """Add a location; the first one is initial unless another says so."""
+        prefix = "" if kind is LocationKind.NORMAL else f"{kind} "
+        self.lines.append(f"  {prefix}location {name}{_clause('invariant', invariant)}")
+        if initial or not self.initial:
+            self.initial = name
+        return self
+
+    def edge(
+        self,
+        source: str,
+        target: str,
+        *,
+        select: str = "",
+        guard: str = "",
+        sync: str = "",
+        update: str = "",
+        weight: float = 1.0,
+        label: str = "",
+    ) -> AutomatonBuilder:
+        """Add an edge; its weight is a share in (0, 1]."""
+        clauses = {"select": select, "when": guard, "on": sync, "do": update}
+        clauses |= {"weight": f"{weight}", "as": f'"{label}"' if label else ""}
+        written = "".join(_clause(word, text) for word, text in clauses.items())
+        self.lines.append(f"  edge {source} -> {target}{written}")
+        return self
+
+
+@dataclass(slots=True)
+class NetworkBuilder:
+    """A network in the making.
+
+    Args:
+        name: of the network.
+        title: for people.
+        unit: ticks of one unit of time, if recordings shall be held against it.
+
+    >>> net = NetworkBuilder("light").declare("clock x")
+    >>> lamp = net.automaton("Lamp").location("off").location("on", invariant="x <= 5")
+    >>> lamp = lamp.edge("off", "on", update="x = 0").edge("on", "off", guard="x >= 3")
+    >>> from rvmon.models.search.verify import verify
+    >>> verify(net.build(), "E<> Lamp.on and x == 5").holds
+    True
+    """
+
+    name: str
+    title: str = ""
+    unit: int | None = None
+    declarations: list[str] = field(default_factory=list)
+    automata: list[AutomatonBuilder] = field(default_factory=list)
+    queries: list[str] = field(default_factory=list)
+
+    def declare(self, text: str) -> NetworkBuilder:
+        """Add constants, clocks, variables, channels or types."""
+        self.declarations.append(text)
+        return self
+
+    def automaton(self, name: str, declarations: str = "") -> AutomatonBuilder:
+        """Add an automaton, with names of its own."""
+        self.automata.append(AutomatonBuilder([f"automaton {name} {{", f"  {declarations}"]))
+        return self.automata[-1]
+
+    def query(self, text: str, *, id: str = "", remark: str = "") -> NetworkBuilder:  # noqa: A002 - its name
+        """Add a query."""
+        named = " ".join(filter(None, ("query", id, f'"{remark}"' if remark else "")))
+        self.queries.append(f"{named}: {text}")
+        return self
+
+    @property
+    def text(self) -> str:
+        """The declarations added so far, as a `.ta` text."""
+        lines = [*self.declarations]
+        for builder in self.automata:
+            lines += [*builder.lines, f" {_clause('start', builder.initial)}", "}"]
+        return "\n".join([*lines, *self.queries])
+
+    def build(self) -> Network:
+        """The network.
+
+        Raises:
+            ModelError: with everything that is wrong with it, and where that stands in `text`.
+        """
+        made = loads_network(self.text, name=self.name)
+        return replace(made, name=self.name, title=self.title, unit=self.unit)
+
+
+def _clause(word: str, text: str) -> str:
+    """A clause of a line; nothing for an empty text."""
+    return f" {word} {text}" if text.strip() else ""

@@ -29,7 +29,8 @@ from rvmon.recordings.messages.file import MessageFile
 from rvmon.recordings.messages.first_messages import MOST, Looked
 from rvmon.recordings.messages.named_elements import Get, arrays_with_names
 from rvmon.recordings.messages.topic import Topic
-from rvmon.recordings.values import plain, shorten
+from rvmon.recordings.values import plain
+from rvmon.texts import shorten
 from rvmon.trace.schema import TURNS, Kind
 from rvmon.units import Unit, parse_unit
 

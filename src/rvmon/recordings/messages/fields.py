@@ -12,8 +12,8 @@ from typing import Any, assert_never
 from rvmon.errors import TraceError
 from rvmon.recordings.messages.named_elements import Get, by_names
 from rvmon.recordings.messages.topic import Topic
-from rvmon.recordings.values import plain, shorten
-from rvmon.texts import nearest
+from rvmon.recordings.values import plain
+from rvmon.texts import nearest, shorten
 from rvmon.trace.sample import calculated
 from rvmon.trace.schema import Applied, Constant, Elements, Field, Kind, Named, Step, Term
 

@@ -19,7 +19,8 @@ from rvmon.recordings.jsonl_rows import decoded
 from rvmon.recordings.messages.flatbuffer import FlatBuffers
 from rvmon.recordings.messages.ros import BagMessages, refuse_fewer, ros_topic
 from rvmon.recordings.messages.topic import Message, Messages, Topic, by_name, errors_as_damage
-from rvmon.recordings.values import first_line, shorten
+from rvmon.recordings.values import first_line
+from rvmon.texts import shorten
 from rvmon.trace.schema import Kind
 
 _MAGIC = b"\x89MCAP0\r\n"

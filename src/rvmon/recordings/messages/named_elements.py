@@ -8,7 +8,7 @@ from typing import Any
 
 from rvmon.errors import TraceError
 from rvmon.recordings.messages.topic import Topic
-from rvmon.recordings.values import shorten
+from rvmon.texts import shorten
 from rvmon.trace.schema import Field, Kind, Named, Step
 
 Get = Callable[[Any], Any]

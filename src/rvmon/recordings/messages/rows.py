@@ -11,7 +11,8 @@ from rvmon.errors import TraceError
 from rvmon.recordings.messages.fields import getter, stamp_getter
 from rvmon.recordings.messages.topic import Messages, Topic
 from rvmon.recordings.rows import Row
-from rvmon.recordings.values import DESCRIPTION, as_declared, fits, plain, shorten
+from rvmon.recordings.values import DESCRIPTION, as_declared, fits, plain
+from rvmon.texts import shorten
 from rvmon.trace.sample import Health, HealthKind, Value
 from rvmon.trace.schema import Bound, Clock, Gaps, Kind, Schema, Term
 from rvmon.trace.time import format_ticks, whole_ticks

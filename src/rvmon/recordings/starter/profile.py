@@ -16,7 +16,6 @@ import numpy as np
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.recordings.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells, NotPlainError
 from rvmon.recordings.cells import cells_of_values
-from rvmon.recordings.column_names import DEFAULT_COLUMNS, stamps_among
 from rvmon.recordings.csv_dialect import name_and_unit, opened_as_csv
 from rvmon.recordings.csv_rows import split_lines
 from rvmon.recordings.formats import MESSAGE_FORMS
@@ -35,7 +34,7 @@ from rvmon.recordings.starter.observed_values import (
 from rvmon.recordings.values import as_declared
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Gaps, Kind, Schema, Stamps
-from rvmon.trace.stamps import stamps_of
+from rvmon.trace.stamps import DEFAULT_COLUMNS, stamps_among, stamps_of
 from rvmon.units import UnknownUnitError, parse_unit
 
 if TYPE_CHECKING:

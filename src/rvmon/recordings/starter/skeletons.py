@@ -11,8 +11,8 @@ from itertools import islice
 from pathlib import Path
 
 from rvmon.language.checked.formula import Literal, SignalAtom
+from rvmon.language.formatter import format_text
 from rvmon.language.print import format_duration, format_formula, format_numeric
-from rvmon.language.print.formatter import format_text
 from rvmon.recordings.starter.observed_values import Column, Profile, reasons_of
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND

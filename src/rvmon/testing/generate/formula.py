@@ -29,12 +29,13 @@ from rvmon.testing.generate import (
     pick,
     weighted,
 )
-from rvmon.testing.generate.numbers import Shape as Shape
-from rvmon.testing.generate.numbers import arithmetic as arithmetic
-from rvmon.testing.generate.numbers import comparison as comparison
-from rvmon.testing.generate.numbers import field_value as field_value
-from rvmon.testing.generate.numbers import probe
-from rvmon.testing.generate.windows import amount, late
+from rvmon.testing.generate.numbers import (
+    Shape,
+    amount,
+    comparison,
+    late,
+    probe,
+)
 
 
 def interval(rng: Rng, shape: Shape, *, from_zero: bool = False) -> Interval:

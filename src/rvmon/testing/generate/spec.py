@@ -47,15 +47,8 @@ from rvmon.testing.generate import (
     signals,
     weighted,
 )
-from rvmon.testing.generate.formula import (
-    Shape,
-    arithmetic,
-    comparison,
-    consequent,
-    formula,
-    past_unary,
-)
-from rvmon.testing.generate.windows import number_of_windows
+from rvmon.testing.generate.formula import consequent, formula, past_unary
+from rvmon.testing.generate.numbers import Shape, arithmetic, comparison, number_of_windows
 from rvmon.testing.law.attempts import is_pulse
 
 

@@ -11,8 +11,8 @@ import rvmon
 from rvmon.errors import SpecError
 from rvmon.language.checked.names_read import names_of_spec
 from rvmon.language.compile import compile_text
+from rvmon.language.formatter import format_text
 from rvmon.language.print import format_formula
-from rvmon.language.print.formatter import format_text
 from rvmon.language.syntax.keywords import CLAUSE_WORDS, INFIX_WORDS, RESERVED
 from rvmon.language.syntax.parse import GRAMMAR_OPTIONS, grammar_text
 

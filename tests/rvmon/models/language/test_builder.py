@@ -3,8 +3,7 @@
 import pytest
 
 from rvmon.errors import ModelError
-from rvmon.models.language.builder import NetworkBuilder
-from rvmon.models.language.load import loads_network
+from rvmon.models.language.load import NetworkBuilder, loads_network
 from rvmon.models.network.expressions import LocationKind
 from rvmon.models.search.verify import verify
 

@@ -9,7 +9,7 @@ from rvmon.errors import ModelError
 from rvmon.models.conform import conform
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import loads_network
-from rvmon.models.requirements.observe import observe
+from rvmon.models.requirement_check import observe
 from rvmon.models.runs.statistics import sample, trajectories
 from rvmon.models.search.extremes import extremes
 from rvmon.models.search.suite import Criterion, build_suite

@@ -11,7 +11,7 @@ import rvmon
 from rvmon.errors import ModelError
 from rvmon.models.language.load import loads_network
 from rvmon.models.network.evaluate import evaluator
-from rvmon.models.requirements.observe import observe
+from rvmon.models.requirement_check import observe
 from rvmon.models.runs.exact_times import (
     InvalidRunError,
     Rules,

@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from rvmon.recordings.clipping.piece import Copied, Piece
+from rvmon.recordings.clip_piece import Copied, Piece
 from rvmon.recordings.messages.fields import stamp_getter
 from rvmon.recordings.messages.file import open_messages
 from rvmon.recordings.messages.mcap import mcap_errors

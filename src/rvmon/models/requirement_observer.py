@@ -30,7 +30,7 @@ from rvmon.models.network.expressions import (
 )
 from rvmon.models.network.guards import either, together
 from rvmon.models.network.network import Network
-from rvmon.models.requirements.propositions import (
+from rvmon.models.requirement_propositions import (
     Ages,
     Edge,
     Labelling,

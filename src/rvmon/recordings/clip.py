@@ -8,7 +8,7 @@ from typing import Any
 
 from rvmon.errors import RvmonError, TraceError, writing
 from rvmon.files import beside
-from rvmon.recordings.clipping.piece import Copied, Piece, stamp_number, stamp_text
+from rvmon.recordings.clip_piece import Copied, Piece, stamp_number, stamp_text
 from rvmon.recordings.csv_rows import Layout
 from rvmon.recordings.formats import FORMATS, MESSAGE_FORMATS
 from rvmon.recordings.parquet import (
@@ -99,12 +99,12 @@ def clip(path: str, piece: Piece, out: str) -> Copied:
 def _written(path: str, piece: Piece, out: Path) -> Copied:
     form = format_of(path)
     if form in MESSAGE_FORMATS.values():
-        from rvmon.recordings.clipping.messages import clip_messages
+        from rvmon.recordings.clip_messages import clip_messages
 
         return clip_messages(path, form, piece, out)
     if form == "parquet":
         return clip_parquet(local_path(path), piece, out)
-    from rvmon.recordings.clipping.piece import clip_text
+    from rvmon.recordings.clip_piece import clip_text
 
     return clip_text(path, piece, out, is_csv=form == "csv")
 

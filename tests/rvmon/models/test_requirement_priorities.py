@@ -4,7 +4,7 @@ import pytest
 
 import rvmon
 from rvmon.models.language.load import loads_network
-from rvmon.models.requirements.observe import observe
+from rvmon.models.requirement_check import observe
 from rvmon.models.runs.exact_times import InvalidRunError, Rules
 
 MODEL = """

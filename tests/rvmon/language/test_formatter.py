@@ -4,7 +4,7 @@ import pytest
 
 from rvmon.errors import SpecError
 from rvmon.language.compile import compile_text
-from rvmon.language.print.formatter import format_text
+from rvmon.language.formatter import format_text
 
 EXAMPLE = """# Head
 

@@ -35,8 +35,8 @@ from rvmon.models.network.network import Network, check_clocks
 from rvmon.models.network.refine import finer
 from rvmon.models.network.rules import model_error
 from rvmon.models.network.scope import PlacedSymbol
-from rvmon.models.requirements.observer import Observed
-from rvmon.models.requirements.propositions import NotExpressibleError
+from rvmon.models.requirement_observer import Observed
+from rvmon.models.requirement_propositions import NotExpressibleError
 from rvmon.models.runs.moves import check_start
 from rvmon.models.runs.run import Run
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Statistics, Watch

@@ -1,1 +1,0 @@
-"""Requirements of a specification, checked on all runs of a network."""

@@ -1,1 +1,0 @@
-"""Pieces of recordings, in the recording's own format."""
