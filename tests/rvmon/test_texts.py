@@ -28,6 +28,7 @@ def test_what_prints_or_was_shown_stays():
         assert shown(shown(name)) == shown(name)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.integers(1, 10**9), st.data())
 def test_nought_and_hundred_are_exact(whole, data):
@@ -38,6 +39,7 @@ def test_nought_and_hundred_are_exact(whole, data):
     assert (percent_text(part, whole) == "100 %") == (part == whole)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.integers(1, 10**6), st.data())
 def test_a_percentage_is_close(whole, data):

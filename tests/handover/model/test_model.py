@@ -46,6 +46,7 @@ def test_release_comes_within_ten_units_and_no_less(network):
     assert shows(network, outcome)
 
 
+@pytest.mark.slow
 def test_the_hands_distance_is_not_expressible(network):
     """R5 speaks of a distance in space, which the network does not have."""
     with pytest.raises(ModelError, match="no name `hand_distance`"):

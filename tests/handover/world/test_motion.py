@@ -11,6 +11,7 @@ from handover.world.motion import DOWN, evaluate, grip_point, joints_for, min_je
 numbers = st.floats(-2, 2)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(numbers, numbers, numbers, st.floats(0.2, 3))
 def test_path_meets_its_ends(start: float, speed: float, goal: float, duration: float) -> None:

@@ -94,6 +94,7 @@ def test_what_cannot_be_hit_stands_apart(door, capsys):
     assert lines[at + 1] == "gaze: yes 3 hits by 2 tests, first calm-1 at 1 s"
 
 
+@pytest.mark.slow
 def test_ucis_is_as_its_schema_has_it(door, tmp_path, capsys):
     ucis = pytest.importorskip("ucis")
     etree = pytest.importorskip("lxml.etree")

@@ -47,6 +47,7 @@ def written(tmp_path, bag, capsys):
     return " ".join(made.read_text().split())
 
 
+@pytest.mark.slow
 def test_joints_go_by_their_names_and_what_is_always_true_is_no_event(tmp_path, capsys):
     """With units where messages say them; also where a message has only some of the joints."""
     text = written(tmp_path, write_ros1(tmp_path / "a.bag", [*arm()], TYPES), capsys)

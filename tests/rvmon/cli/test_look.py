@@ -136,6 +136,7 @@ def test_every_command_says_that_a_path_does_not_exist(tmp_path, monkeypatch, sa
     assert " + " not in told
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("odd", ["word", "1" * 100_000 + "x", "1.5\n2.5"])
 def test_a_column_is_looked_at_to_its_last_cell(odd, tmp_path, says):
     rows = "".join(f"{t},{t / 7},{t % 3}\n" for t in range(20_000))

@@ -84,7 +84,7 @@ def test_a_column_that_a_coverpoint_reads(files, says):
     assert main(["run", "arm.rv", "few.csv", "--allow-missing"]) == 1
 
 
-@pytest.mark.parametrize("jobs", ["1", "2"])
+@pytest.mark.parametrize("jobs", ["1", pytest.param("2", marks=pytest.mark.slow)])
 def test_the_database(files, jobs):
     command = ["run", "arm.rv", "calm.csv", "wild.csv", "--coverage", "c.db", "--jobs", jobs]
     assert main(command) == 1

@@ -60,6 +60,7 @@ def test_verdicts_are_written_also_of_what_breaks_off(folder, capsys):
     assert not (folder / "v.csv.unfinished").exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("resume", [True, False])
 def test_a_run_that_was_ended_goes_on(folder, capsys, says, monkeypatch, resume):
     words = ["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]
@@ -75,6 +76,7 @@ def test_a_run_that_was_ended_goes_on(folder, capsys, says, monkeypatch, resume)
     assert (folder / "v.csv").read_text() == table
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("changed", "kept"), [("a.log", "1 of 2 recordings"), ("car.dbc", "")])
 def test_what_has_changed_is_judged_again(folder, says, monkeypatch, changed, kept):
     """Also where size and time are the same, and where only what says what it holds is another."""

@@ -91,6 +91,7 @@ def test_a_reason_says_from_when_on_it_knows():
     assert last.reason.endswith("it had not been true since 6.000000001 s")  # of the run
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["", "time sampled\n", "time sampled every 1 s\n"])
 def test_a_reason_never_denies_what_was(time):
     """Nothing had "never" been true that was, nor since an instant behind which it was."""

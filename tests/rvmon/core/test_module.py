@@ -72,6 +72,7 @@ def closer(*given: object, **named: object) -> list[rvmon.Attempt]:
     raise LookupError(given, named)
 
 
+@pytest.mark.slow
 def test_samples_of_all_kinds_most_of_them_wrong():
     rng = random.Random(1)
     odd: list[Any] = [None, float("nan"), 7, 1 << 61, 1 << 70, "red", "none", {"k": None}, {}]

@@ -54,6 +54,7 @@ def test_values_of_another_type_are_refused(name, value):
         spec.evaluate(trace, allow_missing=True)
 
 
+@pytest.mark.slow
 def test_a_signal_is_not_born_by_nan():
     """What passed before all that it speaks of had a value is inconclusive."""
     declared = "time sampled\nsignal p, q : bool\nsignal x, y : real"

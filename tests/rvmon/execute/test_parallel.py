@@ -87,6 +87,7 @@ def test_slow_and_quick_tasks_keep_their_order(jobs):
     assert list(execute(enumerate(tasks), lambda: slept, jobs=jobs)) == numbers
 
 
+@pytest.mark.slow
 @JOBS
 def test_work_begins_once_in_each_process(tmp_path, jobs):
     def begin():
@@ -100,6 +101,7 @@ def test_work_begins_once_in_each_process(tmp_path, jobs):
     assert 1 <= len(begun) <= jobs
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_each_task_can_have_a_process_of_its_own(jobs):
     """Nothing that one leaves behind is there for the next; what was lost is replaced."""
@@ -177,6 +179,7 @@ def test_tasks_without_end_are_taken_as_they_are_needed():
     assert next(done, None) is None
 
 
+@pytest.mark.slow
 def test_two_executions_at_a_time_do_not_disturb_each_other():
     one, other = (execute(range(50), doing(str), jobs=2) for _ in range(2))
     pairs = [*islice(zip(one, other, strict=True), 20)]

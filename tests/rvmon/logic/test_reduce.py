@@ -109,6 +109,7 @@ def test_a_reduced_automaton_decides_the_same(data, steps):
         assert rows(small) <= rows(original)
 
 
+@pytest.mark.slow
 @settings(max_examples=30, deadline=None)
 @given(formula=formulas(Shape(mixed=False)))
 def test_what_people_are_told_stays(formula):

@@ -110,6 +110,7 @@ def test_a_stream_of_arrays_is_a_sequence():
     assert stream[-1] == list(stream)[-1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize("until", [None, 1200.5])
 def test_a_recording_is_judged_and_measured_alike_by_columns_and_by_rows(time, until, tmp_path):

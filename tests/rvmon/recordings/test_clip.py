@@ -117,6 +117,7 @@ def messages(path):
         ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap", "b.mcap", "c.mcap"])
 def test_messages_are_copied_byte_for_byte(tmp_path, name):
     sent = sent_at_random(random.Random(1), 300)
@@ -131,6 +132,7 @@ def test_messages_are_copied_byte_for_byte(tmp_path, name):
     assert [one for one in piece if one not in carried] == whole
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap"])
 def test_what_serves_late_subscribers_is_brought_along(tmp_path, name):
     import numpy as np

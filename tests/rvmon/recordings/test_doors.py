@@ -207,6 +207,7 @@ def test_sources_of_a_stream_can_be_named():
         judged(spec, pairs, sources=["z"])
 
 
+@pytest.mark.slow
 def test_all_that_read_recordings_are_told_alike(tmp_path):
     spec = rvmon.loads("spec s\nsignal x : real\nsignal y : real\nrequirement R1\n  always x < 3\n")
     (tmp_path / "a.csv").write_text("ms,X\n0,1\n1,nan\n2,-1\n3,2\n")

@@ -37,6 +37,7 @@ def spec():
     return rvmon.loads(SPEC)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", PACKERS)
 @pytest.mark.parametrize(("name", "text"), [("a.csv", CSV), ("a.jsonl", LINES)])
 def test_a_packed_recording_gives_the_records_of_the_plain_one(tmp_path, spec, name, text, ending):
@@ -146,6 +147,7 @@ def server(tmp_path):
         thread.join()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["a.csv", "a.csv.gz", "a.jsonl", "a.parquet"])
 def test_an_address_is_read_as_the_file_there(tmp_path, spec, server, name):
     path = tmp_path / name
@@ -163,12 +165,14 @@ def test_an_address_is_read_as_the_file_there(tmp_path, spec, server, name):
     assert list(spec.recording(f"{server}/{name}")) == list(spec.recording(path))
 
 
+@pytest.mark.slow
 def test_what_is_put_at_an_address_anew_is_read_anew(tmp_path, spec, server):
     for text, verdict in ((CSV, "F"), ("t,width\n0,1\n1,1\n", "P")):
         (tmp_path / "a.csv").write_text(text)
         assert spec.evaluate(f"{server}/a.csv").verdicts["D1"] == verdict
 
 
+@pytest.mark.slow
 def test_an_address_without_a_recording_does_not_stop_the_others(tmp_path, server, capsys):
     """It is a bad recording, as a file that is missing."""
     (tmp_path / "door.rv").write_text(SPEC)

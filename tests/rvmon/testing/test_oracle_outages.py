@@ -95,6 +95,7 @@ def test_what_looks_at_two_updates(judge: Any) -> None:
         assert [judge(at(t, grew), **told)[0][2] for t in range(1, 8)] == list("PIIIIIP")
 
 
+@pytest.mark.slow
 def test_an_age_is_an_interval(judge: Any) -> None:
     """It lies between the time since the outage and that since the last update read."""
     told = {"p": "1", "lost": [("p", 4, 6)], "end": 11}

@@ -180,6 +180,7 @@ def test_unknown_items_are_refused(dials):
         assert fix in str(caught.value)
 
 
+@pytest.mark.slow
 def test_lines_go_by_their_text(dials, code):
     """The statement of a line and the branches to it; a block or one branch can be named."""
     campaign = replace(dials(), code=cdv.Code(cdv.blocks_of(code)))
@@ -224,6 +225,7 @@ def model(query=lambda *_: "", **more):
     )
 
 
+@pytest.mark.slow
 def test_runs_of_the_model_become_tests_and_its_answers_proofs(dials):
     def query(group, item):
         if group == "both":

@@ -131,6 +131,7 @@ def test_a_test_that_is_cut_short_says_nothing():
     assert (one.runs, one.holds, one.margin) == (50, None, MARGIN)
 
 
+@pytest.mark.slow
 def test_expected_values():
     """The mean of 3 in 0.3 and 1 in 0.7 of the runs is 1.6; the least value is the first."""
     one = sampled("E[<=2; 2000](max: n)")
@@ -163,6 +164,7 @@ def test_statistics_are_no_decision():
         verify(loads_network(COIN), "Pr[<=2](<> A.heads)")
 
 
+@pytest.mark.slow
 def test_the_command_says_figures(tmp_path, capsys):
     model = tmp_path / "coin.ta"
     model.write_text(COIN, "utf-8")
@@ -236,6 +238,7 @@ automaton A {
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("query", "share"),
     [

@@ -27,6 +27,7 @@ def items_of(network, run, criterion):
     return {"locations": places, "edges": edges, "edge-pairs": pairs}[criterion]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("criterion", list(Criterion))
 @pytest.mark.parametrize("model", ["fischer", "train_gate", "bridge"])
 def test_what_is_said_to_be_covered_is(model, criterion):

@@ -96,6 +96,7 @@ def test_turns_of_a_quaternion(tmp_path, turn, value):
     assert main(["run", spec, bag, "--binding", str(binding)]) == 0
 
 
+@pytest.mark.slow
 def test_a_unit_that_a_comment_says_counts_in_a_binding(tmp_path, capsys):
     """Milliamps that are declared amps are an error, unless the binding says what they are."""
     spec, bag = write(ROBOTS["create3"], tmp_path)
@@ -119,6 +120,7 @@ BO_ 256 Drive: 8 ECU
 """
 
 
+@pytest.mark.slow
 def test_a_scale_that_nobody_knows_is_left_open(tmp_path, capsys):
     """A unit that is none here, a whole number that is too large for the plain unit."""
     pytest.importorskip("cantools")

@@ -4,6 +4,8 @@ import pytest
 
 import rvmon
 
+pytestmark = pytest.mark.slow  # cantools loads all that python-can can read
+
 DATABASE = """VERSION ""
 BS_:
 BU_: ECU

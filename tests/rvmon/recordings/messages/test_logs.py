@@ -20,6 +20,8 @@ from rvmon.cli import main
 from rvmon.errors import TraceError
 from rvmon.recordings.recording import messages_of
 
+pytestmark = pytest.mark.slow  # most of it is to load what reads these logs
+
 FORMS = {
     "a.ulg": (write_ulog, "drive", "pyulog"),
     "a.bin": (write_dataflash, "DRV", "pymavlink"),

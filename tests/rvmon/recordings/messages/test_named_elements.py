@@ -92,6 +92,7 @@ def bound(tmp_path):
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", ["bag", "mcap"])
 def test_names_lead_to_elements(tmp_path, bound, form):
     """Wherever they stand; a message without one of that name says nothing of it."""
