@@ -2,6 +2,7 @@
 
 import io
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -121,6 +122,8 @@ def test_a_full_disk_is_told_and_takes_nothing_away(files, kilobytes):
     """Whether there was room for none, or some of the tables; `cover` tells what is left of it."""
     resource = pytest.importorskip("resource")
     words = ["run", "arm.rv", "calm.csv", "--coverage", "c.db"]
+    # Else modules are kept cut off, for all who import them.
+    environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}
 
     def limited():
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
@@ -128,7 +131,9 @@ def test_a_full_disk_is_told_and_takes_nothing_away(files, kilobytes):
 
     def told():
         line = [sys.executable, "-m", "rvmon", *words]
-        done = subprocess.run(line, preexec_fn=limited, capture_output=True, text=True)  # noqa: S603
+        done = subprocess.run(  # noqa: S603 - our words
+            line, preexec_fn=limited, env=environment, capture_output=True, text=True
+        )
         assert done.returncode == 2
         return done.stderr
 
