@@ -252,8 +252,8 @@ class Spec:
 
         given, asked = self._reading(**reading), requirements_asked(self.checked, only)
         begin = partial(partial, evaluate_apart, self._compiled, reading=given, only=asked)
-        found = execute(traces, begin, jobs=jobs, what="trace")
-        return (with_plan(report, self.planned(asked)) for report in found)
+        reports = execute(traces, begin, jobs=jobs, what="trace")
+        return (with_plan(report, self.planned(asked)) for report in reports)
 
     def planned(self, only: Iterable[str] | None = None) -> PlannedCore:
         """The packed plan of some requirements, with its tables; made once."""

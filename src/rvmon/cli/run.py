@@ -201,9 +201,9 @@ def _judged(
     shards = _shards(arguments)
     begun = None
     if arguments.out is None or (len(traces) == 1 and not (arguments.shard or shards)):
-        found = list(judge(spec, traces, options))  # there is nothing to go on with
+        recordings = list(judge(spec, traces, options))  # there is nothing to go on with
         if case is not None:
-            found = [as_known(judged, case) for judged in found]
+            recordings = [as_known(judged, case) for judged in recordings]
     else:
         from rvmon.cli.resume import unfinished
 
@@ -222,14 +222,14 @@ def _judged(
         left = [trace for trace in traces if trace not in begun.known]
         if begun.known:
             warn(f"{len(traces) - len(left)} of {len(traces)} recordings were evaluated before")
-        found = list(begun.judged(traces, judge(spec, left, options)))
+        recordings = list(begun.judged(traces, judge(spec, left, options)))
     if arguments.out is not None:
-        write_results(arguments.out, spec, found)
+        write_results(arguments.out, spec, recordings)
     if arguments.shard is not None:
         warn(f"{arguments.out}: --resume in the place of --shard joins what lies beside it")
     elif begun is not None:
         begun.remove()
-    return found
+    return recordings
 
 
 def _share(arguments: argparse.Namespace, traces: Sequence[str]) -> list[str]:
@@ -350,10 +350,10 @@ def _before_lines(attempts: Sequence[Attempt]) -> Iterator[str]:
     by_requirement: dict[str, list[Attempt]] = {}
     for attempt in attempts:
         by_requirement.setdefault(attempt.requirement, []).append(attempt)
-    for name, own in by_requirement.items():
-        counts = Counter(attempt.verdict.value for attempt in own)
+    for name, decided in by_requirement.items():
+        counts = Counter(attempt.verdict.value for attempt in decided)
         line = f"{name}  {', '.join(f'{count} {letter}' for letter, count in counts.items())}"
-        failed = next((attempt for attempt in own if attempt.verdict is Verdict.FAIL), None)
+        failed = next((attempt for attempt in decided if attempt.verdict is Verdict.FAIL), None)
         if failed is not None and failed.decided is not None:
             line += (
                 f"; attempt {failed.number} failed at "

@@ -72,10 +72,10 @@ class Reasons:
         ages = zip(self.cuts(location), anchors, strict=True)
         # In one region no window opens or is over, so ages within it have the same cause.
         key = (location, letter, verdict, *[bisect_right(cuts, t - at) for cuts, at in ages])
-        found = self._found.get(key)
-        if found is None:
-            found = self._found[key] = self._find(before, letter, verdict, t)
-        return found
+        finding = self._found.get(key)
+        if finding is None:
+            finding = self._found[key] = self._find(before, letter, verdict, t)
+        return finding
 
     def _find(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
         residual = self._residuals[before[0]]

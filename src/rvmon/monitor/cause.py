@@ -89,13 +89,13 @@ class CauseFinder:
         clauses = sorted(residual, key=len)
         if self.verdict:
             clauses = [c for c in clauses if all(decided(atom) for atom in c)]
-        found = sorted(
+        candidates = sorted(
             {atom for clause in clauses for atom in clause if decided(atom)},
             # The oldest clock first: the obligation that stood longest. Ids make the choice the
             # same in each run.
             key=lambda atom: (atom[1], atom[0].id),
         )
-        for node, clock in found:
+        for node, clock in candidates:
             cause = self._of_atom(node, clock)
             if cause is not None:
                 return cause
@@ -282,24 +282,24 @@ def rendered(
     """
     return "".join(
         [
-            one if type(one) is str else _filled(one, decided, start, triggered, flow)
-            for one in sentence
+            part if type(part) is str else _filled(part, decided, start, triggered, flow)
+            for part in sentence
         ]
     )
 
 
-def _filled(one: Part, decided: int, start: int, triggered: int, flow: TruthValues) -> str:
+def _filled(part: Part, decided: int, start: int, triggered: int, flow: TruthValues) -> str:
     """A part of a sentence, for one decision; arguments as of `rendered`."""
     origin = flow.origin
-    match one:
+    match part:
         case str():
-            return one
+            return part
         case Place(base=base):
-            ticks = one.ticks(decided, start)
+            ticks = part.ticks(decided, start)
             return format_ticks(ticks if base is Base.AGE else ticks - origin)
         case Turned(proposition=proposition, seen=seen):
             since = flow.since(proposition)
-            was_so = flow.at_trigger.get(one.text) == (TRUE if seen == "true" else FALSE)
+            was_so = flow.at_trigger.get(part.text) == (TRUE if seen == "true" else FALSE)
             verb = "became" if start < since == decided and not was_so else "was"
             long = f" (since {format_instant(since, origin)})" if since < decided else ""
             return f"{verb} {seen} at {format_instant(decided, origin)}{long}"
@@ -315,8 +315,8 @@ def _filled(one: Part, decided: int, start: int, triggered: int, flow: TruthValu
                 return f"it had never {verb} before"
             if last == decided:
                 return f"it came at {format_instant(last, origin)}, too late"
-            if flow.gap == 1 and one.lasting:
+            if flow.gap == 1 and part.lasting:
                 return f"it had {verb} until {format_instant(last + 1, origin)}"
             return f"it had last {verb} at {format_instant(last, origin)}"
         case _:
-            assert_never(one)
+            assert_never(part)

@@ -200,14 +200,14 @@ class CompiledRequirement:
     @cached_property
     def single_payloads(self) -> frozenset[str]:
         """The events of which it can judge one payload at an instant only."""
-        own = self.requirement.for_each
+        each = self.requirement.for_each
         read = {
             event
             for state, _ in self.leaves
             if isinstance(state.leaf, Compare)
             for event in events_of(state.leaf.left, state.leaf.right)
         }
-        return frozenset(read) - frozenset([own.value.event] if own else [])
+        return frozenset(read) - frozenset([each.value.event] if each else [])
 
     @cached_property
     def words(self) -> Words:
@@ -222,7 +222,7 @@ def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirem
         RvmonError: one cannot be monitored; the message says which one and why.
     """
     factory, shapes = Factory(), Shapes()
-    made = {}
+    compiled = {}
     for rank, (name, requirement) in enumerate(checked.requirements.items()):
         lowered = partial(lower, requirement, factory, checked.period, sampled=checked.gap is None)
         try:
@@ -234,5 +234,5 @@ def compiled_requirements(checked: CheckedSpec) -> Mapping[str, CompiledRequirem
                 f"{place}{name} cannot be monitored: {error}. Move what lies ahead behind `then`"
             ) from None
         given = (rank, checked, requirement, obligation, factory, shapes)
-        made[name] = CompiledRequirement(*given, measured=partial(lowered, measured=True))
-    return made
+        compiled[name] = CompiledRequirement(*given, measured=partial(lowered, measured=True))
+    return compiled

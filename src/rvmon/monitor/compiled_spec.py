@@ -108,13 +108,13 @@ class Place:
         try:
             key, names, data = body.split(b"\n", 2)
             single, readers = json.loads(names)
-            found = Kept(data, frozenset(single), {n: tuple(ids) for n, ids in readers.items()})
+            kept = Kept(data, frozenset(single), {n: tuple(ids) for n, ids in readers.items()})
         except (ValueError, TypeError, AttributeError, RecursionError):
             return None
-        return found if key == self._key.encode() else None
+        return kept if key == self._key.encode() else None
 
-    def write(self, made: Kept) -> None:
+    def write(self, kept: Kept) -> None:
         """Write the entry; a failure is ignored, as the plan can be made again."""
         if self._path is not None:
-            names = json.dumps([sorted(made.single), made.readers])
-            keep(self._path, b"\n".join([self._key.encode(), names.encode(), made.data]))
+            names = json.dumps([sorted(kept.single), kept.readers])
+            keep(self._path, b"\n".join([self._key.encode(), names.encode(), kept.data]))

@@ -211,23 +211,24 @@ class _Positions:
         self._arrays = [np.empty(0, MARGIN[name]) for name in _COLUMNS]
         self._count = 0
 
-    def add(self, found: NDArray[Any], expected: int) -> None:
+    def add(self, margins: NDArray[Any], expected: int) -> None:
         """Add some; about so many are to be expected in all."""
-        count = self._count + len(found)
+        count = self._count + len(margins)
         if count > len(self._arrays[0]):
             self._enlarge(max(expected, count + count // 8))
-        for own, name in zip(self._arrays, _COLUMNS, strict=True):
-            own[self._count : count] = found[name]
+        for array, name in zip(self._arrays, _COLUMNS, strict=True):
+            array[self._count : count] = margins[name]
         self._count = count
 
     def _enlarge(self, room: int) -> None:
-        for place, own in enumerate(self._arrays):
-            self._arrays[place] = np.empty(room, own.dtype)  # pages that nobody fills cost nothing
-            self._arrays[place][: self._count] = own[: self._count]
+        for place, array in enumerate(self._arrays):
+            # Pages that nobody fills cost nothing.
+            self._arrays[place] = np.empty(room, array.dtype)
+            self._arrays[place][: self._count] = array[: self._count]
 
     def stream(self) -> Stream:
         """All of them."""
-        return Stream(*(own[: self._count] for own in self._arrays))
+        return Stream(*(array[: self._count] for array in self._arrays))
 
 
 class RecordedMargins:
@@ -248,9 +249,9 @@ class RecordedMargins:
         """Make ready for the positions of so many more rows."""
         self._expected += rows
 
-    def add(self, found: bytes) -> None:
+    def add(self, figures: bytes) -> None:
         """Add figures, given as bytes of dtype `MARGIN`."""
-        margins = np.frombuffer(found, MARGIN)
+        margins = np.frombuffer(figures, MARGIN)
         of_position = margins["of_position"] == 1
         if not of_position.all():
             self._add_attempts(margins[~of_position])
@@ -258,8 +259,8 @@ class RecordedMargins:
         several = len(self._ids) > 1
         numbers = np.unique(margins["requirement"]).tolist() if several else [0]
         for number in numbers if len(margins) else ():
-            own = margins[margins["requirement"] == number] if several else margins
-            self._positions.setdefault(number, _Positions()).add(own, self._expected)
+            of_requirement = margins[margins["requirement"] == number] if several else margins
+            self._positions.setdefault(number, _Positions()).add(of_requirement, self._expected)
 
     def _add_attempts(self, margins: NDArray[Any]) -> None:
         for _, low, high, kept, requirement, number, in_doubt, _ in margins.tolist():

@@ -113,9 +113,9 @@ def earlier(
         better: the same for the optimistic run.
         cannot_pass: whether the attempt can no longer pass.
     """
-    found = [worse[0]] if worse is not None and worse[1] and not cannot_pass else []
-    found += [better[0]] if better is not None and not better[1] else []
-    return min(found, default=None)
+    instants = [worse[0]] if worse is not None and worse[1] and not cannot_pass else []
+    instants += [better[0]] if better is not None and not better[1] else []
+    return min(instants, default=None)
 
 
 def still_required(required: str, end: int | None, origin: int) -> str:
@@ -129,8 +129,8 @@ def unborn_of(
 ) -> tuple[Outage, ...]:
     """The names that have had no value so far, except those that `doubt` mentions already."""
     named = set() if doubt is None else {outage.name for outage in doubt.outages}
-    found = (outages[name] for name in sorted(set(names) & outages.keys() - named))
-    return tuple(outage for outage in found if outage.why is HealthKind.MISSING)
+    missing = (outages[name] for name in sorted(set(names) & outages.keys() - named))
+    return tuple(outage for outage in missing if outage.why is HealthKind.MISSING)
 
 
 def unborn(outages: Sequence[Outage], end: int | None, origin: int) -> str:

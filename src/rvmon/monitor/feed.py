@@ -112,11 +112,11 @@ class Feed:
             self._intake.turn(turns)
 
     def _judge_all(self, settled: Sequence[Sample | Turn]) -> None:
-        for one in settled:
-            if isinstance(one, Turn):
-                self.losses.turn(one)
+        for entry in settled:
+            if isinstance(entry, Turn):
+                self.losses.turn(entry)
             else:
-                self._judge(one.t, one.values)
+                self._judge(entry.t, entry.values)
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
         if not self._core.judge(t, self._planned.plain(t, values), True):

@@ -81,36 +81,36 @@ class HealthLog:
             further: entries found elsewhere.
         """
         readers, names = planned.readers, list(planned.numbers)
-        found = [
+        entries = [
             Health(kind, shown, count, at, readers.get(name, ()))
             for (kind, shown, name), (count, at) in self._seen.items()
         ]
         for name, ids in readers.items():
             if name in absent:
-                found.append(Health(HealthKind.ABSENT, name, 1, None, ids))
+                entries.append(Health(HealthKind.ABSENT, name, 1, None, ids))
             elif name in first and self.began is not None and self.began != first[name]:
                 at = first[name]
                 since = "no value"
                 if at is not None:
                     since = f"first value at {format_instant(at, self.began)}"
-                found.append(Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since))
+                entries.append(Health(HealthKind.MISSING, name, 1, self.began, ids, remark=since))
         for number, count, at in run.stale():
             ids = readers.get(names[number], ())
-            found.append(Health(HealthKind.STALE, names[number], count, at, ids))
+            entries.append(Health(HealthKind.STALE, names[number], count, at, ids))
         for health in further:
             ids = health.requirements or readers.get(health.name, ())
-            found.append(replace(health, requirements=ids))
-        return tuple(sorted(found, key=lambda entry: (entry.name, entry.kind)))
+            entries.append(replace(health, requirements=ids))
+        return tuple(sorted(entries, key=lambda entry: (entry.name, entry.kind)))
 
 
 def of_intake(intake: Intake) -> list[Health]:
     """Entries about samples held back: conflicting values, and samples judged early."""
-    found = intake.conflicts.health()
+    entries = intake.conflicts.health()
     if intake.crowded is not None:
         count, first = intake.crowded
         early = f"evaluated before the delay was over: {MOST_HELD:,} samples were waiting"
-        found.append(Health(HealthKind.LATE, "buffer", count, first, remark=early))
-    return found
+        entries.append(Health(HealthKind.LATE, "buffer", count, first, remark=early))
+    return entries
 
 
 class Findings:
@@ -173,8 +173,8 @@ def health_of_run(
     names = [(name, name) for name in planned.numbers]
     names += [(f"{event}.{field}", event) for event, field in planned.packed.fields]
     first: dict[str, int | None] = {}
-    for (shown, name), found in zip(names, iter_unpack("=5q", run.arrivals()), strict=True):
-        came, none_count, none_first, nan_count, nan_first = found
+    for (shown, name), arrivals in zip(names, iter_unpack("=5q", run.arrivals()), strict=True):
+        came, none_count, none_first, nan_count, nan_first = arrivals
         if shown in planned.packed.signals:
             first[name] = None if came < -TIME_LIMIT else came
         log.add(HealthKind.NONE, shown, name, none_count, none_first)
@@ -264,19 +264,19 @@ class Losses:
         self._note(HealthKind.LATE, some, t, why)
         self._core.late(None if some is None else self._numbers(some), t)
 
-    def turn(self, one: Turn) -> None:
+    def turn(self, turn: Turn) -> None:
         """Apply a turn to the core; all samples before it must have been judged.
 
         Outages of a name may overlap: only the first beginning and the last end reach the core.
         """
-        was = {name for name in one.names if self._stretches[name]}
-        self._stretches.update(dict.fromkeys(one.names, 1 if one.lost else -1))
-        some = {name for name in one.names if bool(self._stretches[name]) is not (name in was)}
-        tell = self._core.lose if one.lost else self._core.found
+        was = {name for name in turn.names if self._stretches[name]}
+        self._stretches.update(dict.fromkeys(turn.names, 1 if turn.lost else -1))
+        some = {name for name in turn.names if bool(self._stretches[name]) is not (name in was)}
+        tell = self._core.lose if turn.lost else self._core.found
         if _UNREAD in some:
-            tell([], one.t)
+            tell([], turn.t)
         if numbers := self._numbers(some):
-            tell(numbers, one.t)
+            tell(numbers, turn.t)
 
     def _stretch(self, names: set[str], since: int, until: int | None) -> Sequence[Turn]:
         """The turns of an outage, cut to what is not judged yet; what is judged counts as late."""
@@ -288,8 +288,8 @@ class Losses:
             self._core.late(self._numbers(names), since)
             if until is not None and until + delay < floor:
                 return ()
-        made = [Turn(max(since, floor), tuple(sorted(names)), lost=True)]
-        return made if until is None else [*made, *self._end(names, until)]
+        turns = [Turn(max(since, floor), tuple(sorted(names)), lost=True)]
+        return turns if until is None else [*turns, *self._end(names, until)]
 
     def _end(self, names: set[str], at: int) -> Sequence[Turn]:
         if not names:
@@ -343,7 +343,7 @@ class Losses:
             "lost": sorted(self._lost),
             "missed": sorted(self._missed),
             "stretches": +self._stretches,
-            "seen": [[*key, *found] for key, found in self._seen.items()],
+            "seen": [[*key, *entry] for key, entry in self._seen.items()],
         }
 
     def restore_state(self, state: Mapping[str, Any]) -> None:

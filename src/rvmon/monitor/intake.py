@@ -82,8 +82,8 @@ class Intake:
 
     def turn(self, turns: Sequence[Turn]) -> None:
         """Take turns at the floor or later; they are released in order with the samples."""
-        for one in turns:
-            self._hold(one.t, one)
+        for turn in turns:
+            self._hold(turn.t, turn)
 
     def _hold(self, t: int, what: Mapping[str, Value] | Turn) -> None:
         self._taken += 1
@@ -140,8 +140,8 @@ class Intake:
         """
         self.floor, self.crowded = _integer(state["floor"]), _counted(state["crowded"])
         self.newest = None if state["newest"] is None else _integer(state["newest"])
-        for name, found in state["conflicts"].items():
-            count, first = _counted(found) or (0, 0)
+        for name, pair in state["conflicts"].items():
+            count, first = _counted(pair) or (0, 0)
             self.conflicts.add(str(name), first, count)
         for t, place, values in state["held"]:
             self._hold_restored(whole_ticks(t), place, check(whole_ticks(t), values))
@@ -158,11 +158,11 @@ class Intake:
         return self.settle(TIME_LIMIT)
 
 
-def _counted(found: Any) -> tuple[int, int] | None:
+def _counted(pair: Any) -> tuple[int, int] | None:
     """A pair of count and first instant from JSON; `None` stays `None`."""
-    if found is None:
+    if pair is None:
         return None
-    count, first = found
+    count, first = pair
     return _integer(count), whole_ticks(first)
 
 

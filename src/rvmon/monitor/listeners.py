@@ -154,9 +154,9 @@ class OneCall:
         """
         # KeyboardInterrupt is raised at function call boundaries. So the turn is taken by a single
         # call (`setdefault`) inside the `try`, and checked and released without any call.
-        own = object()
+        token = object()
         try:
-            if self._turn.setdefault(None, own) is not own or not self._core.hold(True):
+            if self._turn.setdefault(None, token) is not token or not self._core.hold(True):
                 raise overlap()
             try:
                 self.note_times()
@@ -174,7 +174,7 @@ class OneCall:
             self._harmless = None
             # Not `get`: another thread may release its turn between two lookups.
             try:
-                if self._turn[None] is own:
+                if self._turn[None] is token:
                     del self._turn[None]
             except KeyError:
                 pass

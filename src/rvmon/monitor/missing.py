@@ -32,15 +32,15 @@ def names_read(
         only: ids of the requirements; `None`: all.
         coverage: whether to include the coverpoints and crosses.
     """
-    found: dict[str, list[str]] = {}
+    readers: dict[str, list[str]] = {}
     for name, requirement in spec.requirements.items():
         if only is None or name in only:
             for read in sorted({*names_of_requirement(requirement)}):
-                found.setdefault(read, []).append(name)
+                readers.setdefault(read, []).append(name)
     for name, reads in names_of_coverage(spec) if coverage else ():
         for read in sorted({*reads}):
-            found.setdefault(read, []).append(name)
-    return {read: tuple(names) for read, names in found.items()}
+            readers.setdefault(read, []).append(name)
+    return {read: tuple(names) for read, names in readers.items()}
 
 
 def expect_names(
@@ -111,7 +111,7 @@ def _listed(
     maps = [shlex.quote(f"{name}={column or what.upper()}") for name, column in close.items()]
     which, them = (f"which {what} it is", "it") if len(maps) == 1 else ("which they are", "them")
     bind = ", or `rvmon init DATA --for SPEC` in a file" if what == "topic" else ""
-    yield f"  name {which}: {' '.join(f'--map {one}' for one in maps)}, in Python columns=…{bind}"
+    yield f"  name {which}: {' '.join(f'--map {pair}' for pair in maps)}, in Python columns=…{bind}"
     yield (
         f"  or leave what reads {them} inconclusive: --allow-missing={','.join(close)}, "
         "in Python allow_missing=…"

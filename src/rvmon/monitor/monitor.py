@@ -226,14 +226,14 @@ class Monitor(FedMonitor[Attempt]):
         if self._report is not None:
             return self._report.verdicts
         so_far = (Verdict.FAIL, Verdict.PASS)
-        found = {}
+        verdicts = {}
         for name, (*counts, determined) in zip(
             self._planned.packed.ids, self._core.counts(), strict=True
         ):
             seen = [verdict for verdict in so_far if counts[VERDICTS.index(verdict)]]
             # A requirement that passed was triggered; then only late input leaves it undetermined.
-            found[name] = fold(seen, complete=bool(determined or not seen))
-        return found if self._one_call.interrupted is None else not_passed(found)
+            verdicts[name] = fold(seen, complete=bool(determined or not seen))
+        return verdicts if self._one_call.interrupted is None else not_passed(verdicts)
 
     def snapshot(self) -> bytes:
         """The state of the run as bytes, from which `Spec.restore` makes an equivalent monitor.
@@ -289,17 +289,17 @@ class Monitor(FedMonitor[Attempt]):
         return self._one_call(self._open_counts, most)
 
     def _open_counts(self, most: int | None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
-        found = () if self._report is not None else self._core.open()
+        attempts = () if self._report is not None else self._core.open()
         if most is None:
-            return Counter(attempt.requirement for attempt in found), found
+            return Counter(attempt.requirement for attempt in attempts), attempts
         oldest: dict[object, Attempt] = {}
-        for attempt in found:
+        for attempt in attempts:
             # One instance with thousands of attempts must not crowd out the others.
             each = self._planned.instance(attempt)
             if each not in oldest or attempt.triggered < oldest[each].triggered:
                 oldest[each] = attempt
         chosen = nsmallest(most, oldest.values(), key=lambda attempt: attempt.triggered)
-        return Counter(attempt.requirement for attempt in found), chosen
+        return Counter(attempt.requirement for attempt in attempts), chosen
 
     @property
     def next_due(self) -> int | None:
@@ -310,8 +310,8 @@ class Monitor(FedMonitor[Attempt]):
         reached = self._one_call.reached
         if reached is None or self._report is not None:
             return None
-        found = self._core.next_due()
-        return None if found is None else max(found, reached + 1)
+        due = self._core.next_due()
+        return None if due is None else max(due, reached + 1)
 
 
 def build_monitor(

@@ -59,16 +59,16 @@ class _PendingText:
             case And(args=args):
                 return all_of([self.at(arg, position) for arg in args])
             case Or(args=args):
-                found = dict.fromkeys(self.at(arg, position) for arg in args)
-                return ", or ".join(part for part in found if part)
+                parts = dict.fromkeys(self.at(arg, position) for arg in args)
+                return ", or ".join(part for part in parts if part)
             case Next() | Previous() | Since():
                 return f"`{self.words.text(core)}`"
             case Until(high=high):
                 return self._own(core, "by", position, high)
             case Release(right=right, low=low, high=high):
                 spawned = self._first_pending(right, position - (-low // self.gap))
-                own = self._own(core, "until", position, high)
-                return all_of([spawned, own])
+                until = self._own(core, "until", position, high)
+                return all_of([spawned, until])
             case _:
                 assert_never(core)
 
@@ -163,16 +163,16 @@ class NetworkCauseFinder:
             low, high = max(left, first), min(right, last)
             if low > high:
                 continue
-            found, rest = low, 0
+            position, rest = low, 0
             if slope:
-                found, rest = divmod(self.at - at, slope)
+                position, rest = divmod(self.at - at, slope)
             elif at != self.at:
                 continue
             elif low > -FAR:
-                found = positions.following(low)
-            is_met = low <= found <= min(high, positions.last) and not rest
-            if is_met and found == positions.following(found):
-                return found if found > -FAR else None
+                position = positions.following(low)
+            is_met = low <= position <= min(high, positions.last) and not rest
+            if is_met and position == positions.following(position):
+                return position if position > -FAR else None
         return None
 
 
@@ -206,18 +206,18 @@ def explained_by_network(
         triggered: the instant of the trigger, ticks.
         flow: truth values of the propositions at the decision, with their history.
     """
-    found = None if network is None else network.truth(position)
-    if network is None or found is None:
+    truth = None if network is None else network.truth(position)
+    if network is None or truth is None:
         return Explanation()
     core, integer = compiled.obligation.required, position // network.positions.gap
-    cause = NetworkCauseFinder(network, verdict, found[1]).of(core, integer)
+    cause = NetworkCauseFinder(network, verdict, truth[1]).of(core, integer)
     if cause is None:
         return Explanation("there was no obligation" if verdict else "it can never hold")
     words, start = compiled.words, cause.start
     blame: Blame | None = None if verdict else words.blame(cause, t, start, flow)
     deadline = None
     if t > position:  # else there was no obligation yet
-        last = _settled_before(network, integer, found[1])
+        last = _settled_before(network, integer, truth[1])
         # A window that closed before the attempt began is no deadline of it.
         if last is not None and last >= position - 1:
             deadline = last
@@ -255,10 +255,10 @@ class NetworkRuns:
             token = better if value else worse
             if network is None or token[0] != WAITING:
                 continue
-            found = network.truth(token[1][0])
-            if found is not None and found[0] is value and value:
+            truth = network.truth(token[1][0])
+            if truth is not None and truth[0] is value and value:
                 better = (ended, token[1])
-            elif found is not None and found[0] is value:
+            elif truth is not None and truth[0] is value:
                 worse = (ended, token[1])
         return worse, better
 

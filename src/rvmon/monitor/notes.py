@@ -200,7 +200,7 @@ class NoteExplainer:
             why, forecast = self._open(attempt, note)
             if attempt.decided is not None:
                 seen = dict(truths_shown(self._texts, self._truth_values(note, attempt.origin)[0]))
-        found = {
+        fields = {
             "reason": why.reason,
             "deadline": why.deadline,
             "at_trigger": dict(truths_shown(self._texts, self._then(note))),
@@ -209,8 +209,8 @@ class NoteExplainer:
             "blame": why.blame,
         }
         if forecast is None or name == "forecast":
-            return found | {"forecast": forecast and forecast()}
-        return found | {"_details": lambda *_: {"forecast": forecast()}}
+            return fields | {"forecast": forecast and forecast()}
+        return fields | {"_details": lambda *_: {"forecast": forecast()}}
 
     def _decided(self, attempt: Attempt, note: Note) -> tuple[Explanation, tuple[int, ...]]:
         leaves, values, flow = self._truth_values(note, attempt.origin)
@@ -241,12 +241,12 @@ class NoteExplainer:
     ) -> tuple[Explanation, Callable[[], Verdict | None] | None]:
         """Why an attempt is open, and what gives its forecast; none once it was settled."""
         now = note.at
-        judged, one = self._undecided(attempt, note)
-        why = why_open(judged, one, now, _instant(note.words[5]))
+        judged, token = self._undecided(attempt, note)
+        why = why_open(judged, token, now, _instant(note.words[5]))
         if attempt.decision is not Decision.OPEN:
             policy = self.compiled.requirement.at_end
             return why._replace(reason=why_settled(attempt.decision, policy)), None
-        return why, partial(forecast_of, judged, one, now)
+        return why, partial(forecast_of, judged, token, now)
 
     def _undecided(self, attempt: Attempt, note: Note) -> tuple[Judged, Undecided]:
         words, flags, at = note.words, note.flags, _HEAD + self._leaf_words
@@ -300,7 +300,7 @@ class NoteExplainer:
         """Decode the outages of a note."""
         spec = self.compiled.spec
         names = (*spec.signals, *spec.events)
-        found = []
+        outages = []
         for at in range(1, 1 + 3 * words[0], 3):
             name = names[words[at] & 0xFFFFFFFF]
             why = _WHY[words[at] >> 32]
@@ -308,8 +308,8 @@ class NoteExplainer:
             signal = spec.signals.get(name)
             bound = 0 if signal is None else signal.stale_after or 0
             since = 0 if words[at + 1] == NEVER else words[at + 1]
-            found.append(Outage(name, why, since, until, bound))
-        return found
+            outages.append(Outage(name, why, since, until, bound))
+        return outages
 
     def _doubt(
         self, origin: int, position: int, leaves: Sequence[int], outages: Sequence[Outage]
@@ -323,14 +323,14 @@ class NoteExplainer:
             if outage.why in (HealthKind.MISSING, HealthKind.ABSENT) or outage.since <= position
             if outage.until is None or outage.until > position
         }
-        found: dict[str, Outage] = {}
+        unknown: dict[str, Outage] = {}
         texts = []
         for names, text, truth in zip(self._reads, self._texts, leaves, strict=True):
             if truth == UNKNOWN:
-                own = {name: lost[name] for name in sorted(names & lost.keys())}
-                found |= own
-                texts += [] if own else [text]
-        return Doubt(origin, position, tuple(found.values()), tuple(texts))
+                outages_of_text = {name: lost[name] for name in sorted(names & lost.keys())}
+                unknown |= outages_of_text
+                texts += [] if outages_of_text else [text]
+        return Doubt(origin, position, tuple(unknown.values()), tuple(texts))
 
     @cached_property
     def _reads(self) -> Sequence[frozenset[str]]:
@@ -365,12 +365,12 @@ class NotesReader:
         chosen = self._compiled.chosen(self._ids)
         parts = [[compiled for compiled in chosen if not _is_apart(compiled)]]
         parts += [[compiled] for compiled in chosen if _is_apart(compiled)]
-        found: dict[str, Sequence[NoteExplainer]] = {}
+        by_requirement: dict[str, Sequence[NoteExplainer]] = {}
         for part in parts:
             judges = [*part, *(beside for compiled in part for beside in _doubt_judges(compiled))]
             explainers = [NoteExplainer(judge, gap) for judge in judges]
-            found |= {compiled.requirement.id: explainers for compiled in part}
-        return found
+            by_requirement |= {compiled.requirement.id: explainers for compiled in part}
+        return by_requirement
 
     def details(self, attempt: Attempt, note: Note, name: str) -> Mapping[str, Any]:
         """See `NoteExplainer.details`."""

@@ -113,10 +113,10 @@ class Words:
 
     def text(self, node: Core) -> str:
         """A node in the language."""
-        found = self._texts.get(node)
-        if found is None:
-            found = self._texts[node] = format_formula(self.formula(node) or self._consequent)
-        return found
+        text = self._texts.get(node)
+        if text is None:
+            text = self._texts[node] = format_formula(self.formula(node) or self._consequent)
+        return text
 
     def window(self, node: Until | Release) -> tuple[int, int | None]:
         """The window of a node in ticks after its start; of an opened one, the original window."""
@@ -283,13 +283,13 @@ def settled_alone(residual: Residual, anchors: Sequence[int]) -> tuple[int, bool
         if clock != NO_CLOCK and isinstance(node, Until | Release) and node.high is not None
     }
     for last in sorted(ends):
-        found = value(after(residual, [last + 1 - anchor for anchor in anchors]))
-        if found != UNKNOWN:
-            return last, found == TRUE
+        truth = value(after(residual, [last + 1 - anchor for anchor in anchors]))
+        if truth != UNKNOWN:
+            return last, truth == TRUE
     return None
 
 
 def deadline(residual: Residual, anchors: Sequence[int]) -> int | None:
     """The last instant before time alone decides a residual; see `Attempt.deadline`."""
-    found = settled_alone(residual, anchors)
-    return None if found is None else found[0]
+    settled = settled_alone(residual, anchors)
+    return None if settled is None else settled[0]

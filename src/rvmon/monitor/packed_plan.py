@@ -38,7 +38,7 @@ class CapturedValues:
     """Decodes the captured values of attempts."""
 
     def __init__(self, spec: CheckedSpec, ids: Sequence[str], labels: Mapping[str, int]) -> None:
-        self._kinds = [_kinds(spec, spec.requirements[one]) for one in ids]
+        self._kinds = [_kinds(spec, spec.requirements[id_]) for id_ in ids]
         self._labels = {number: label for label, number in labels.items()}
 
     def of(self, requirement: int, numbers: Sequence[float | None]) -> dict[str, Scalar]:
@@ -48,10 +48,10 @@ class CapturedValues:
             requirement: the number of its requirement.
             numbers: the captured numbers in order, `None` if unknown; surplus ones are ignored.
         """
-        own = self._kinds[requirement].items()
+        kinds = self._kinds[requirement].items()
         return {
             name: self._value(number, kind)
-            for (name, kind), number in zip(own, numbers, strict=False)
+            for (name, kind), number in zip(kinds, numbers, strict=False)
         }
 
     def _value(self, number: float | None, kind: Kind | None) -> Scalar:
@@ -64,23 +64,23 @@ class CapturedValues:
 
 def _kinds(spec: CheckedSpec, requirement: Requirement) -> dict[str, Kind | None]:
     """By name, the kind of each captured value; `None` for a number, which carries its own kind."""
-    found: dict[str, Kind | None] = {}
+    kinds: dict[str, Kind | None] = {}
     each = requirement.for_each
     if each is not None:
-        found[each.name] = _kind(spec, each.value, found)
+        kinds[each.name] = _kind(spec, each.value, kinds)
     for capture in requirement.captures:
-        found[capture.name] = _kind(spec, capture.value, found)
-    return found
+        kinds[capture.name] = _kind(spec, capture.value, kinds)
+    return kinds
 
 
-def _kind(spec: CheckedSpec, value: Numeric, found: Mapping[str, Kind | None]) -> Kind | None:
+def _kind(spec: CheckedSpec, value: Numeric, kinds: Mapping[str, Kind | None]) -> Kind | None:
     match value:
         case SignalValue(name=name) | UpdateValue(function=UpdateFunction.PREV, name=name):
             return spec.signals[name].type.kind
         case FieldValue(event=event, field=field):
             return spec.events[event].fields[field].kind
         case Captured(name=name):
-            return found[name]
+            return kinds[name]
         case Literal(value=str()):
             return Kind.LABEL
         case _:
@@ -192,10 +192,10 @@ class PlannedCore:
 
     def instance(self, attempt: Attempt) -> object:
         """A key of the instance an attempt belongs to; with `let`, each attempt is one."""
-        one = self._specification.checked.requirements[attempt.requirement]
-        if one.captures:
+        requirement = self._specification.checked.requirements[attempt.requirement]
+        if requirement.captures:
             return attempt.requirement, attempt.in_doubt, attempt.number
-        each = None if one.for_each is None else attempt.captured[one.for_each.name]
+        each = None if requirement.for_each is None else attempt.captured[requirement.for_each.name]
         return attempt.requirement, attempt.in_doubt, each
 
     def _details(self, attempt: Attempt, noted: Noted, name: str) -> Mapping[str, Any]:
@@ -228,21 +228,21 @@ class PlannedCore:
         values = {} if captured is None else self.captured.of(number, captured)
         if name == "captured":
             return {"captured": values}
-        found = self._reader.details(attempt, note(), name)
-        return {**found, "captured": values, "robustness": None, "_noted": None}
+        details = self._reader.details(attempt, note(), name)
+        return {**details, "captured": values, "robustness": None, "_noted": None}
 
     @property
     def _reader(self) -> NotesReader:
         """Explains attempts by their notes."""
         compiled = self._specification
         key = "notes reader", self.packed.data  # bytes cache their hash, a tuple of ids does not
-        found = compiled.forms.get(key)
-        if found is None:
+        reader = compiled.forms.get(key)
+        if reader is None:
             # Imported on use: most attempts are never explained.
             from rvmon.monitor.notes import NotesReader
 
-            found = compiled.forms[key] = NotesReader(compiled, self.packed.ids)
-        return cast("NotesReader", found)
+            reader = compiled.forms[key] = NotesReader(compiled, self.packed.ids)
+        return cast("NotesReader", reader)
 
 
 def planned_core(
@@ -267,19 +267,19 @@ def planned_core(
     ids = tuple(
         requirement for requirement in spec.requirements if only is None or requirement in only
     )
-    how = ids, tuple(one for one in ids if one in traced), measured
+    how = ids, tuple(id_ for id_ in ids if id_ in traced), measured
     key = "core", *how
-    found = compiled.forms.get(key)
-    if not isinstance(found, PlannedCore):
+    planned = compiled.forms.get(key)
+    if not isinstance(planned, PlannedCore):
         place = Place(spec, *how) if compiled.is_kept else None
-        found = None if place is None else _checked(compiled, ids, place.read())
-        if found is None:
-            made = _made(compiled, *how)
-            found = planned_as(spec, ids, made, compiled)
+        planned = None if place is None else _checked(compiled, ids, place.read())
+        if planned is None:
+            kept = _made(compiled, *how)
+            planned = planned_as(spec, ids, kept, compiled)
             if place is not None:
-                place.write(made)
-        compiled.forms[key] = found
-    return found
+                place.write(kept)
+        compiled.forms[key] = planned
+    return planned
 
 
 def kept_of(plan: Plan, chosen: Sequence[CompiledRequirement]) -> Kept:
@@ -311,26 +311,26 @@ def _checked(
     if before is None:
         return None
     # The core checks bounds and the hash of a plan as it loads it: a damaged cache is made anew.
-    found = planned_as(compiled.checked, ids, before, compiled)
+    planned = planned_as(compiled.checked, ids, before, compiled)
     try:
-        found.monitor(frozenset())
+        planned.monitor(frozenset())
     except ValueError:
         return None
-    return found
+    return planned
 
 
 def planned_as(
-    spec: CheckedSpec, ids: tuple[str, ...], made: Kept, compiled: CompiledSpec | None = None
+    spec: CheckedSpec, ids: tuple[str, ...], kept: Kept, compiled: CompiledSpec | None = None
 ) -> PlannedCore:
     """A packed plan with its tables.
 
     Args:
         spec: declares the names.
         ids: the ids of its requirements.
-        made: the packed plan.
+        kept: the packed plan.
         compiled: the specification, if it has requirements.
     """
-    plan = packed(spec, ids, made.data)
+    plan = packed(spec, ids, kept.data)
 
     def labels(type_: Type) -> Mapping[str, int] | None:
         if type_.kind is not Kind.LABEL:
@@ -353,9 +353,9 @@ def planned_as(
         ),
         bytes(map(_KINDS.index, kinds)),
         # One byte serves both: events are never `ignoring`, signals never `single`.
-        bytes(name in made.single or name in ignoring for name in names),
-        made.single,
-        made.readers,
+        bytes(name in kept.single or name in ignoring for name in names),
+        kept.single,
+        kept.readers,
         compiled,
     )
 

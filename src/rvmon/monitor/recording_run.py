@@ -90,7 +90,7 @@ class RecordingRun:
             self._losses.lose(outage.names, outage.since, outage.until, outage.why)
             for outage in source.outages
         ]
-        turns = [(_turns_at(turn, own[0].t), turn) for own in stretches for turn in own]
+        turns = [(_turns_at(turn, stretch[0].t), turn) for stretch in stretches for turn in stretch]
         self._turns = [turn for _, turn in sorted(turns, key=lambda pair: pair[0])]
 
     @cached_property
@@ -175,34 +175,34 @@ class RecordingRun:
         if not self._expected >= {*batch.signals, *batch.events}:
             return None
         planned = self._planned
-        found: list[tuple[Any, ...]] = []
+        columns: list[tuple[Any, ...]] = []
         try:
             for name, cells in batch.signals.items():
                 number = planned.numbers[name]
                 kind = planned.packed.signals[name]
-                found.append((number, _cells(cells, kind, planned.words[number])))
+                columns.append((number, _cells(cells, kind, planned.words[number])))
             for name, event in batch.events.items():
                 says = np.ascontiguousarray(event.says)
-                found.append((planned.numbers[name], says, self._fields(name, event)))
+                columns.append((planned.numbers[name], says, self._fields(name, event)))
         except KeyError:
             return None
-        return tuple(found)
+        return tuple(columns)
 
     def _fields(self, event: str, occurrences: Occurrences) -> tuple[Any, ...] | None:
         """The fields of an event as columns; `None` if it has no column."""
         if not occurrences.fields:
             return None
-        found: list[tuple[Any, ...]] = []
+        columns: list[tuple[Any, ...]] = []
         for place, ((of, field), kind) in enumerate(self._planned.packed.fields.items()):
             if of == event:
                 cells = occurrences.fields.get(field)
                 words = self._planned.words[len(self._planned.numbers) + place]
                 if cells is None:
                     nothing = np.full(len(occurrences.says), NO_UPDATE, np.uint8)
-                    found.append((_LAYOUTS[kind], None, nothing))
+                    columns.append((_LAYOUTS[kind], None, nothing))
                 else:
-                    found.append(_cells(cells, kind, words))
-        return tuple(found)
+                    columns.append(_cells(cells, kind, words))
+        return tuple(columns)
 
     def finish(self) -> int | None:
         """End the run where the recording ends; returns the last instant of the trace, ticks."""
@@ -214,8 +214,8 @@ class RecordingRun:
         """End the run; returns its report."""
         origin, _, _ = self.core.times()
         end = self.finish()
-        found = () if self._findings is None else self._findings.found(self.core)
-        health = (*found, *self._losses.health())
+        findings = () if self._findings is None else self._findings.found(self.core)
+        health = (*findings, *self._losses.health())
         return report_of_run(self._planned, self.core, origin or 0, end, health)
 
 

@@ -120,18 +120,18 @@ class RecordedAttempts(LazyAttempts):
             record
         )
         values = None if captured < 0 else tuple(map(_number_of, numbers))
-        made = Attempt.__new__(Attempt)
-        made.requirement = self._planned.packed.ids[requirement]
-        made.number = number
-        made.triggered = triggered
-        made.decided = None if decision == _OPEN else decided
-        made.verdict = VERDICTS[verdict]
-        made.decision = DECISIONS[decision]
-        made.in_doubt = bool(in_doubt)
-        made.origin = self._origin
-        made._details = self._details
-        made._noted = values, note
-        return made
+        attempt = Attempt.__new__(Attempt)
+        attempt.requirement = self._planned.packed.ids[requirement]
+        attempt.number = number
+        attempt.triggered = triggered
+        attempt.decided = None if decision == _OPEN else decided
+        attempt.verdict = VERDICTS[verdict]
+        attempt.decision = DECISIONS[decision]
+        attempt.in_doubt = bool(in_doubt)
+        attempt.origin = self._origin
+        attempt._details = self._details
+        attempt._noted = values, note
+        return attempt
 
     def _details(
         self, attempt: Attempt, noted: tuple[Sequence[float | None] | None, int], name: str
@@ -166,12 +166,12 @@ def recorded(
         origin: the first instant of the run, ticks.
     """
     records, numbers, words, letters = raw
-    made = np.frombuffer(records, RECORD)
-    captured = np.frombuffer(numbers, NUMBER).reshape(len(made), -1 if len(made) else 0)
-    settled = made["decision"] != _OPEN
+    attempts = np.frombuffer(records, RECORD)
+    captured = np.frombuffer(numbers, NUMBER).reshape(len(attempts), -1 if len(attempts) else 0)
+    settled = attempts["decision"] != _OPEN
     if not settled.all():
-        made, captured = made[settled], captured[settled]
-    return RecordedAttempts(planned, made, captured, (words, letters), origin)
+        attempts, captured = attempts[settled], captured[settled]
+    return RecordedAttempts(planned, attempts, captured, (words, letters), origin)
 
 
 def with_plan(report: Report, planned: PlannedCore | None) -> Report:
@@ -182,10 +182,10 @@ def with_plan(report: Report, planned: PlannedCore | None) -> Report:
         planned: the plan; `None`: another process takes the report, and gives it its own. A plan
             may be larger than all else.
     """
-    own = report.attempts
-    if not isinstance(own, RecordedAttempts):
+    attempts = report.attempts
+    if not isinstance(attempts, RecordedAttempts):
         return report
-    return replace(report, attempts=own.with_plan(planned))
+    return replace(report, attempts=attempts.with_plan(planned))
 
 
 def report_of_run(
@@ -209,31 +209,32 @@ def report_of_run(
     ids = planned.packed.ids
     complete: dict[str, bool] = {}
     counts: dict[str, dict[Verdict, int]] = {}
-    for name, own in zip(ids, run.counts(), strict=True):
-        *_, is_complete = own
+    for name, of_requirement in zip(ids, run.counts(), strict=True):
+        *_, is_complete = of_requirement
         complete[name] = bool(is_complete)
-        counts[name] = {verdict: own[VERDICTS.index(verdict)] for verdict in _COUNTED}
+        counts[name] = {verdict: of_requirement[VERDICTS.index(verdict)] for verdict in _COUNTED}
     records, numbers, words, letters = run.records()
-    made = np.frombuffer(records, RECORD)
-    captured = np.frombuffer(numbers, NUMBER).reshape(len(made), -1 if len(made) else 0)
-    order = _order(made)
+    attempts = np.frombuffer(records, RECORD)
+    captured = np.frombuffer(numbers, NUMBER).reshape(len(attempts), -1 if len(attempts) else 0)
+    order = _order(attempts)
     return Report(
         verdicts={
             name: fold(
-                [verdict for verdict, count in own.items() if count], complete=complete[name]
+                [verdict for verdict, count in of_requirement.items() if count],
+                complete=complete[name],
             )
-            for name, own in counts.items()
+            for name, of_requirement in counts.items()
         },
         attempts=RecordedAttempts(
             planned,
-            made if order is None else made[order],
+            attempts if order is None else attempts[order],
             captured if order is None else captured[order],
             (words, letters),
             origin,
         ),
         counts=counts,
         health=health,
-        dropped=_dropped(ids, counts, made),
+        dropped=_dropped(ids, counts, attempts),
         origin=origin,
         end=end,
     )
@@ -243,7 +244,7 @@ def _dropped(
     ids: Sequence[str], counts: Mapping[str, Mapping[Verdict, int]], records: NDArray[Any]
 ) -> Mapping[str, Mapping[Verdict, int]]:
     """By requirement and verdict, the number of attempts that were counted but not kept."""
-    if sum(sum(own.values()) for own in counts.values()) == len(records):
+    if sum(sum(of_requirement.values()) for of_requirement in counts.values()) == len(records):
         return {}
     there = np.bincount(
         records["requirement"] * len(VERDICTS) + records["verdict"],
@@ -252,14 +253,14 @@ def _dropped(
     dropped = {
         name: {
             verdict: count - there[row, VERDICTS.index(verdict)].item()
-            for verdict, count in own.items()
+            for verdict, count in of_requirement.items()
         }
-        for row, (name, own) in enumerate(counts.items())
+        for row, (name, of_requirement) in enumerate(counts.items())
     }
     return {
-        name: {verdict: count for verdict, count in own.items() if count}
-        for name, own in dropped.items()
-        if any(own.values())
+        name: {verdict: count for verdict, count in of_requirement.items() if count}
+        for name, of_requirement in dropped.items()
+        if any(of_requirement.values())
     }
 
 

@@ -65,7 +65,7 @@ def _traced(compiled: CompiledRequirement) -> PlannedRule:
 
 def _stepped(rule: PlannedRule) -> PlannedRule:
     hidden, doubted = (
-        None if one is None else _stepped(one) for one in (rule.hidden, rule.doubted)
+        None if part is None else _stepped(part) for part in (rule.hidden, rule.doubted)
     )
     return replace(rule, hidden=hidden, doubted=doubted, stepped=True)
 

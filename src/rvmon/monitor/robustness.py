@@ -102,10 +102,10 @@ class Stream(Sequence[tuple[int, Robustness]]):
     def __getitem__(self, place: slice) -> Stream: ...
 
     def __getitem__(self, place: int | slice) -> tuple[int, Robustness] | Stream:
-        found = [one[place] for one in (self.times, self.low, self.high, self.kept)]
+        columns = [column[place] for column in (self.times, self.low, self.high, self.kept)]
         if isinstance(place, slice):
-            return Stream(*found)
-        t, *figures = (one.item() for one in found)
+            return Stream(*columns)
+        t, *figures = (column.item() for column in columns)
         return t, Robustness(*figures)
 
 
@@ -131,8 +131,8 @@ class Margins:
     def of(self, attempt: Attempt) -> Attempt:
         """An attempt with its robustness set."""
         figures = self.doubtful if attempt.in_doubt else self.attempts
-        found = figures.get((attempt.requirement, attempt.number))
-        return attempt if found is None else measured_attempt(attempt, found.of(attempt))
+        figure = figures.get((attempt.requirement, attempt.number))
+        return attempt if figure is None else measured_attempt(attempt, figure.of(attempt))
 
 
 class RobustnessMonitor(FedMonitor[Measured]):

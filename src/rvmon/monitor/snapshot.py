@@ -122,9 +122,9 @@ def _digest(planned: PlannedCore) -> str:
 def _document(data: bytes) -> Mapping[str, Any]:
     if not isinstance(data, bytes | bytearray | memoryview):
         raise SnapshotError(f"expected the bytes of a snapshot, found {type(data).__name__}")
-    head, found, body = bytes(data).partition(b"\n")
+    head, separator, body = bytes(data).partition(b"\n")
     kind, _, checksum = head.rpartition(b" ")
-    if kind != _KIND or not found:
+    if kind != _KIND or not separator:
         raise SnapshotError("these bytes are no snapshot of a monitor")
     if hashlib.sha256(body).hexdigest().encode() != checksum:
         raise SnapshotError("the snapshot is damaged: its checksum is not that of what it holds")
@@ -147,10 +147,10 @@ def _version() -> str:
 
 def digest_of(compiled: CompiledSpec) -> str:
     """`digest` of a compiled specification, computed once."""
-    found = compiled.forms.get("digest")
-    if not isinstance(found, str):
-        found = compiled.forms["digest"] = digest(compiled.checked)
-    return found
+    digest_ = compiled.forms.get("digest")
+    if not isinstance(digest_, str):
+        digest_ = compiled.forms["digest"] = digest(compiled.checked)
+    return digest_
 
 
 def digest(checked: CheckedSpec) -> str:

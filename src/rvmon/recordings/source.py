@@ -83,9 +83,9 @@ def pieces_up_to(pieces: Iterable[Batch | Sample], end: int) -> Iterator[Batch |
                 return
             yield piece
         else:
-            own = piece.up_to(end)
-            yield own
-            if len(own.times) < len(piece.times):
+            kept = piece.up_to(end)
+            yield kept
+            if len(kept.times) < len(piece.times):
                 return
 
 
@@ -157,7 +157,7 @@ def _of_columns_or_lines(
     from rvmon.recordings.tables import columns_by_name
 
     listed = trace if isinstance(trace, list | tuple) and trace else [None]
-    if all(isinstance(one, str | Path) for one in listed):
+    if all(isinstance(part, str | Path) for part in listed):
         trace = JOINT.join(map(str, listed))
     if isinstance(trace, str | Path):
         from rvmon.recordings.places import one_recording
@@ -168,7 +168,7 @@ def _of_columns_or_lines(
 
     if columns_by_name(listed[0]) is not None:
         tables = [
-            TableRecording(columns_by_name(one) or {}, schema, ordered=ordered) for one in listed
+            TableRecording(columns_by_name(part) or {}, schema, ordered=ordered) for part in listed
         ]
         for number, table in enumerate(tables, 1):
             table.path = f"table {number}"
@@ -234,18 +234,18 @@ class PairRecording:
 
 
 def _values(values: Mapping[str, Any], schema: Schema) -> dict[str, Any]:
-    found, gaps = {}, schema.gaps
+    declared, gaps = {}, schema.gaps
     for name, given in values.items():
         value = plain(given)
         if gaps and gaps.holds(value):
             continue
         if name in schema.events:
-            found[name] = _occurrence(value, schema.events[name], gaps)
+            declared[name] = _occurrence(value, schema.events[name], gaps)
         elif name in schema.signals:
-            found[name] = as_declared(value, schema.signals[name])
+            declared[name] = as_declared(value, schema.signals[name])
         else:
-            found[name] = value
-    return found
+            declared[name] = value
+    return declared
 
 
 def _occurrence(value: Any, fields: Mapping[str, Kind], gaps: Gaps) -> Any:
@@ -257,7 +257,7 @@ def _occurrence(value: Any, fields: Mapping[str, Kind], gaps: Gaps) -> Any:
             if not gaps.holds(scalar)
         }
     if isinstance(value, tuple | list):
-        return tuple(_occurrence(one, fields, gaps) for one in value)
+        return tuple(_occurrence(payload, fields, gaps) for payload in value)
     return as_declared(value, Kind.BOOL)
 
 
@@ -302,13 +302,13 @@ class HeldRecording(Sequence[Sample]):
             for part in _parts(piece, turns):
                 first = part.t if isinstance(part, Sample) else int(part.times[0])
                 while waiting and waiting[0].since <= first:
-                    one = waiting.popleft()
-                    own = names if one.names is None else one.names
-                    lasting.append((one.until, own))
-                    yield Sample(one.since, dict.fromkeys(own))
+                    loss = waiting.popleft()
+                    lost_names = names if loss.names is None else loss.names
+                    lasting.append((loss.until, lost_names))
+                    yield Sample(loss.since, dict.fromkeys(lost_names))
                 # What comes at the last instant counts behind it.
-                lasting = [(until, own) for until, own in lasting if first < until]
-                lost = {name for _, own in lasting for name in own}
+                lasting = [(until, lost_names) for until, lost_names in lasting if first < until]
+                lost = {name for _, lost_names in lasting for name in lost_names}
                 yield part.without(lost) if lost else part
 
 

@@ -104,12 +104,12 @@ class Attempt(Record):
         """Compute a lazy field, and others with it; `Record` calls it on the first access."""
         if not hasattr(self, "_details"):
             raise AttributeError("of this attempt nothing more is known")
-        for found, value in self._details(self, self._noted, name).items():
-            setattr(self, found, value)
+        for attribute, value in self._details(self, self._noted, name).items():
+            setattr(self, attribute, value)
 
     def __reduce__(self) -> tuple[type[Attempt], tuple[Any, ...]]:
         """Copies and pickles have all fields computed."""
-        return Attempt, tuple(getattr(self, one.name) for one in fields(self))
+        return Attempt, tuple(getattr(self, attribute.name) for attribute in fields(self))
 
     @property
     def name(self) -> str:
@@ -155,13 +155,13 @@ def measured_attempt(attempt: Attempt, robustness: float | None) -> Attempt:
     >>> measured_attempt(Attempt("R1", 1, 0, 5, Verdict.PASS, reason="`p`"), 0.5).robustness
     0.5
     """
-    made = Attempt.__new__(Attempt)
+    copy = Attempt.__new__(Attempt)
     for name in _EARLY:
-        setattr(made, name, getattr(attempt, name))
-    made.robustness = robustness
-    made._details = lambda _, noted, name: {name: getattr(noted, name)}
-    made._noted = attempt
-    return made
+        setattr(copy, name, getattr(attempt, name))
+    copy.robustness = robustness
+    copy._details = lambda _, noted, name: {name: getattr(noted, name)}
+    copy._noted = attempt
+    return copy
 
 
 _SHOWN = 3

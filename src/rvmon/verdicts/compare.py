@@ -117,14 +117,14 @@ def compare(before: Iterable[VerdictRow], after: Iterable[VerdictRow]) -> Compar
         only[1].extend(
             f"{verdict} in {name}" for verdict in now.verdicts if verdict not in was.verdicts
         )
-        for one in [verdict for verdict in was.verdicts if verdict in now.verdicts]:
-            found = _difference(name, one, was, now)
-            if found is not None:
-                differences.append(found)
+        for requirement in [verdict for verdict in was.verdicts if verdict in now.verdicts]:
+            change = _difference(name, requirement, was, now)
+            if change is not None:
+                differences.append(change)
                 continue
             same += 1
-            if fold(now.verdicts[one]) is Verdict.FAIL:
-                failing.setdefault(name, []).append(one)
+            if fold(now.verdicts[requirement]) is Verdict.FAIL:
+                failing.setdefault(name, []).append(requirement)
     order = list(Change)
     differences.sort(
         key=lambda difference: (

@@ -44,7 +44,7 @@ class KnownFailure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
             return False
         parts = PurePath(recording).parts
         ends = ["/".join(parts[start:]) for start in range(len(parts))]
-        return any(fnmatchcase(one, self.recording) for one in (recording, *ends))
+        return any(fnmatchcase(name, self.recording) for name in (recording, *ends))
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,10 +74,10 @@ class KnownFailures:
 
     def expected(self, report: Report) -> dict[str, str]:
         """The requirements whose failure in a recording would be accepted, with reason and day."""
-        found = ((name, self.accepting(report.trace, name)) for name in report.verdicts)
+        accepted = ((name, self.accepting(report.trace, name)) for name in report.verdicts)
         return {
             name: f"{failure.reason} (until {failure.until})"
-            for name, failure in found
+            for name, failure in accepted
             if failure is not None
         }
 
@@ -118,7 +118,7 @@ def read_known(path: str | Path, requirements: Collection[str]) -> list[KnownFai
         RvmonError: the file cannot be read, is malformed, or has an unknown requirement.
     """
     try:
-        found = msgspec.convert(tomllib.loads(Path(path).read_text("utf-8")), _File).known
+        failures = msgspec.convert(tomllib.loads(Path(path).read_text("utf-8")), _File).known
     except OSError as error:
         raise RvmonError(f"cannot read {path}: {error.strerror or error}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError, msgspec.ValidationError) as error:
@@ -126,8 +126,8 @@ def read_known(path: str | Path, requirements: Collection[str]) -> list[KnownFai
             f"{path}: {error}: a known failure is a table [[known]] with requirement, reason, "
             'until = 2030-01-31, and recording = "*.csv" if it is about some only'
         ) from None
-    for failure in found:
+    for failure in failures:
         if failure.requirement not in requirements:
             meant = did_you_mean(failure.requirement, list(requirements), "see `rvmon check`")
             raise RvmonError(f"{path}: no requirement `{failure.requirement}`: {meant}")
-    return found
+    return failures

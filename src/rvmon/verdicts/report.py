@@ -123,8 +123,8 @@ class Report:
         for attempt in self.attempts:
             yield attempt_row(self.trace, attempt)
         for name, verdict in self.verdicts.items():
-            found = [verdict for verdict, count in self.counts[name].items() if count]
-            if not found or fold(found) is not verdict:  # none, or there may have been others
+            verdicts = [verdict for verdict, count in self.counts[name].items() if count]
+            if not verdicts or fold(verdicts) is not verdict:  # none, or there may have been others
                 reason = self.misses.get(name, "")
                 yield VerdictRow(self.trace, name, verdict=verdict.value, reason=reason)
 
@@ -175,7 +175,7 @@ class Report:
         attempts: dict[str, list[object]] = {name: [] for name in self.verdicts}
         for attempt in self.attempts:
             attempts[attempt.requirement].append(packed(attempt))
-        found = {"goals": self.goals, "illegal": self.illegal, "coverage": self.coverage}
+        members = {"goals": self.goals, "illegal": self.illegal, "coverage": self.coverage}
         return encoded(
             {
                 "law": self.law,
@@ -192,19 +192,23 @@ class Report:
                     for name, verdict in self.verdicts.items()
                 },
                 "health": self.health,
-                **{name: some for name, some in found.items() if some},
+                **{name: some for name, some in members.items() if some},
             }
         )
 
     def _rest_of(self, requirement: str) -> dict[str, object]:
         """The JSON members of a requirement that follow its attempts."""
-        found = {
+        members = {
             "dropped": self.dropped,
             "nearest_miss": self.misses,
             "late": self.late,
             "values": self.values,
         }
-        rest = {name: own[requirement] for name, own in found.items() if own.get(requirement)}
+        rest = {
+            name: of_requirement[requirement]
+            for name, of_requirement in members.items()
+            if of_requirement.get(requirement)
+        }
         return {"counts": self.counts[requirement], **rest}
 
     @classmethod
@@ -286,7 +290,7 @@ def report_of(
         return (decided is None, decided or 0, place, attempt.in_doubt, attempt.number)
 
     ordered = tuple(sorted(attempts, key=order))
-    not_kept = {name: {**found} for name, found in (dropped or {}).items()}
+    not_kept = {name: {**counts} for name, counts in (dropped or {}).items()}
     by_requirement = {name: Counter(not_kept.get(name)) for name in requirements}
     for attempt in ordered:
         by_requirement[attempt.requirement][attempt.verdict] += 1

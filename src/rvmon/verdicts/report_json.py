@@ -90,8 +90,8 @@ def labels(requirement: Requirement | None) -> dict[str, object]:
     """A requirement's severity and tags, as far as it has them."""
     if requirement is None:
         return {}
-    found = {"severity": requirement.severity, "tags": requirement.tags}
-    return {name: value for name, value in found.items() if value}
+    members = {"severity": requirement.severity, "tags": requirement.tags}
+    return {name: value for name, value in members.items() if value}
 
 
 def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:

@@ -204,8 +204,8 @@ def _read_sqlite(path: str) -> Iterable[Iterable[Any]]:
 
 
 def _read_json(path: str) -> Iterator[Iterable[Any]]:
-    found = msgspec.json.decode(Path(path).read_bytes())
-    for report in found if isinstance(found, list) else [found]:
+    decoded = msgspec.json.decode(Path(path).read_bytes())
+    for report in decoded if isinstance(decoded, list) else [decoded]:
         if "error" in report:
             rows = broken_rows(report["trace"], report["error"], ())
         else:

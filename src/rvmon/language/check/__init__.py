@@ -65,10 +65,10 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
             requirements[name] = requirement
     check_unused(checker, spec)
     stated: list[Requirement | Cover] = [*requirements.values(), *goals.values()]
-    properties = {one.id: one.ctl for one in stated if one.ctl is not None}
+    properties = {part.id: part.ctl for part in stated if part.ctl is not None}
     for name, alone in spec.properties.items():
-        if found := checked_property(checker, name, alone.formula):
-            properties[name] = found
+        if property_ := checked_property(checker, name, alone.formula):
+            properties[name] = property_
     covers = {
         name: cover
         for name, syntax in spec.covers.items()
@@ -109,9 +109,9 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
     for name, declared in spec.declared.items():
         match declared:
             case DeclaredSignal():
-                found = _type(declared.type, findings)
-                if found is not None:
-                    type_, units[name] = found
+                type_and_unit = _type(declared.type, findings)
+                if type_and_unit is not None:
+                    type_, units[name] = type_and_unit
                     if declared.ignored is not None and type_.kind is not Kind.REAL:
                         findings.add(type_rules.ignored_nan(declared.ignored, str(type_.kind)))
                     signals[name] = Signal(
@@ -129,9 +129,9 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
                     if first is not None:
                         places = field.name.span, first.name.span
                         findings.add(name_rules.double(field.name.text, "field", *places))
-                    found = _type(field.type, findings)
-                    if found is not None:
-                        fields[field.name.text], units[f"{name}.{field.name.text}"] = found
+                    type_and_unit = _type(field.type, findings)
+                    if type_and_unit is not None:
+                        fields[field.name.text], units[f"{name}.{field.name.text}"] = type_and_unit
                 events[name] = Event(name, fields, declared.role, declared.name.span)
     time = spec.time.model if spec.time is not None else TimeModel.HELD
     return Table(time, signals, events, units, spec.declared, recursive, spec.doubtful)
@@ -171,12 +171,12 @@ def check_unused(checker: Checker, spec: ResolvedSpec) -> None:
 
 
 def _look_up(checker: Checker, item: DefineItem) -> None:
-    own = {parameter.text for parameter in item.parameters or ()}
+    parameters = {parameter.text for parameter in item.parameters or ()}
     table = checker.table
     for part in expressions_in(item.body):
-        if not isinstance(part, Name) or part.text in own | table.doubtful:
+        if not isinstance(part, Name) or part.text in parameters | table.doubtful:
             continue
         labels = {label for signal in table.signals.values() for label in signal.type.labels}
         if part.text not in labels and not checker.known(part.text, EVERYWHERE):
-            close = close_name(table, part.text, tuple(own))
+            close = close_name(table, part.text, tuple(parameters))
             checker.report(name_rules.unknown(part.span, part.text, close))
