@@ -250,6 +250,10 @@ CASES |= {
     )
 }
 
+CASES["a variance goes on along a curve while nothing is said"] = case_of(
+    "sampled every 2 ns", "always variance(x, 9 ns) <= 0.5", "0 x=3; 4 x=1; 20", 45
+)
+
 CASES |= {
     f"no window of the past holds what was before the trace, {time}": case_of(
         time, "upon start then historically[0 ns, 5 ns] once F[0 ns, 3 ns] q", "0 -q; 1; 2 q"

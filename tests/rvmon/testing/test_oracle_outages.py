@@ -28,6 +28,7 @@ from tests.tools.build import (
 
 from rvmon.language.checked.formula import Captured, Formula, UpdateFunction, UpdateValue
 from rvmon.language.checked.specification import Capture, EndPolicy, ForEach, TimeModel
+from rvmon.testing.law.word import Outage
 
 SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_4 = {"time": TimeModel.CLOCKED, "period": 4}
@@ -246,3 +247,8 @@ def test_what_was_learnt_of_a_value_is_no_news_in_the_next_outage(judge: Any) ->
     assert judge(required, **late) == ["12 F 12", "4 I"]
     told = {"x": ".0.0....2..02", "q": ".0....0", "p": ".0", "lost": [("q", 2, 3), ("q", 10, 12)]}
     assert judge(requirement(q, upon=compared(x, ">", 1)), **told) == ["8 F 8", "12 I"]
+
+
+def test_an_outage_takes_time() -> None:
+    with pytest.raises(ValueError, match="no time at all"):
+        Outage(frozenset(), 3, 2)

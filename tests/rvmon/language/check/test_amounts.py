@@ -100,6 +100,8 @@ def test_all_comparisons_are_made_of_a_few(text, printed):
         ("mean(last(5, x + v)) <= e.k", "`e.k` has a value only while its event occurs"),
         ("mean(last(5, x * d / 1 s)) <= 2", "does not read one signal or event alone"),
         ("integral(last(5, x)) <= 2 s", "`integral` is of a time, not of updates"),
+        ("share(last(9, a)) > 2 %", "`share` is of a time, not of updates"),
+        ("mean(2, 5 s) <= 2", "`mean` is of signals, or fields of an event"),
         ("mean(last(5, x), 5 s) <= 2", "`mean(last(5, x), 5 s)` has two windows"),
         ("count(e since trigger, 5 s) <= 2", "has two windows"),
     ],

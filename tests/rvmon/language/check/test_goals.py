@@ -74,6 +74,8 @@ def test_cover(checked):
     [
         ("coverpoint p = a {yes}", ["RV060"]),
         ("coverpoint p {yes: 3}", ["RV060"]),
+        ("coverpoint p {low: [0, 5)}", ["RV060"]),
+        ("coverpoint p {up: false => true}", ["RV060"]),
         ("coverpoint p = a {yes: F b}", ["RV060"]),
         ("coverpoint p = a {yes: true} upon F b", ["RV060"]),
         ("coverpoint p = a {yes: true} goal 0", ["RV060"]),

@@ -53,6 +53,7 @@ def test_what_is_owed(required, fix):
     [
         ("signal w : real [N m]", "parts of a unit are joined by `*` and `/`"),
         ("requirement R if asked then within 3 s released", "for `if` write `upon`"),
+        ("requirement R when asked then within 3 s released", "for `when` write `upon`"),
         ("requirement R upon asked, then released", "the consequent stands after `then`"),
         ('requirement "R" upon asked then released', "its name comes first"),
         ("signal x", "a signal has a type"),

@@ -159,6 +159,8 @@ A = "automaton A { location a start a } "
         ("int v " + A, "TA005"),
         ("int[0,1] v const int N = v " + A, "TA006"),
         ("int[0,1] v = 2 " + A, "TA007"),
+        ("int[3,1] v " + A, "TA007"),
+        ("const int N = 1, M = N[0] " + A, "TA004"),
         ("const int N[2] = {1, 2}, M = N[2] " + A, "TA007"),
         ("clock x, y automaton A { location a start a edge a -> a when x + y < 3 }", "TA008"),
         ("clock x automaton A { location a invariant x >= 1 start a }", "TA014"),

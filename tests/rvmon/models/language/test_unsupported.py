@@ -119,6 +119,7 @@ def test_constants_are_computed_and_copied():
         ("int f(int n) { return 1 / n; } const int N = f(0);", "TA007"),
         ("const int v[2] = {1, 2}; const int w[3] = v;", "TA004"),
         ("typedef struct { int a; } p; const int v[2] = {1, 2}; p w = v;", "TA004"),
+        ("typedef struct { int a; } p; p v[2]; const int N = v[1];", "TA004"),
     ],
 )
 def test_what_is_no_constant_is_refused(declared, code):
