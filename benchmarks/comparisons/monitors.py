@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
@@ -15,7 +15,7 @@ from benchmarks.comparisons.coverage import judge as judge_coverage
 from benchmarks.comparisons.long_traces import Long, judge_long
 from benchmarks.comparisons.unrolled import unrolled
 from tests.tools.compare import Key
-from tests.tools.differential import campaign, case_of, cases_of
+from tests.tools.differential import campaign, case_of, cases_of, shrunk_case
 from tests.tools.doors import content_of, whole
 from tests.tools.drive import Found as Gained
 from tests.tools.drive import Lost, Told, told
@@ -25,7 +25,6 @@ from tests.tools.judgement import Judgement
 from tests.tools.law import judge as oracle
 from tests.tools.ltl3 import Letter, Tableau
 from tests.tools.put_away import put_away
-from tests.tools.shrink import shrink
 from tests.tools.sound import is_spoken_of, narrowed, overturned
 
 from rvmon.errors import RvmonError
@@ -139,10 +138,23 @@ def _in_columns(case: Case) -> Case:
     return replace(case, actions=samples, names=frozenset(content.columns), outages=())
 
 
-def _robustness_differs(way: str, case: Case) -> list[str]:
+WAYS: Mapping[str, tuple[Callable[[Case], Figures], Callable[[Case], Case]]] = {
+    "samples": (by_samples, lambda case: case),
+    "arrays": (by_arrays, _in_columns),
+}
+"""How robustness is measured, and of which form of a case."""
+
+
+def _robustness_differs(
+    measured: tuple[Callable[[Case], Figures], Callable[[Case], Case]], case: Case
+) -> list[str]:
     """How the figures of a way depart from the oracle's."""
+    figures, form = measured
+    case = form(case)
+    if not case.samples:
+        return []
     try:
-        found = by_samples(case) if way == "samples" else by_arrays(case)
+        found = figures(case)
     except Exception as error:  # noqa: BLE001 - whatever it raises is a finding
         return [f"raised {type(error).__name__}: {error}"]
     judgement = Judgement(case)
@@ -158,23 +170,16 @@ def judge_robustness(seed: int, profile: Profile, traces: TraceProfile, numbers:
     """Robustness of each attempt."""
     counts, texts = Counter[str](), list[str]()
     for number in numbers:
-        for drawn in cases_of(f"margins {seed}/{number}", profile, traces, 8):
-            for way, case in (("samples", drawn), ("arrays", _in_columns(drawn))):
-                if not case.samples:
-                    continue
-                counts[f"measured by {way}"] += 1
-                if _robustness_differs(way, case):
-                    small = shrink(case, partial(_shows_a_difference, way))
-                    lines = [f"{way}, number {number}", *_robustness_differs(way, small)]
-                    texts.append("\n".join([*lines, show_case(small)]))
+        drawn = partial(cases_of, profile=profile, traces=traces, number=8)
+        place = f"margins {seed}/{number}"
+        for trace, case in enumerate(drawn(place)):
+            for way, measured in WAYS.items():
+                differs = partial(_robustness_differs, measured)
+                counts[f"measured by {way}"] += bool(case.samples)
+                if differs(case):
+                    lines = [f"{way}, number {number}", *shrunk_case(drawn, trace, place, differs)]
+                    texts.append("\n".join(lines))
     return counts, texts
-
-
-def _shows_a_difference(way: str, case: Case) -> bool:
-    try:
-        return bool(case.samples and _robustness_differs(way, case))
-    except (RvmonError, KeyError):  # the smaller case is none that the law, or columns, speak of
-        return False
 
 
 def judge_snapshots(seed: int, profile: Profile, traces: TraceProfile, numbers: range) -> Found:

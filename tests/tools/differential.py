@@ -7,6 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import partial
+from itertools import islice
 
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
@@ -99,14 +100,14 @@ def cases_of(
     """The random cases of a seed, the same for ever: one specification, so many traces.
 
     Args:
-        seed: whatever tells cases apart.
+        seed: whatever tells cases apart; or what draws them.
         profile: of the spec.
         traces: of the traces.
         number: of traces.
         windows: per cent of the specs that are windows, and `until`, within windows.
         letters: per cent of the others that speak of 17 propositions at once.
     """
-    rng = random.Random(str(seed))
+    rng = seed if isinstance(seed, random.Random) else random.Random(str(seed))
     if windows and rng.random() * 100 < windows:
         spec = random_chain(rng, untils=rng.random() < 0.7)
     elif letters and rng.random() * 100 < letters:
@@ -182,38 +183,44 @@ def campaign(
         windows: see `cases_of`.
         letters: see there, too.
     """
-    found = Campaign()
-    cases = (
-        (seed, case)
-        for seed in seeds
-        for case in cases_of(seed, profile, traces, each, windows=windows, letters=letters)
+    found, index = Campaign(), 0
+    drawn = partial(
+        cases_of, profile=profile, traces=traces, number=each, windows=windows, letters=letters
     )
-    for index, (seed, case) in enumerate(cases):
-        asked = online_every > 0 and index % online_every == 0
-        judgement = Judgement(case)
-        found.count(judgement)
-        for name, make in engines.items():
-            wrong = _found(judgement, make, asked)
-            found.counts[f"{'refused' if wrong is None else 'judged'} by {name}"] += 1
-            if wrong:
-                lines = [f"{name}, seed {seed}", *wrong]
-                if len(found.disagreements) < shrunk:
-                    lines.append(_shrunk(case, make, asked))
-                found.disagreements.append("\n".join(lines))
+    for seed in seeds:
+        for place, case in enumerate(drawn(seed)):
+            asked = online_every > 0 and index % online_every == 0
+            index += 1
+            judgement = Judgement(case)
+            found.count(judgement)
+            for name, make in engines.items():
+                wrong = _found(judgement, make, asked)
+                found.counts[f"{'refused' if wrong is None else 'judged'} by {name}"] += 1
+                if wrong:
+                    lines = [f"{name}, seed {seed}", *wrong]
+                    if len(found.disagreements) < shrunk:
+                        judged = partial(disagreements, make=make, online=asked)
+                        lines += shrunk_case(drawn, place, seed, judged)
+                    found.disagreements.append("\n".join(lines))
     return found
 
 
-def _shrunk(case: Case, make: MakeMonitor, online: bool) -> str:
-    judged = partial(disagreements, make=make, online=online)
+def shrunk_case(
+    drawn: Callable[[object], Iterator[Case]],
+    place: int,
+    seed: object,
+    differs: Callable[[Case], list[str]],
+) -> list[str]:
+    """What still differs on a small case, which is made of the one that a seed draws there."""
 
-    def disagree(smaller: Case) -> bool:
+    def shows(smaller: Case) -> bool:
         try:
-            return bool(judged(smaller))
-        except RvmonError:  # the smaller case is none that the law speaks of
+            return bool(differs(smaller))
+        except (RvmonError, KeyError):  # the law, or columns, do not speak of the smaller case
             return False
 
-    small = shrink(case, disagree)
-    return "\n".join(["shrunk:", *judged(small), show_case(small)])
+    small = shrink(lambda rng: next(islice(drawn(rng), place, None)), seed, shows)
+    return ["shrunk:", *differs(small), show_case(small)]
 
 
 def decided_on_bound(spec: CheckedSpec, attempt: Attempt) -> bool:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from statistics import median
 from typing import Any, ClassVar
 
 import pytest
@@ -13,7 +15,7 @@ from rvmon.language.checked.formula import UnaryOp
 from rvmon.monitor.monitor import Monitor
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import Case, TraceProfile, show_case
+from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.law.syntax import subformulas
 from rvmon.trace.sample import Sample, Value
 from rvmon.verdicts import Verdict
@@ -33,9 +35,7 @@ from tests.tools.build import (
     two,
 )
 from tests.tools.compare import differences
-from tests.tools.differential import (
-    campaign,
-)
+from tests.tools.differential import campaign, cases_of
 from tests.tools.drive import drive
 from tests.tools.health import expected_health, health_differences
 from tests.tools.judgement import Judgement
@@ -259,19 +259,21 @@ def test_differences() -> None:
 
 def test_shrinking_ends_at_the_least() -> None:
     """What is not needed to show the thing is taken away."""
-    spec = spec_of(requirement(always(eventually(p, 1, 3), 0, 5), upon=e), requirement(p, name="S"))
-    case = Case(spec, (*timeline(p="0..1..0", x="123456", e=".1..1"), 9, 20), 30)
 
-    def fails(smaller: Case) -> bool:
-        return Verdict.FAIL in judge(smaller).verdicts.values()
+    def drawn(rng: random.Random) -> Case:
+        return next(cases_of(rng, Profile(), TraceProfile()))
 
-    small = shrink(case, fails)
-    assert fails(small)
-    assert len(small.spec.requirements) == 1
-    assert len(small.actions) == 1
-    assert small.end is None
-    text = show_case(small)
-    assert "then false" in text or "then p" in text
+    def fails(case: Case) -> bool:
+        return Verdict.FAIL in judge(case).verdicts.values()
+
+    seeds = [seed for seed in range(20) if fails(drawn(random.Random(str(seed))))]
+    small = [shrink(drawn, seed, fails) for seed in seeds]
+    assert len(small) >= 5
+    assert all(map(fails, small))
+    sizes = [len(case.spec.requirements) + len(case.actions) for case in small]
+    assert median(sizes) == 2
+    assert max(sizes) <= 6
+    assert not any(case.end or case.outages for case in small)
 
 
 def test_what_is_owed_and_its_deadline_are_compared() -> None:
