@@ -25,8 +25,9 @@ from pathlib import Path
 from benchmarks.program import program
 from fuzz.driver import Found, fuzz
 from tests.tools.coverage import with_random_coverage
+from tests.tools.drive import told
 from tests.tools.guarded import guarded_memory
-from tests.tools.put_away import HEAD, Twins, actions_of
+from tests.tools.put_away import HEAD, Twins
 from tests.tools.timed_plans import search_plans
 from tests.tools.watched import is_small, truths_plan
 
@@ -109,7 +110,7 @@ def snapshots(most: int) -> Iterator[tuple[bytes, bytes]]:
         planned = planned_core(compiled_spec)
         case = random_trace(rng, compiled_spec.checked, TraceProfile(outages=100 * (made % 2)))
         twins = Twins(planned, frozenset())
-        for action in [*actions_of(case)][: rng.randint(1, 12)]:
+        for action in [*told(case)][: rng.randint(1, 12)]:
             twins.tell(action)
         made += 1
         yield planned.packed.data, twins.plain.save()[HEAD:]

@@ -23,7 +23,6 @@ from tests.tools.judgement import Judgement
 from tests.tools.law import names_read
 from tests.tools.online import (
     differences_after_end,
-    is_online,
     is_silent,
     online_differences,
 )
@@ -141,10 +140,10 @@ def _found(judgement: Judgement, make: MakeMonitor, online: bool) -> list[str] |
             return None
         actual, _ = drive(monitor, case)
         found = differences(expected, actual)
-        if is_online(monitor):
+        if not is_silent(monitor):
             found += frame_differences(expected, actual)
             found += differences_after_end(case, monitor, actual)
-        if is_online(monitor) and not case.outages:
+        if not (is_silent(monitor) or case.outages):
             provoked = monitor.health() if isinstance(monitor, HeldBack) else []
             found += health_differences(case.spec, [*judgement.health, *provoked], actual.health)
             found += judgement.seen.differences(actual) if not found else ()

@@ -108,45 +108,21 @@ class Stepped:
         self._due: int | None = None
         self._asked = False
 
+    def __getattr__(self, name: str) -> Any:
+        self._asked = False  # whatever else is told, what was due may be another
+        return getattr(self._monitor, name)
+
     def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
         """Take a sample."""
         decided: Sequence[Attempt] = self._monitor.step_ns(t_ns, values)
         if self._asked and (self._due is None or t_ns < self._due):
             early = [one for one in decided if (one.decided or 0) < t_ns]
             assert not early, f"due was {self._due}, and at {t_ns} came {early}"
-        self._asked = self._rng.random() < 0.3
-        if self._asked:
-            self._due = self.next_due
+        asked = self._rng.random() < 0.3
+        if asked:
+            self._due = self._monitor.next_due
+        self._asked = asked
         return decided
-
-    def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]:
-        self._asked = False
-        decided: Sequence[Attempt] = self._monitor.advance_ns(t_ns)
-        return decided
-
-    def lose(self, names: Iterable[str], since: int, /) -> bool:
-        self._asked = False
-        self._monitor.lose_ns(names, since)
-        return True
-
-    def found(self, names: Iterable[str], at: int, /) -> bool:
-        self._asked = False
-        self._monitor.found_ns(names, at)
-        return True
-
-    def finish_ns(self, t_ns: int | None = None, /) -> Report:
-        report: Report = self._monitor.finish_ns(t_ns)
-        return report
-
-    @property
-    def open(self) -> Sequence[Attempt]:
-        attempts: Sequence[Attempt] = self._monitor.open
-        return attempts
-
-    @property
-    def next_due(self) -> int | None:
-        due: int | None = self._monitor.next_due
-        return due
 
 
 class HeldBack(Stepped):
@@ -236,13 +212,13 @@ class ByRows:
         self._run.advance(t_ns)
         return ()
 
-    def lose(self, names: Iterable[str], since: int, /) -> bool:
+    def lose_ns(self, names: Iterable[str], since: int, /) -> None:
         self._feed()
-        return self._run.lose([self._planned.numbers[name] for name in names], since)
+        assert self._run.lose([self._planned.numbers[name] for name in names], since)
 
-    def found(self, names: Iterable[str], at: int, /) -> bool:
+    def found_ns(self, names: Iterable[str], at: int, /) -> None:
         self._feed()
-        return self._run.found([self._planned.numbers[name] for name in names], at)
+        assert self._run.found([self._planned.numbers[name] for name in names], at)
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report:
         self._feed()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, TypeGuard
+from typing import Any
 
 from rvmon.errors import RvmonError, TimeOrderError
 from rvmon.testing.generate.trace import Case
@@ -12,24 +12,19 @@ from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.report import Report
 from tests.tools.compare import Key, Outcome, key_of
-from tests.tools.drive import Monitored, OnlineMonitor, feed
+from tests.tools.drive import Monitored, feed
 from tests.tools.forms import HeldBack
 from tests.tools.judgement import Judgement
 from tests.tools.moments import moments
 from tests.tools.waiting import Waiting
 
 
-def is_online(monitor: Monitored) -> TypeGuard[OnlineMonitor]:
-    """Whether a monitor can be asked; without asking it."""
-    return hasattr(type(monitor), "open")
-
-
 def is_silent(monitor: Monitored) -> bool:
-    """Whether it says nothing before the end."""
+    """Whether it says nothing before the end; others can be asked at any time."""
     return getattr(type(monitor), "silent", False)
 
 
-def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:
+def online_differences(judgement: Judgement, monitor: Any) -> list[str]:
     """What is wrong with what a monitor says at each action of a case; empty if all is right.
 
     Each call has to return what could be decided by then, no sooner and no later; what is open is
@@ -49,13 +44,12 @@ def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:
         attempts = feed(monitor, action)
         decided, waiting = ({}, {}) if moment is None else judgement.at(moment)
         found = [*_returned(decided, attempts, told)]
-        if is_online(monitor):
-            found += _early(attempts, due, action, settle) if count > 1 else ()
-            open_ = monitor.open
-            found += _open(waiting, open_)
-            found += _unforeseen(decided, forecast)
-            forecast |= {key_of(a): a.forecast for a in open_ if a.forecast}
-            due = monitor.next_due
+        found += _early(attempts, due, action, settle) if count > 1 else ()
+        open_ = monitor.open
+        found += _open(waiting, open_)
+        found += _unforeseen(decided, forecast)
+        forecast |= {key_of(a): a.forecast for a in open_ if a.forecast}
+        due = monitor.next_due
         found += _taken(whole, action, settle)
         if found:
             return [f"action {count} {line}" for line in found]
@@ -63,12 +57,12 @@ def online_differences(judgement: Judgement, monitor: Monitored) -> list[str]:
     return []
 
 
-def differences_after_end(case: Case, monitor: Monitored, report: Report) -> list[str]:
+def differences_after_end(case: Case, monitor: Any, report: Report) -> list[str]:
     """What a monitor does wrong once its run is finished: it has to take nothing, and stay so."""
     last = case.actions[-1] if case.actions else 0
     later = 1_000 + (last.t if isinstance(last, Sample) else last)
     lines = []
-    if is_online(monitor) and monitor.next_due is not None:
+    if monitor.next_due is not None:
         lines.append(f"due at {monitor.next_due}, though finished")
     calls: tuple[Callable[[], object], ...] = (
         lambda: monitor.step_ns(later, {}),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import fields
 from typing import Any
 
@@ -77,18 +76,13 @@ def _of_records(planned: PlannedCore, run: native.Monitor) -> list[dict[str, Any
     return [{one.name: getattr(it, one.name) for one in fields(Attempt)} for it in attempts]
 
 
-def actions_of(case: Case) -> Iterator[Sample | int | Lost | Found]:
-    """What a run is told of a case."""
-    yield from told(case) if case.outages else case.actions
-
-
 def put_away(compiled: CompiledSpec, case: Case) -> int:
     """Run a case twice, once taken up again behind each call; how often it was."""
     names = frozenset((*compiled.checked.signals, *compiled.checked.events))
     absent = frozenset() if case.names is None else names - case.names
     twins = Twins(planned_core(compiled), absent)
     twins.take_up()
-    for action in actions_of(case):
+    for action in told(case):
         twins.tell(action)
     twins.finish(case.end)
     return twins.taken
