@@ -87,7 +87,6 @@ def judge_lost(seed: int, own: Lossy, numbers: range) -> Found:
             place, how = f"{seed}/{numbers.start}", DOORS[door]
             for one in outcomes(door, how, len(numbers), place, Path(folder)):
                 counts[f"{door}: runs"] += 1
-                counts[f"{door}: refused"] += one.is_refused
                 counts[f"{door}: turned by a filling that may"] += one.is_split
                 if one.overturned:
                     texts.append(f"{one.name} overturns {', '.join(one.overturned)}")

@@ -19,6 +19,7 @@ from benchmarks.peers import dialects
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import Environment, packed
 from benchmarks.process import Cost, measured
+from benchmarks.program import in_turn
 from benchmarks.timing.race import Result, figure_of, result_of
 from benchmarks.timing.workload import Size, Workload, always_text, specification
 
@@ -67,17 +68,17 @@ def measure(tasks: Sequence[Task], repeats: int, folder: Path) -> None:
     """
     kept = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
     environment = {**kept, "PYTHONPYCACHEPREFIX": str(folder / "compiled")}
-    for number in range(-1 if repeats > 1 else 0, repeats):
-        for task in tasks:
-            if task.refusal:
-                continue
-            cost = measured(task.command, environment=environment)
-            if cost.code not in (0, 1):
-                task.refusal = cost.said or f"exit code {cost.code}"
-                continue
-            task.found = task.read(cost.output)
-            if number >= 0:
-                task.costs.append(cost)
+    is_cold = repeats > 1
+    for number, task in in_turn(tasks, repeats + is_cold):
+        if task.refusal:
+            continue
+        cost = measured(task.command, environment=environment)
+        if cost.code not in (0, 1):
+            task.refusal = cost.said or f"exit code {cost.code}"
+            continue
+        task.found = task.read(cost.output)
+        if number or not is_cold:
+            task.costs.append(cost)
 
 
 def judged_by_programs(workload: Workload, size: Size, environment: Environment) -> Result:

@@ -17,6 +17,7 @@ from benchmarks.peers.client import ADAPTERS, Peer, PeerError
 from benchmarks.peers.dialects import spelling, translate
 from benchmarks.peers.environment import HOME, LETTERS, Environment, packed
 from benchmarks.peers.ways import WAYS, Way
+from benchmarks.program import in_turn
 from benchmarks.timing.workload import Workload, always_text, specification
 from tests.tools.build import scaled
 from tests.tools.common_fragment import UntranslatableError
@@ -227,16 +228,14 @@ def measure(
             refusals[one.label] = str(error).splitlines()[0]
     ready = [one for one in contenders if one.label in rows]
     passes: dict[str, list[Pass]] = {one.label: [] for one in ready}
-    for number in range(repeats):
-        turn = number % max(len(ready), 1)
-        for one in [*ready[turn:], *ready[:turn]]:
-            own = passes[one.label]
-            if one.label in refusals or (number > 1 and own[0].cpu_ns > SLOW * seconds * 1e9):
-                continue
-            try:
-                own.append(one.run())
-            except PeerError as error:
-                refusals[one.label] = str(error).splitlines()[0]
+    for number, one in in_turn(ready, repeats):
+        own = passes[one.label]
+        if one.label in refusals or (number > 1 and own[0].cpu_ns > SLOW * seconds * 1e9):
+            continue
+        try:
+            own.append(one.run())
+        except PeerError as error:
+            refusals[one.label] = str(error).splitlines()[0]
     figures = [
         figure_of(label, rows[label], [one.cpu_ns for one in own], own[-1].violated)
         for label, own in passes.items()

@@ -1,23 +1,21 @@
-"""Doors at which something of a run is lost: a file, a pipe of lines, `Live`, `DurableMonitor`.
+"""Doors at which something of a run is lost: a pipe of lines, `Live`, `DurableMonitor`.
 
-What other readers refuse, and how brokers and middleware notice what they lose, their tests show;
+What files refuse, and how brokers and middleware notice what they lose, their tests show;
 all of them tell the same driver.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from random import Random
 from time import sleep
 from typing import Any
 
 from rvmon.adapters.json_objects import JsonObjects, feed_lines
 from rvmon.errors import TraceError
-from rvmon.language.checked.specification import TimeModel
 from rvmon.live import Driver, DurableMonitor, Live, SimulatedClock
-from rvmon.testing.generate.trace import TraceProfile
 from rvmon.trace.sample import Sample
-from tests.tools.doors import arrow_of, content_of
 from tests.tools.lost import Door, Trial, Verdicts
 
 
@@ -32,33 +30,6 @@ def _damaged(rng: Random, line: bytes) -> bytes:
     half = line[: rng.randrange(1, len(line) - 1)]
     large = line.replace(b": ", b': 1e400, "t_ns": ', 1)
     return rng.choice([half, line[:-1] + b',"q":1,"q":1}', large, b"\xff", b"[]", b'"on"'])
-
-
-def _parquet(trial: Trial) -> Verdicts | None:
-    """A file of which bytes are others, that ends too soon, or that lacks what a name feeds."""
-    from pyarrow import parquet
-
-    rng, path = trial.rng, trial.folder / "a.parquet"
-    # In sampled time messages of a topic that is not there are no positions either.
-    is_lacking = trial.case.spec.time is not TimeModel.SAMPLED and rng.random() < 0.5
-    trial.is_whole = not is_lacking
-    table = arrow_of(content_of(Random(trial.name), trial.case))
-    if is_lacking:
-        trial.names = [gone := rng.choice(trial.names)]
-        table = table.drop([n for n in table.column_names if n.partition(".")[0] == gone])
-    parquet.write_table(table, path, row_group_size=rng.randint(1, 9), write_page_checksum=True)
-    if not is_lacking:
-        body = bytearray(path.read_bytes())
-        place = rng.randrange(4, len(body))
-        if rng.random() < 0.2:
-            del body[place:]
-        for at in range(place, min(len(body), place + rng.choice((1, 1, 2, 8)))):
-            body[at] ^= rng.randrange(1, 256)
-        path.write_bytes(body)
-    try:
-        return trial.spec.evaluate(path, allow_missing=is_lacking).verdicts
-    except TraceError:
-        return None
 
 
 def _closed(driver: Driver, clock: SimulatedClock, trial: Trial) -> Verdicts:
@@ -207,10 +178,5 @@ def _refuse(monitor: DurableMonitor, t: int, values: dict[str, Any]) -> None:
     raise AssertionError("it was to be refused")
 
 
-DOORS = {
-    "parquet": Door(_parquet, TraceProfile(advances=False, unknowns=False), ends=False),
-    "stdin": Door(_stdin),
-    "live": Door(_live),
-    "durable": Door(_durable),
-}
+DOORS: Mapping[str, Door] = {"stdin": _stdin, "live": _live, "durable": _durable}
 """By name."""

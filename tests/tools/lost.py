@@ -26,8 +26,6 @@ FILLINGS = 6
 EACH = 4
 """Runs of a specification."""
 
-_TRACES = TraceProfile(advances=False)
-
 GREEN = (Verdict.PASS, Verdict.NOT_TRIGGERED)
 START = 1_000
 """Ticks by which runs are later than they are drawn: no format has stamps below zero."""
@@ -45,11 +43,9 @@ class Trial:
     lost: range  # the places of the samples that are lost, which follow one another
     folder: Path  # for files
     rng: random.Random = field(init=False)  # draws how they are lost
-    # what the lost samples spoke of; set by a door that loses only some of it
-    names: list[str] = field(init=False)
+    names: list[str] = field(init=False)  # what the lost samples spoke of
     # set by a door at which they came too late: a failure may stay that was none
     is_late: bool = False
-    is_whole: bool = False  # set by a door that gives verdicts where nothing is lost, or none
     is_named: bool = False  # set by a door that knows of each lost sample what it spoke of
 
     def __post_init__(self) -> None:
@@ -70,24 +66,18 @@ class Outcome:
     # the requirements whose verdict some filling turns that no filling may
     overturned: tuple[str, ...]
     is_split: bool  # whether fillings turn a verdict
-    is_refused: bool  # whether the door gave no verdict
 
 
-@dataclass(frozen=True, slots=True)
-class Door:
-    """What loses something."""
-
-    # gives the verdicts of a trial; `None`: it refuses the run
-    through: Callable[[Trial], Verdicts | None]
-    traces: TraceProfile = _TRACES  # what runs may hold
-    ends: bool = True  # whether time goes on behind the last sample, by a tick
+Door = Callable[[Trial], Verdicts]
+"""What loses something of a trial, and gives verdicts."""
 
 
-def trials(door: str, how: Door, seed: object, folder: Path) -> Iterator[Trial]:
+def trials(door: str, seed: object, folder: Path) -> Iterator[Trial]:
     """Trials whose loss changes a letter that a requirement reads, without end."""
+    traces = TraceProfile(advances=False)
     for number in itertools.count():
         spec = None
-        drawn = cases_of(f"{door}/{seed}/{number}", Profile(), how.traces, EACH)
+        drawn = cases_of(f"{door}/{seed}/{number}", Profile(), traces, EACH)
         for part, case in enumerate(map(_plain, drawn)):
             spec = spec or Spec(case.spec)
             if len(case.samples) < 3 or case.spec.max_delay or not is_spoken_of(case.spec):
@@ -124,7 +114,7 @@ def _changes_a_letter(trial: Trial) -> bool:
     return repr(truly.letters) != repr(without.letters)
 
 
-def outcome(trial: Trial, how: Door, verdicts: Verdicts | None) -> Outcome:
+def outcome(trial: Trial, verdicts: Verdicts) -> Outcome:
     """Hold the verdicts of a door against those of the law, however what was lost is filled in."""
     rng = random.Random(f"{trial.name} fillings")
     case = narrowed(trial.case)
@@ -132,13 +122,10 @@ def outcome(trial: Trial, how: Door, verdicts: Verdicts | None) -> Outcome:
     bad = set()
     for which in range(FILLINGS):
         filled = case if which == 0 else _filled(rng, trial, case)
-        if how.ends:
-            filled = replace(filled, actions=(*filled.actions, trial.end))
-        truly = judge(filled).verdicts
+        truly = judge(replace(filled, actions=(*filled.actions, trial.end))).verdicts
         # What was lost before a first value may have been one, and is no excuse (section 1).
         born = all(_has_value(filled, trial, name) for name in trial.names)
-        told = {} if verdicts is None or (trial.is_whole and which) else verdicts
-        for name, verdict in told.items():
+        for name, verdict in verdicts.items():
             failed = truly[name] is Verdict.FAIL
             if verdict in GREEN and failed:
                 bad.add(name)
@@ -147,7 +134,7 @@ def outcome(trial: Trial, how: Door, verdicts: Verdicts | None) -> Outcome:
         for name, verdict in truly.items():
             seen[name].add(verdict is Verdict.FAIL)
     split = any(len(kinds) > 1 for kinds in seen.values())
-    return Outcome(trial.name, tuple(sorted(bad)), split, verdicts is None)
+    return Outcome(trial.name, tuple(sorted(bad)), split)
 
 
 def _has_value(case: Case, trial: Trial, name: str) -> bool:
@@ -171,8 +158,8 @@ def _filled(rng: random.Random, trial: Trial, case: Case) -> Case:
     return replace(case, actions=tuple(samples))
 
 
-def outcomes(door: str, how: Door, count: int, seed: object, folder: Path) -> Iterator[Outcome]:
+def outcomes(name: str, door: Door, count: int, seed: object, folder: Path) -> Iterator[Outcome]:
     """What comes of so many trials at a door."""
-    for trial in islice(trials(door, how, seed, folder), count):
-        yield outcome(trial, how, how.through(trial))
+    for trial in islice(trials(name, seed, folder), count):
+        yield outcome(trial, door(trial))
         shutil.rmtree(trial.folder)

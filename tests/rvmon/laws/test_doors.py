@@ -1,6 +1,5 @@
 """Green means green at the doors: what one loses is filled in, and overturns no verdict of it."""
 
-from dataclasses import replace
 from itertools import islice
 
 import pytest
@@ -18,7 +17,6 @@ def test_no_verdict_is_overturned(door, tmp_path):
     assert [(one.name, one.overturned) for one in tried if one.overturned] == []
     assert len(tried) == RUNS
     assert sum(one.is_split for one in tried) >= RUNS / 10
-    assert sum(one.is_refused for one in tried) < RUNS * 9 / 10
 
 
 def test_a_door_that_loses_in_silence_is_found(tmp_path):
@@ -32,11 +30,10 @@ def test_a_door_that_loses_in_silence_is_found(tmp_path):
         monitor.advance_ns(trial.end)
         return monitor.finish_ns().verdicts
 
-    how = replace(DOORS["stdin"], through=silent)
-    assert any(one.overturned for one in outcomes("stdin", how, 50, 1, tmp_path))
+    assert any(one.overturned for one in outcomes("stdin", silent, 50, 1, tmp_path))
 
 
 def test_a_door_loses_what_requirements_read(tmp_path):
     """Each run lacks a letter without what is lost; no run is drawn twice."""
-    some = [one.name for one in islice(trials("stdin", DOORS["stdin"], 1, tmp_path), 20)]
+    some = [one.name for one in islice(trials("stdin", 1, tmp_path), 20)]
     assert len({*some}) == len(some) == 20
