@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import loads_network
+from rvmon.models.network.derived import Watcher
 from rvmon.models.network.expressions import (
     FALSE,
     TRUE,
@@ -20,7 +21,6 @@ from rvmon.models.network.network import Asked, LeadsToFormula, Network
 from rvmon.models.search.budget import Policy
 from rvmon.models.search.ltl import ways_of
 from rvmon.models.search.search_plan import Plan, Seek, Sought
-from rvmon.models.search.watcher import Watcher
 from tests.tools.timed_generate import random_model
 
 _LINEAR = "G F (P0.l0 or x > 1)", "(F G P0.l1 and not (b U x < 2))"

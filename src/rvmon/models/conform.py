@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations, groupby
 
+from rvmon.models.network.derived import Watcher, finer
 from rvmon.models.network.evaluate import Evaluator
 from rvmon.models.network.expressions import (
     FALSE,
@@ -32,14 +33,12 @@ from rvmon.models.network.expressions import (
 )
 from rvmon.models.network.guards import together
 from rvmon.models.network.network import Network, check_clocks
-from rvmon.models.network.refine import finer
 from rvmon.models.network.rules import model_error
 from rvmon.models.runs.moves import check_start
 from rvmon.models.runs.run import Action, Position, Run
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter
 from rvmon.models.search.native_search import seek
 from rvmon.models.search.search_plan import Seek, Sought
-from rvmon.models.search.watcher import Watcher
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import TICKS_PER_UNIT
 

@@ -22,6 +22,7 @@ from rvmon.logic.formula import (
 from rvmon.logic.lower import Obligation, lower
 from rvmon.models.conform import labels_of
 from rvmon.models.language.elaborate import signal_on
+from rvmon.models.network.derived import finer
 from rvmon.models.network.evaluate import Evaluator, evaluator
 from rvmon.models.network.expressions import (
     BaseType,
@@ -32,7 +33,6 @@ from rvmon.models.network.expressions import (
 )
 from rvmon.models.network.guards import either, together
 from rvmon.models.network.network import Network, check_clocks
-from rvmon.models.network.refine import finer
 from rvmon.models.network.rules import model_error
 from rvmon.models.network.scope import PlacedSymbol
 from rvmon.models.requirement_observer import Observed

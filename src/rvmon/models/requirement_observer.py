@@ -17,6 +17,7 @@ from itertools import product
 from rvmon.language.checked.formula import Bound, BoundAtom
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton
 from rvmon.logic.lower import Obligation
+from rvmon.models.network.derived import Watcher
 from rvmon.models.network.evaluate import evaluator
 from rvmon.models.network.expressions import (
     FALSE,
@@ -41,7 +42,6 @@ from rvmon.models.requirement_propositions import (
     events_of,
     negated,
 )
-from rvmon.models.search.watcher import Watcher
 
 MOST_STEPS = 20
 """A monitor that still moves after so many steps at one instant is moved by time itself."""

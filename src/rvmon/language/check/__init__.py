@@ -22,7 +22,6 @@ from rvmon.language.checked.specification import (
 from rvmon.language.names import DeclaredEvent, DeclaredSignal, ResolvedSpec, find_cycles
 from rvmon.language.rules import Findings
 from rvmon.language.rules import names as name_rules
-from rvmon.language.rules import time as time_rules
 from rvmon.language.rules import types as type_rules
 from rvmon.language.syntax.expressions import Expression, Name, expressions_in
 from rvmon.language.syntax.items import ConstItem, CoverMonitor, DefineItem, TypeSyntax
@@ -156,7 +155,7 @@ def _type(syntax: TypeSyntax, findings: Findings) -> tuple[Type, Unit] | None:
 def _positive(checker: Checker, expression: Expression, what: str) -> int | None:
     ticks = checker.collected(checker.duration, expression, EVERYWHERE)
     if ticks == 0:
-        checker.report(time_rules.not_positive(expression.span, what))
+        checker.report(type_rules.not_positive(expression.span, what))
     return ticks
 
 

@@ -30,7 +30,7 @@ from rvmon.language.checked.specification import TimeModel
 from rvmon.language.print import format_formula
 from rvmon.language.rules import Refusal, Reported, short
 from rvmon.language.rules import properties as rules
-from rvmon.language.rules import time as time_rules
+from rvmon.language.rules import types as type_rules
 from rvmon.language.syntax import expressions
 from rvmon.language.syntax.items import PropertyClause, RequirementItem, TagsClause, TextClause
 
@@ -136,7 +136,7 @@ class _Linear:
             raise Refusal(rules.some_path(span))
         op = state.op if positive else UnaryOp.of(state.op.entry.dual)
         if op is UnaryOp.NEXT and self.time is TimeModel.HELD:
-            raise Refusal(time_rules.step_in_held_time("next", span))
+            raise Refusal(type_rules.step_in_held_time("next", span))
         if op is UnaryOp.EVENTUALLY and not isinstance(state.operand, StateAtom):
             raise Refusal(rules.not_on_one_path(span))
         return Unary(op, self.of(state.operand, positive), state.interval, state.span)

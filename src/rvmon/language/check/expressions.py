@@ -41,7 +41,6 @@ from rvmon.language.checked.specification import TimeModel
 from rvmon.language.rules import Findings, Refusal, Reported
 from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import properties as property_rules
-from rvmon.language.rules import time as time_rules
 from rvmon.language.rules import types as rules
 from rvmon.language.syntax.expressions import (
     Call,
@@ -348,10 +347,10 @@ class Checker:
         if op.entry.window is Window.NONE:
             if self.table.time is TimeModel.HELD:
                 if op.entry.tense is Tense.PAST:
-                    raise Refusal(time_rules.step_back_in_held_time(span.text, span))
-                raise Refusal(time_rules.step_in_held_time(span.text, span))
+                    raise Refusal(rules.step_back_in_held_time(span.text, span))
+                raise Refusal(rules.step_in_held_time(span.text, span))
             if window is not None:
-                raise Refusal(time_rules.no_window(span.text, window.span))
+                raise Refusal(rules.no_window(span.text, window.span))
             return None
         return self.interval(window, scope)
 
@@ -365,7 +364,7 @@ class Checker:
             interval = self.interval(infix.window, scope)
             from_now = infix.op.entry.window is Window.FROM_NOW
             if from_now and interval.low > 0 and infix.window is not None:
-                raise Refusal(time_rules.late_weak_window(infix.op_span.text, infix.window.span))
+                raise Refusal(rules.late_weak_window(infix.op_span.text, infix.window.span))
         left, right = operands
         if left is None or right is None:
             raise Reported
@@ -386,8 +385,6 @@ class Checker:
         low = 0 if window.low is None else self.duration(window.low, scope)
         high = None if window.high is None else self.duration(window.high, scope)
         if window.low and window.high and high is not None and high < low:
-            raise Refusal(
-                time_rules.reversed_bounds(window.span, window.low.span, window.high.span)
-            )
+            raise Refusal(rules.reversed_bounds(window.span, window.low.span, window.high.span))
         opens = {"low_open": window.low_open, "high_open": window.high_open}
         return closed_interval(low, high, **opens, span=window.span)

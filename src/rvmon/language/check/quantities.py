@@ -29,7 +29,6 @@ from rvmon.language.checked.formula import (
     UnaryOp,
 )
 from rvmon.language.rules import Refusal, short
-from rvmon.language.rules import time as time_rules
 from rvmon.language.rules import types as rules
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 from rvmon.units import PLAIN, Unit, base_unit, parse_unit, product, quotient, root
@@ -303,16 +302,16 @@ def ticks_of(value: Value, span: Span) -> int:
     """
     if not isinstance(value, Quantity) or value.constant is None:
         moves = isinstance(value, Quantity) and is_time(value)
-        raise Refusal((time_rules.moving if moves else time_rules.no_duration)(span))
+        raise Refusal((rules.moving if moves else rules.no_duration)(span))
     if not is_time(value) and value.constant != 0:
-        raise Refusal(time_rules.no_duration(span, plain=not value.unit.symbol))
+        raise Refusal(rules.no_duration(span, plain=not value.unit.symbol))
     ticks: Fraction = value.constant * value.unit.factor * TICKS_PER_SECOND
     if ticks.denominator != 1:
-        raise Refusal(time_rules.part_of_tick(span))
+        raise Refusal(rules.part_of_tick(span))
     if ticks < 0:
-        raise Refusal(time_rules.negative(span))
+        raise Refusal(rules.negative(span))
     if ticks >= TIME_LIMIT:
-        raise Refusal(time_rules.too_long(span))
+        raise Refusal(rules.too_long(span))
     return int(ticks)
 
 
@@ -336,7 +335,7 @@ def closed_interval(
     first = low + low_open
     last = None if high is None else high - high_open
     if last is not None and last < first:
-        raise Refusal(time_rules.empty(span))
+        raise Refusal(rules.empty(span))
     return Interval(first, last)
 
 

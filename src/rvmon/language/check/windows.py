@@ -33,7 +33,6 @@ from rvmon.language.checked.rewrite import Formulas, chain
 from rvmon.language.checked.specification import TimeModel
 from rvmon.language.checked.window_measures import Dimension, Members
 from rvmon.language.rules import Refusal
-from rvmon.language.rules import time as time_rules
 from rvmon.language.rules import types as rules
 from rvmon.language.syntax.expressions import Call, Expression, Infix, Name
 from rvmon.trace.time import TICKS_PER_SECOND
@@ -93,7 +92,7 @@ def _window(operands: Operands, call: Call, scope: Scope) -> _Window:
         raise Refusal(rules.two_windows(call.span))
     ticks = operands.duration(call.args[1], scope)
     if ticks == 0:
-        raise Refusal(time_rules.no_duration(call.args[1].span))
+        raise Refusal(rules.no_duration(call.args[1].span))
     return replace(found, ticks=ticks)
 
 
@@ -209,7 +208,7 @@ def _added(operands: Operands, measured: Measured, call: Call, window: _Window) 
     if measured is Measured.VARIANCE and signals:
         _refuse_curve(operands, call, window)
     if measured is Measured.AGO and operands.table.time is not TimeModel.HELD:
-        raise Refusal(time_rules.ago_of_samples(call.span))
+        raise Refusal(rules.ago_of_samples(call.span))
     if measured.of is Members.EVENTS and isinstance(node, SignalValue):
         conditions.insert(0, ProbeAtom(Probe.UPDATED, node.name, place))
     chosen = tuple(condition for condition in conditions if _is_of_occurrence(condition, events))

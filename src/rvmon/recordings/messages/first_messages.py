@@ -9,9 +9,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rvmon.errors import TraceError
-from rvmon.recordings.messages.fields import field_of, getter
+from rvmon.recordings.messages.fields import arrays_of_names, field_of, getter, part_of
 from rvmon.recordings.messages.file import MessageFile
-from rvmon.recordings.messages.named_elements import arrays_of_names, part_of
 
 MOST = 50_000
 """Messages that are looked at."""
