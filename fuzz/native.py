@@ -32,7 +32,7 @@ from tests.tools.timed_plans import search_plans
 from tests.tools.watched import is_small, truths_plan
 
 from rvmon.core import amalgamate
-from rvmon.core.plan import pack
+from rvmon.core.pack import pack
 from rvmon.coverage.monitor import Bins
 from rvmon.errors import RvmonError
 from rvmon.logic.plan import Plan

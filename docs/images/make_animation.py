@@ -19,7 +19,7 @@ from handover.driver import run_test
 from handover.driver.play import SampleValues
 from handover.generator.abstract_test import directed
 from rvmon.report.html import e
-from rvmon.report.run_page import UNITS, scene_svg
+from rvmon.report.run_html import UNITS, scene_svg
 from rvmon.report.wording import MARKS, verdict_colours
 from rvmon.trace.time import TICKS_PER_SECOND
 

@@ -37,7 +37,7 @@ from rvmon.language.checked.specification import CheckedSpec, Type
 from rvmon.logic.formula import Factory, Sense
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Leaf, operands
 from rvmon.logic.state_graph import captured_names, names_of
-from rvmon.monitor.watching import Known, known_truths
+from rvmon.monitor.formula_truths import Known, known_truths
 from rvmon.trace.sample import Payload, Sample, Scalar, Value, calculated
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND

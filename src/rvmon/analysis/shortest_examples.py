@@ -16,7 +16,7 @@ from rvmon.analysis.example import Budget, Example, Found, small_step
 from rvmon.analysis.findings import Examination, examine, findings_of
 from rvmon.analysis.representative_inputs import SILENT, Choices, Silence, Valuation, choices_of
 from rvmon.analysis.vacuity import Subject
-from rvmon.core.plan import pack
+from rvmon.core.pack import pack
 from rvmon.diagnostics import Diagnostic
 from rvmon.language.checked.classify import subformulas
 from rvmon.language.checked.formula import Amount, Compare, CompareOp, windows_in

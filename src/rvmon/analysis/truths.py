@@ -23,7 +23,7 @@ from rvmon.language.checked.specification import CheckedSpec, ForEach, Requireme
 from rvmon.language.print import format_formula
 from rvmon.logic.formula import Core, Factory
 from rvmon.logic.normal_form import Lowering
-from rvmon.monitor.watching import TruthsPlan, TruthsRun
+from rvmon.monitor.formula_truths import TruthsPlan, TruthsRun
 from rvmon.recordings.source import HeldRecording
 from rvmon.trace.sample import (
     Outage,

@@ -8,10 +8,10 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.cdv.campaign import STRATEGY, Campaign, ExpectedFailure, Gate, unreachable_items
+from rvmon.cdv.campaign_figures import differences, missed
 from rvmon.cdv.campaign_plan import Played, Results, accepted_failures, is_about
 from rvmon.cdv.coverage import coverage_model, covered_share
 from rvmon.cdv.sequential_test import Decision
-from rvmon.cdv.summary import differences, missed
 from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.report.junit import add_suite, as_text

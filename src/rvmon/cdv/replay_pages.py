@@ -11,20 +11,20 @@ from functools import partial
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign, Robot
+from rvmon.cdv.campaign_figures import CampaignSummary
 from rvmon.cdv.campaign_page import Examples, campaign_page, comparable_jobs
 from rvmon.cdv.campaign_plan import Job, Played, Results
 from rvmon.cdv.campaign_text import RUNS, TESTS, typed
 from rvmon.cdv.coverage import write_coverage
 from rvmon.cdv.play import Bench, Recorded, spooled
 from rvmon.cdv.shrink import failure_of
-from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import Test
 from rvmon.execute import parallel
 from rvmon.files import write_whole
 from rvmon.report.html import Child, e
 from rvmon.report.panels import JudgedRun, RunPage
-from rvmon.report.run_page import run_page
+from rvmon.report.run_html import run_page
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample
 from rvmon.verdicts import Verdict

@@ -7,6 +7,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from rvmon.cdv.campaign import unreachable_items
+from rvmon.cdv.campaign_figures import (
+    BlockCoverage,
+    CampaignSummary,
+    KnownAnswer,
+    RobotSummary,
+    StrategySummary,
+    missed,
+)
 from rvmon.cdv.campaign_plan import Outcome, Played, Results
 from rvmon.cdv.code_coverage import (
     branches_name,
@@ -15,14 +23,6 @@ from rvmon.cdv.code_coverage import (
     statements_name,
 )
 from rvmon.cdv.sequential_test import decide
-from rvmon.cdv.summary import (
-    BlockCoverage,
-    CampaignSummary,
-    KnownAnswer,
-    RobotSummary,
-    StrategySummary,
-    missed,
-)
 from rvmon.coverage import STATES, TRANSITIONS, Ending, Group, model_of, without
 from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import RunShare

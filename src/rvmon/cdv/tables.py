@@ -10,8 +10,14 @@ from xml.etree.ElementTree import Element
 import msgspec
 from markupsafe import Markup
 
+from rvmon.cdv.campaign_figures import (
+    NOTHING,
+    BlockCoverage,
+    CampaignSummary,
+    RobotSummary,
+    StrategySummary,
+)
 from rvmon.cdv.sequential_test import ALPHA, BETA, Decision, errors_text
-from rvmon.cdv.summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary, StrategySummary
 from rvmon.cdv.test import Test
 from rvmon.confidence import CONFIDENCE, interval
 from rvmon.coverage import Ending

@@ -8,11 +8,11 @@ from dataclasses import replace
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.campaign_figures import CampaignSummary
 from rvmon.cdv.campaign_plan import Job, Outcome, Results
 from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.play import outcomes
 from rvmon.cdv.resume import sources_of
-from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import to_json as document_json
 from rvmon.cdv.test import from_json, to_json
 from rvmon.coverage import Ending

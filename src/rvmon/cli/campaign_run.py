@@ -13,6 +13,7 @@ from tempfile import TemporaryDirectory
 
 from rvmon.cdv import tables
 from rvmon.cdv.campaign import Campaign
+from rvmon.cdv.campaign_figures import CampaignSummary
 from rvmon.cdv.campaign_page import choose_examples, comparable_jobs
 from rvmon.cdv.campaign_plan import Job, Plan, Played, Results, plan, plan_of_folder
 from rvmon.cdv.campaign_text import (
@@ -31,7 +32,6 @@ from rvmon.cdv.resume import unfinished
 from rvmon.cdv.sequential_test import Decision
 from rvmon.cdv.shrink import Shrunk, regression_test, removed, save_regression, shrink
 from rvmon.cdv.summarise import summarise
-from rvmon.cdv.summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import Test, TestError, to_json
 from rvmon.cdv.test import load as load_test

@@ -14,7 +14,7 @@ from rvmon.cli.post_analysis import Remembered, post_analysis
 from rvmon.cli.reading import allowed_names, opened, reading_spec, shown_name
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
-from rvmon.monitor.missing import expect_names
+from rvmon.monitor.missing_names import expect_names
 from rvmon.monitor.records import with_plan
 from rvmon.recordings.places import JOINT, without_copies
 from rvmon.recordings.recording import FileRecording, can_be_read_again

@@ -23,7 +23,7 @@ from rvmon.cli.reading import (
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.print import format_window
-from rvmon.monitor.missing import expect_names
+from rvmon.monitor.missing_names import expect_names
 from rvmon.recordings.batch import Batch
 from rvmon.recordings.source import HeldRecording, Source, pieces_up_to
 from rvmon.report.changes import changes_of

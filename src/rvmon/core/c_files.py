@@ -11,7 +11,7 @@ from pathlib import Path
 from textwrap import wrap
 
 from rvmon.core import amalgamate
-from rvmon.core.plan import pack
+from rvmon.core.pack import pack
 from rvmon.core.sections import Packed
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec, Type

@@ -12,7 +12,7 @@ from struct import iter_unpack
 from typing import Any
 
 from rvmon import native
-from rvmon.core.plan import pack
+from rvmon.core.pack import pack
 from rvmon.coverage import Group, Hit, Hits, Item, Model, Subject, combination, model_of
 from rvmon.coverage.requirements import WatchedRequirements
 from rvmon.language.checked.classify import is_pulse

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.monitor.missing import expect_names
+from rvmon.monitor.missing_names import expect_names
 from rvmon.monitor.packed_plan import planned_core
 from rvmon.monitor.recording_run import RecordingRun, judge_recording
 from rvmon.monitor.records import with_plan

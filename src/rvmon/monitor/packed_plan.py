@@ -284,7 +284,7 @@ def planned_core(
 
 def kept_of(plan: Plan, chosen: Sequence[CompiledRequirement]) -> Kept:
     """Pack a plan; `chosen` are its requirements."""
-    from rvmon.core.plan import pack
+    from rvmon.core.pack import pack
 
     single = frozenset().union(*(compiled.single_payloads for compiled in chosen))
     readers: dict[str, tuple[str, ...]] = {}

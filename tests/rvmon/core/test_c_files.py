@@ -12,7 +12,7 @@ from tests.tools.hostile import FORGERIES, hostile_names
 
 import rvmon
 from rvmon.core.c_files import FEWEST, c_files, identifiers
-from rvmon.core.plan import pack
+from rvmon.core.pack import pack
 from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.requirement_plans import plan_alone

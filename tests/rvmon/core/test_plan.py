@@ -30,7 +30,7 @@ from rvmon.core import amalgamate, sections
 from rvmon.core.atoms import DEPTH, MOST_EVENTS, NOW, OPERATIONS, WINDOW, AtomOp, Code
 from rvmon.core.nodes import NodeOp
 from rvmon.core.obligations import Measure, Operator
-from rvmon.core.plan import pack
+from rvmon.core.pack import pack
 from rvmon.core.sections import Packed, Section
 from rvmon.errors import RvmonError
 from rvmon.logic.plan import Plan as Planned
@@ -125,7 +125,7 @@ def test_packing_is_deterministic():
     """Other processes, with other hashes of texts, make the same bytes."""
     script = (
         "import hashlib, rvmon\n"
-        "from rvmon.core.plan import pack\n"
+        "from rvmon.core.pack import pack\n"
         "from rvmon.monitor.requirement_plans import plan_alone\n"
         f"spec = rvmon.load({str(ROOT / 'specs' / 'handover_truth.rv')!r})\n"
         "print(hashlib.sha256(pack(plan_alone(spec._compiled)).data).hexdigest())\n"

@@ -10,7 +10,7 @@ from tests.tools.coverage import with_random_coverage
 from tests.tools.watched import truths_plan
 
 import rvmon
-from rvmon.core.plan import pack
+from rvmon.core.pack import pack
 from rvmon.core.sections import Section
 from rvmon.coverage.monitor import Bins
 from rvmon.errors import RvmonError
@@ -19,9 +19,9 @@ from rvmon.logic.network_plan import plan_of_all
 from rvmon.logic.normal_form import Lowering
 from rvmon.logic.plan import WatchGroup
 from rvmon.monitor.compiled_spec import Kept, compile_spec
+from rvmon.monitor.formula_truths import known_truths
 from rvmon.monitor.packed_plan import planned_as
 from rvmon.monitor.requirement_plans import plan_alone
-from rvmon.monitor.watching import known_truths
 from rvmon.testing.generate.spec import Profile
 from rvmon.trace.sample import Sample
 

@@ -8,7 +8,7 @@ import sys
 import pytest
 
 import rvmon
-import rvmon.core.plan
+import rvmon.core.pack
 
 TEXT = """
 const T = 2 s
@@ -46,7 +46,7 @@ def packs_nothing(monkeypatch):
     """From now on who packs a plan fails."""
 
     def forbid():
-        monkeypatch.setattr(rvmon.core.plan, "pack", lambda _: pytest.fail("it is packed"))
+        monkeypatch.setattr(rvmon.core.pack, "pack", lambda _: pytest.fail("it is packed"))
 
     return forbid
 

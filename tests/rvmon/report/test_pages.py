@@ -9,7 +9,7 @@ from tests.tools.looked_at import faults
 from rvmon.coverage.database import Database
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
-from rvmon.report.run_page import run_page
+from rvmon.report.run_html import run_page
 from rvmon.report.run_pages import Listed, run_index
 from rvmon.report.trace_matrix import Traced, matrix_page
 from rvmon.verdicts.known_failures import NONE_KNOWN

@@ -11,7 +11,7 @@ from tests.tools.hostile import FORGERIES, STEERING
 
 import rvmon
 from rvmon.report.panels import JudgedRun, RunPage, opening
-from rvmon.report.run_page import run_page
+from rvmon.report.run_html import run_page
 from rvmon.report.run_pages import write_run_pages
 from rvmon.report.run_text import print_reports
 from rvmon.report.scene import Outline, Scene

@@ -3,7 +3,7 @@
  * as it is decided. It depends on no Python and has no global state; everything a run remembers
  * hangs off one rv_monitor.
  *
- * A plan (plan/plan.md) is a constant block of bytes that `rvmon.core.plan` compiles from a
+ * A plan (plan/plan.md) is a constant block of bytes that `rvmon.core.pack` compiles from a
  * specification. It is validated once, by rv_new; after that nothing in it can make the core read
  * or write outside its memory. Names do not reach the core: signals, events and requirements are
  * numbers that the maker of the plan assigned.

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field, replace
 
 from rvmon.diagnostics import Span
 from rvmon.models.language import syntax
-from rvmon.models.language.bodies import Bodies, number, variable_type
 from rvmon.models.language.operations import fitted
 from rvmon.models.language.resolve import Resolver
+from rvmon.models.language.statements import Bodies, number, variable_type
 from rvmon.models.language.symbols import (
     Extents,
     Value,

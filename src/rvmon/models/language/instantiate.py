@@ -9,10 +9,10 @@ from itertools import product
 from rvmon.diagnostics import Span
 from rvmon.models.language import automaton_syntax, syntax
 from rvmon.models.language.automaton_syntax import Document
-from rvmon.models.language.bodies import is_price, updates_of
 from rvmon.models.language.declare import Findings, Parts, check_range
 from rvmon.models.language.operations import as_real, binary, is_real, refuse_clocks
 from rvmon.models.language.resolve import Resolver
+from rvmon.models.language.statements import is_price, updates_of
 from rvmon.models.language.symbols import (
     MAX_VALUES,
     check_count,

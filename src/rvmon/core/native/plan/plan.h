@@ -1,5 +1,5 @@
 /* The binary plan as C structs: sections of fixed-size records. plan.md explains what each section
- * means, `rvmon.core.plan` packs them, and plan.c validates every index and size before anything
+ * means, `rvmon.core.pack` packs them, and plan.c validates every index and size before anything
  * else reads them.
  *
  * All records consist of int32, int64 and double in an order without padding, so that the layout is

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rvmon.core.plan import pack
+from rvmon.core.pack import pack
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.logic.formula import Core
 from rvmon.logic.network_plan import plan_of_all
