@@ -89,7 +89,8 @@ def post_analysis(
         return found
     failures = list(_first_failures(report))
     values, windows = _Values(spec, failures), _Windows(spec, failures, report.origin)
-    late, silent = _missed(spec, report), _silent(report)
+    late = _missed(spec, report)
+    silent = [name for name in report.verdicts if report.is_silent(name)]
     if not late and not silent and not values.names and not windows.names:
         return found
     from rvmon.analysis.truths import look_through
@@ -307,10 +308,6 @@ def _arrived(
 
     arrived = {name: late_in(attempts, waits, seen) for name, (attempts, waits) in late.items()}
     return {name: found for name, found in arrived.items() if found}
-
-
-def _silent(report: Report) -> list[str]:
-    return [name for name in report.verdicts if report.is_silent(name)]
 
 
 def _goals(spec: Spec, trace: str, end: int) -> Mapping[str, Verdict]:

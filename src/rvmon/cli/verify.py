@@ -92,7 +92,8 @@ def run(arguments: argparse.Namespace) -> int:
     _refuse_unused(arguments)
     constants = dict(_constant(text) for text in arguments.const)
     network = load_network(arguments.model, constants=constants)
-    _show_warnings(network)
+    if network.warnings:
+        warn(rendered(network.warnings))
     budget = budget_of(arguments)
     if arguments.spec is not None:
         with _shown() as watch:
@@ -162,11 +163,6 @@ def _constant(text: str) -> tuple[str, int]:
     if not name.strip() or not digits.isdecimal() or len(digits) > 10:
         raise RvmonError(f"--const {text}: expected NAME=NUMBER, such as N=4")
     return name.strip(), int(value)
-
-
-def _show_warnings(network: Network) -> None:
-    if network.warnings:
-        warn(rendered(network.warnings))
 
 
 def _print_query(query: Query, word: str) -> None:

@@ -140,11 +140,6 @@ def edge_name(step: tuple[str, str]) -> str:
     return " → ".join(step)
 
 
-def _steps(graph: Graph) -> Iterator[tuple[str, str]]:
-    """The edges of an automaton without self-loops, which are not always evaluated."""
-    return ((edge.source, edge.target) for edge in graph.edges if edge.source != edge.target)
-
-
 class WatchedRequirement:
     """A requirement with its coverage items."""
 
@@ -317,7 +312,7 @@ def _passages(
     unknown.
     """
     names = {place.location: place.name for place in graph.places}
-    drawn = frozenset(_steps(graph))
+    drawn = {(edge.source, edge.target) for edge in graph.edges if edge.source != edge.target}
     came: dict[str, Hit] = {}
     left: dict[str, Hit] = {}
     edges: dict[str, Hit] = {}

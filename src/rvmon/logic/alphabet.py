@@ -261,7 +261,10 @@ class Diagrams:
         # The core looks the class up at each change of a proposition: one load where a table fits.
         if self.alphabet.size <= MOST_TABLED:
             found = array("H", map(diagram.__getitem__, range(self.alphabet.size)))
-        return found, len(product.leaves), [_edges(nodes) for nodes in product.leaves]
+        edges = [
+            tuple(node.edge for node in leaf if node.edge is not None) for leaf in product.leaves
+        ]
+        return found, len(product.leaves), edges
 
 
 class TooManyClassesError(Exception):
@@ -295,7 +298,3 @@ class _Product:
             children = tuple([self.tree(own, level - 1) for own in lower])
             known = self.made[key] = joined(self.alphabet.strides[level], children)
         return known
-
-
-def _edges(leaves: tuple[Node, ...]) -> tuple[Edge, ...]:
-    return tuple(node.edge for node in leaves if node.edge is not None)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from array import array
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
@@ -154,7 +153,8 @@ class _Construction:
                 edges[row * classes + letter_class] = found
         time_values, end_values = bytearray(), bytearray()
         for location in self.locations:
-            for ages in _region_starts(location.cuts):
+            # The least ages of each region vector, in the order of rows.
+            for ages in product(*((0, *clock) for clock in location.cuts)):
                 settled = after(location.residual, ages)
                 time_values.append(value(settled))
                 end_values.append(holds_at_end(settled, ages))
@@ -172,11 +172,6 @@ class _Construction:
             bytes(time_values),
             bytes(end_values),
         )
-
-
-def _region_starts(cuts: tuple[tuple[int, ...], ...]) -> Iterator[tuple[int, ...]]:
-    """The least ages of each region vector, in the order of rows."""
-    return product(*((0, *clock) for clock in cuts))
 
 
 def _least_ages(

@@ -143,7 +143,7 @@ class _Draft:
 
     def tables(self) -> Automaton:
         """The minimised automaton, with letter classes merged that no row distinguishes."""
-        rows = [row for draft in self.drafts for row in _in_order(draft)]
+        rows = [draft.rows[regions] for draft in self.drafts for regions in _vectors(draft.cuts)]
         columns: dict[tuple[Edge | None, ...], int] = {}
         new_class = [
             columns.setdefault(column, len(columns))
@@ -181,11 +181,6 @@ def _renamed(class_of: LetterClasses, classes: Sequence[int]) -> LetterClasses:
 
 def _vectors(cuts: tuple[tuple[int, ...], ...]) -> Iterator[Regions]:
     return product(*(range(len(own) + 1) for own in cuts))
-
-
-def _in_order(draft: _DraftLocation) -> Iterator[Row]:
-    for regions in _vectors(draft.cuts):
-        yield draft.rows[regions]
 
 
 def _without(

@@ -51,7 +51,8 @@ def scene_svg(scene: Scene, instant: int) -> ET.Element:
             body = scene.bodies.index(outline.body)
             x, z, angle = pose[3 * body : 3 * body + 3]
             group.set("data-body", str(body))
-            group.set("transform", _transform(x, z, angle))
+            turn = f"rotate({-math.degrees(angle):.1f})"
+            group.set("transform", f"translate({x * UNITS:.0f} {-z * UNITS:.0f}) {turn}")
         drawing.append(group)
     return drawing
 
@@ -80,10 +81,6 @@ def _shape(outline: Outline) -> ET.Element:
         case _:
             points = " ".join(f"{x},{y}" for x, y in corners)
             return e("polygon", {"points": points})
-
-
-def _transform(x: float, z: float, angle: float) -> str:
-    return f"translate({x * UNITS:.0f} {-z * UNITS:.0f}) rotate({-math.degrees(angle):.1f})"
 
 
 def _differences(values: list[int]) -> list[int]:

@@ -132,7 +132,8 @@ def _add_number(
     )
     for kind, some in (("reference", others), ("line", pieces)):
         for points in polylines(some, lowest, highest):
-            drawing.append(e("polyline", {"class": kind, "points": _points(points)}))
+            places = " ".join(f"{x * WIDTH:.4g},{y * HEIGHT:.3g}" for x, y in points)
+            drawing.append(e("polyline", {"class": kind, "points": places}))
     plot.append(drawing)
     constants = {threshold.value for threshold in track.thresholds}
     for bound in sorted({low, high} - constants):
@@ -143,7 +144,7 @@ def _add_number(
             plot.append(_unknown(piece.left, piece.right - piece.left))
     for threshold in track.thresholds:
         top = (highest - threshold.value) / (highest - lowest)
-        text = f"{SIGNS.get(threshold.op, threshold.op)} {threshold.value:g}{_unit(track)}"
+        text = f"{SIGNS.get(threshold.op, threshold.op)} {threshold.value:g} {track.unit}".rstrip()
         side = " under" if top < LOWEST_UNDER and _is_above(pieces, threshold.value) else ""
         line = {"class": f"threshold{side}", "style": f"top:{top:.2%}"}
         plot.append(e("div", line, e("span", None, text)))
@@ -173,10 +174,6 @@ def _ring(place: float) -> ET.Element:
     return e("span", {"class": "mark offending", "style": f"left:{place:.2%}"})
 
 
-def _points(points: Sequence[tuple[float, float]]) -> str:
-    return " ".join(f"{x * WIDTH:.4g},{y * HEIGHT:.3g}" for x, y in points)
-
-
 def place_of(left: float, width: float) -> str:
     """The CSS position of an element within a track, from fractions of its width."""
     return f"left:{left:.3%};width:{width:.3%}"
@@ -184,10 +181,6 @@ def place_of(left: float, width: float) -> str:
 
 def _unknown(left: float, width: float) -> ET.Element:
     return e("div", {"class": "unknown", "title": "unknown", "style": place_of(left, width)})
-
-
-def _unit(track: Track) -> str:
-    return f" {track.unit}" if track.unit else ""
 
 
 LABEL = 0.44

@@ -230,7 +230,8 @@ def report_text(report: MutationReport, *, most: int | None = None) -> str:
     if any(suite.tried for suite in report.suites.values()):
         lines += ["Mutants of the code", "", plain_table([HEAD, *score_rows(report)])]
         for name, suite in report.suites.items():
-            lines += [f"{name}: {_killers(suite)}.", *_left_out(suite), ""]
+            left_out = (f"  left out: {one}: {why}" for one, why in suite.left_out.items())
+            lines += [f"{name}: {_killers(suite)}.", *left_out, ""]
     if any(suite.spec_tried for suite in report.suites.values()):
         lines += ["Mutants of the requirements", ""]
         lines += [plain_table([SPEC_HEAD, *spec_score_rows(report)])]
@@ -317,11 +318,6 @@ _HOW_TEXT = {
     How.HUNG: "hung",
     How.LOST: "lost",
 }
-
-
-def _left_out(suite: SuiteTried) -> Iterator[str]:
-    for name, why in suite.left_out.items():
-        yield f"  left out: {name}: {why}"
 
 
 def list_text(mutants: Sequence[Mutant | SpecMutant], *, held_out: bool) -> str:

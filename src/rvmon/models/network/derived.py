@@ -55,13 +55,12 @@ def finer(network: Network, factor: int) -> Network:
 def _automaton(automaton: Automaton, factor: int) -> Automaton:
     return replace(
         automaton,
-        locations=tuple(_location(location, factor) for location in automaton.locations),
+        locations=tuple(
+            replace(location, invariant=_guard(location.invariant, factor))
+            for location in automaton.locations
+        ),
         edges=tuple(_edge(edge, factor) for edge in automaton.edges),
     )
-
-
-def _location(location: Location, factor: int) -> Location:
-    return replace(location, invariant=_guard(location.invariant, factor))
 
 
 def _edge(edge: Edge, factor: int) -> Edge:

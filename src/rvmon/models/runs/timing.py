@@ -129,11 +129,8 @@ def earliest(timing: Timing) -> list[Fraction]:
     The least solution of difference constraints is one of them, so no choice hinders a later one;
     a strict bound is kept by one grid step.
     """
-    return _delays([0.0, *(first for _, _, first in timing.waits)], timing.scale)
-
-
-def _delays(times: Sequence[float], scale: int) -> list[Fraction]:
-    return [Fraction(int(later - before), scale) for before, later in pairwise(times)]
+    times = (0.0, *(first for _, _, first in timing.waits))
+    return [Fraction(int(later - before), timing.scale) for before, later in pairwise(times)]
 
 
 Piece = tuple[Atom, ...]

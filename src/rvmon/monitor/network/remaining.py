@@ -77,7 +77,7 @@ class Remaining:
         residual = frozenset(
             frozenset((node, number[clock]) for node, clock in clause) for clause in found
         )
-        return residual, [(self.now - _position(anchor)) * self.gap for anchor in anchors]
+        return residual, [(self.now - anchor + _START) * self.gap for anchor in anchors]
 
     def _value(self, core: Core, position: int, positive: bool) -> bool | None:
         if isinstance(core, Constant):
@@ -221,7 +221,3 @@ _START = 1 << 100
 def _clock(position: int) -> int:
     """The clock started at a position: positive, and smaller for older ones, as in residuals."""
     return position + _START
-
-
-def _position(clock: int) -> int:
-    return clock - _START
