@@ -184,12 +184,15 @@ def test_a_merge_of_topics_is_told(tmp_path):
         assert {one.remark for one in health if one.name == "speed"} == {""}
 
 
-def test_a_value_may_stand_for_no_update():
+def test_a_value_may_stand_for_no_update(tmp_path):
     for gap in (-1, -1.0, np.float64(-1)):
         for column in ([1.0, -1.0, 2.0], np.array([1.0, -1.0, 2.0])):
             table = {"t": np.arange(3.0), "speed": column}
             plain = {"t": [0, 1, 2], "speed": [1.0, None, 2.0]}
             assert told(base(), table, no_update=gap) == told(base(), plain)
+    (tmp_path / "a.csv").write_text("t,mode,speed,on\n0,idle,1,1\n1,-,-,0\n2,-,-,-")
+    rows = base().recording(tmp_path / "a.csv", no_update="-")
+    assert [len(one.values) for one in rows] == [3, 1, 0]  # the last has no end of a line
     assert judged(base(), MERGED, no_update=NAN).verdicts["R1"] == "P"
     for wrong in ({"nan": "gap"}, {"no_update": [1]}):
         with pytest.raises(UnknownNameError, match=r"no reading of NaN|is no value of a cell"):

@@ -25,7 +25,7 @@ def model(declaration="", local="", invariant="", system="system T;", queries=""
         ({"declaration": "const string s = &quot;a&quot;;"}, "texts"),
         ({"declaration": "dynamic T();"}, "templates that are started by runs"),
         ({"declaration": "before_update { i = 0 }"}, "updates around every step"),
-        ({"declaration": "const N 5;"}, "a constant without a type"),
+        ({"declaration": "const N 5;"}, "a constant without a type: write const int N = 5"),
         ({"assignment": "if (1) { }"}, "statements"),
         ({"declaration": "void f() { break; }"}, "break"),
         ({"declaration": "int i, j; void f() { if (i = j) { } }"}, "an assignment is no value"),
@@ -38,7 +38,7 @@ def test_what_is_not_supported_is_called_by_its_name(parts, message):
         loads_network(model(**parts))
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "TA016"
-    assert message in diagnostic.message
+    assert message in f"{diagnostic.message}: {diagnostic.help}"
     assert diagnostic.help
     assert diagnostic.spans
 

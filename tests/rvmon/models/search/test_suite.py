@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from rvmon.errors import ModelError
 from rvmon.models.language.load import load_network, loads_network
 from rvmon.models.runs.exact_times import Rules
 from rvmon.models.search.budget import Budget
@@ -79,6 +80,14 @@ def test_pairs_that_time_forbids_are_missing():
     """)
     suite = build_suite(network, Criterion.EDGE_PAIRS)
     assert [item.numbers for item in suite.missing] == [(0, 1)]
+
+
+def test_a_network_that_cannot_start_has_no_suite():
+    network = loads_network(
+        "int[0,1] v = 1 automaton A { location a invariant v == 0 start a edge a -> a }"
+    )
+    with pytest.raises(ModelError, match="of the initial locations is false at time 0"):
+        build_suite(network, Criterion.EDGES)
 
 
 def test_a_budget_is_told():
