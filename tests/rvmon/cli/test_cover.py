@@ -237,7 +237,9 @@ def test_campaigns_are_compared(door, capsys, says):
     _, lines = shown(capsys, later, "--compare", door)
     at = lines.index(f"since {door}: 46 % → 21 %")
     assert lines[at + 1] == "lost:"
-    at = lines.index("newly covered:")
+    lost, at = at + 2, lines.index("newly covered:")
+    told = ["gaze: no", "near: touch", "situation: yes × touch", "D1: triggered"]
+    assert lines[lost:at] == told
     assert lines[at + 1 : at + 4] == ["near: reach", "verdicts that changed:", "calm-1 D1 P → F"]
     _, both = shown(capsys, door, later, "--campaign", "week 2", "--compare", "week 1")
     assert "since week 1: 46 % → 21 %" in both
