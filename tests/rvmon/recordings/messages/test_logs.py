@@ -3,6 +3,7 @@
 import random
 import re
 import struct
+from itertools import pairwise
 
 import pytest
 from tests.rvmon.recordings.messages.logs import (
@@ -132,6 +133,10 @@ def test_what_is_damaged_in_the_middle_is_an_outage(tmp_path, name):
     middle = len(data) // 2
     data[middle : middle + 40] = bytes(40)
     path.write_bytes(data)
+    log = messages_of(str(path))
+    stamps = [message[1] for message in log.read({f"/{topic}"})]
+    (lost,) = log.outages
+    assert (lost.since, lost.until) == max(pairwise(stamps), key=lambda pair: pair[1] - pair[0])
     report = spec.evaluate(path)
     assert report.verdicts["R1"] == "I"
     assert any(
