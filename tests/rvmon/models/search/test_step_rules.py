@@ -154,6 +154,12 @@ def test_a_step_is_taken_by_its_rule(rule):
     assert {query: verify(network, query).holds for query in answers} == answers
 
 
+def test_a_run_that_is_drawn_leaves_a_committed_location():
+    network = loads_network(TWO.format(kind="committed"))
+    leaves = asked_on(network, "Pr[<=9; 20](<> A.b)")[1]
+    assert sample(network, leaves).value == 1
+
+
 def test_weights_below_one_make_the_likeliest_run():
     """The likeliest run avoids an improbable edge even if more steps are needed."""
     network = loads_network("""
