@@ -41,6 +41,7 @@ def number(rng: random.Random) -> str:
     return rng.choice(
         [
             f"{rng.uniform(-9, 9):.3f}",
+            f"{rng.uniform(-1, 1) * 10 ** rng.randrange(9):.{rng.randrange(9)}f}",
             repr(rng.random()),
             repr(rng.uniform(-1e6, 1e6)),
             repr(exact),
@@ -128,6 +129,24 @@ def test_a_cell_is_read_as_in_rows(text, tmp_path):
     path = tmp_path / "a.csv"
     path.write_text(text)
     assert read(SPEC.recording(path)) == read(samples_of_csv(SPEC, path))
+
+
+@pytest.mark.slow
+def test_cells_of_any_characters_are_read_as_in_rows(tmp_path):
+    rng, path = random.Random(3), tmp_path / "a.csv"
+    for _ in range(1000):
+        name = rng.choice(["p", "speed", "count", "t_ns", "t"])
+        letters = rng.choice(["0123456789", "0123456789.", "0123456789.-", '01.e-+ é"\r'])
+        cell = "".join(rng.choices(letters, k=rng.choice([1, 2, 7, 8, 9, 15, 16, 17, 20])))
+        cell = rng.choice(["", "", "-", "-0.", "0."]) + cell
+        cell = cell.rstrip(".") if name == "t_ns" else cell
+        stamp = name if name.startswith("t") else "t"
+        row = cell if name == stamp else f"1000000,{cell}"
+        header = stamp if name == stamp else f"{stamp},{name}"
+        first = "-123456789,1" if name != stamp else "-4611686018"
+        text = f"{header},note\n{first},{'.' * 16}\n{row},0\n{row},-1.5\n"
+        path.write_text(text, encoding="utf-8", newline="")
+        assert read(SPEC.recording(path)) == read(samples_of_csv(SPEC, path)), text
 
 
 @pytest.mark.slow

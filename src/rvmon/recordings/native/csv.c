@@ -1,11 +1,7 @@
 /* Text to rows of cells. */
-#include "numbers.h"
+#include "csv.h"
 
-typedef struct {
-    const char *from;
-    const char *to;
-    bool is_doubled; /* a quote in it is */
-} cell;
+#include <string.h>
 
 /* As Python strips text; what is no ASCII is for Python. */
 static bool is_space(char c)
@@ -13,7 +9,7 @@ static bool is_space(char c)
     return (c == ' ') || ((c >= '\t') && (c <= '\r')) || ((c >= 28) && (c <= 31));
 }
 
-static cell trimmed(cell c)
+static csv_cell trimmed(csv_cell c)
 {
     while ((c.from < c.to) && is_space(*c.from)) {
         c.from++;
@@ -25,7 +21,7 @@ static cell trimmed(cell c)
 }
 
 /* Where a label is noted, which is new or not; -1: there is no more room. */
-static int64_t place_of(csv_reader *r, int32_t column, cell c)
+static int64_t place_of(csv_reader *r, int32_t column, csv_cell c)
 {
     const int64_t start = c.from - r->text;
     const int64_t end = c.is_doubled ? ~(int64_t)(c.to - r->text) : c.to - r->text;
@@ -59,14 +55,7 @@ static int64_t place_of(csv_reader *r, int32_t column, cell c)
     return r->label_count - 1;
 }
 
-static bool is_absent(const csv_reader *r, cell c)
-{
-    return (r->absent != NULL) && (c.to - c.from == r->absent_size)
-           && (memcmp(c.from, r->absent, (size_t)r->absent_size) == 0);
-}
-
-/* Put down what a cell says; false: there is no more room. */
-static bool take_cell(csv_reader *r, int32_t column, cell c)
+bool csv_take(csv_reader *r, int32_t column, csv_cell c)
 {
     const int64_t place = (int64_t)column * r->room + r->rows;
     const int32_t kind = r->kinds[column];
@@ -74,7 +63,7 @@ static bool take_cell(csv_reader *r, int32_t column, cell c)
     int says;
     c = trimmed(c);
     made->whole = 0;
-    if ((kind < CSV_DATE) && ((c.from == c.to) || is_absent(r, c))) {
+    if ((kind < CSV_DATE) && ((c.from == c.to) || csv_is_absent(r, c))) {
         says = CSV_NO_UPDATE;
     } else if (kind == CSV_LABEL) {
         says = CSV_YES;
@@ -114,12 +103,15 @@ static bool is_open(const csv_reader *r, const char *at)
     return !r->is_last && ((at == end) || ((*at == '\r') && (at + 1 == end)));
 }
 
-/* Behind the quote that ends a cell whose text begins here; NULL: there is none in this text. */
-static const char *quoted(const csv_reader *r, const char *at, cell *c, int64_t *line)
+const char *csv_quoted(const csv_reader *r, const char *at, csv_cell *c, int64_t *line)
 {
     const char *end = r->text + r->size;
     c->from = at;
-    while (at < end) {
+    for (;;) {
+        at = csv_up_to(at, end, '"');
+        if (at == end) {
+            return NULL;
+        }
         if (*at == '"') {
             if ((at + 1 == end) || (at[1] != '"')) {
                 c->to = at;
@@ -134,7 +126,6 @@ static const char *quoted(const csv_reader *r, const char *at, cell *c, int64_t 
             at++;
         }
     }
-    return NULL;
 }
 
 typedef enum { ROW_READ, ROW_BLANK, ROW_OPEN, ROW_ODD, ROW_NO_ROOM } row_end;
@@ -157,9 +148,9 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
     }
     for (;; at++) {
         const int32_t column = (place < r->width) ? r->slots[place] : -1;
-        cell c = {at, at, false};
+        csv_cell c = {at, at, false};
         if ((at < end) && (*at == '"')) {
-            at = quoted(r, at + 1, &c, line);
+            at = csv_quoted(r, at + 1, &c, line);
             if ((at == NULL) || (at == end)) {
                 if (!r->is_last) {
                     return ROW_OPEN;
@@ -173,7 +164,7 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
                 }
             }
         } else {
-            while ((at < end) && !csv_ends_cell(*at)) {
+            while (((at = csv_up_to(at, end, ',')) < end) && !csv_ends_cell(*at)) {
                 at++;
             }
             c.to = at;
@@ -183,7 +174,7 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
         }
         is_odd = is_odd || (place >= r->width) || (c.to - c.from > r->longest);
         if (!is_odd && has_room && (column >= 0)) {
-            has_room = take_cell(r, column, c);
+            has_room = csv_take(r, column, c);
         }
         place += (place < r->width) ? 1 : 0;
         if ((at == end) || (*at != ',')) {
@@ -196,71 +187,6 @@ static row_end read_row(csv_reader *r, const char *at, const char **next, int64_
         return ROW_ODD;
     }
     return has_room ? ROW_READ : ROW_NO_ROOM;
-}
-
-/* Put down the number that a cell begins with, and is; gives its end. NULL: it is something else. */
-static inline const char *take_number(csv_reader *r, int32_t column, const char *from)
-{
-    const int64_t place = (int64_t)column * r->room + r->rows;
-    const int32_t kind = r->kinds[column];
-    const char *end = r->text + r->size;
-    decimal d;
-    cell c = {from, NULL, false};
-    if ((kind == CSV_LABEL) || (kind == CSV_DATE)) {
-        return NULL;
-    }
-    c.to = decimal_at(from, end, &d);
-    if ((c.to == NULL) || (c.to == end) || !csv_ends_cell(*c.to) || is_absent(r, c)
-        || (number_of(r, kind, &d, from, c.to, &r->numbers[place]) != CSV_YES)) {
-        return NULL;
-    }
-    r->says[place] = CSV_YES;
-    return c.to;
-}
-
-/* Behind a cell before the last end of a line; NULL: it takes several lines, or has an odd end. */
-static inline const char *plain_cell(const csv_reader *r, const char *at, cell *c)
-{
-    int64_t lines = 0;
-    if (*at == '"') {
-        at = quoted(r, at + 1, c, &lines);
-        return ((at == NULL) || (lines > 0) || !csv_ends_cell(*at)) ? NULL : at;
-    }
-    while (!csv_ends_cell(*at)) {
-        at++;
-    }
-    c->to = at;
-    return at;
-}
-
-/* Put down a row before the last end of a line, which needs no look at where the text ends; gives
- * what is behind it. NULL: it is blank, or for `read_row`. */
-static const char *read_plain(csv_reader *r, const char *at)
-{
-    int32_t place;
-    if (is_space(*at)) {
-        return NULL;
-    }
-    for (place = 0; place < r->width; place++) {
-        const int32_t column = r->slots[place];
-        cell c = {at, (column >= 0) ? take_number(r, column, at) : NULL, false};
-        const bool is_number = c.to != NULL;
-        at = is_number ? c.to : plain_cell(r, at, &c);
-        if ((at == NULL) || (c.to - c.from > r->longest)
-            || (!is_number && (column >= 0) && !take_cell(r, column, c))) {
-            return NULL;
-        }
-        if (place + 1 < r->width) {
-            if (*at != ',') {
-                return NULL;
-            }
-            at++;
-        }
-    }
-    if ((*at == '\r') && (at[1] == '\n')) {
-        at++;
-    }
-    return (*at == '\n') ? at + 1 : NULL;
 }
 
 /* Behind the last line of the text that ends. */
@@ -284,16 +210,8 @@ csv_end csv_read(csv_reader *r)
         if (r->rows == r->room) {
             return CSV_FULL;
         }
-        if (r->text + r->at < lines_end) {
-            next = read_plain(r, r->text + r->at);
-            if (next != NULL) {
-                r->line++;
-                r->lines[r->rows] = r->line;
-                r->rows++;
-                r->at = next - r->text;
-                continue;
-            }
-            r->odd_count = odd_count;
+        if (csv_plain(r, lines_end) > 0) {
+            continue;
         }
         ended = read_row(r, r->text + r->at, &next, &line);
         if (ended != ROW_READ) {

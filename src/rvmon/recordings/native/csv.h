@@ -9,6 +9,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 /* What cells of a column are. Stamps of a unit with so many digits behind the point are CSV_STAMP and
    these digits: 9 of seconds, 0 of ticks. */
@@ -65,10 +66,84 @@ csv_end csv_read(csv_reader *r);
 /* A cell that is trimmed and not empty, as a value of its kind: what it says. */
 int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *to, csv_number *made);
 
+/* From here on it is the reader's own. */
+
+typedef struct {
+    const char *from;
+    const char *to;
+    bool is_doubled; /* a quote in it is */
+} csv_cell;
+
+/* Read the plain rows that follow, some at a time, up to the end of a line; gives how many, 0: the
+ * next one is none, or there is no room for it. */
+int64_t csv_plain(csv_reader *r, const char *lines_end);
+
+/* Put down what a cell of the next row says; false: there is no more room. */
+bool csv_take(csv_reader *r, int32_t column, csv_cell c);
+
+/* Behind the quote that ends a cell whose text begins here; NULL: there is none in this text. */
+const char *csv_quoted(const csv_reader *r, const char *at, csv_cell *c, int64_t *line);
+
 /* What all digits are above. */
 static inline bool csv_ends_cell(char c)
 {
     return ((uint8_t)c <= ',') && ((c == ',') || (c == '\n') || (c == '\r'));
+}
+
+static inline bool csv_is_absent(const csv_reader *r, csv_cell c)
+{
+    return (r->absent != NULL) && (c.to - c.from == r->absent_size)
+           && (memcmp(c.from, r->absent, (size_t)r->absent_size) == 0);
+}
+
+/* Eight bytes, the first of which is the lowest. */
+static inline uint64_t csv_word(const char *at)
+{
+#if defined(__BYTE_ORDER__) && (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__)
+    uint64_t word;
+    (void)memcpy(&word, at, sizeof word);
+    return word;
+#else
+    uint64_t word = 0;
+    int32_t i;
+    for (i = 0; i < 8; i++) {
+        word |= (uint64_t)(uint8_t)at[i] << (8 * i);
+    }
+    return word;
+#endif
+}
+
+/* The lowest bit that is set; one is. */
+static inline int32_t csv_lowest(uint64_t bits)
+{
+#if defined(__GNUC__)
+    return (int32_t)__builtin_ctzll(bits);
+#else
+    int32_t i = 0;
+    while (((bits >> i) & 1u) == 0) {
+        i++;
+    }
+    return i;
+#endif
+}
+
+/* The first byte from here on that is not above a character; `to`: there is none. */
+static inline const char *csv_up_to(const char *at, const char *to, char most)
+{
+    const uint64_t above = 0x0101010101010101u * ((uint64_t)most + 1);
+    while (to - at >= 8) {
+        const uint64_t word = csv_word(at);
+        /* Behind the first byte one may be marked that is above; before it none is. */
+        const uint64_t marks = (word - above) & ~word & 0x8080808080808080u;
+        if (marks != 0) {
+            return at + csv_lowest(marks) / 8;
+        }
+        at += 8;
+    }
+    while ((at < to) && ((uint8_t)*at > (uint8_t)most)) {
+        at++;
+    }
+    return at;
 }
 
 #endif

@@ -41,6 +41,20 @@ static const uint64_t WHOLE_POWERS[] = {
 #define EXACT ((uint64_t)1 << 53)
 #define TIME_LIMIT ((uint64_t)1 << 62)
 
+/* What may be multiplied by such a power and stays an instant. */
+static const uint64_t MOST_TICKS[] = {
+    TIME_LIMIT - 1,
+    (TIME_LIMIT - 1) / 10,
+    (TIME_LIMIT - 1) / 100,
+    (TIME_LIMIT - 1) / 1000,
+    (TIME_LIMIT - 1) / 10000,
+    (TIME_LIMIT - 1) / 100000,
+    (TIME_LIMIT - 1) / 1000000,
+    (TIME_LIMIT - 1) / 10000000,
+    (TIME_LIMIT - 1) / 100000000,
+    (TIME_LIMIT - 1) / 1000000000,
+};
+
 /* The longest number that is read here. */
 #define LONGEST 127
 
@@ -57,34 +71,42 @@ static inline bool is_digit(char c)
     return (c >= '0') && (c <= '9');
 }
 
-/* Eight digits at once, the first of which is in the lowest byte; false: one of them is none. */
-static inline bool eight_digits(const char *at, uint64_t *made)
+/* What eight digits say, of which the first is in the lowest byte; a byte 0 is a zero, too. */
+static inline uint64_t eight_digits(uint64_t text)
 {
-#if defined(__BYTE_ORDER__) && (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__)
-    uint64_t text;
-    (void)memcpy(&text, at, sizeof text);
-    if (((text & 0xF0F0F0F0F0F0F0F0u) | (((text + 0x0606060606060606u) & 0xF0F0F0F0F0F0F0F0u) >> 4))
-        != 0x3333333333333333u) {
-        return false;
-    }
     text = (text & 0x0F0F0F0F0F0F0F0Fu) * 2561 >> 8; /* pairs, then fours, then all */
     text = (text & 0x00FF00FF00FF00FFu) * 6553601 >> 16;
-    *made = (text & 0x0000FFFF0000FFFFu) * 42949672960001u >> 32;
-    return true;
-#else
-    (void)at;
-    (void)made;
-    return false;
-#endif
+    return (text & 0x0000FFFF0000FFFFu) * 42949672960001u >> 32;
+}
+
+/* What the first digits say, up to seven. */
+static inline uint64_t some_digits(uint64_t text, int32_t count)
+{
+    return eight_digits(text << 8 << (56 - 8 * count));
+}
+
+#define ZEROS 0x3030303030303030u
+
+/* Marks what is no digit in digits less '0', up to the first byte that is no ASCII; of what is
+ * behind that nothing is known. */
+static inline uint64_t stops_in(uint64_t digits)
+{
+    return ((digits + 0x7676767676767676u) | digits) & 0x8080808080808080u;
 }
 
 /* Digits of which too many are no number: nobody looks at it then. */
 static inline const char *digits_at_once(const char *at, const char *to, uint64_t *mantissa)
 {
     uint64_t found = *mantissa;
-    uint64_t eight;
-    while ((to - at >= 8) && eight_digits(at, &eight)) {
-        found = found * 100000000 + eight;
+    while (to - at >= 8) {
+        const uint64_t word = csv_word(at);
+        const uint64_t stops = stops_in(word ^ ZEROS);
+        if (stops != 0) {
+            const int32_t count = csv_lowest(stops) / 8;
+            *mantissa = found * WHOLE_POWERS[count] + some_digits(word, count);
+            return at + count;
+        }
+        found = found * WHOLE_POWERS[8] + eight_digits(word);
         at += 8;
     }
     for (; (at < to) && is_digit(*at); at++) {
@@ -188,11 +210,10 @@ static inline int stamp_of(const decimal *d, int32_t places, csv_number *made)
         return CSV_ODD;
     }
     if (d->behind < places) {
-        const uint64_t scale = WHOLE_POWERS[places - d->behind];
-        if (ticks > (TIME_LIMIT - 1) / scale) {
+        if (ticks > MOST_TICKS[places - d->behind]) {
             return CSV_ODD;
         }
-        ticks *= scale;
+        ticks *= WHOLE_POWERS[places - d->behind];
     } else if (d->behind - places > MOST_DIGITS) {
         return CSV_ODD;
     } else if (d->behind > places) {
@@ -223,6 +244,81 @@ static inline int number_of(const csv_reader *r, int32_t kind, const decimal *d,
     case CSV_REAL: return exact_of(d, made) ? CSV_YES : csv_inexact(r, d, from, to, made);
     default: return stamp_of(d, kind - CSV_STAMP, made);
     }
+}
+
+/* A number of up to 16 digits. */
+typedef struct {
+    uint64_t mantissa;
+    int32_t behind; /* digits behind the point */
+    bool is_negative;
+} short_decimal;
+
+/* Leave out the point, if that is the only stop: what lies before it moves up by a byte. Gives how
+ * many digits are behind it; -1: it is something else. */
+static inline int32_t without_point(uint64_t *digits, uint64_t stops)
+{
+    const int32_t place = csv_lowest(stops) - 7;
+    const uint64_t before = *digits & ((stops >> 7) - 1);
+    if (((*digits >> place & 0xFF) != ('.' ^ '0')) || ((stops & (stops - 1)) != 0)) {
+        return -1;
+    }
+    *digits = (*digits & ~((stops << 1) - 1)) | before << 8;
+    return 7 - place / 8;
+}
+
+/* The same of up to 16 characters that are more than eight. */
+static inline bool longer_decimal(const char *to, int64_t size, short_decimal *made)
+{
+    uint64_t high = csv_word(to - 8) ^ ZEROS;
+    uint64_t low;
+    uint64_t stops = stops_in(high);
+    int32_t behind = 0;
+    if ((size < 9) || (size > 16)) {
+        return false;
+    }
+    low = (csv_word(to - 16) ^ ZEROS) >> (128 - 8 * size) << (128 - 8 * size);
+    if (stops != 0) {
+        behind = without_point(&high, stops);
+        if ((behind < 0) || (stops_in(low) != 0)) {
+            return false;
+        }
+        high |= low >> 56;
+        low <<= 8;
+    } else if ((stops = stops_in(low)) != 0) {
+        behind = without_point(&low, stops);
+        if (behind < 0) {
+            return false;
+        }
+        behind += 8;
+    }
+    made->behind = behind;
+    made->mantissa = eight_digits(high) + eight_digits(low) * WHOLE_POWERS[8];
+    return true;
+}
+
+/* A cell of digits and at most one point, 16 characters behind its sign at most; there are 16 bytes
+ * before its end. False: it is something else. */
+static inline bool short_of(const char *from, const char *to, short_decimal *made)
+{
+    const int64_t signs = (*from == '-') ? 1 : 0;
+    const int64_t size = to - from - signs;
+    uint64_t digits;
+    uint64_t stops;
+    made->is_negative = signs != 0;
+    if ((uint64_t)(size - 1) >= 8) {
+        return longer_decimal(to, size, made);
+    }
+    digits = (csv_word(to - 8) ^ ZEROS) >> (64 - 8 * size) << (64 - 8 * size);
+    stops = stops_in(digits);
+    made->behind = 0;
+    if (stops != 0) {
+        made->behind = without_point(&digits, stops);
+        if ((made->behind < 0) || (size == 1)) {
+            return false;
+        }
+    }
+    made->mantissa = eight_digits(digits);
+    return true;
 }
 
 #endif

@@ -1,0 +1,277 @@
+/* Plain rows, which most are: no text in quotes takes several lines, and each line ends as usual.
+
+   They are taken some at a time: where cells end is found first, then columns of numbers are read
+   one by one, and what is left is put down row by row. */
+#include "numbers.h"
+
+/* Places that are noted at once: of each row where it begins and where its cells end. */
+#define PLACES 8192
+
+/* Bytes that are looked at at once. */
+#define STRETCH 32768
+
+/* Bytes before the first row, so that those before the end of a number can be read. */
+#define BEFORE 16
+
+typedef struct {
+    const char *text; /* where the first row begins */
+    int64_t rows;
+    int32_t places[PLACES]; /* of each row what is before it, then the ends of its cells */
+    bool is_left[PLACES / 2]; /* of each row: some of its cells were not read */
+    bool some_are_left;
+} stretch;
+
+/* Which of eight bytes are not above a comma, as bits. */
+static inline uint64_t marks_of(const char *at)
+{
+    const uint64_t high = 0x8080808080808080u;
+    const uint64_t word = csv_word(at);
+    const uint64_t above = ((word | high) - 0x2D2D2D2D2D2D2D2Du) | word;
+    return ((~above & high) >> 7) * 0x0102040810204080u >> 56;
+}
+
+/* The same of 64. */
+static inline uint64_t marks_in(const char *at)
+{
+    return marks_of(at) | marks_of(at + 8) << 8 | marks_of(at + 16) << 16 | marks_of(at + 24) << 24
+           | marks_of(at + 32) << 32 | marks_of(at + 40) << 40 | marks_of(at + 48) << 48
+           | marks_of(at + 56) << 56;
+}
+
+/* Find the plain rows in so much text, at most so many; gives where the last one ends. */
+static int32_t split(const csv_reader *r, int32_t size, int64_t most, stretch *s)
+{
+    const char *const text = s->text;
+    const int32_t width = r->width;
+    int32_t at = 0;
+    int32_t end = 0; /* of the rows */
+    int32_t *next = s->places;
+    const int32_t *last = next + width;
+    *next = -1;
+    while (at < size) {
+        const int32_t begin = at;
+        uint64_t marks;
+        if (size - at >= 64) {
+            marks = marks_in(text + at);
+        } else {
+            char rest[64];
+            (void)memset(rest, 'x', sizeof rest);
+            (void)memcpy(rest, text + at, (size_t)(size - at));
+            marks = marks_in(rest);
+        }
+        at += 64;
+        for (; marks != 0; marks &= marks - 1) {
+            const int32_t place = begin + csv_lowest(marks);
+            const char found = text[place];
+            if (found == ',') {
+                next++;
+                if (next == last) {
+                    return end;
+                }
+                *next = place;
+            } else if (found == '\n') {
+                if ((next + 1 < last) || ((width == 1) && ((uint8_t)text[end] <= ' '))) {
+                    return end;
+                }
+                next[1] = place - ((text[place - 1] == '\r') ? 1 : 0);
+                next += 2;
+                last += width + 1;
+                end = place + 1;
+                s->rows++;
+                if (s->rows == most) {
+                    return end;
+                }
+                *next = place;
+            } else if (found == '\r') {
+                if (text[place + 1] != '\n') {
+                    return end;
+                }
+            } else if ((found == '"') && (place == *next + 1)) {
+                csv_cell c = {text, text, false};
+                int64_t lines = 0;
+                const char *behind = csv_quoted(r, text + place + 1, &c, &lines);
+                if ((behind == NULL) || (lines > 0) || !csv_ends_cell(*behind)
+                    || (behind - text >= size)) {
+                    return end;
+                }
+                at = (int32_t)(behind - text);
+                break;
+            }
+        }
+    }
+    return end;
+}
+
+/* Where the numbers of a place in a row are put. */
+typedef struct {
+    int32_t kind;
+    csv_number *numbers;
+    uint8_t *says;
+    const int32_t *ends; /* what is before its cell in the first row */
+    int64_t stride;      /* to that of the next row */
+} column;
+
+static inline csv_cell cell_at(const stretch *s, const int32_t *ends)
+{
+    const csv_cell made = {s->text + ends[0] + 1, s->text + ends[1], false};
+    return made;
+}
+
+/* Read a cell that is no short number: one of another form, or nothing; else it is left. */
+static void read_other(const csv_reader *r, const column *c, stretch *s, int64_t row)
+{
+    const csv_cell found = cell_at(s, &c->ends[row * c->stride]);
+    csv_number *made = &c->numbers[row];
+    decimal d;
+    int says = CSV_ODD;
+    if ((found.from == found.to) && (c->kind < CSV_STAMP)) {
+        made->whole = 0;
+        says = CSV_NO_UPDATE;
+    } else if (!csv_is_absent(r, found)
+               && (decimal_at(found.from, r->text + r->size, &d) == found.to)) {
+        says = number_of(r, c->kind, &d, found.from, found.to, made);
+    }
+    c->says[row] = (uint8_t)((says == CSV_ODD) ? 0 : says);
+    if (says == CSV_ODD) {
+        s->is_left[row] = true;
+        s->some_are_left = true;
+    }
+}
+
+static void read_reals(const csv_reader *r, const column *c, stretch *s)
+{
+    const int32_t *ends = c->ends;
+    const int64_t rows = s->rows;
+    int64_t row;
+    for (row = 0; row < rows; row++, ends += c->stride) {
+        const csv_cell found = cell_at(s, ends);
+        short_decimal d;
+        if (short_of(found.from, found.to, &d) && (d.mantissa <= EXACT)) {
+            const double real = (double)(int64_t)d.mantissa / POWERS[d.behind];
+            c->numbers[row].real = d.is_negative ? -real : real;
+        } else {
+            read_other(r, c, s, row);
+        }
+    }
+}
+
+/* Whole numbers, and stamps of which so many digits are whole. */
+static void read_wholes(const csv_reader *r, const column *c, int32_t places, stretch *s)
+{
+    const int32_t *ends = c->ends;
+    const int64_t rows = s->rows;
+    int64_t row;
+    for (row = 0; row < rows; row++, ends += c->stride) {
+        const csv_cell found = cell_at(s, ends);
+        short_decimal d;
+        if (short_of(found.from, found.to, &d) && (d.behind <= places)
+            && (d.mantissa <= MOST_TICKS[places - d.behind])) {
+            const int64_t whole = (int64_t)(d.mantissa * WHOLE_POWERS[places - d.behind]);
+            c->numbers[row].whole = d.is_negative ? -whole : whole;
+        } else {
+            read_other(r, c, s, row);
+        }
+    }
+}
+
+static void read_bools(const csv_reader *r, const column *c, stretch *s)
+{
+    const int32_t *ends = c->ends;
+    const int64_t rows = s->rows;
+    int64_t row;
+    for (row = 0; row < rows; row++, ends += c->stride) {
+        const csv_cell found = cell_at(s, ends);
+        if ((found.to - found.from == 1) && ((*found.from == '0') || (*found.from == '1'))) {
+            c->numbers[row].whole = *found.from - '0';
+        } else {
+            read_other(r, c, s, row);
+        }
+    }
+}
+
+static void read_column(const csv_reader *r, const column *c, stretch *s)
+{
+    int64_t row;
+    if ((c->kind == CSV_LABEL) || (c->kind == CSV_DATE)) {
+        (void)memset(c->says, 0, (size_t)s->rows);
+        (void)memset(s->is_left, true, (size_t)s->rows * sizeof *s->is_left);
+        s->some_are_left = true;
+        return;
+    }
+    (void)memset(c->says, CSV_YES, (size_t)s->rows);
+    if (r->absent != NULL) {
+        for (row = 0; row < s->rows; row++) {
+            read_other(r, c, s, row);
+        }
+        return;
+    }
+    switch (c->kind) {
+    case CSV_BOOL: read_bools(r, c, s); break;
+    case CSV_INT: read_wholes(r, c, 0, s); break;
+    case CSV_REAL: read_reals(r, c, s); break;
+    default: read_wholes(r, c, c->kind - CSV_STAMP, s); break;
+    }
+}
+
+/* Put down the cells of the next row that were not read; false: there is no more room. */
+static bool take_left(csv_reader *r, const stretch *s, int64_t row)
+{
+    const int32_t *ends = &s->places[row * (r->width + 1)];
+    int32_t place;
+    for (place = 0; place < r->width; place++) {
+        const int32_t slot = r->slots[place];
+        if ((slot >= 0) && (r->says[slot * r->room + r->rows] == 0)) {
+            csv_cell c = {s->text + ends[place] + 1, s->text + ends[place + 1], false};
+            int64_t lines = 0;
+            if ((c.from < c.to) && (*c.from == '"')) {
+                (void)csv_quoted(r, c.from + 1, &c, &lines);
+            }
+            if (!csv_take(r, slot, c)) {
+                return false;
+            }
+        }
+    }
+    return true;
+}
+
+int64_t csv_plain(csv_reader *r, const char *lines_end)
+{
+    stretch s;
+    int64_t most = PLACES / ((int64_t)r->width + 1);
+    int64_t size = (r->longest < STRETCH) ? r->longest : STRETCH; /* so no cell is too long */
+    int32_t end;
+    int32_t place;
+    int64_t row;
+    s.text = r->text + r->at;
+    s.rows = 0;
+    most = (most < r->room - r->rows) ? most : r->room - r->rows;
+    size = (size < lines_end - s.text) ? size : lines_end - s.text;
+    if ((size <= 0) || (most == 0) || (r->at < BEFORE)) {
+        return 0;
+    }
+    end = split(r, (int32_t)size, most, &s);
+    (void)memset(s.is_left, 0, (size_t)s.rows * sizeof *s.is_left);
+    s.some_are_left = false;
+    for (place = 0; place < r->width; place++) {
+        const int32_t slot = r->slots[place];
+        const int64_t put = slot * r->room + r->rows;
+        if (slot >= 0) {
+            const column c = {r->kinds[slot], &r->numbers[put], &r->says[put], &s.places[place],
+                              (int64_t)r->width + 1};
+            read_column(r, &c, &s);
+        }
+    }
+    for (row = 0; row < s.rows; row++) {
+        const int64_t odd_count = r->odd_count;
+        if (s.some_are_left && s.is_left[row] && !take_left(r, &s, row)) {
+            r->odd_count = odd_count;
+            r->at += s.places[row * (r->width + 1)] + 1;
+            return row;
+        }
+        r->line++;
+        r->lines[r->rows] = r->line;
+        r->rows++;
+    }
+    r->at += end;
+    return s.rows;
+}
