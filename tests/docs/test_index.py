@@ -5,7 +5,9 @@ import shlex
 
 import pytest
 from tests.docs.pages import ROOT
-from tests.tools import bags, logs
+from tests.rvmon.recordings.messages import logs
+from tests.tools import bags
+from tests.tools.logs import write_ulog
 
 import rvmon
 from rvmon.cli import main
@@ -36,7 +38,7 @@ def folder(tmp_path, monkeypatch):
     bags.write_ros1(tmp_path / "monday.bag", driven)
     bags.write_ros2(tmp_path / "monday", driven, "sqlite3")
     bags.write_json_mcap(tmp_path / "monday.mcap", driven)
-    logs.write_ulog(tmp_path / "flight.ulg", ROWS)
+    write_ulog(tmp_path / "flight.ulg", ROWS)
     logs.write_dataflash(tmp_path / "flight.bin", ROWS)
     logs.write_mdf(tmp_path / "drive.mf4", ROWS)
     logs.write_hdf5(tmp_path / "drive.h5", ROWS)
@@ -67,6 +69,7 @@ def test_what_is_to_be_typed_for_recordings_works(folder, capsys):
     assert {"run", "init", "look", "export"} <= {*seen}
 
 
+@pytest.mark.slow
 def test_what_is_to_be_typed_in_python_works(folder):
     pandas = pytest.importorskip("pandas")
     known = {"spec": rvmon.load("base.rv"), "frame": pandas.read_csv("monday.csv")}

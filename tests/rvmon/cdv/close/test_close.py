@@ -172,7 +172,7 @@ def test_what_is_called_unreachable_is_not_sought_and_must_not_be_met(dials):
 def test_unknown_items_are_refused(dials):
     for place, fix in (
         (("both", "two × seven"), "did you mean `both: "),
-        (("nothing", "two"), "did you mean `of_right: two`?"),
+        (("of_rigth", "two"), "did you mean `of_right: two`?"),
         (("", "return 1"), "take it out"),
     ):
         with pytest.raises(UnknownNameError, match="calls unreachable what there is not") as caught:
