@@ -12,7 +12,7 @@ from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.ways import WAYS, Judge, Question, Way, answers, ask_monitor, ask_oracle
-from tests.tools.common_fragment import UntranslatableError, names_in
+from tests.tools.common_fragment import UntranslatableError
 
 from rvmon.errors import RvmonError
 from rvmon.language.checked.formula import (
@@ -28,6 +28,7 @@ from rvmon.language.checked.formula import (
     SignalValue,
     Unary,
 )
+from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, Signal, Type
 from rvmon.language.print import format_formula
 from rvmon.session import Spec
@@ -112,7 +113,7 @@ def random_question(rng: random.Random, way: Way, compared: int) -> Question:
     asked = _with_numbers(rng, formula(rng, way.shape, rng.randint(1, 3)), compared)
     ticks = rng.randint(2, 24)
     columns: dict[str, list[bool | float]] = {}
-    for name in sorted(names_in(asked) or {"p"}):
+    for name in sorted({*names_read(asked)} or {"p"}):
         column = columns[name] = []
         while len(column) < ticks:
             if not column or chance(rng, 40):

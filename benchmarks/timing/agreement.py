@@ -21,10 +21,11 @@ from benchmarks.peers.environment import Environment
 from benchmarks.peers.ways import RTAMT_STEPPED, WAYS, Cell, Question, Way, answers, ask_monitor
 from benchmarks.timing.race import PEERS, Figure, margin_text
 from benchmarks.timing.workload import Size, Workload, always_text, specification
-from tests.tools.common_fragment import UntranslatableError, names_in
+from tests.tools.common_fragment import UntranslatableError
 
 from rvmon import loads
 from rvmon.errors import RvmonError
+from rvmon.language.checked.names_read import names_read
 from rvmon.monitor.robustness import Measured
 from rvmon.testing.law.syntax import intervals
 from rvmon.verdicts import Verdict
@@ -155,7 +156,7 @@ def _compared(about: Agreement, way: Way, peer: Peer, cases: Sequence[_Case]) ->
 def _cases(workload: Workload, traces: int) -> Iterator[_Case]:
     """So many damaged traces, the first further one on which ours is FALSE, and the last rows."""
     formula = workload.formulas[0]
-    read = names_in(formula)
+    read = {*names_read(formula)}
     columns = {name: one for name, one in workload.columns.items() if name in read}
     whole = Question(formula, columns)
     rows = min(max(300, 3 * _bound(workload)), MOST_ROWS, workload.rows)

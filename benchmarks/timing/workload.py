@@ -7,10 +7,10 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from benchmarks.timing import timescales
-from tests.tools.common_fragment import names_in
 
 from rvmon import loads
 from rvmon.language.checked.formula import Formula
+from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.rewrite import without_spans
 from rvmon.language.print import format_formula
 
@@ -185,7 +185,7 @@ def _of_numbers(
 ) -> Workload:
     """Over those of the columns that the formula reads, a second apart."""
     asked = formula(text, "p", ", ".join(columns))
-    used = {name: columns[name] for name in sorted(names_in(asked))}
+    used = {name: columns[name] for name in sorted({*names_read(asked)})}
     return Workload(section, name, form, (asked,), used, SECOND)
 
 

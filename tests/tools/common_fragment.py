@@ -17,12 +17,10 @@ from rvmon.language.checked.formula import (
     Passed,
     ProbeAtom,
     SignalAtom,
-    SignalValue,
     Unary,
     UnaryOp,
 )
 from rvmon.language.checked.rewrite import Formulas, read
-from rvmon.testing.law.syntax import numerics, subformulas
 
 EVER = Interval(0, None)
 _KEPT = (UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, UnaryOp.ONCE, UnaryOp.HISTORICALLY)
@@ -41,18 +39,6 @@ def both(left: Formula, right: Formula) -> Formula:
 def either(left: Formula, right: Formula) -> Formula:
     """`left or right`."""
     return Binary(BinaryOp.OR, left, right)
-
-
-def names_in(formula: Formula) -> set[str]:
-    """The signals and events that a formula reads."""
-    found = {part.name for part in numerics(formula) if isinstance(part, SignalValue)}
-    for part in subformulas(formula):
-        match part:
-            case SignalAtom(name=name) | EventAtom(name=name):
-                found.add(name)
-            case _:
-                pass
-    return found
 
 
 def to_core(formula: Formula) -> Formula:

@@ -2,23 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
-from rvmon.language.checked.formula import (
-    Compare,
-    EventAtom,
-    FieldValue,
-    Numeric,
-    ProbeAtom,
-    SignalAtom,
-    SignalValue,
-    UpdateValue,
-)
+from rvmon.language.checked.names_read import names_of_requirement
 from rvmon.language.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.sample_words import word_of
-from rvmon.testing.law.syntax import parts_of, subformulas
 from rvmon.testing.law.word import Word
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
@@ -47,25 +38,8 @@ def _told(case: Case) -> dict[str, Any]:
 
 def names_read(requirement: Requirement, *, keys: bool = True) -> frozenset[str]:
     """The signals and events that a requirement reads anywhere; without `keys` but for its keys."""
-    return frozenset(_names(requirement, keys=keys))
-
-
-def _names(requirement: Requirement, *, keys: bool) -> Iterator[str]:
-    expressions: list[Numeric] = [capture.value for capture in requirement.captures]
-    if keys and requirement.for_each is not None:
-        expressions.append(requirement.for_each.value)
-    for formula in (requirement.trigger, requirement.consequent):
-        for part in subformulas(formula):
-            match part:
-                case SignalAtom(name=name) | EventAtom(name=name) | ProbeAtom(name=name):
-                    yield name
-                case Compare(left=left, right=right):
-                    expressions += [left, right]
-    for expression in expressions:
-        for value in parts_of(expression):
-            match value:
-                case SignalValue(name=name) | UpdateValue(name=name) | FieldValue(event=name):
-                    yield name
+    own = requirement if keys else replace(requirement, for_each=None)
+    return frozenset(names_of_requirement(own))
 
 
 def is_touched(

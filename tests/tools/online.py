@@ -15,8 +15,7 @@ from tests.tools.compare import Key, Outcome, key_of
 from tests.tools.drive import Monitored, feed
 from tests.tools.forms import HeldBack
 from tests.tools.judgement import Judgement
-from tests.tools.moments import moments
-from tests.tools.waiting import Waiting
+from tests.tools.waiting import Waiting, moments
 
 
 def is_silent(monitor: Monitored) -> bool:

@@ -37,9 +37,9 @@ from tests.tools.drive import drive
 from tests.tools.health import expected_health, health_differences
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge, word
-from tests.tools.moments import Moment
 from tests.tools.online import differences_after_end, online_differences
 from tests.tools.shrink import shrink
+from tests.tools.waiting import Moment
 
 pytestmark = pytest.mark.law
 
