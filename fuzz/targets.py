@@ -11,7 +11,7 @@ import json
 import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -67,18 +67,13 @@ ENDS = (".csv", ".jsonl")
 
 
 @cache
-def folder() -> Path:
+def _folder() -> tempfile.TemporaryDirectory[str]:
     """Where inputs lie that are read as files; it goes with the process."""
-    place = tempfile.TemporaryDirectory(prefix="rvmon-fuzz-")
-    _KEPT.append(place)
-    return Path(place.name)
-
-
-_KEPT: list[object] = []
+    return tempfile.TemporaryDirectory(prefix="rvmon-fuzz-")
 
 
 def _file(name: str, data: bytes) -> Path:
-    path = folder() / name
+    path = Path(_folder().name) / name
     path.write_bytes(data)
     return path
 
@@ -89,7 +84,9 @@ def spec(data: bytes) -> str:
     try:
         loaded = rvmon.load(path)
     except SpecError as error:
-        return "refused" if render_full(error.diagnostics) or str(error) else _silent()
+        if not (render_full(error.diagnostics) or str(error)):
+            raise AssertionError("it is refused without a word") from error
+        return "refused"
     except RvmonError:
         return "unread"
     text = format_text(data.decode())
@@ -104,10 +101,6 @@ def spec(data: bytes) -> str:
     return "judged"
 
 
-def _silent() -> str:
-    raise AssertionError("it is refused without a word")
-
-
 def binding(data: bytes) -> str:
     """A binding of the recording of a shop."""
     path = _file("b.toml", data)
@@ -119,6 +112,7 @@ def binding(data: bytes) -> str:
 
 
 def _model(data: bytes, name: str) -> str:
+    """A network of timed automata; it is written as XML, read again, and checked."""
     path = _file(name, data)
     try:
         return survives(path)
@@ -126,16 +120,8 @@ def _model(data: bytes, name: str) -> str:
         return "refused"
 
 
-def model_text(data: bytes) -> str:
-    """A network of timed automata in our form; it is written as XML, read again, and checked."""
-    return _model(data, "m.ta")
-
-
-def model_xml(data: bytes) -> str:
-    return _model(data, "m.xml")
-
-
 def _messages(data: bytes, name: str) -> str:
+    """A recording of a shop."""
     path = _file(name, data)
     try:
         rvmon.loads(SHOP).evaluate(path, allow_missing=True)
@@ -144,18 +130,6 @@ def _messages(data: bytes, name: str) -> str:
     except MemoryError:  # a length of a message; `rvmon run` says so
         return "too large"
     return "judged"
-
-
-def bag(data: bytes) -> str:
-    return _messages(data, "r.bag")
-
-
-def mcap(data: bytes) -> str:
-    return _messages(data, "r.mcap")
-
-
-def parquet(data: bytes) -> str:
-    return _messages(data, "r.parquet")
 
 
 @cache
@@ -253,8 +227,15 @@ def _told(time: str, path: Path, read: Callable[[Any], Iterator[Sample]]) -> obj
 
 
 TARGETS: Mapping[str, Callable[[bytes], str]] = {
-    one.__name__: one
-    for one in (spec, binding, model_text, model_xml, bag, mcap, parquet, snapshot, recording)
+    "spec": spec,
+    "binding": binding,
+    "model_text": partial(_model, name="m.ta"),
+    "model_xml": partial(_model, name="m.xml"),
+    "bag": partial(_messages, name="r.bag"),
+    "mcap": partial(_messages, name="r.mcap"),
+    "parquet": partial(_messages, name="r.parquet"),
+    "snapshot": snapshot,
+    "recording": recording,
 }
 
 

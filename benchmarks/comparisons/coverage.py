@@ -22,6 +22,9 @@ from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.word import Truth, Word, conjunction
 from rvmon.trace.sample import Sample
 
+EACH = 10
+"""Traces of a specification."""
+
 Counted = dict[str, dict[str, tuple[int, int | None]]]
 Found = dict[tuple[str, ...], tuple[int, int]]
 """By combination of bins, how often it was hit and when first."""
@@ -114,17 +117,18 @@ def by_monitor(case: Case, coverage: SpecCoverage) -> Counted:
     }
 
 
-def judge(seed: str, each: int, tally: Counter[str]) -> list[str]:
-    """Compare on the traces of one specification; returns what differs."""
-    rng = random.Random(seed)
-    spec = with_random_coverage(rng, Profile(requirements=1, captures=False, for_each=False))
-    coverage = SpecCoverage(spec)
-    wrong = []
-    for place in range(each):
-        case = random_trace(rng, spec, TraceProfile(long=10))
-        law, found = by_law(case), by_monitor(case, coverage)
-        tally["pairs"] += 1
-        tally["hits"] += sum(count for own in law.values() for count, _ in own.values())
-        if law != found:
-            wrong.append(f"{seed}, trace {place}: law {law}, monitor {found}")
-    return wrong
+def judge_hits(seed: int, numbers: range) -> tuple[Counter[str], list[str]]:
+    """What coverpoints and crosses are hit, on the traces of some specifications."""
+    counts, texts = Counter[str](), list[str]()
+    for number in numbers:
+        rng = random.Random(f"{seed}/{number}")
+        spec = with_random_coverage(rng, Profile(requirements=1, captures=False, for_each=False))
+        coverage = SpecCoverage(spec)
+        for place in range(EACH):
+            case = random_trace(rng, spec, TraceProfile(long=10))
+            law, found = by_law(case), by_monitor(case, coverage)
+            counts["pairs"] += 1
+            counts["hits"] += sum(count for own in law.values() for count, _ in own.values())
+            if law != found:
+                texts.append(f"number {number}, trace {place}: law {law}, monitor {found}")
+    return counts, texts

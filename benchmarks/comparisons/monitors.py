@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from benchmarks.comparisons.comparison import Comparison, Found
-from benchmarks.comparisons.coverage import judge as judge_coverage
+from benchmarks.comparisons.coverage import judge_hits
 from benchmarks.comparisons.long_traces import Long, judge_long
 from benchmarks.comparisons.unrolled import unrolled
 from tests.tools.compare import Key
@@ -194,14 +194,6 @@ def judge_snapshots(seed: int, profile: Profile, traces: TraceProfile, numbers: 
             counts["taken up again"] += put_away(compile_spec(case.spec), case)
         except Exception as error:  # noqa: BLE001 - whatever it raises is a finding
             texts.append(f"number {number}: {type(error).__name__}: {error}\n{show_case(case)}")
-    return counts, texts
-
-
-def judge_hits(seed: int, numbers: range) -> Found:
-    """What coverpoints and crosses are hit."""
-    counts, texts = Counter[str](), list[str]()
-    for number in numbers:
-        texts += judge_coverage(f"{seed}/{number}", 10, counts)
     return counts, texts
 
 

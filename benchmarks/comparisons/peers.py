@@ -5,18 +5,18 @@ from __future__ import annotations
 import random
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from benchmarks.comparisons.comparison import Comparison, Found
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.ways import WAYS, Judge, Question, Way, answers, ask_monitor, ask_oracle
+from tests.tools.build import with_operands
 from tests.tools.common_fragment import UntranslatableError
 
 from rvmon.errors import RvmonError
 from rvmon.language.checked.formula import (
-    Binary,
     Bound,
     BoundAtom,
     Compare,
@@ -26,7 +26,6 @@ from rvmon.language.checked.formula import (
     Literal,
     SignalAtom,
     SignalValue,
-    Unary,
 )
 from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, Signal, Type
@@ -126,17 +125,10 @@ def random_question(rng: random.Random, way: Way, compared: int) -> Question:
 
 def _with_numbers(rng: random.Random, asked: Formula, compared: int) -> Formula:
     """Some of the propositions replaced by comparisons that no value meets exactly."""
-    match asked:
-        case SignalAtom() | Constant() | BoundAtom() if chance(rng, compared):
-            bound = Literal(rng.randint(-1, 2) + 0.5)
-            return Compare(pick(rng, ORDERS), SignalValue(pick(rng, NUMBERS)), bound)
-        case Unary():
-            return replace(asked, operand=_with_numbers(rng, asked.operand, compared))
-        case Binary():
-            left = _with_numbers(rng, asked.left, compared)
-            return replace(asked, left=left, right=_with_numbers(rng, asked.right, compared))
-        case _:
-            return asked
+    if isinstance(asked, SignalAtom | Constant | BoundAtom) and chance(rng, compared):
+        bound = Literal(rng.randint(-1, 2) + 0.5)
+        return Compare(pick(rng, ORDERS), SignalValue(pick(rng, NUMBERS)), bound)
+    return with_operands(asked, lambda operand: _with_numbers(rng, operand, compared))
 
 
 def _robustness(question: Question) -> Values:

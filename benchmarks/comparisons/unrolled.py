@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from tests.tools.build import with_operands
 from tests.tools.common_fragment import both, either, to_core
 
 from rvmon.language.checked.formula import Binary, BinaryOp, Formula, Interval, Unary
@@ -28,12 +29,8 @@ def _unrolled(formula: Formula) -> Formula:
             return _windowed(formula.op, join, _unrolled(operand), interval or Interval(0, None))
         case Binary(op=BinaryOp.UNTIL, left=left, right=right, interval=interval):
             return _until(_unrolled(left), _unrolled(right), interval or Interval(0, None))
-        case Unary(op=op, operand=operand):
-            return Unary(op, _unrolled(operand))
-        case Binary(op=op, left=left, right=right):
-            return Binary(op, _unrolled(left), _unrolled(right))
         case _:
-            return formula
+            return with_operands(formula, _unrolled)
 
 
 def _windowed(

@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping
+from collections.abc import Callable, Container, Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -94,17 +94,24 @@ def two(left: Formula, op: str, right: Formula, *interval: int | None) -> Formul
     return Binary(found, left, right, Interval(low or 0, high))
 
 
+def with_operands(formula: Formula, change: Callable[[Formula], Formula]) -> Formula:
+    """The formula with its operands changed; a proposition as it is."""
+    match formula:
+        case Unary(operand=operand):
+            return replace(formula, operand=change(operand))
+        case Binary(left=left, right=right):
+            return replace(formula, left=change(left), right=change(right))
+        case _:
+            return formula
+
+
 def scaled(formula: Formula, factor: int) -> Formula:
     """The formula with all its bounds so many times as large."""
-    if not isinstance(formula, Unary | Binary):
-        return formula
-    if (window := formula.interval) is not None:
+    formula = with_operands(formula, lambda operand: scaled(operand, factor))
+    if isinstance(formula, Unary | Binary) and (window := formula.interval) is not None:
         high = None if window.high is None else window.high * factor
-        formula = replace(formula, interval=Interval(window.low * factor, high))
-    if isinstance(formula, Unary):
-        return replace(formula, operand=scaled(formula.operand, factor))
-    left, right = scaled(formula.left, factor), scaled(formula.right, factor)
-    return replace(formula, left=left, right=right)
+        return replace(formula, interval=Interval(window.low * factor, high))
+    return formula
 
 
 def compared(left: Numeric, op: str, right: Numeric | float | str) -> Formula:

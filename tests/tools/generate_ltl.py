@@ -8,6 +8,7 @@ from rvmon.language.checked.formula import Binary, BoundAtom, Formula, Interval,
 from rvmon.testing.generate import BOOLS, Rng, pick
 from rvmon.testing.generate.formula import formula
 from rvmon.testing.generate.numbers import Shape
+from tests.tools.build import with_operands
 
 _SHAPE = Shape(past=False, numbers=False, events=False, constants=0, longest=3)
 
@@ -28,11 +29,4 @@ def _over_signals(rng: Rng, made: Formula, *, is_timed: bool) -> Formula:
         return SignalAtom(pick(rng, BOOLS))
     if isinstance(made, Unary | Binary) and made.interval is not None and not is_timed:
         made = replace(made, interval=Interval())
-    if isinstance(made, Unary):
-        return replace(made, operand=_over_signals(rng, made.operand, is_timed=is_timed))
-    if isinstance(made, Binary):
-        left, right = (
-            _over_signals(rng, one, is_timed=is_timed) for one in (made.left, made.right)
-        )
-        return replace(made, left=left, right=right)
-    return made
+    return with_operands(made, lambda operand: _over_signals(rng, operand, is_timed=is_timed))
