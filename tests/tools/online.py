@@ -83,8 +83,8 @@ def _returned(
 ) -> Iterator[str]:
     due = decided.keys() - told
     now = {key_of(a) for a in attempts}
-    if now != due:
-        yield f"decides {sorted(due)}, returned {sorted(now)}"
+    if now != due or len(attempts) != len(now):
+        yield f"decides {sorted(due)}, returned {sorted(map(key_of, attempts))}"
         return
     for attempt in attempts:
         wanted = decided[key_of(attempt)]

@@ -47,7 +47,7 @@ class _Choices(Random):
 
 
 def shrink(
-    draw: Callable[[Random], T], seed: object, shows: Callable[[T], bool], *, most: int = 3_000
+    draw: Callable[[Random], T], seed: object, shows: Callable[[T], bool], *, most: int = 1_500
 ) -> T:
     """What is drawn by fewer and smaller choices, and still shows what is looked for.
 

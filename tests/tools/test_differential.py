@@ -76,6 +76,13 @@ class Silent(Right):
         return []
 
 
+class Repeating(Right):
+    """Tells everything twice."""
+
+    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
+        return [*self.monitor.step_ns(t_ns, values)] * 2
+
+
 class Broken(Right):
     """Raises at every call."""
 
@@ -123,6 +130,7 @@ def found_in(kind: type[Right], pairs: int = 30) -> Sequence[str]:
         (Right, ""),
         (LateFailure, "shrunk:"),
         (Silent, "returned []"),
+        (Repeating, "decides [('R1', False, 1)], returned [('R1', False, 1), ('R1', False, 1)]"),
         (Broken, "raised ZeroDivisionError: no"),
         (Gullible, "and it was taken"),
     ],
