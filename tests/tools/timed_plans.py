@@ -44,7 +44,7 @@ def search_plans(seeds: Iterable[int]) -> Iterator[Plan]:
             Sought(Seek.LATE_AFTER, some, other, bound=2),
             Sought(Seek.NESTED, nested=nested),
             *(
-                Sought(Seek.RUN, ways=ways_of(normal_form(linear)), progress=progress)
+                Sought(Seek.RUN, ways=ways_of(normal_form(linear), None), progress=progress)
                 for linear in (_formula(network, text) for text in _LINEAR)
                 for progress in (False, True)
             ),

@@ -185,7 +185,7 @@ def truths_tried(
     # One position per valuation: a sample each, at consecutive ticks or periods.
     gap = spec.gap or 1
     samples = [Sample(place * gap, values) for place, values in enumerate(tried)]
-    found = known_truths(spec, cores, samples, samples[-1].t, None, {})
+    found = known_truths(spec, cores, samples, samples[-1].t)
     columns = [_column(known, len(tried)) for known in found]
     return list(zip(*columns, strict=True))
 

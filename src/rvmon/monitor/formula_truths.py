@@ -97,22 +97,18 @@ def known_truths(
     formulas: Sequence[Core],
     samples: Iterable[Sample],
     end: int,
-    names: frozenset[str] | None,
-    captured: Mapping[str, Scalar],
 ) -> list[Known]:
     """Evaluate formulas at all positions of a recording; see `TruthsRun`.
 
     Args:
         spec: the specification.
-        formulas: may have future operators.
+        formulas: may have future operators; they read no captured value.
         samples: the recording, in order of time.
         end: its last instant, ticks.
-        names: the signals and events that have a source; `None`: all.
-        captured: by name, the captured values that the formulas read.
 
     Cost: one pass over the samples in C.
     """
-    run = TruthsRun(TruthsPlan(spec, formulas, captured), Trace((), names, end))
+    run = TruthsRun(TruthsPlan(spec, formulas, {}), Trace((), None, end))
     for sample in samples:
         run.take(sample)
     return run.known()

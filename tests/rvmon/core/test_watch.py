@@ -39,7 +39,7 @@ def truths(text, values, end):
     """Where what is required is surely true, and surely false."""
     checked, core = required(text)
     samples = [Sample(t, one) for t, one in values.items()]
-    (found,) = known_truths(checked, [core], samples, end, None, {})
+    (found,) = known_truths(checked, [core], samples, end)
     return tuple(tuple(map(tuple, one.tolist())) for one in (found.true, found.false))
 
 

@@ -68,7 +68,7 @@ def _not_for_models(refusal: Refusal, property_: Property) -> Refusal:
     """The refusal, which sends nobody to `rvmon verify` with what that refuses, too."""
     for part in state_formulas(property_.formula):
         if isinstance(part, PathUnary | PathBinary) and part.interval and part.interval.low > 0:
-            return Refusal(rules.not_for_models(refusal.finding, "a window that opens later"))
+            return Refusal(rules.not_for_models(refusal.finding))
     return refusal
 
 

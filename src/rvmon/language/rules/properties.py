@@ -136,11 +136,11 @@ not_shown = Breach(
 )
 
 
-def not_for_models(found: Diagnostic, what: str) -> Diagnostic:
+def not_for_models(found: Diagnostic) -> Diagnostic:
     """The same finding, where the way out is not the model checker either."""
     if found.code != NOT_LINEAR.code or "rvmon verify" not in found.help:
         return found
-    fix = f"write it for one run; `rvmon verify` does not decide {what} either"
+    fix = "write it for one run; `rvmon verify` does not decide a window that opens later either"
     return replace(found, help=fix)
 
 

@@ -80,8 +80,8 @@ def check_linear(formula: Expression, span: Span | None) -> None:
                 raise model_error("TA020", "one run does not show `deadlock`", span, fix)
 
 
-def ways_of(formula: Expression, span: Span | None = None) -> Ways:
-    """The automaton of a normalised formula.
+def ways_of(formula: Expression, span: Span | None) -> Ways:
+    """The automaton of a normalised formula; `span` is the place of its query.
 
     Raises:
         ModelError: it has too many states.

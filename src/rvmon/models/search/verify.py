@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
+from rvmon.diagnostics import Span
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.network.expressions import (
     FALSE,
@@ -164,7 +165,9 @@ def _search(question: _Question, query: Query) -> _Found:
             shows = op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS)
             ends = op in (PathOp.POSSIBLY, PathOp.EVENTUALLY)
             linear = PathFormula(PathOp.FINALLY if ends else PathOp.GLOBALLY, body, None, until)
-            return _Found(shows, _accepted(question, normal_form(linear, positive=shows)))
+            return _Found(
+                shows, _accepted(question, normal_form(linear, positive=shows), query.span)
+            )
         case PathFormula(op, body, bound, until) if until == TRUE and op in _OUTERMOST:
             if op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS):
                 sought, shows = normal_form(body), True
@@ -308,13 +311,13 @@ def _on_runs(question: _Question, query: Query, formula: Expression) -> _Found:
     if isinstance(formula, PathFormula) and formula.op in (PathOp.EVERY_RUN, PathOp.SOME_RUN):
         body, shows = formula.body, formula.op is PathOp.SOME_RUN
     check_linear(body, query.span)
-    return _Found(shows, _accepted(question, normal_form(body, positive=shows)))
+    return _Found(shows, _accepted(question, normal_form(body, positive=shows), query.span))
 
 
-def _accepted(question: _Question, formula: Expression) -> Run | None:
+def _accepted(question: _Question, formula: Expression, span: Span | None) -> Run | None:
     """A run that satisfies a normalised formula of LTL, if there is one on which time passes."""
     network, meter = question.network, question.meter
-    sought = Sought(Seek.RUN, ways=ways_of(formula))
+    sought = Sought(Seek.RUN, ways=ways_of(formula, span))
     run = seek(network, sought, meter).run
     # Time stops on this run, which real systems cannot do; a run on which time passes convinces
     # more.

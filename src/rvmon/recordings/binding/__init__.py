@@ -118,7 +118,7 @@ def _bound(name: str, table: Mapping[str, Any], spec: CheckedSpec) -> Bound:
     if not is_signal:
         kinds = spec.schema.events[name]
         fields = _table(table, "fields", "value")
-        _expect_known(fields, kinds, "field")
+        _expect_known(fields, kinds)
         if on_change and value is None and not fields:
             raise RvmonError('`on = "change"` needs a `value` or `fields` that can change')
         terms = {field: _value(text, f"fields.{field}") for field, text in fields.items()}
@@ -216,11 +216,11 @@ def _expect_keys(content: Mapping[str, Any], known: Iterable[str], what: str) ->
             raise RvmonError(f"no key `{key}`{of}: {meant}")
 
 
-def _expect_known(content: Mapping[str, Any], known: Mapping[str, Any], what: str) -> None:
+def _expect_known(content: Mapping[str, Any], known: Mapping[str, Any]) -> None:
     for key in content:
         if key not in known:
             listed = f"there are {', '.join(known)}" if known else "it has none"
-            raise RvmonError(f"no {what} `{key}` is declared: {did_you_mean(key, known, listed)}")
+            raise RvmonError(f"no field `{key}` is declared: {did_you_mean(key, known, listed)}")
 
 
 def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaArguments]) -> Schema:

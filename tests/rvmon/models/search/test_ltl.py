@@ -72,6 +72,13 @@ def test_what_is_not_decided_says_why(query, message):
         verify(loads_network(RETRY), query)
 
 
+def test_a_formula_of_too_many_cases_is_refused_with_its_place():
+    parts = " and ".join(f"(F v == {number})" for number in range(8))
+    model = loads_network(f"int[0,9] v {RETRY}query q: E ({parts})")
+    with pytest.raises(ModelError, match=r"too many cases\n.*:13:1\n"):
+        verify(model, model.queries[0])
+
+
 def test_g_and_f_are_names_elsewhere():
     """Variables, functions of arrays and templates may be called G, F, A, E, U and W."""
     text = "int[0,1] G\nint[0,1] F = 1\nint[0,1] U\nautomaton A { location a start a }"
