@@ -3,16 +3,16 @@
 ::
 
     RvmonError
-    ├── SpecError(ValueError)        a specification is wrong; carries all diagnostics
-    ├── ModelError(ValueError)       a model or query is wrong; carries all diagnostics
-    ├── TraceError(ValueError)       a recording or a sample is wrong; names file and line
+    ├── SpecError(ValueError)        a specification has errors; carries all diagnostics
+    ├── ModelError(ValueError)       a model or query has errors; carries all diagnostics
+    ├── TraceError(ValueError)       a recording or a sample has errors; names file and line
     │   ├── TimeOrderError           a sample's time is not after the one before
     │   └── MissingNameError         a recording has no column for a name that is read
-    ├── CoverageError(ValueError)    a database of coverage is wrong, or does not fit another
+    ├── CoverageError(ValueError)    a coverage database has errors, or does not fit another
     ├── UnknownNameError(KeyError)   a requirement, signal or option of that name does not exist
     ├── SnapshotError(ValueError)    a monitor's snapshot does not belong to this spec
-    ├── WorkerLostError              a process that shared the work was ended from outside
-    ├── OverlapError(RuntimeError)   a monitor was called while another call of it was under way
+    ├── WorkerLostError              a worker process was killed from outside
+    ├── OverlapError(RuntimeError)   a monitor was called during another call
     └── CoreError(ImportError)       the native core is not built, or not from its sources
 """
 
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 
 
 class RvmonError(Exception):
-    """Anything that rvmon raises on purpose; as text, nothing in it steers a terminal."""
+    """The base of all exceptions of rvmon; as text, it is free of terminal escapes."""
 
     def __str__(self) -> str:
         return shown(super().__str__())
 
 
 class DiagnosedError(RvmonError, ValueError):
-    """Text that a person wrote is wrong; `diagnostics` say where, why and how to fix it.
+    """A text has errors; `diagnostics` say where, why and how to fix them.
 
     Attributes:
         diagnostics: all findings of the text, in order of place.
@@ -77,7 +77,7 @@ class CoverageError(RvmonError, ValueError):
 
 
 class UnknownNameError(RvmonError, KeyError):
-    """A name that does not exist was asked for; the message lists those that do."""
+    """A name does not exist; the message lists the existing ones."""
 
     def __str__(self) -> str:
         return shown(str(self.args[0])) if self.args else ""

@@ -30,14 +30,14 @@ if TYPE_CHECKING:
 
 
 class Spec:
-    """A specification that is in order; made by `rvmon.load` or `rvmon.loads`.
+    """A checked specification; made by `rvmon.load` or `rvmon.loads`.
 
-    It is compiled when the first monitor is asked for, once.
+    It is compiled once, when the first monitor is made.
 
     Attributes:
         checked: names, types, units and formulas, as monitors read them.
-        warnings: of the compiler; errors would have been raised.
-        schema: the declared names with the kinds of their values, and what recordings call them.
+        warnings: the warnings of the compiler; errors would have been raised.
+        schema: the declared names with the kinds of their values and their names in recordings.
     """
 
     def __init__(self, checked: CheckedSpec, warnings: Sequence[Diagnostic] = ()) -> None:
@@ -59,19 +59,19 @@ class Spec:
         return self.checked.requirements
 
     def reading(self, **options: Unpack[SchemaArguments]) -> Spec:
-        r"""The same specification, for recordings that name things otherwise.
+        r"""The same specification, for recordings with other names, stamps or conventions.
 
         Args:
             **options: `time`: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with
                 `s`, `ms`, `us`, `ns`, or `iso` for ISO 8601; without a unit nanoseconds if the name
                 ends in `_ns`, else seconds. Default: seconds in `t`, or nanoseconds in `t_ns`.
-                `columns`: by declared name, of a payload's field `event.field`, the column; of
-                messages `TOPIC.FIELD`. `nan`: what NaN says: `unknown`, which is the default, or
-                `no update`, as in a merge of topics. `no_update`: a further value that stands for
-                no update; in tables `None`, nulls and masked values do anyway. `binding`: a TOML
-                file that says which topics and fields of messages (bags, MCAP) feed which names.
-                `clock`: which stamps of messages count where the binding does not say it: `log`,
-                when each was recorded, which is the default, or `header`.
+                `columns`: the column of each declared name or payload field `event.field`; in
+                messages `TOPIC.FIELD`. `nan`: how NaN is read: `unknown`, the default, or `no
+                update`, as merges of topics need. `no_update`: a further value that means no
+                update; in tables `None`, nulls and masked values always do. `binding`: a TOML
+                file that maps topics and fields of messages (bags, MCAP) to declared names.
+                `clock`: the stamps of messages for which the binding names none: `log`, the time
+                of recording, the default, or `header`.
 
         Raises:
             UnknownNameError: `columns` names what is not declared, `nan` or `clock` what does not
@@ -114,17 +114,17 @@ class Spec:
         """Make an online monitor of all requirements.
 
         Args:
-            only: ids of the requirements to judge; default all.
-            settle: `now` judges each sample at once; `next` merges samples with equal stamps and
-                judges each when the next stamp settles it.
+            only: ids of the requirements to evaluate; default all.
+            settle: `now` evaluates each sample at once; `next` merges samples with equal stamps
+                and evaluates them when the next stamp comes.
             sources: the signals and events that can arrive; the others are unknown throughout.
-            keep: for runs of weeks: of each verdict the newest `keep` records are kept per
-                requirement, so that many passes hide no failure; verdicts and counts stay exact,
-                the report says how many were dropped. Default: all.
+            keep: for runs of weeks: the number of newest records kept per requirement and
+                verdict, so that many passes displace no failure; verdicts and counts stay exact,
+                and the report says how many records were dropped. Default: all.
 
         Raises:
-            UnknownNameError: `only`, `settle` or `sources` names what does not exist.
-            RvmonError: a requirement is beyond the core, or `keep` is no count.
+            UnknownNameError: `only`, `settle` or `sources` names something that does not exist.
+            RvmonError: the core cannot evaluate a requirement, or `keep` is no count.
         """
         from rvmon.monitor.monitor import build_monitor
 
@@ -132,13 +132,14 @@ class Spec:
         return build_monitor(self._compiled, only=only, settle=settle, sources=asked, keep=keep)
 
     def restore(self, data: bytes) -> Monitor:
-        """Make the monitor that a snapshot was taken of; it goes on as that would have.
+        """Make a monitor from a snapshot; it continues as the original would have.
 
         Args:
             data: from `Monitor.snapshot`.
 
         Raises:
-            SnapshotError: they are none, damaged, of another specification, or of another rvmon.
+            SnapshotError: the bytes are no snapshot, are damaged, or belong to another
+                specification or another version of rvmon.
         """
         from rvmon.monitor.monitor import restore
 
@@ -152,26 +153,26 @@ class Spec:
         until: float | None = None,
         **reading: Unpack[ReadingArguments],
     ) -> Report:
-        r"""Judge a finished trace; the same content gives the same records, whatever holds it.
+        r"""Evaluate a finished trace; the same content gives the same records in any format.
 
         Args:
             trace: a path or address (`.csv`, `.jsonl`, `.parquet`, bags, `.mcap`; text packed,
                 too), a table (arrays or lists by name, an Arrow table, a data frame), a list of
                 paths or of tables that are one recording, a `Recording`, or an iterable of
                 `(t, values)` with t in seconds.
-            only: ids of the requirements to judge; default all.
+            only: ids of the requirements to evaluate; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
             **reading: `time`, `columns`, `nan`, `no_update`, `binding`, `clock`: see `reading`.
                 `sources`: the signals and events that can arrive, the others are unknown
-                throughout; default the columns or topics that there are, of JSON lines and pairs
-                all that is declared. `allow_missing`: whether a trace in columns or topics may
-                lack names that the requirements read, or the names that it may lack: what reads
-                them is inconclusive. If the sources are named, it may.
+                throughout; default the columns or topics of the trace, or all declared names for
+                JSON lines and pairs. `allow_missing`: whether a trace in columns or topics may
+                lack names that the requirements read, or which names; requirements that read
+                them are inconclusive. With `sources`, missing names are always allowed.
 
         Raises:
             MissingNameError: a trace in columns has none for a name that a requirement reads.
             TraceError: the trace cannot be read; place and cause are named.
-            UnknownNameError: an argument names what does not exist.
+            UnknownNameError: an argument names something that does not exist.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x < 3\n")
@@ -193,14 +194,14 @@ class Spec:
         decided: Callable[[Sequence[Attempt]], object] = len,
         robustness: bool = False,
     ) -> Report:
-        """Judge a recording that is open; `evaluate` opens it as well.
+        """Evaluate an open recording; `evaluate` opens it as well.
 
         Args:
             source: the recording.
             only: as for `evaluate`; so are the errors.
-            decided: called with the attempts that were decided before a fault of the recording, at
-                once or in parts.
-            robustness: whether each attempt is to have its robustness.
+            decided: called with the attempts that were decided before an error in the recording,
+                at once or in parts.
+            robustness: whether to compute the robustness of each attempt.
         """
         from rvmon.monitor.evaluate import judge_and_measure, judge_source
 
@@ -228,17 +229,17 @@ class Spec:
         jobs: int = 1,
         **reading: Unpack[ReadingArguments],
     ) -> Iterator[Report]:
-        r"""Judge many traces, in their order; the specification is compiled once per process.
+        r"""Evaluate many traces, in their order; the specification is compiled once per process.
 
         Args:
             traces: each as for `evaluate`; with several jobs, what can be pickled: paths, columns.
             only: as for `evaluate`.
-            jobs: processes; 1 judges in this one.
+            jobs: the number of processes; 1 evaluates in the calling process.
             **reading: as for `evaluate`; so are the errors.
 
         Raises:
             TraceError: a trace cannot be read; the reports before it have been given out.
-            WorkerLostError: a process was ended from outside; the same.
+            WorkerLostError: a process was killed from outside; likewise.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
@@ -270,16 +271,17 @@ class Spec:
         streams: bool = True,
         **reading: Unpack[ReadingArguments],
     ) -> Margins:
-        """By how much a finished trace meets each requirement, or fails to, in base units.
+        """The robustness of each requirement on a finished trace, in base units.
 
-        Comparisons count by the distance of their sides, other propositions as infinite; unknown
-        input and what is behind the end may be anything. `low > 0`: passed; `high < 0`: failed.
+        The robustness of a comparison is the distance of its sides, that of other propositions
+        is infinite; unknown input, and values after the end, may be anything, which gives an
+        interval from `low` to `high`. `low > 0`: passed; `high < 0`: failed.
 
         Args:
             trace: as `evaluate` takes it; so are the errors.
             only: see there; so is `reading`.
             until: see there.
-            streams: whether to give a figure per sample, too; they are kept in memory.
+            streams: whether to compute the robustness at each sample as well; kept in memory.
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
@@ -297,16 +299,16 @@ class Spec:
         sources: Iterable[str] | None = None,
         streams: bool = False,
     ) -> RobustnessMonitor:
-        """Make an online monitor that gives figures of robustness; see `robustness`.
+        """Make an online monitor of robustness; see `robustness`.
 
         Args:
             only: as for `monitor`; so are `settle` and `sources`.
             settle: see there.
             sources: see there.
-            streams: whether to give a figure per sample as well as per attempt.
+            streams: whether to compute the robustness at each sample as well.
 
         Raises:
-            UnknownNameError: `only`, `settle` or `sources` names what does not exist.
+            UnknownNameError: `only`, `settle` or `sources` names something that does not exist.
         """
         from rvmon.monitor.robustness import RobustnessMonitor
 
@@ -321,11 +323,11 @@ class Spec:
         return SpecCoverage(self.checked)
 
     def coverage(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Hits:
-        """The hits of a trace in `coverage_model`, by group and item; arguments as `evaluate`."""
+        """The coverage of a trace, as hits by group and item; arguments as `evaluate`."""
         return self.coverage_model.of(self.recording(trace, **reading))
 
     def recording(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Recording:
-        """A trace as `evaluate` takes it, not read yet; by default any name may be missing."""
+        """Open a trace for reading, as `evaluate` does; by default any name may be missing."""
         from rvmon.monitor.evaluate import open_trace
 
         reading.setdefault("allow_missing", True)
@@ -343,7 +345,7 @@ def load(
         const: constants to override, by name, as text of the language (`{"T": "2 s"}`).
 
     Raises:
-        SpecError: the file cannot be read or is wrong; carries all diagnostics, rendered.
+        SpecError: the file cannot be read or has errors; carries all diagnostics, rendered.
     """
     path = Path(path)
     if path.suffix != ".rv":
@@ -370,7 +372,7 @@ def loads(text: str, *, name: str = "<string>", const: Mapping[str, str] | None 
         const: constants to override, by name, as text of the language.
 
     Raises:
-        SpecError: the text is wrong; carries all diagnostics, rendered.
+        SpecError: the text has errors; carries all diagnostics, rendered.
     """
     return _compile(text, name, const, None)
 

@@ -224,9 +224,9 @@ class FedMonitor(ABC, Generic[T]):
 
         Within it these signals and events are unknown, whatever samples arrive: an event to the
         end of the outage, a signal until its first update at or after that end. Under
-        `max delay D` the outage is wider by D on both sides. If it reaches back before what has
-        been judged, that stands, but requirements that read one of the names are no longer `P` or
-        `NT`.
+        `max delay D` the outage is wider by D on both sides. Instants that
+        have already been evaluated are not evaluated again, but requirements that read one of the
+        names are no longer `P` or `NT`.
 
         Args:
             names: signals and events; `None`: all.
@@ -291,7 +291,7 @@ class FedMonitor(ABC, Generic[T]):
         self.late_ns(names, ticks_of_seconds(t), why=why)
 
     def late_ns(self, names: Iterable[str] | None, t_ns: int, *, why: str = "left out") -> None:
-        """Report a sample that came after its instant had been judged, so that it is left out.
+        """Report a sample that came after its instant had been evaluated, and was left out.
 
         Requirements that read one of its names are no longer `P` or `NT` in this run; records
         already given stay, and failures still count. Under `max delay` the monitor itself reports

@@ -113,9 +113,9 @@ class Monitor(FedMonitor[Attempt]):
 
         `step`, `advance` and `finish` call it before they return, in the calling thread, with
         their attempts in the order in which they return them; it may use the monitor. An attempt
-        that ends undecided appears only in the report. What a callback raises propagates once all
-        callbacks have been called for all attempts (several errors as an `ExceptionGroup`); the
-        sample has been taken nevertheless. Callbacks survive `reset`, but are not part of
+        that ends undecided appears only in the report. Exceptions of callbacks propagate after
+        all callbacks have been called for all attempts (several as an `ExceptionGroup`); the
+        sample has been evaluated nevertheless. Callbacks survive `reset`, but are not part of
         snapshots: register them again after `Spec.restore`.
 
         Returns:
