@@ -138,8 +138,7 @@ class Spec:
             data: from `Monitor.snapshot`.
 
         Raises:
-            SnapshotError: the bytes are no snapshot, are damaged, or belong to another
-                specification or another version of rvmon.
+            SnapshotError: the bytes are damaged, or of another specification or rvmon.
         """
         from rvmon.monitor.monitor import restore
 

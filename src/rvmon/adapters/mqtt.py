@@ -163,7 +163,7 @@ class MqttSource:
         self._dropped = None
         if reason.is_failure:
             why = "the connection to the broker is lost"
-            _log.warning("%s (%s): what is published is not known until it is back", why, reason)
+            _log.warning("%s (%s): published messages are lost until it is back", why, reason)
             self._objects.driver.lose(since_ns=self._heard, why=why)
 
     def _on_message(self, _: object, __: object, message: Any) -> None:

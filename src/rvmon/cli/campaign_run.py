@@ -96,7 +96,7 @@ def conduct(
         TestError: there is nothing to be played.
     """
     if arguments.shard is not None and not arguments.out:
-        raise RvmonError("--shard leaves what it played in a folder: name it by --out")
+        raise RvmonError("--shard keeps its results in a folder: name it with --out")
     if arguments.shard is not None and arguments.evidence:
         raise RvmonError("--evidence is of all tests: give it to the command that joins the shards")
     folder = output_folder(arguments.out) if arguments.out else None
@@ -142,7 +142,7 @@ def conduct(
     if folder is not None and (remark := left_over(folder, before)):
         warn(remark)
     if kept is not None and results.cut_short:
-        warn(f"{kept.path}: the same command plays what is left")
+        warn(f"{kept.path}: the same command plays the rest")
     elif kept is not None:
         kept.remove()
     return conducted

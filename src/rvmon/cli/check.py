@@ -24,7 +24,7 @@ def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) 
     """Declare the subcommand's arguments."""
     parser = subparsers.add_parser(
         "check",
-        description="Find what is wrong in specifications: all errors and warnings of each file.",
+        description="Report all errors and warnings of each specification.",
         epilog="examples: rvmon check examples/base.rv; rvmon check specs/*.rv --format concise",
     )
     add = parser.add_argument

@@ -237,7 +237,7 @@ def _warn_of_another(
     if attempt.decided is not None and copied.last < attempt.decided:
         why = f"it was decided at {format_stamped(attempt.decided, attempt.origin)}: a later --to"
     else:
-        why = "what it remembers lies before: a longer --before"
+        why = "it depends on earlier data: a longer --before"
     warn(
         f"warning: {attempt.name} is {attempt.verdict} in {data} and not so in "
         f"{Path(place).name}, where {attempt.requirement} is {verdict}; {why} may fix it"

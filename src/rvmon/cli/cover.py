@@ -154,7 +154,7 @@ def _print(summary: Summary, arguments: argparse.Namespace, groups: Sequence[Gro
     if arguments.holes:
         print_holes(summary, console)
     elif summary.holes and not groups:
-        say("what is missing: --holes")
+        say("missing items: --holes")
     if groups:
         print_bins(summary, groups, console)
     if arguments.tests:

@@ -296,7 +296,7 @@ def _show_warnings(spec: Spec) -> None:
              if name not in spec.requirements and name not in checked.covers]  # fmt: skip
     if alone:
         by = "a requirement with `monitor as written` or `monitor as cover` is"
-        warn(f"properties are not judged on runs: {', '.join(alone)}; {by}")
+        warn(f"properties are not evaluated on runs: {', '.join(alone)}; {by}")
 
 
 def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -> None:
@@ -307,8 +307,8 @@ def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -
                 warn(f"  decided before that: {line}")
         if result.missing:
             names = ", ".join(f"`{name}`" for name in result.missing)
-            message = f"{result.trace} has no column for {names}: what reads that is inconclusive"
-            warn(f"warning: {message}")
+            message = f"{result.trace} has no column for {names}"
+            warn(f"warning: {message}: requirements that read them are inconclusive")
     if arguments.format == "json":
         _show_doubts(judged)
         texts = [_json(result, spec) for result in judged]

@@ -1,4 +1,4 @@
-"""`rvmon watch`: judge a running robot, line by line."""
+"""`rvmon watch`: evaluate a running robot, line by line."""
 
 from __future__ import annotations
 
@@ -119,8 +119,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.state is not None:
         return _watch_kept(arguments, spec)
     shown = output_named(arguments.format, failures_only=arguments.failures)
-    door = next((one for one in _DOORS if arguments.source.startswith(one)), "")
-    watch, idle = _DOORS[door]
+    scheme = next((known for known in _SOURCES if arguments.source.startswith(known)), "")
+    watch, idle = _SOURCES[scheme]
     for option, instead in idle.items():
         if getattr(arguments, option):
             name = option.replace("_", "-")
@@ -252,7 +252,7 @@ _ONE_ROBOT = "a domain or a master is one robot; start one for each"
 _NO_CLOCK = "there is no topic /clock; lines with stamps (t, t_ns, --time) bring their time along"
 _STAMPS = "a binding (--binding) names the field of the stamp"
 _TOPICS = ("ros1:", "ros2:", "dds:")
-_DOORS: dict[str, tuple[Callable[..., Live], dict[str, str]]] = {
+_SOURCES: dict[str, tuple[Callable[..., Live], dict[str, str]]] = {
     "mqtt:": (
         _watch_mqtt,
         {"robot": "the first + of the filter is the robot", "sim_time": _NO_CLOCK},
@@ -263,8 +263,8 @@ _DOORS: dict[str, tuple[Callable[..., Live], dict[str, str]]] = {
         {"publish": "verdicts go to standard output (--format json)", "sim_time": _NO_CLOCK},
     ),
 }
-"""By the beginning of a source what watches it, and the options that say nothing to it: what does
-instead."""
+"""By the scheme of a source, the function that watches it, and the options that do not apply to it,
+each with the alternative."""
 
 
 def _live_here(

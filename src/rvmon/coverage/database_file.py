@@ -133,8 +133,8 @@ _WORDS = {
     sqlite3.SQLITE_BUSY: f"another process has been writing to it for {PATIENCE_S:g} s: try again "
     "when that one is done",
     sqlite3.SQLITE_LOCKED: "it is in use within this process: close it there first",
-    sqlite3.SQLITE_FULL: "the disk is full: make room and record again; what was recorded before "
-    "is kept",
+    sqlite3.SQLITE_FULL: "the disk is full: make room and record again; earlier recordings are "
+    "kept",
     sqlite3.SQLITE_READONLY: "it cannot be written: give yourself the right to, or name another",
     sqlite3.SQLITE_PERM: "it cannot be opened: give yourself the right to, or name another",
     sqlite3.SQLITE_CANTOPEN: "it cannot be opened: give yourself the right to read and write it "

@@ -236,7 +236,9 @@ def _of_requirement(group: Group, name: str, hits: Hits) -> tuple[str, str, str]
     else:
         part = name.removesuffix(_DECIDES)
         what += f"{part} makes the difference"
-        needs = f"a run that would be judged otherwise, or at another instant, without {part}"
+        needs = (
+            f"a run that would have another verdict, or another decision instant, without {part}"
+        )
     if not triggered:
         return what, "it was never triggered", needs
     return what, f"it was triggered {_times(triggered)}, but never like this", needs

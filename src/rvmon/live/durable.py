@@ -110,7 +110,7 @@ class DurableMonitor:
         try:
             t, values = json.loads(line)
         except (ValueError, TypeError, RecursionError):
-            raise SnapshotError(f"{self._path}: what it holds is no sample") from None
+            raise SnapshotError(f"{self._path}: its content is no sample") from None
         with suppress(TraceError):  # it was refused then, too
             self._judge(t, values)
 

@@ -65,7 +65,7 @@ class Doubt:
         causes = [outage_in_words(outage, self.origin) for outage in self.outages]
         at = format_instant(self.position, self.origin)
         causes += [f"`{text}` was not known at {at}" for text in self.texts]
-        return "; ".join(causes) or f"what was not known before still mattered at {at}"
+        return "; ".join(causes) or f"an earlier unknown value still mattered at {at}"
 
 
 def outage_in_words(outage: Outage, origin: int) -> str:

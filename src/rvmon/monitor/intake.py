@@ -186,7 +186,8 @@ def refuse_earlier(t: int, last: int | None, reached: int | None) -> None:
     if last is not None and t <= last:
         raise TimeOrderError(
             f"sample at {format_ticks(t)} is not after the one at {format_ticks(last)}: "
-            "merge what has equal stamps (settle='next' does), sort what is out of order"
+            "merge samples with equal stamps (settle='next' does), sort samples that are out of "
+            "order"
         )
     if reached is not None and t < reached:
         raise TimeOrderError(

@@ -113,8 +113,8 @@ def _listed(
     bind = ", or `rvmon init DATA --for SPEC` in a file" if what == "topic" else ""
     yield f"  name {which}: {' '.join(f'--map {pair}' for pair in maps)}, in Python columns=…{bind}"
     yield (
-        f"  or leave what reads {them} inconclusive: --allow-missing={','.join(close)}, "
-        "in Python allow_missing=…"
+        f"  or leave requirements that read {them} inconclusive: "
+        f"--allow-missing={','.join(close)}, in Python allow_missing=…"
     )
 
 

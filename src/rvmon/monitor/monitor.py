@@ -365,5 +365,5 @@ def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
     except SnapshotError:
         raise
     except (RvmonError, ArithmeticError, AttributeError, LookupError, TypeError, ValueError):
-        raise SnapshotError("the snapshot is damaged: what it holds fits no monitor") from None
+        raise SnapshotError("the snapshot is damaged: its content fits no monitor") from None
     return monitor

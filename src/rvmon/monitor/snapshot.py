@@ -102,7 +102,7 @@ def restored_state(
     if document["plan"] != _digest(planned):
         raise SnapshotError("the snapshot was made with another plan: was rvmon changed?")
     if not (run.load(_bytes(document["core"])) and run.take_arrivals(_bytes(document["arrivals"]))):
-        raise SnapshotError("the snapshot is damaged: what it holds is no run of its plan")
+        raise SnapshotError("the snapshot is damaged: its content is no run of its plan")
     state: Mapping[str, Any] = document["state"]
     return state
 
@@ -127,7 +127,7 @@ def _document(data: bytes) -> Mapping[str, Any]:
     if kind != _KIND or not separator:
         raise SnapshotError("these bytes are no snapshot of a monitor")
     if hashlib.sha256(body).hexdigest().encode() != checksum:
-        raise SnapshotError("the snapshot is damaged: its checksum is not that of what it holds")
+        raise SnapshotError("the snapshot is damaged: its checksum does not match its content")
     try:
         document = json.loads(body)
     except (ValueError, RecursionError):

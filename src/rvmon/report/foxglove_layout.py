@@ -120,7 +120,7 @@ def foxglove_layout(
     panels: dict[str, Any] = {
         "StateTransitions!verdicts": {"title": "Verdicts", "isSynced": True, "paths": states},
         "Plot!values": {
-            "title": "Values and what they are compared with",
+            "title": "Values and their limits",
             "isSynced": True,
             "paths": list(_numbers(spec, judged, names)),
             "xAxisVal": "timestamp",

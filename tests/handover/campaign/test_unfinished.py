@@ -148,7 +148,7 @@ def test_an_interrupted_campaign_goes_on(whole, here, monkeypatch, capsys):
     with monkeypatch.context() as patch:
         patch.setattr(campaign_run, "execute", interrupted)
         assert main(WORDS) == 130
-    assert "the same command plays what is left" in capsys.readouterr().err
+    assert "the same command plays the rest" in capsys.readouterr().err
     assert (here / "table.json").exists()
     assert main(WORDS) == 0
     assert files(here) == whole[0]

@@ -39,7 +39,7 @@ def test_the_overview(door, capsys):
     assert "D1 2 · · · · 1 · ·" in lines
     assert "situation: no × touch 1 hit by 1 test, first wild-1 at 7 s" in lines
     assert "crashed: ZeroDivisionError: the gap is 0 1 test: wild-2" in lines
-    assert lines[-1] == "what is missing: --holes"
+    assert lines[-1] == "missing items: --holes"
 
 
 def test_a_group_without_goals_is_no_row(tmp_path, capsys):

@@ -87,7 +87,7 @@ def test_files_and_values_that_are_none_are_told(tmp_path):
     with pytest.raises(SnapshotError, match="run: the snapshot was made with another"):
         DurableMonitor(other, tmp_path / "run", print)
     add(tmp_path / "run", b"[1, 2, 3]")
-    with pytest.raises(SnapshotError, match="run: what it holds is no sample"):
+    with pytest.raises(SnapshotError, match="run: its content is no sample"):
         DurableMonitor(SPEC, tmp_path / "run", print)
     monitor = DurableMonitor(SPEC, tmp_path / "new", print)
     with pytest.raises(TraceError, match="cannot be kept"):

@@ -231,7 +231,7 @@ class Witnesses:
 
     def explained(self, holes: Mapping[Goal, Hole]) -> dict[Goal, Hole]:
         """Holes, those of edges with how the first test of such a run went another way."""
-        needs = "a `make` that does what the run does, or a model that does what the system does"
+        needs = "a `make` that behaves like the run, or a model that behaves like the system"
         return {
             goal: replace(hole, why=why, needs=needs, nearest=test) if test else hole
             for goal, hole in holes.items()

@@ -28,7 +28,7 @@ from rvmon.language.syntax.items import (
     TypeSyntax,
 )
 
-_RUNS = "`in at least 95 % of runs`, `in at most 5 % of runs`: single runs are judged as always"
+_RUNS = "`in at least 95 % of runs`, `in at most 5 % of runs`: single runs are evaluated as usual"
 _LINES = {
     ("spec",): '`spec NAME "title"`',
     ("time", "sampled", "every"): "`time held`, `time sampled`, `time sampled every 20 ms`",
@@ -39,7 +39,7 @@ _LINES = {
     ("event",): "`event a, pick(id: int, x: real [m]) ROLE`; a payload field is read as `pick.id`",
     ("define",): "`define near = φ`, `define soon(p, d) = within d p`",
     ("const",): "`const T = 3 s`; `--const T=2s` replaces the value",
-    ("requirement",): '`requirement ID "text"`, then what is demanded, then clauses',
+    ("requirement",): '`requirement ID "text"`, then its formula, then clauses',
     ("property",): "`property CTL`: for model checking, or for a `monitor as …`",
     ("cover",): "`cover ID = φ`: some run should show φ at some instant",
     ("coverpoint",): "`coverpoint NAME = expression {bin, bin: values, ignore bin: value, "
@@ -81,7 +81,7 @@ _LINES = {
     "E[φ U ψ]`",
     ("goal",): "`goal` how often each has to be hit (default: once)",
     ("weight",): "`weight` how much a coverpoint or cross counts in the total beside others",
-    ("ignore", "illegal"): "what it ignores and what must not occur",
+    ("ignore", "illegal"): "ignored and illegal combinations",
 }
 
 

@@ -198,7 +198,7 @@ class NumericOp(StrEnum):
     MOD = (
         "mod",
         Operation(
-            2, 2, UnitRule.SAME, operator.mod, True, "what is left of x / y, with the sign of y"
+            2, 2, UnitRule.SAME, operator.mod, True, "the remainder of x / y, with the sign of y"
         ),
     )
     CLAMP = (

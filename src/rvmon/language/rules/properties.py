@@ -178,5 +178,5 @@ no_role = Breach(NO_RESPONSE, "`{1}` is declared neither `input` nor `output`", 
 no_output = Breach(
     NO_RESPONSE,
     "the property reads no output: the system has no obligation",
-    "declare what the system sets as `output`",
+    "declare the signals that the system sets as `output`",
 )

@@ -72,7 +72,7 @@ end_not_alone = Breach(
 end_in_scope = Breach(
     END_NOT_ALONE,
     "`upon end` takes no scope: the end of the run may lie outside of it",
-    "write into the consequent what has to hold at the end",
+    "state the condition for the end in the consequent",
 )
 
 

@@ -68,7 +68,7 @@ moves_beside = Breach(
 captured_moving = Breach(
     WRONG_TYPE,
     "`{}` moves between samples, and is not captured",
-    "compare with it where it is owed, or judge on a clock: `time sampled every 10 ms`",
+    "compare with it in the consequent, or evaluate on a clock: `time sampled every 10 ms`",
 )
 window_in_window = Breach(
     WRONG_TYPE,
@@ -95,7 +95,7 @@ variance_moves = Breach(
 last_alone = Breach(
     WRONG_TYPE,
     "`{}` are several values, expected one",
-    "say what they come to: `mean(last(5, x)) <= 2`, `count(last(8, x > 1)) >= 5`",
+    "say how to combine them: `mean(last(5, x)) <= 2`, `count(last(8, x > 1)) >= 5`",
 )
 last_count = Breach(
     WRONG_ARGUMENTS, "`{0}` is no whole number from 1 to {1:,}", "write `last(5, x)`"
@@ -113,7 +113,7 @@ two_windows = Breach(
 since_no_trigger = Breach(
     WRONG_ARGUMENTS,
     "`{}` is counted from a trigger, and there is none here",
-    "it stands in what is required: `upon e then always count(f since trigger) <= 3`",
+    "use it in the consequent: `upon e then always count(f since trigger) <= 3`",
 )
 
 
@@ -125,7 +125,7 @@ not_of_last = Breach(
 not_added = Breach(
     WRONG_ARGUMENTS,
     "`{1}` is of {2}, and `{0}` is not",
-    "what is held goes into `integral` or `mean`, what occurs into `sum` or `mean`",
+    "use `integral` or `mean` for signals, `sum` or `mean` for events",
 )
 """Numbers that are not measured by a function: it, and of what it is."""
 
@@ -270,7 +270,7 @@ too_long = Breach(EMPTY_INTERVAL, "`{}` is longer than 146 years", "shorten it")
 negative = Breach(
     EMPTY_INTERVAL,
     "`{}` is negative, and a duration is not",
-    "write it without `-`; what has been is asked for by `once` and `historically`",
+    "write it without `-`; use `once` and `historically` for the past",
 )
 empty = Breach(
     EMPTY_INTERVAL,

@@ -52,7 +52,7 @@ _WRITTEN = (
     (r"(?<![\w.])never[ \t]+\0.", "", NEVER),
     (
         r"\Arequirement\s+([\w.]+)\s*\0\Z",
-        *("", "`{0}` is taken for its name; what it demands stands behind it"),
+        *("", "`{0}` is read as its name; its formula comes after it"),
     ),
     (
         rf"\Arequirement\s+\0({'|'.join(NAMELESS)})\Z",
@@ -72,7 +72,7 @@ _WRITTEN = (
     (r"\Asignal\b", "COLON", "a signal has a type, as in `signal x : real [m]`"),
     (
         r"(?<![\w.])(?:after|at)[ \t]+\0([\d.]+\s*[^\W\d]+)\Z",
-        *("", "for what is to hold then write `eventually[{0}, {0}] (…)`"),
+        *("", "for a condition at that instant write `eventually[{0}, {0}] (…)`"),
     ),
     (r"\Aevent\b", "COLON", "a field has a type, as in `event pick(id: int)`"),
 )
@@ -192,7 +192,7 @@ def _word_fix(found: str, accepted: set[str], parser: lark.Lark, before: str) ->
     if "AND" not in accepted:
         return ""
     if found in ("within", "for"):
-        return f"`{found}` stands before what it speaks of: `{found} 3 s (…)`"
+        return f"`{found}` comes before its operand: `{found} 3 s (…)`"
     last = re.search(r"(\w+)\s*$", before)
     if last and last[1].lower() in ("when", "where", "once"):
         return _TRIGGER_WORDS.format(last[1])

@@ -246,7 +246,7 @@ class _Placer:
 def _room(parts: Sequence[Part], count: int, most: int, what: str, span: Span) -> int:
     """The index of the next part, if as many as a declaration makes may be added."""
     if len(parts) + count > most:
-        fix = "declare smaller arrays, or fewer instances of what has them"
+        fix = "declare smaller arrays, or fewer instances that have them"
         raise model_error("TA019", f"more than {most:,} {what}", span, fix)
     return len(parts)
 

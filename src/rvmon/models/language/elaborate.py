@@ -272,7 +272,7 @@ def _formula(written: syntax.Expression, resolver: Resolver, top: Scope) -> Quer
 def _refuse_fraction(resolver: Resolver) -> None:
     if resolver.fraction is not None:
         fix = "ask for figures, which are simulated: Pr[<=T](<> p), E[<=T; n](max: e)"
-        message = "a number with a fraction: what is proved has integers only"
+        message = "a number with a fraction: proofs work on integers only"
         raise model_error("TA016", message, resolver.fraction, fix)
 
 

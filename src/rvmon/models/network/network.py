@@ -310,7 +310,7 @@ def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
     """
     fix = "ask for figures, which are simulated: Pr[<=T](<> p), E[<=T; n](max: e)"
     if network.fraction is not None:
-        message = "a number with a fraction: what is proved has integers only"
+        message = "a number with a fraction: proofs work on integers only"
         raise model_error("TA016", message, network.fraction, fix)
     if next(network.rates, None) is None:
         return

@@ -276,7 +276,7 @@ def _lacking(store: Any, type_name: str) -> str:
             if node is not Nodetype.NAME or inner in known:
                 continue
             if inner not in store.fielddefs:
-                return f"the definition of its messages names {inner}, and does not say what it is"
+                return f"the definition of its messages names {inner}, and does not define it"
             known.add(inner)
             waiting.append(inner)
     return ""

@@ -61,7 +61,7 @@ def test_what_is_owed(required, fix):
         ("signal x : string", "write `{one, another}`"),
         ("requirement R-16 always released", "`R-16` is no name: write `R_16`"),
         ("requirement always released", "its name comes first: `requirement R1 always …`"),
-        ("requirement\n  released", "`released` is taken for its name"),
+        ("requirement\n  released", "`released` is read as its name"),
         ("requirement R let z = speed upon asked then released", "stands behind the trigger or"),
         ("event e(x)", "a field has a type"),
         ('requirement R "t"\n severity high\n always released', "clause, as `severity …`, stands"),

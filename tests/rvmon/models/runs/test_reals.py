@@ -134,12 +134,12 @@ def test_nothing_is_proved_of_them():
         lambda: conform(network, [], observed=frozenset(), end=1, tolerance=0),
     ]
     for search in searches:
-        with pytest.raises(ModelError, match="what is proved has integers only") as raised:
+        with pytest.raises(ModelError, match="proofs work on integers only") as raised:
             search()
         assert "Pr[<=T]" in raised.value.diagnostics[0].help
     plain = loads_network("clock x int[0,1] n automaton A { location l start l }")
     for query in ("E<> n > 0.5", "E<> x > 0.5", "sup{n < 0.5}: n"):
-        with pytest.raises(ModelError, match="what is proved has integers only"):
+        with pytest.raises(ModelError, match="proofs work on integers only"):
             asked_on(plain, query)[1]
 
 
