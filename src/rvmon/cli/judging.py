@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -17,19 +17,20 @@ from rvmon.execute.parallel import execute
 from rvmon.monitor.missing_names import expect_names
 from rvmon.monitor.records import with_plan
 from rvmon.recordings.places import JOINT, without_copies
-from rvmon.recordings.recording import FileRecording, can_be_read_again
-from rvmon.recordings.source import Source
+from rvmon.recordings.recording import FileRecording
+from rvmon.recordings.source import Source, pieces_up_to
 from rvmon.session import Spec, load
 from rvmon.texts import shown_path
 from rvmon.trace.sample import Sample
-from rvmon.trace.time import ticks_of_seconds
+from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
 from rvmon.verdicts.run_coverage import IllegalHit
 
 if TYPE_CHECKING:
     import argparse
 
     from rvmon.coverage import Hits
-    from rvmon.coverage.monitor import CoverageMonitor
+    from rvmon.coverage.monitor import CoverageRun
+    from rvmon.recordings.batch import Batch
     from rvmon.reproducer import Case
     from rvmon.verdicts.attempt import Attempt
     from rvmon.verdicts.report import Report
@@ -86,62 +87,55 @@ def _shows_counts_alone(arguments: argparse.Namespace) -> bool:
 
 
 class RecordingCoverage:
-    """Finds coverage on one recording: when it was judged it is read once more, if it can be.
+    """Finds coverage on one recording, beside judging it.
 
     Args:
         spec: may have coverpoints.
         options: say what is asked for.
-        trace: the path of the recording.
-        names: the names with a source; `None`: all.
-        end: the instant to which the recording is judged, ticks; default its last sample.
+        recording: is judged.
+        end: the instant to which it is judged, ticks; default its last sample.
 
     Attributes:
         hits: what was hit of the coverage model, if all of it was asked for.
     """
 
     def __init__(
-        self,
-        spec: Spec,
-        options: Options,
-        trace: str,
-        names: frozenset[str] | None,
-        end: int | None,
+        self, spec: Spec, options: Options, recording: FileRecording, end: int | None
     ) -> None:
         self.hits: Hits = {}
         self._spec = spec
         self._options = options
-        self._trace = trace
-        self._end = end
-        self._coverage: CoverageMonitor | None = None
-        self._is_asked = bool(options.coverage or spec.checked.coverpoints)
-        if self._is_asked and not can_be_read_again(trace):
-            self._coverage = spec.coverage_model.monitor(
-                sources=names, requirements=options.coverage
-            )
+        self._end = TIME_LIMIT if end is None else end
+        self._run: CoverageRun | None = None
+        self._fault: TraceError | None = None
+        if options.coverage or spec.checked.coverpoints:
+            source = Source(recording, end, is_cut=True)
+            self._run = spec.coverage_model.run(source, requirements=options.coverage)
 
-    @property
-    def is_idle(self) -> bool:
-        """Whether there is nothing to find while samples go by."""
-        return self._coverage is None
-
-    def reading(self, recording: FileRecording) -> Iterator[Sample]:
-        """The samples of a recording: each is seen here once it was judged."""
-        for sample in recording:
-            yield sample
-            if self._coverage is not None and (self._end is None or sample.t <= self._end):
-                self._coverage.step_ns(sample.t, sample.values)
+    def passing(self, found: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
+        """What is read, unchanged; what is wrong with it is told once it was judged."""
+        for piece in found:
+            if self._run is not None and self._fault is None:
+                try:
+                    for own in pieces_up_to([piece], self._end):
+                        self._run.take(own)
+                except TraceError as error:
+                    self._fault = error
+            yield piece
 
     def finished(self, report: Report) -> Report:
-        """The report with what was found, when all samples went by."""
-        if not self._is_asked:
+        """The report with what was found, when all of the recording went by.
+
+        Raises:
+            TraceError: coverage cannot be found.
+        """
+        if self._run is None:
             return report
         from rvmon.coverage import covered_groups, illegal
 
-        if self._coverage is not None:
-            found = self._coverage.finish_ns(self._end)
-        else:
-            again, asked = opened(self._spec, self._trace), self._options.coverage
-            found = self._spec.coverage_model.of(again, self._end, requirements=asked)
+        if self._fault is not None:
+            raise self._fault
+        found = self._run.finish()
         if self._options.coverage:
             self.hits = found
         model = self._spec.coverage_model.bin_model
@@ -254,14 +248,13 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             coverage=True,
         )
         end = recording.end if options.until is None else ticks_of_seconds(options.until)
-        beside = RecordingCoverage(spec, options, trace, recording.names, end)
+        beside = RecordingCoverage(spec, options, recording, end)
         show = partial(shown_while_reading, recording) if is_alone else iter
         source = Source(
             recording,
             end,
             is_cut=options.until is not None,  # what a recording says of its end may be wrong
-            read=iter if beside.is_idle else beside.reading,
-            shown=lambda found: remembered.passing(show(found)),
+            shown=lambda found: beside.passing(remembered.passing(show(found))),
         )
         report = spec.judge(
             source, only=options.only, decided=before.extend, robustness=options.robustness

@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import product
 from struct import iter_unpack
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from rvmon import native
 from rvmon.core.pack import pack
@@ -31,9 +31,12 @@ from rvmon.monitor.packed_plan import PlannedCore, planned_as
 from rvmon.monitor.recording_run import RecordingRun
 from rvmon.monitor.snapshot import Options
 from rvmon.recordings.source import Source
-from rvmon.trace.sample import Recording
+from rvmon.trace.sample import Recording, Sample
 from rvmon.trace.time import ticks_of_seconds
 from rvmon.verdicts.report import Report, report_of
+
+if TYPE_CHECKING:
+    from rvmon.recordings.batch import Batch
 
 
 class Bins:
@@ -198,22 +201,43 @@ class SpecCoverage:
         {'low': 2, 'high': 1}
         """
         source = Source(recording, end, is_cut=True)
-        watched = _Watched(self, requirements=requirements)
-        runs = [
-            RecordingRun(self.spec, core, source, finds=False) for core in watched.planned.values()
-        ]
+        run = self.run(source, requirements=requirements)
         for piece in source.pieces():
-            for run in runs:
-                run.take(piece)
-        for run in runs:
+            run.take(piece)
+        return run.finish()
+
+    def run(self, source: Source, *, requirements: bool = True) -> CoverageRun:
+        """A run over the pieces of a recording, which are given to it; `requirements`: as above."""
+        return CoverageRun(_Watched(self, requirements=requirements), source)
+
+
+class CoverageRun:
+    """Measures the coverage of a recording, piece by piece; made by `SpecCoverage.run`."""
+
+    def __init__(self, watched: _Watched, source: Source) -> None:
+        spec = watched.spec
+        self._watched = watched
+        self._runs = [
+            RecordingRun(spec, core, source, finds=False) for core in watched.planned.values()
+        ]
+
+    def take(self, piece: Batch | Sample) -> None:
+        """Take the next piece; none lies behind the end."""
+        for run in self._runs:
+            run.take(piece)
+
+    def finish(self) -> Hits:
+        """The hits, where the recording ends."""
+        for run in self._runs:
             run.finish()
-        return watched.hits([run.core for run in runs])
+        return self._watched.hits([run.core for run in self._runs])
 
 
 class _Watched:
     """The parts of a coverage model that are watched in a run."""
 
     def __init__(self, model: SpecCoverage, *, requirements: bool) -> None:
+        self.spec = model.spec
         self._bins = model.bins
         self._requirements = model.requirements if requirements else None
 
