@@ -158,7 +158,7 @@ def test_another_run_does_not_go_on_with_it(folder, says):
     journal.begin(folder / "v.csv.unfinished", [b"another"])
     assert "was begun with another specification" in says(2, *words).err
     assert main([*words[:-1]]) == 0
-    assert "name it by --out" in says(2, "run", "s.rv", "good.csv", "--resume").err
+    assert "name the file with --out" in says(2, "run", "s.rv", "good.csv", "--resume").err
     assert main(["run", "s.rv", "good.csv", "--out", "v.xls"]) == 2
     assert main(["run", "s.rv", "good.csv", "--out", "none/v.csv"]) == 2
 
