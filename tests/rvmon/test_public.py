@@ -50,11 +50,15 @@ def test_import_loads_nothing_heavy():
 
 
 @pytest.mark.process
-def test_help_of_coverage_loads_nothing_that_reads_or_judges():
-    """Only a run of the command does."""
-    heavy = ("numpy", "sqlite3", "rvmon.analysis", "rvmon.monitor")
+def test_help_loads_nothing_that_reads_or_judges():
+    """Only a run of a command does."""
+    heavy = (
+        *("numpy", "sqlite3", "msgspec", "rich", "rvmon.analysis", "rvmon.language"),
+        *("rvmon.monitor", "rvmon.recordings", "rvmon.session"),
+    )
     code = (
-        "import sys; from rvmon.cli import main; main(['cover', '--help']); "
+        "import sys; from rvmon.cli import COMMANDS, main; "
+        "[main([name, '--help']) for name in COMMANDS]; "
         f"print([one for one in {heavy!r} if one in sys.modules])"
     )
     shown = subprocess.run(  # noqa: S603 - the interpreter itself
@@ -65,14 +69,14 @@ def test_help_of_coverage_loads_nothing_that_reads_or_judges():
 
 @pytest.mark.process
 def test_a_run_loads_what_it_needs(tmp_path):
-    """From the second run on no grammar; of JSON no tables; nothing that it was not asked for."""
+    """From the second run on no grammar; nothing that it was not asked for."""
     spec, trace = (ROOT / "examples" / name for name in ("base.rv", "base.csv"))
     heavy = ("lark", "numpy.ma", "rich", "rvmon.recordings.binding")
     code = (
         "import sys; from rvmon.cli import main; main(sys.argv[1:]); "
         f"print([one for one in {heavy!r} if one in sys.modules])"
     )
-    words = [sys.executable, "-c", code, "run", str(spec), str(trace), "--format", "json"]
+    words = [sys.executable, "-c", code, "run", str(spec), str(trace)]
     environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
     parsed = [
         subprocess.run(  # noqa: S603 - the interpreter itself

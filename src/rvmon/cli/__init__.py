@@ -1,4 +1,4 @@
-"""The command `rvmon`: one file per subcommand, each with `add_parser` and `run`.
+"""The command `rvmon`: per subcommand a file with `run`, and one in `arguments` with `add_parser`.
 
 Exit codes: 0 fine, 1 a requirement failed or could not be judged, 2 wrong input or spec,
 3 internal error, 130 interrupted (Ctrl-C, SIGTERM), 141 nobody reads the output any more.
@@ -11,6 +11,7 @@ import gc
 import os
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -175,9 +176,14 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         for name in COMMANDS:
             subparsers.add_parser(name)
         return parser
-    module = import_module(f"rvmon.cli.{command}")
-    module.add_parser(subparsers)
-    subparsers.choices[command].set_defaults(run=module.run)
+    import_module(f"rvmon.cli.arguments.{command}").add_parser(subparsers)
+    subparsers.choices[command].set_defaults(run=partial(_run, command))
     if command in ("run", "why"):
         relax(subparsers.choices[command], words)
     return parser
+
+
+def _run(command: str, namespace: argparse.Namespace) -> int:
+    """Import what the command needs, of which its help needs nothing, and run it."""
+    code: int = import_module(f"rvmon.cli.{command}").run(namespace)
+    return code

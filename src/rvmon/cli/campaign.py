@@ -16,6 +16,7 @@ from pathlib import Path
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.gate import CampaignJudgement, junit_xml
 from rvmon.cli import evidence, guarded
+from rvmon.cli.arguments import evidence as evidence_arguments
 from rvmon.cli.campaign_options import (
     add_closing_options,
     add_judging_options,
@@ -139,7 +140,8 @@ def add_commands(
     add_mutate_options(parsers["mutate"])
     for name in ("run", "close", "replay", "mutate"):
         add_judging_options(parsers[name])
-    evidence.add_parser(commands, campaign)
+    evidence_arguments.add_parser(commands)
+    commands.choices["evidence"].set_defaults(run=evidence.run, campaign=campaign)
     return parsers
 
 

@@ -7,9 +7,8 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 
-from rvmon.cli.options import constants_of, declare
+from rvmon.cli.options import constants_of
 from rvmon.cli.output import busy, rendered, say, say_json, warn
-from rvmon.cli.parser import TIME_FORMS, span_s
 from rvmon.diagnostics import Diagnostic, coloured, render_concise, render_json, wants_colour
 from rvmon.errors import SpecError
 from rvmon.language.checked.classify import windows_of
@@ -18,40 +17,6 @@ from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.language.compiled_cache import compile_cached
 from rvmon.language.print import format_duration, format_window
 from rvmon.texts import cannot_read, counted, text_of_file, text_of_input
-
-
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Declare the subcommand's arguments."""
-    parser = subparsers.add_parser(
-        "check",
-        description="Report all errors and warnings of each specification.",
-        epilog="examples: rvmon check examples/base.rv; rvmon check specs/*.rv --format concise",
-    )
-    add = parser.add_argument
-    add("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
-    declare(parser, "--const", "--binding")
-    add(
-        "--format",
-        choices=("text", "concise", "json"),
-        default="text",
-        help="how to print findings: in full, one line each, or as JSON, which has a line for each "
-        "as well (default: text)",
-    )
-    add("--strict", action="store_true", help="exit with 1 if there are warnings")
-    add(
-        "--analyse",
-        action="store_true",
-        help="look for requirements that can never trigger, fail or pass, that conflict, or that "
-        "others imply",
-    )
-    add(
-        "--seconds",
-        metavar="TIME",
-        type=span_s,
-        default=8.0,
-        help=f"budget of --analyse per file ({TIME_FORMS}; default: 8)",
-    )
-    declare(parser, "--max-memory")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -6,7 +6,6 @@ import argparse
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import declare
 from rvmon.cli.output import busy, say_json
 from rvmon.verdicts.compare import Change, Comparison, Difference, compare
 from rvmon.verdicts.table_file import read_results
@@ -17,24 +16,6 @@ if TYPE_CHECKING:
 
 LISTED = 20
 """Differences of one kind that the text lists."""
-
-
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Declare the subcommand's arguments."""
-    parser = subparsers.add_parser(
-        "compare",
-        description="Compare the verdicts on recordings with earlier ones, by recording and "
-        "requirement: new failures, fixed failures, verdicts that are missing now. The files are "
-        "written by `rvmon run --out` (.csv, .parquet, .sqlite) or `--format json` (.json). The "
-        "exit code is 1 if a requirement got worse.",
-        epilog="examples: rvmon run examples/base.rv examples/base.csv --out old.csv; rvmon "
-        "compare old.csv old.csv",
-    )
-    add = parser.add_argument
-    add("before", metavar="OLD", help="the earlier verdicts")
-    add("after", metavar="NEW", help="the later verdicts")
-    add("--all", action="store_true", help="list all differences")
-    declare(parser, "--format")
 
 
 def run(arguments: argparse.Namespace) -> int:

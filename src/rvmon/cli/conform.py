@@ -6,9 +6,8 @@ import argparse
 import json
 from dataclasses import asdict
 
-from rvmon.cli.options import add_budget, budget_of, declare
+from rvmon.cli.options import budget_of
 from rvmon.cli.output import busy, say, say_json, warn
-from rvmon.cli.parser import TIME_FORMS, span
 from rvmon.errors import TraceError, UnknownNameError
 from rvmon.models.conform import Allowed, Conformance, actions_in, conform, labels_of
 from rvmon.models.language.load import load_network
@@ -18,43 +17,6 @@ from rvmon.recordings.recording import FileRecording
 from rvmon.texts import counted
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import stamps_of
-
-
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Declare the subcommand's arguments."""
-    parser = subparsers.add_parser(
-        "conform",
-        description="Decide whether recordings (.csv, .jsonl) are runs of a network of timed "
-        "automata; their events are labels of its edges, or its channels. The first sample is "
-        "the network's start. Exit code 0: all conform; 1: one does not, or is not decided; 2: a "
-        "recording cannot be read, or holds no action of the model.",
-        epilog="example: rvmon conform examples/models/dock.ta examples/models/dock_monday.csv",
-    )
-    add = parser.add_argument
-    add("model", metavar="MODEL", help="a .ta or .xml file")
-    add("traces", metavar="TRACE", nargs="+", help="recordings, or folders of recordings")
-    declare(parser, "--time")
-    add(
-        "--observe",
-        metavar="LABELS",
-        help="labels that are observed (default: those that have a column, or that occur)",
-    )
-    add(
-        "--tolerance",
-        metavar="TIME",
-        type=span,
-        default=0,
-        help=f"by how much an action may be early or late ({TIME_FORMS}; default: 0)",
-    )
-    add(
-        "--until",
-        metavar="TIME",
-        type=span,
-        help=f"compare up to TIME ({TIME_FORMS}) after the first sample, whether or not the "
-        "recording goes on that long",
-    )
-    declare(parser, "--format")
-    add_budget(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -14,7 +14,6 @@ import msgspec
 from rvmon.cli.judging import Judged, judge_all, spec_and_options
 from rvmon.cli.options import constants_of
 from rvmon.cli.output import bar, say
-from rvmon.cli.parser import positive
 from rvmon.cli.run_output import rows_of
 from rvmon.errors import RvmonError, TraceError
 from rvmon.evidence import (
@@ -42,39 +41,7 @@ from rvmon.verdicts.rows import VerdictRow
 from rvmon.verdicts.table_file import csv_bytes
 
 if TYPE_CHECKING:
-    from rvmon.cdv.campaign import Campaign
-
-
-def add_parser(
-    subparsers: argparse._SubParsersAction[argparse.ArgumentParser],
-    campaign: Callable[[argparse.Namespace], Campaign] | None = None,
-) -> None:
-    """Declare the subcommand's arguments.
-
-    Args:
-        subparsers: take it.
-        campaign: makes the campaign whose tests are played again; `None`: they are not.
-    """
-    parser = subparsers.add_parser(
-        "evidence",
-        help="check an evidence archive",
-        description="Check that an evidence archive (`--evidence FILE`) is unchanged and that "
-        "the recordings are the evaluated ones, and evaluate a sample of them again. Exit codes: "
-        "0 all checks passed, 1 one failed, 2 something could not be checked.",
-        epilog="example: %(prog)s base.zip --sample all",
-    )
-    add = parser.add_argument
-    add("file", metavar="FILE", help="the archive")
-    add(
-        "--sample",
-        metavar="N",
-        type=lambda text: None if text == "all" else positive(text),
-        default=10,
-        help="number of recordings or tests to evaluate again, or all (%(default)s)",
-    )
-    add("--seed", metavar="N", type=int, default=1, help="random seed of the sample (1)")
-    add("--jobs", metavar="N", type=positive, default=1, help="number of processes (1)")
-    parser.set_defaults(run=run, campaign=campaign)
+    pass
 
 
 Again = Callable[[Kept, Sequence[str], int], Iterable[VerdictRow]]

@@ -7,9 +7,8 @@ import re
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import constants_of, declare
+from rvmon.cli.options import constants_of
 from rvmon.cli.output import say
-from rvmon.cli.parser import positive
 from rvmon.errors import RvmonError
 
 if TYPE_CHECKING:
@@ -18,30 +17,6 @@ if TYPE_CHECKING:
 
 _CODE = re.compile(r"(RV|TA)\d+|codes|[a-z]+(-[a-z]+)+", re.IGNORECASE)
 """A diagnostic's code, in words, or the word for all."""
-
-
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Declare the subcommand's arguments."""
-    parser = subparsers.add_parser(
-        "explain",
-        description="Explain a requirement: in plain words, with its automaton and the shortest "
-        "runs on which it passes, fails, is not triggered or stays open. Of two requirements, "
-        "show where they differ. Of a diagnostic code such as RV012, show its page; `codes` "
-        "lists all codes.",
-        epilog="examples: rvmon explain examples/base.rv B2; rvmon explain RV001",
-    )
-    add = parser.add_argument
-    add("subject", metavar="SPEC|CODE", help="a .rv file, or a code such as RV012")
-    add("ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)")
-    declare(parser, "--const")
-    add(
-        "--runs",
-        metavar="N",
-        type=positive,
-        default=4000,
-        help="number of short runs to try (default: 4000)",
-    )
-    declare(parser, "--max-memory")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import ONLY, asked_ids, constants_of, declare
+from rvmon.cli.options import asked_ids, constants_of
 from rvmon.cli.output import say, warn
 from rvmon.errors import RvmonError
 from rvmon.files import write_file
@@ -19,30 +19,6 @@ if TYPE_CHECKING:
     from rvmon.session import Spec
 
 _OF_MODELS = ("dot", "uppaal")
-
-
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Declare the subcommand's arguments."""
-    parser = subparsers.add_parser(
-        "export",
-        description="Of a specification, write a monitor that does not need rvmon: C99 sources "
-        "(the core, the compiled specification, a header for C++) that run in one block of "
-        "memory. Or write its automata: dot for Graphviz, json, hoa (the minimal LTL3 monitors "
-        "of requirements without time windows). Of a model, write dot, or XML for UPPAAL.",
-        epilog="examples: rvmon export examples/base.rv --to c -o monitor/; rvmon export "
-        "examples/base.rv --to dot --only B1 | dot -Tsvg -o b1.svg; rvmon export "
-        "examples/models/fischer.ta --to uppaal -o fischer.xml",
-    )
-    add = parser.add_argument
-    add("subject", metavar="SPEC|MODEL", help="a .rv file; or a .ta or .xml file")
-    add("--to", choices=("c", "dot", "json", "hoa", "uppaal"), required=True)
-    add(
-        "-o",
-        "--output",
-        metavar="PATH",
-        help="output folder (c) or file (default: standard output)",
-    )
-    declare(parser, *ONLY, "--const")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import READING, constants_of, declare
+from rvmon.cli.options import constants_of
 from rvmon.cli.output import busy, say
 from rvmon.cli.reading import reading_spec
 from rvmon.files import write_file
@@ -16,23 +16,6 @@ from rvmon.report.terminal import Terminal
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
-
-
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Declare the subcommand's arguments."""
-    parser = subparsers.add_parser(
-        "look",
-        description="Show every signal and event of a recording over time: kind, unit, rate, "
-        "longest gap, range and losses. With a specification, the signals and events that its "
-        "requirements read come first.",
-        epilog="examples: rvmon look examples/base.csv; "
-        "rvmon look examples/base.csv examples/base.rv -o look.html",
-    )
-    add = parser.add_argument
-    add("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
-    add("spec", metavar="SPEC", nargs="?", help="a .rv file")
-    add("-o", "--output", metavar="FILE", help="write an HTML page instead")
-    declare(parser, "--const", *READING)
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -8,10 +8,9 @@ from dataclasses import replace
 
 from rvmon.analysis.subformulas import dissect, why_not_triggered
 from rvmon.analysis.window_values import WindowValues, unit_of, windows_blamed
-from rvmon.cli.options import EVALUATED, constants_of, declare
+from rvmon.cli.options import constants_of
 from rvmon.cli.output import busy, say_json, shown_while_reading
 from rvmon.cli.reading import (
-    ATTEMPT_HELP,
     allowed_names,
     chosen_attempt,
     named_attempt,
@@ -34,24 +33,6 @@ from rvmon.trace.sample import Sample, Trace
 from rvmon.trace.time import ticks_of_seconds
 from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.report import Report
-
-
-def add_parser(subparsers: argparse._SubParsersAction[argparse.ArgumentParser]) -> None:
-    """Declare the subcommand's arguments."""
-    parser = subparsers.add_parser(
-        "why",
-        description="Explain one attempt: show when each part of its requirement was true.",
-        epilog="example: rvmon why examples/base.rv examples/base.csv B2#2",
-    )
-    add = parser.add_argument
-    add(
-        "spec",
-        metavar="SPEC",
-        help="a .rv file, or a reproducer (.rvcase) that contains the other arguments",
-    )
-    add("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
-    add("attempt", metavar="ID#N", help=ATTEMPT_HELP)
-    declare(parser, *EVALUATED, "--format")
 
 
 def run(arguments: argparse.Namespace) -> int:

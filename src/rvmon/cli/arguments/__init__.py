@@ -1,0 +1,1 @@
+"""The arguments of each command; they import nothing that its work needs."""
