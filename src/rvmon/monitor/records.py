@@ -42,6 +42,10 @@ _WHOLE, _REAL = 1, 2
 _TOGETHER = 4096
 """Records of which Python's numbers are made at once."""
 
+_MOST_EXPLAINED = 256
+"""Explanations that are kept of a run: an attempt is asked for by the analysis of failures, by the
+text and by each file; a run may have millions."""
+
 
 class RecordedAttempts(LazyAttempts):
     """The attempts of a run, made from raw records on access; explained when details are read.
@@ -67,6 +71,12 @@ class RecordedAttempts(LazyAttempts):
         self._notes = notes
         self._records = records
         self._numbers = numbers
+        self._explained: dict[tuple[str, int, bool], Mapping[str, Any]] = {}
+
+    def __reduce__(self) -> tuple[type[RecordedAttempts], tuple[Any, ...]]:
+        """Without explanations: who takes it makes them anew."""
+        given = self._given, self._records, self._numbers, self._notes, self._origin
+        return RecordedAttempts, given
 
     @property
     def _planned(self) -> PlannedCore:
@@ -138,13 +148,20 @@ class RecordedAttempts(LazyAttempts):
     ) -> Mapping[str, Any]:
         """See `PlannedCore.details`."""
         captured, place = noted
+        key = attempt.requirement, attempt.number, attempt.in_doubt
+        kept = self._explained.get(key)
+        if kept is not None and name in kept:
+            return kept
 
         def note() -> Note:
             from rvmon.monitor.notes import note_at
 
             return note_at(self._notes[0], place, self._notes[1])
 
-        return self._planned.details(attempt, captured, note, name)
+        found = self._planned.details(attempt, captured, note, name)
+        if kept is not None or len(self._explained) < _MOST_EXPLAINED:
+            self._explained[key] = found
+        return found
 
 
 def _number_of(number: Any) -> float | None:

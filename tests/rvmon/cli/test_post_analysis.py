@@ -2,6 +2,8 @@
 
 import json
 import random
+from collections import Counter
+from pathlib import Path
 
 import pytest
 
@@ -9,9 +11,11 @@ import rvmon
 from rvmon.analysis.subformulas import why_not_triggered
 from rvmon.cli import post_analysis
 from rvmon.cli.judging import Options, judge
+from rvmon.monitor.notes import NotesReader
 from rvmon.recordings import recording
 from rvmon.verdicts.report import Report
 
+BASE = Path(__file__).parents[3] / "examples" / "base"
 HEAD = """
 spec cell
 time {time}
@@ -199,3 +203,20 @@ requirement R1 upon fall(ok) then immediately (force <= 40 N and mode = idle and
     )
     report = judge(rvmon.loads(windows), str(path), Options()).report
     assert set(report.values["R1"][1]) == {"mode"}
+
+
+@pytest.mark.parametrize("form", ["text", "json"])
+def test_an_attempt_is_explained_once(form, tmp_path, monkeypatch, says):
+    """For the values at its decision, what came late, the text, the tables and the pages."""
+    explained = Counter[str]()
+    details = NotesReader.details
+
+    def counting(reader, attempt, note, name):
+        explained[attempt.name] += 1
+        return details(reader, attempt, note, name)
+
+    monkeypatch.setattr(NotesReader, "details", counting)
+    files = {"--out": "out.csv", "--junit": "junit.xml", "--report": "pages"}
+    words = [word for option, name in files.items() for word in (option, tmp_path / name)]
+    says(1, "run", BASE.with_suffix(".rv"), BASE.with_suffix(".csv"), "--format", form, *words)
+    assert explained == {"B1#1": 1, "B2#1": 1, "B2#2": 1}
