@@ -155,10 +155,10 @@ def _share(arguments: argparse.Namespace, traces: Sequence[str]) -> list[str]:
 
 def _shards(arguments: argparse.Namespace) -> list[Path]:
     """The files that keep what shards have judged, where they are to be joined."""
-    from rvmon.cli.resume import path_of
-
     if not arguments.resume or arguments.shard is not None:
         return []
+    from rvmon.cli.resume import path_of
+
     return [path_of(str(part)) for part in shards_beside(Path(arguments.out))]
 
 
