@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 from rvmon import native
 from rvmon.core.pack import pack
 from rvmon.coverage import Group, Hit, Hits, Item, Model, Subject, combination, model_of
-from rvmon.coverage.requirements import WatchedRequirements
 from rvmon.language.checked.classify import is_pulse
 from rvmon.language.checked.formula import Formula
 from rvmon.language.checked.properties import BinKind, Coverpoint, Cross
@@ -36,6 +35,7 @@ from rvmon.trace.time import ticks_of_seconds
 from rvmon.verdicts.report import Report, report_of
 
 if TYPE_CHECKING:
+    from rvmon.coverage.requirements import WatchedRequirements
     from rvmon.recordings.batch import Batch
 
 
@@ -152,6 +152,9 @@ class SpecCoverage:
     @cached_property
     def requirements(self) -> WatchedRequirements:
         """Its requirements and cover goals."""
+        # Imported on use: a run that adds to no database asks for bins alone.
+        from rvmon.coverage.requirements import WatchedRequirements
+
         return WatchedRequirements(self.spec)
 
     @cached_property
