@@ -1,4 +1,4 @@
-"""The command `rvmon`: per subcommand a file with `run`, and one in `arguments` with `add_parser`.
+"""The command `rvmon`: a file per subcommand with `run`, one per group with their arguments.
 
 Exit codes: 0 fine, 1 a requirement failed or could not be judged, 2 wrong input or spec,
 3 internal error, 130 interrupted (Ctrl-C, SIGTERM), 141 nobody reads the output any more.
@@ -50,8 +50,20 @@ GROUPS = {
 }
 """The purpose of each command, as `rvmon --help` lists them."""
 
-COMMANDS = (*(name for group in GROUPS.values() for name in group), "lsp")
-"""All of them: `lsp` is started by editors."""
+_ARGUMENTS = {
+    "write requirements": "write_commands",
+    "evaluate": "evaluate_commands",
+    "models and export": "model_commands",
+}
+"""By group, the module that declares the arguments of its commands."""
+
+_MODULES = {
+    **{name: _ARGUMENTS[heading] for heading, group in GROUPS.items() for name in group},
+    "lsp": "write_commands",  # editors start it
+}
+"""By command, the module of its arguments."""
+
+COMMANDS = tuple(_MODULES)
 
 
 _READER_LEFT = 128 + 13
@@ -176,7 +188,7 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
         for name in COMMANDS:
             subparsers.add_parser(name)
         return parser
-    import_module(f"rvmon.cli.arguments.{command}").add_parser(subparsers)
+    getattr(import_module(f"rvmon.cli.{_MODULES[command]}"), f"add_{command}")(subparsers)
     subparsers.choices[command].set_defaults(run=partial(_run, command))
     if command in ("run", "why"):
         relax(subparsers.choices[command], words)

@@ -16,7 +16,6 @@ from pathlib import Path
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.gate import CampaignJudgement, junit_xml
 from rvmon.cli import evidence, guarded
-from rvmon.cli.arguments import evidence as evidence_arguments
 from rvmon.cli.campaign_options import (
     add_closing_options,
     add_judging_options,
@@ -25,6 +24,7 @@ from rvmon.cli.campaign_options import (
     add_run_options,
     add_shrink_options,
 )
+from rvmon.cli.evaluate_commands import add_evidence
 from rvmon.cli.output import warn
 from rvmon.cli.parser import Parser
 from rvmon.errors import UnknownNameError
@@ -140,7 +140,7 @@ def add_commands(
     add_mutate_options(parsers["mutate"])
     for name in ("run", "close", "replay", "mutate"):
         add_judging_options(parsers[name])
-    evidence_arguments.add_parser(commands)
+    add_evidence(commands)
     commands.choices["evidence"].set_defaults(run=evidence.run, campaign=campaign)
     return parsers
 

@@ -8,12 +8,15 @@ import sys
 from collections.abc import Sequence
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeAlias
 
 from rvmon.errors import TraceError
 from rvmon.execute import Shard
 from rvmon.texts import did_you_mean, shown
 from rvmon.trace.time import TICKS_PER_SECOND, TICKS_PER_UNIT, ticks_of_text
+
+Subparsers: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
+"""The commands that a program takes."""
 
 _CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)", re.DOTALL)
 

@@ -1,1 +1,0 @@
-"""The arguments of each command; they import nothing that its work needs."""

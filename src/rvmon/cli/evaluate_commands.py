@@ -1,0 +1,330 @@
+"""The arguments of the commands that evaluate, apart from their work: help starts fast."""
+
+from __future__ import annotations
+
+from rvmon.cli.options import EVALUATED, ONLY, READING, declare
+from rvmon.cli.parser import TIME_FORMS, Subparsers, percentage, positive, shard, span, ticks
+from rvmon.cli.reading import ATTEMPT_HELP
+from rvmon.trace.time import TICKS_PER_SECOND
+
+
+def add_run(subparsers: Subparsers) -> None:
+    """Declare the arguments of `rvmon run`."""
+    parser = subparsers.add_parser(
+        "run",
+        description="Evaluate recordings (.csv, .jsonl, .parquet, bags of ROS, .mcap, or - for "
+        "JSON lines on standard input) against a specification: P passed, F failed, NT not "
+        "triggered, I inconclusive. Exit code 0: no requirement failed; 1: one failed, or with "
+        "--strict is I or NT; 2: wrong input.",
+        epilog="examples: rvmon run examples/base.rv examples/base.csv; rvmon run "
+        "examples/base.rv examples/base.csv --only B2 --report pages --junit "
+        "verdicts.xml",
+    )
+    add = parser.add_argument
+    add(
+        "spec",
+        metavar="SPEC",
+        help="a .rv file, or a reproducer (.rvcase) that contains the other arguments",
+    )
+    add(
+        "traces", metavar="TRACE", nargs="+", help="recordings: files, folders, patterns, addresses"
+    )
+    add("--only", metavar="IDS", help="evaluate only these requirements: R1,R3")
+    declare(parser, *ONLY[1:], *EVALUATED)
+    add(
+        "--join",
+        action="store_true",
+        help="join the files, or those of the folder, by time into one recording; names are "
+        "COLUMN or FILE.COLUMN",
+    )
+    add("--jobs", metavar="N", type=positive, default=1, help="number of processes (default: 1)")
+    declare(parser, "--dask")
+    add(
+        "--robustness",
+        action="store_true",
+        help="add the robustness of each attempt: by how much it passed or, if negative, failed "
+        "(SI units)",
+    )
+    declare(parser, "--format")
+    add("--quiet", action="store_true", help="print only the number of recordings for each verdict")
+    add(
+        "--coverage",
+        metavar="DB",
+        help="add the coverage of the recordings to a database, which is created if needed; "
+        "`rvmon cover DB` shows it",
+    )
+    add(
+        "--out",
+        metavar="FILE",
+        help="write the verdicts as a table, a row per attempt: .csv, .parquet, .sqlite",
+    )
+    add(
+        "--resume",
+        action="store_true",
+        help="with --out: continue the same command where it was interrupted, or join its shards",
+    )
+    add(
+        "--shard",
+        metavar="I/N",
+        type=shard,
+        help="with --out: evaluate one share of the recordings, such as 2/4, into a file of its "
+        "own; the same command with --resume instead joins all shares",
+    )
+    add(
+        "--known",
+        metavar="FILE",
+        help="TOML file of accepted failures, each with a reason and an expiry date",
+    )
+    add(
+        "--mcap",
+        metavar="FILE",
+        help="for one recording: write states, attempts and values over time as MCAP, with "
+        "FILE.layout.json for Foxglove",
+    )
+    add("--report", metavar="DIR", help="write an HTML page per recording")
+    add("--junit", metavar="FILE", help="write JUnit XML for CI")
+    add(
+        "--evidence",
+        metavar="FILE",
+        help="keep recordings, specification and verdicts in one archive; `rvmon evidence FILE` "
+        "checks it",
+    )
+    add("--strict", action="store_true", help="exit with 1 also if a requirement is I or NT")
+    add(
+        "--require-triggered",
+        metavar="[=IDS]",
+        help="exit with 1 if one of these requirements (default: any) was triggered in no "
+        "recording",
+    )
+    declare(parser, "--max-memory")
+
+
+_LAG_NS = 500_000_000
+
+
+def add_watch(subparsers: Subparsers) -> None:
+    """Declare the arguments of `rvmon watch`."""
+    parser = subparsers.add_parser(
+        "watch",
+        description="Evaluate JSON lines as they arrive, and report each verdict as soon as it "
+        "is decided; a missed deadline is reported when it has passed, not at the next line. A "
+        "changed specification is loaded at once. Ends with the stream, or with Ctrl-C. Exit "
+        "code 0: every requirement is P or NT; 1: one failed or is I; 2: wrong input.",
+        epilog='example: printf \'{"t":0,"speed":0.5,"obstacle":0.4}\\n\' | '
+        "rvmon watch examples/base.rv",
+    )
+    add = parser.add_argument
+    add("spec", metavar="SPEC", help="a .rv file")
+    add(
+        "source",
+        metavar="SOURCE",
+        nargs="?",
+        default="-",
+        help="a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, "
+        "whose first + names the robot, such as mqtt://localhost/robots/+/#, ros1: (ROS 1 "
+        "topics), ros2: (ROS 2 topics) or dds:DOMAIN (ROS 2 topics without an installation of "
+        "ROS). Lines with a time stamp (t, t_ns, --time) are evaluated at that time, others when "
+        "they arrive",
+    )
+    declare(parser, *ONLY, "--const", "--time", "--map", "--binding")
+    add(
+        "--robot",
+        metavar="FIELD",
+        help="the field that names the robot; each robot has its own monitors",
+    )
+    add(
+        "--publish",
+        metavar="TOPIC",
+        help="publish each verdict as JSON: over MQTT under TOPIC/REQUIREMENT, over ROS on TOPIC",
+    )
+    add(
+        "--realtime",
+        metavar="TIME",
+        nargs="?",
+        type=span,
+        const=_LAG_NS,
+        help="the stamps of the lines are the time of day since 1970, and lines arrive at most "
+        f"TIME later ({TIME_FORMS}; default: 500ms): deadlines pass while no line comes, too",
+    )
+    add(
+        "--sim-time",
+        action="store_true",
+        help="take the time from the topic /clock (`use_sim_time`); the default of ros1: if the "
+        "parameter of that name is true",
+    )
+    add(
+        "--room",
+        metavar="N",
+        type=positive,
+        default=10_000,
+        help="length of the input queue in lines (default: 10000); further lines are counted as "
+        "lost",
+    )
+    add(
+        "--state",
+        metavar="FILE",
+        help="keep the run in a file: after a crash the same command continues it. Verdicts are "
+        "numbered; the latest may be reported twice",
+    )
+    add("--failures", action="store_true", help="report failures only")
+    add(
+        "--format",
+        choices=("view", "text", "json"),
+        help="a live table (default on a terminal), a line for each verdict, or JSON lines",
+    )
+
+
+def add_why(subparsers: Subparsers) -> None:
+    """Declare the arguments of `rvmon why`."""
+    parser = subparsers.add_parser(
+        "why",
+        description="Explain one attempt: show when each part of its requirement was true.",
+        epilog="example: rvmon why examples/base.rv examples/base.csv B2#2",
+    )
+    add = parser.add_argument
+    add(
+        "spec",
+        metavar="SPEC",
+        help="a .rv file, or a reproducer (.rvcase) that contains the other arguments",
+    )
+    add("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
+    add("attempt", metavar="ID#N", help=ATTEMPT_HELP)
+    declare(parser, *EVALUATED, "--format")
+
+
+def add_clip(subparsers: Subparsers) -> None:
+    """Declare the arguments of `rvmon clip`."""
+    parser = subparsers.add_parser(
+        "clip",
+        description="Cut a recording around an attempt, in the recording's own format. The last "
+        "values of signals before the cut are carried to its start. The cut is evaluated again; "
+        "the exit code is 1 if the attempt gets another verdict.",
+        epilog="example: rvmon clip examples/base.rv examples/base.csv B2#2 --before 1s -o "
+        "piece.csv",
+    )
+    add = parser.add_argument
+    add("spec", metavar="SPEC", help="a .rv file")
+    add("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
+    add("attempt", metavar="ID#N", nargs="?", help=ATTEMPT_HELP)
+    add(
+        "--before",
+        metavar="TIME",
+        type=span,
+        default=10 * TICKS_PER_SECOND,
+        help=f"start TIME ({TIME_FORMS}; default: 10s) before the trigger, or before the failure "
+        "within an episode",
+    )
+    add(
+        "--after",
+        metavar="TIME",
+        type=span,
+        default=5 * TICKS_PER_SECOND,
+        help=f"end TIME ({TIME_FORMS}; default: 5s) after the decision, or at the next sample if "
+        "that is later",
+    )
+    add("--from", metavar="TIME", type=ticks, dest="start", help=f"first instant ({TIME_FORMS})")
+    add("--to", metavar="TIME", type=ticks, dest="stop", help=f"last instant ({TIME_FORMS})")
+    add("-o", "--out", metavar="FILE", help="the cut recording; a folder for a bag of ROS 2")
+    add(
+        "--reproducer",
+        metavar="FILE",
+        help="one file (.rvcase) with the cut recording and the specification: `rvmon why FILE` "
+        "explains the attempt, `rvmon run FILE` evaluates it; -o FILE.rvcase is the same",
+    )
+    declare(parser, "--const", *READING, "--allow-missing")
+
+
+def add_compare(subparsers: Subparsers) -> None:
+    """Declare the arguments of `rvmon compare`."""
+    parser = subparsers.add_parser(
+        "compare",
+        description="Compare the verdicts on recordings with earlier ones, by recording and "
+        "requirement: new failures, fixed failures, verdicts that are missing now. The files are "
+        "written by `rvmon run --out` (.csv, .parquet, .sqlite) or `--format json` (.json). The "
+        "exit code is 1 if a requirement got worse.",
+        epilog="examples: rvmon run examples/base.rv examples/base.csv --out old.csv; rvmon "
+        "compare old.csv old.csv",
+    )
+    add = parser.add_argument
+    add("before", metavar="OLD", help="the earlier verdicts")
+    add("after", metavar="NEW", help="the later verdicts")
+    add("--all", action="store_true", help="list all differences")
+    declare(parser, "--format")
+
+
+def add_cover(subparsers: Subparsers) -> None:
+    """Declare the arguments of `rvmon cover`."""
+    parser = subparsers.add_parser(
+        "cover",
+        description="Show what the tests of one or several coverage databases have covered "
+        "together: problems first, then groups, total and verdicts.",
+        epilog="examples: rvmon run examples/base.rv examples/base.csv --coverage base.cov; "
+        "rvmon cover base.cov --holes",
+    )
+    add = parser.add_argument
+    add("databases", metavar="DB", nargs="+", help="coverage databases, written by run --coverage")
+    add("--campaign", metavar="NAME", help="show the tests of this campaign only")
+    add(
+        "--holes",
+        action="store_true",
+        help="list the items that are missing or cannot be hit, with the reasons",
+    )
+    add(
+        "--bins",
+        metavar="[=GROUP]",
+        help="list the items of a group (default: of all), with hits and the first test that hit "
+        "them; a cross is shown as a grid",
+    )
+    add(
+        "--tests",
+        action="store_true",
+        help="list the tests with their contributions, and a short order that covers as much",
+    )
+    add(
+        "--compare",
+        metavar="OLD",
+        help="show items and verdicts that changed since an earlier database, or an earlier "
+        "campaign in this one",
+    )
+    declare(parser, "--format")
+    add("--report", metavar="FILE", help="write an HTML page")
+    add("--ucis", metavar="FILE", help="write the coverage as UCIS XML, for other tools")
+    add("--merge", metavar="OUT", help="merge the databases into this one")
+    add(
+        "--require",
+        metavar="PERCENT",
+        type=percentage,
+        help="exit with 1 if less is covered, or if an illegal item, or one declared "
+        "unreachable, was hit",
+    )
+    add(
+        "--strict",
+        action="store_true",
+        help="exit with 1 if an illegal item, or one declared unreachable, was hit, if a test "
+        "failed or did not complete, or if --compare shows a loss",
+    )
+    declare(parser, "--max-memory")
+
+
+def add_evidence(subparsers: Subparsers) -> None:
+    """Declare the arguments of `rvmon evidence`."""
+    parser = subparsers.add_parser(
+        "evidence",
+        help="check an evidence archive",
+        description="Check that an evidence archive (`--evidence FILE`) is unchanged and that "
+        "the recordings are the evaluated ones, and evaluate a sample of them again. Exit codes: "
+        "0 all checks passed, 1 one failed, 2 something could not be checked.",
+        epilog="example: %(prog)s base.zip --sample all",
+    )
+    add = parser.add_argument
+    add("file", metavar="FILE", help="the archive")
+    add(
+        "--sample",
+        metavar="N",
+        type=lambda text: None if text == "all" else positive(text),
+        default=10,
+        help="number of recordings or tests to evaluate again, or all (%(default)s)",
+    )
+    add("--seed", metavar="N", type=int, default=1, help="random seed of the sample (1)")
+    add("--jobs", metavar="N", type=positive, default=1, help="number of processes (1)")
+    parser.set_defaults(campaign=None)
