@@ -209,5 +209,5 @@ def test_a_definition_that_lacks_a_part_is_a_fault_of_its_topic(tmp_path, capsys
         writer.add_message(channel, START, b"\0\1\0\0\1", START)
         writer.finish()
     assert main(["init", str(path)]) == 2
-    told = "`tool`: the definition of its messages names shop_msgs/msg/Grip, and does not say"
+    told = "`tool`: the definition of its messages names shop_msgs/msg/Grip, and does not define it"
     assert told in capsys.readouterr().err
