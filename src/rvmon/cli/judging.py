@@ -113,7 +113,7 @@ class RecordingCoverage:
             self._run = spec.coverage_model.run(source, requirements=options.coverage)
 
     def passing(self, found: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
-        """What is read, unchanged; what is wrong with it is told once it was judged."""
+        """The pieces, unchanged; an error of their coverage is raised by `finished`."""
         for piece in found:
             if self._run is not None and self._fault is None:
                 try:
