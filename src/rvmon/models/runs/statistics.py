@@ -22,7 +22,7 @@ from rvmon.confidence import interval
 from rvmon.models.network.evaluate import evaluator
 from rvmon.models.network.expressions import BinaryOp, PathOp
 from rvmon.models.network.fractions import GRID, number_in
-from rvmon.models.network.guards import is_plain, normal_form
+from rvmon.models.network.guards import has_paths, normal_form, speaks_of_deadlock
 from rvmon.models.network.network import Chance, Mean, Network, Query, Simulation
 from rvmon.models.network.rules import model_error
 from rvmon.models.runs.moves import Space, State, check_start
@@ -185,9 +185,14 @@ class _Runs:
 
 
 def _chance(network: Network, query: Query, chance: Chance, random: Random, runs: _Runs) -> Sampled:
-    if not is_plain(chance.body):
+    if speaks_of_deadlock(chance.body):
+        reason = "a deadlock is a lack of moves, and random runs are checked by their states alone"
+        fix = "ask whether one is reachable: E<> deadlock"
+        raise model_error("TA020", reason, query.span, fix)
+    if has_paths(chance.body):
+        reason = "a random run is evaluated alone, and this formula speaks of other runs"
         fix = "write a condition on the state: Pr[<=T](<> p)"
-        raise model_error("TA020", "this cannot be evaluated on one run", query.span, fix)
+        raise model_error("TA020", reason, query.span, fix)
     meets = chance.op is PathOp.FINALLY
     sought = normal_form(chance.body, positive=meets)
     trial = trial_of(network, sought, chance.horizon, random, MEAN_WAIT, runs.goes_on)

@@ -143,8 +143,6 @@ def test_expected_values():
 @pytest.mark.parametrize(
     "query",
     [
-        "Pr[<=2](<> deadlock)",
-        "Pr[<=2](<> EF A.heads)",
         "Pr[<=2](<> A.heads) >= 1.5",
         "Pr[<=2](<> A.heads) > 0.5",
         "Q[<=2](<> A.heads)",
@@ -157,6 +155,20 @@ def test_expected_values():
 def test_what_has_no_figure_is_refused(query):
     with pytest.raises(ModelError):
         sampled(query)
+
+
+@pytest.mark.parametrize(
+    ("query", "reason", "fix"),
+    [
+        ("Pr[<=2](<> deadlock)", "a lack of moves", "E<> deadlock"),
+        ("Pr[<=2](<> A.heads and not deadlock) >= 0.5", "a lack of moves", "E<> deadlock"),
+        ("Pr[<=2](<> EF A.heads)", "speaks of other runs", "Pr[<=T](<> p)"),
+    ],
+)
+def test_what_one_run_does_not_show_is_refused_with_the_reason(query, reason, fix):
+    with pytest.raises(ModelError, match=reason) as raised:
+        sampled(query)
+    assert fix in raised.value.diagnostics[0].help
 
 
 def test_statistics_are_no_decision():
