@@ -84,9 +84,12 @@ def _read(path: Path, directory: Path) -> Compiled | None:
         if imported:
             tree = tree_of(directory)
             for file, text in imported.items():
+                # What may be imported depends on where the project and RVMON_ALLOW_IMPORTS are
+                # today.
                 if not tree.holds(Path(file)) or text_of_file(file) != text:
                     return None
         spec, warnings = from_plain(data)
+    # A file of a cache may be cut off, or anybody's: it is compiled anew then, never trusted.
     except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
         return None
     return (spec, warnings) if isinstance(spec, CheckedSpec) else None

@@ -97,6 +97,7 @@ def resolve(parsed: Sequence[items.ParsedSpec], findings: Findings) -> ResolvedS
     resolver = _Resolver(findings)
     for number, file in enumerate(parsed):
         for item in file.items:
+            # The `spec` line of an imported file names that file alone; its `time` holds for all.
             if number == 0 or not isinstance(item, items.Header):
                 resolver.add(item)
     once = resolver.once
@@ -109,6 +110,7 @@ def resolve(parsed: Sequence[items.ParsedSpec], findings: Findings) -> ResolvedS
         resolver.of(items.CoverItem),
         resolver.of(items.CoverpointItem),
         resolver.of(items.CrossItem),
+        # Which of two declarations a use means is unknown: only the declaration is reported.
         frozenset(resolver.doubled).union(*(file.doubtful for file in parsed)),
     )
 
@@ -150,6 +152,8 @@ class _Resolver:
                 self._declare(item)
             case items.ImportItem():
                 pass  # its file is among those given
+            # Requirements, properties, goals and coverpoints share their names: reports name all by
+            # id.
             case _ if self._is_new("requirement", item.name):
                 self._stated.append(item)
 
@@ -207,6 +211,7 @@ def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozens
     caught: set[str] = set()
     finished: set[str] = set()
     for root in uses:
+        # A search in depth without recursion: chains of macros may be as long as the file.
         path: list[str] = []
         waiting = [(root, iter(uses[root]))] if root not in finished else []
         while waiting:
@@ -218,6 +223,8 @@ def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozens
                 finished.add(name)
                 waiting.pop()
                 path.pop()
+                # What leads into a circle cannot be evaluated either; it is refused without a
+                # finding.
                 if caught & set(uses[name]):
                     caught.add(name)
             elif following in path:
@@ -275,6 +282,7 @@ def _never_read(spec: CheckedSpec) -> Iterator[Diagnostic]:
 def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
     """Macros and constants, and the values that requirements capture."""
     main = spec.sources[0]
+    # Counted in the texts: a use in a macro that nothing uses counts, as does the declaration.
     uses = Counter(name for source in spec.sources for name in _names(source.text))
     for item in spec.declared.values():
         if isinstance(item, items.DefineItem | items.ConstItem) and item.name.span.source is main:

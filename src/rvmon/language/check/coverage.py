@@ -108,6 +108,7 @@ def checked_cross(
     combinations = prod(map(len, bins))
     if combinations > rules.MOST_COMBINATIONS:
         raise Refusal(rules.too_many_combinations(item.span, combinations))
+    # Each clause is tried on each combination; macros in it make that long.
     checker.effort.spend(combinations * len(item.clauses), item.span)
     unwanted = {
         kind: _combinations(checker, item, dict(zip(names, bins, strict=True)), kind)
@@ -240,6 +241,8 @@ class _Point:
                 raise Refusal(rules.same_value(end.span))
             rise = Unary(UnaryOp.RISE, now, None, span)
             came = Binary(BinaryOp.AND, rise, was, None, span)
+            # The value that is left now was last entered by the step before: no `entered` since
+            # `made`.
             if made is not None and entered is not None:
                 stayed = Unary(UnaryOp.NOT, entered, None, span)
                 latest = Binary(BinaryOp.SINCE, stayed, made, Interval(), span)

@@ -286,6 +286,8 @@ class Checker:
         found, cost = self._defined[name.text]
         if found is None:
             raise Reported
+        # The value is shared, but what reads formulas later walks through each use of it: a chain
+        # of macros that use the one before twice doubles with each.
         self.effort.add(cost, name.span)
         return found
 
@@ -328,6 +330,8 @@ class Checker:
 
     def _prefix(self, prefix: Prefix, scope: Scope) -> Formula:
         present = prefix.op.entry.tense is Tense.PRESENT
+        # Operand and window are both looked at before either is refused: one run shows all
+        # findings.
         operand = self.value(prefix.operand, scope if present else scope.later())
         bound = bound_of(self, prefix.op, prefix.window, scope)
         if bound is None:

@@ -100,6 +100,7 @@ def _alone(op: CompareOp, moving: Numeric, other: Numeric, span: Span) -> Formul
             if _moves(first) and _may_go(how, second):
                 turned = op if _is_upward(how, second) else op.mirrored
                 return _alone(turned, first, _joined(_INVERSE[how], other, second), span)
+            # `c / x` is not monotonic: it jumps where x passes 0.
             if how is not NumericOp.DIV and _moves(second) and _may_go(how, first):
                 turned = op if _is_upward(how, first) else op.mirrored
                 if how is NumericOp.SUB:
@@ -109,6 +110,7 @@ def _alone(op: CompareOp, moving: Numeric, other: Numeric, span: Span) -> Formul
 
 
 def _negative(number: Numeric) -> Numeric:
+    # `-0.0` equals 0, and prints as another number.
     if isinstance(number, Literal) and not isinstance(number.value, str) and number.value != 0:
         return replace(number, value=-number.value)
     return Arithmetic(NumericOp.NEG, (number,))
@@ -126,6 +128,7 @@ def _may_go(how: NumericOp, beside: Numeric) -> bool:
     """Whether an operand may stand beside a moving one: any fixed term, or a constant factor."""
     if how in (NumericOp.ADD, NumericOp.SUB):
         return not _moves(beside)
+    # The sign of a factor says whether the comparison turns round, so it has to be known here.
     return isinstance(beside, Literal) and beside.value != 0
 
 

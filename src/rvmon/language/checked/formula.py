@@ -320,6 +320,7 @@ class Amount:
         """The operands of the window, then the condition that the limit is known."""
         own = self.of.operands
         chosen = len(own) - len(self.of.chosen)
+        # Chosen comparisons come last: the core counts them from the end (`core/nodes.py`).
         return own if self.known is None else (*own[:chosen], self.known, *own[chosen:])
 
     @property

@@ -63,6 +63,8 @@ def parse_spec(source: Source, findings: Findings) -> ParsedSpec:
             items.append(item)
             findings.extend(wrong)
             continue
+        # Cut in two, the item before is read after all, and the error stands at the misspelled
+        # word.
         cut = _misspelled_item(source.text, start, wrong)
         if cut is not None:
             waiting += ((cut, end), (start, cut))
@@ -87,6 +89,7 @@ def parse_expression(source: Source) -> tuple[Expression | None, list[Diagnostic
 
 
 def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
+    # Before parsing: the parser takes memory and time for each operator, the refusal does not.
     if _operators(source.text[start:end]) > LARGEST:
         place = Span(source, start, start + len(source.text[start:end].rstrip()))
         return None, [rules.too_large(place, LARGEST)]
@@ -145,6 +148,7 @@ def grammar_text() -> str:
     for terminal, spellings in OPERATOR_TERMINALS.items():
         fillings[terminal] = "|".join(
             re.escape(spelling).replace(r"\ ", r"\s+") + (end if spelling[-1].isalpha() else "")
+            # `&&` before `&`: an alternation takes the first that matches.
             for spelling in sorted(spellings, key=len, reverse=True)
         )
     for key, pattern in fillings.items():

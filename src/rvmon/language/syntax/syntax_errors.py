@@ -101,6 +101,7 @@ def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> s
         before: the part of the item before it.
     """
     return (
+        # From what is certainly meant to what is guessed: the first that knows a fix says it.
         if_fix(before.text)
         or _FIX.get(found, "")
         or _unit_fix(found, before.text)
