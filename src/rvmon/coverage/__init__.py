@@ -236,6 +236,7 @@ def weighted(scores: Iterable[tuple[Group, Score]]) -> float:
         if one.items and group.weight:
             subjects.setdefault(group.subject, []).append((group.weight, one))
     means = [
+        # As fractions: thirds as floats add up to 1 with a goal open, or to more than 1.
         sum(Fraction(weight * one.covered, one.items) for weight, one in own)
         / sum(weight for weight, _ in own)
         for own in subjects.values()

@@ -62,6 +62,7 @@ def connect(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
         try:
             if create and _is_new(database):
                 _make(database, path)
+            # Before `_prepare`, which would change the journal of a foreign database.
             _check(database, path)
             if create:
                 _prepare(database)
@@ -178,6 +179,7 @@ def _opened(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
         alone = not os.access(whole.parent, os.W_OK) and not Path(f"{whole}-wal").exists()
         mode = "rwc" if create else "ro&immutable=1" if alone else "rw"
         address = f"{whole.as_uri()}?mode={mode}"
+    # Without an isolation level Python begins no transactions of its own: see `transaction`.
     database = sqlite3.connect(address, uri=True, timeout=PATIENCE_S, isolation_level=None)
     try:
         database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST)

@@ -68,6 +68,7 @@ class Bins:
             return len(watches) - 1
 
         axes = {
+            # The start is read before the bins add their watches: arguments are evaluated in order.
             name: range(len(watches), 1 + [watch(bin_.formula) for bin_ in point.bins][-1])
             for name, point in points.items()
         }

@@ -292,6 +292,7 @@ def _state(coverage: Coverage) -> tuple[dict[Names, bool], list[Names], float]:
 
 def _changes(before: Coverage, after: Coverage) -> Iterator[VerdictChange]:
     earlier: dict[tuple[object, ...], list[TestRecord]] = {}
+    # Reversed, so that `pop` below takes the first of equal tests.
     for entry in reversed(before.entries):
         earlier.setdefault(_key(entry.record), []).append(entry.record)
     for entry in after.entries:

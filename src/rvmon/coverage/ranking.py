@@ -96,6 +96,7 @@ def _undominated(
                 seen.add(key)
     if len(kept) > MOST_COMPARED:
         return kept
+    # Two equal tests would remove each other here: of those, one alone was kept above.
     enough = {
         place: frozenset(item for item, count in row.items() if count == needed[item])
         for place, row in kept.items()
@@ -113,6 +114,7 @@ def _scarce(rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]) -> di
     kept: dict[int, int] = {}
     for item in sorted(needed, key=lambda one: (hitters[one].bit_count(), one)):
         own = hitters[item]
+        # A goal of several hits is not reached with a scarcer item that is hit once.
         if needed[item] > 1 or not any(hitters[one] & own == hitters[one] for one in kept):
             kept[item] = needed[item]
     return kept
@@ -181,6 +183,7 @@ class _Search:
         places = [place for place in self._rows if free >> place & 1]
         places.sort(key=lambda place: (-_gain(self._rows[place], needed), place))
         for place in places:
+            # All sets with this test are searched in the next line: what follows goes without it.
             refused |= 1 << place
             self.branch(_without(needed, self._rows[place]), [*chosen, place], refused)
 
