@@ -258,7 +258,14 @@ def _types(distribution: str, parts: Iterable[Callable[[], Any]]) -> tuple[Any, 
 
     store = get_typestore(Stores[distribution])
     try:
-        store.register({name: fields for part in parts for name, fields in part().items()})
+        types = {name: parsed for part in parts for name, parsed in part().items()}
+        # The library makes classes by executing Python that it writes with these names in it. Its
+        # grammar admits nothing that could be a statement, but names that are none of Python.
+        for name, (constants, fields) in types.items():
+            for part in (*name.split("/"), *(entry[0] for entry in (*constants, *fields))):
+                if not (part.isascii() and part.isidentifier()):
+                    return None, f"`{part}` is no name"
+        store.register(types)
     except (TypesysError, KeyError, ValueError, TypeError) as error:
         return None, first_line(error)
     return store, ""

@@ -197,17 +197,28 @@ def test_a_bag_without_definitions_is_read_by_those_of_its_distribution(tmp_path
     assert spec.evaluate(path).verdicts["R"] == "P"
 
 
-def test_a_definition_that_lacks_a_part_is_a_fault_of_its_topic(tmp_path, capsys):
+@pytest.mark.parametrize(
+    ("type_name", "definition", "why"),
+    [
+        (
+            "shop_msgs/msg/Tool",
+            "shop_msgs/msg/Grip grip\n",
+            " names shop_msgs/msg/Grip, and does not define it",
+        ),
+        ("3d_msgs/msg/Tool", "int32 id\n", " cannot be read (`3d_msgs` is no name)"),
+    ],
+    ids=["lacks a part", "no name"],
+)
+def test_a_faulty_definition_is_a_fault_of_its_topic(tmp_path, capsys, type_name, definition, why):
     from mcap.writer import Writer
 
     path = tmp_path / "a.mcap"
     with path.open("wb") as file:
         writer = Writer(file)
         writer.start()
-        kind = writer.register_schema("shop_msgs/msg/Tool", "ros2msg", b"shop_msgs/msg/Grip grip\n")
+        kind = writer.register_schema(type_name, "ros2msg", definition.encode())
         channel = writer.register_channel("/tool", "cdr", kind)
         writer.add_message(channel, START, b"\0\1\0\0\1", START)
         writer.finish()
     assert main(["init", str(path)]) == 2
-    told = "`tool`: the definition of its messages names shop_msgs/msg/Grip, and does not define it"
-    assert told in capsys.readouterr().err
+    assert f"`tool`: the definition of its messages{why}" in capsys.readouterr().err
