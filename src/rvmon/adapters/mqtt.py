@@ -113,7 +113,6 @@ class MqttSource:
         self._told = self._heard = objects.driver.now_ns
         self._refusal = ""
         self._client = Client(CallbackAPIVersion.VERSION2)
-        self._client.max_queued_messages_set(0)
         self._client.on_connect = self._on_connect
         self._client.on_subscribe = self._on_subscribe
         self._client.on_disconnect = self._on_disconnect

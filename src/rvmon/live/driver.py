@@ -27,7 +27,7 @@ _log = logging.getLogger("rvmon.live")
 _input_log = logging.getLogger("rvmon.live.input")
 
 _BATCH = 1_000
-"""The most entries judged in one call of `work`."""
+"""The most entries judged in one call of `work`: for so long `status` may wait."""
 
 _PATIENCE_NS = 2_000_000
 """Time is advanced only after a silence of this length, as a next sample advances it anyway."""
@@ -164,10 +164,13 @@ class Driver:
             if not self._is_room_for(robot):
                 return False
             if t_ns is None:
+                # By a wall clock no two stamps are equal, so that each sample is judged at once; a
+                # simulated one stands still, and samples of one instant are merged.
                 t_ns = max(self._clock.now_ns(), self._stamped)
                 self._stamped = t_ns + self._runs_by_itself
             was_empty = not len(self._waiting)
             took = self._waiting.put(Offered(robot, t_ns, kept))
+        # Else somebody was woken for what waits already, and takes this, too.
         if was_empty:
             self.wake()
         return took
@@ -248,6 +251,7 @@ class Driver:
         with self._driving():
             watching, former = self._watching(spec), self._watch
             with self._has_room:
+                # What was offered before is judged by the former specification.
                 entries = self._waiting.take(len(self._waiting))
                 self._watch, self._lag = watching
                 self._has_room.notify_all()
@@ -353,6 +357,7 @@ class Driver:
                 continue
             robot.pass_to(now - self._lag)
             if (due := robot.due) is not None:
+                # Later than now, lest what time does not settle is taken again at once, for ever.
                 self._timers.set(name, max(due + self._lag, now + 1))
         first = self._timers.first
         return None if first is None else self._clock.seconds_until(first)

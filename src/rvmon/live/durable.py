@@ -182,6 +182,7 @@ class DurableMonitor:
         try:
             self._judge(t, values)
         finally:
+            # Also where it was refused: the file has it, and would be read again with all others.
             if self._kept >= self._every:
                 self.save()
 

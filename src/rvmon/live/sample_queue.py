@@ -129,6 +129,7 @@ class Waiting:
     def put_gap(self, gap: Gap) -> None:
         """Queue a report on an outage, regardless of `room`."""
         self.robots.add(gap.robot)
+        # What is lost behind this report is another outage than what was lost before it.
         self._losing.pop(gap.robot, None)
         self._entries.append(gap)
 
@@ -141,6 +142,7 @@ class Waiting:
         """Remove the oldest entries, at most `most`."""
         taken = [self._entries.popleft() for _ in range(min(most, len(self._entries)))]
         for dropped in taken:
+            # It is judged now: further losses need an entry of their own.
             if isinstance(dropped, Dropped) and self._losing.get(dropped.robot) is dropped:
                 del self._losing[dropped.robot]
         return taken
