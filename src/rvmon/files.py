@@ -254,7 +254,7 @@ def _tidy(folder: Path) -> None:
         if now - (folder / _TIDIED).stat().st_mtime < _TIDY_S:
             return
     (folder / _TIDIED).touch(mode=0o600)
-    found: list[tuple[float, int, str]] = []
+    entries: list[tuple[float, int, str]] = []
     for entry in os.scandir(folder):
         named = re.fullmatch(_NAMES, entry.name)
         if named is None:
@@ -262,14 +262,14 @@ def _tidy(folder: Path) -> None:
         with suppress(FileNotFoundError):  # another process tidies as well
             about = entry.stat(follow_symlinks=False)
             if not named["unfinished"]:
-                found.append((about.st_mtime, about.st_size, entry.path))
+                entries.append((about.st_mtime, about.st_size, entry.path))
             elif now - about.st_mtime > _ABANDONED_S:
                 os.unlink(entry.path)
     most = _most()
-    size = sum(bytes_ for _, bytes_, _ in found)
+    size = sum(bytes_ for _, bytes_, _ in entries)
     if size <= most:
         return
-    for used, bytes_, path in sorted(found):
+    for used, bytes_, path in sorted(entries):
         if size <= most // 2 or now - used < _IN_USE_S:
             break
         Path(path).unlink(missing_ok=True)

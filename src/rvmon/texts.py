@@ -96,8 +96,8 @@ def proposed(help_: str) -> str:
     >>> proposed("did you mean `released`?  (event, line 9)"), proposed("put brackets around it")
     ('released', '')
     """
-    found = _PROPOSED.match(help_)
-    return found[1] or found[2] if found else ""
+    close = _PROPOSED.match(help_)
+    return close[1] or close[2] if close else ""
 
 
 _STEERS_JSON = re.compile(
@@ -137,7 +137,7 @@ def shown_json(text: str) -> str:
     """
     if text.isascii() and "\x7f" not in text:
         return text
-    return _STEERS_JSON.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+    return _STEERS_JSON.sub(lambda shown: f"\\u{ord(shown[0]):04x}", text)
 
 
 def _shown(char: str) -> str:

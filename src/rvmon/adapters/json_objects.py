@@ -54,7 +54,7 @@ class JsonObjects:
         self.driver = driver
         self._clock = clock
         self._last: dict[str, int | None] = {}
-        self._told = 0
+        self._logged = 0
         self._is_any_lost = False  # a lost object may have been of a robot not known yet
 
     def take(
@@ -80,8 +80,8 @@ class JsonObjects:
             raise TraceError(f"there is no time `{column}`: who knows when it was?")
         if is_old:
             values = {name: value for name, value in values.items() if name in spec.schema.signals}
-        if len(self.ignored) > self._told:
-            self._tell_of_ignored()
+        if len(self.ignored) > self._logged:
+            self._log_ignored()
         if self._clock is not None and t_ns is not None:
             now = self._clock.now_ns()
             if t_ns > now or t_ns < now - _JUMP_NS:
@@ -89,17 +89,18 @@ class JsonObjects:
         if self._is_any_lost and robot not in self._last:
             self.driver.miss(robot=robot, why=_UNREADABLE)
         # An object without a stamp is stamped when it is offered: to wait would change its time.
-        took = self.driver.offer(values, robot=robot, t_ns=t_ns, wait=wait and t_ns is not None)
+        waits = wait and t_ns is not None
+        is_queued = self.driver.offer(values, robot=robot, t_ns=t_ns, wait=waits)
         if self.driver.spec is not spec:  # replaced meanwhile, perhaps by one with other names
             self.driver.miss(robot=robot, why=_UNREADABLE)
         # Robots beyond the limit are not remembered, lest the table grow without bound.
-        if took or robot in self._last or len(self._last) < self.driver.most_robots:
+        if is_queued or robot in self._last or len(self._last) < self.driver.most_robots:
             self._last[robot] = t_ns
 
-    def _tell_of_ignored(self) -> None:
+    def _log_ignored(self) -> None:
         """Log, for a new undeclared name, the declared one that was probably meant."""
-        fresh = list(islice(self.ignored, self._told, None))
-        self._told += len(fresh)
+        fresh = list(islice(self.ignored, self._logged, None))
+        self._logged += len(fresh)
         signals = self.driver.spec.schema.signals
         for name in fresh:
             ends = [signal for signal in signals if name.endswith(f".{signal}")]

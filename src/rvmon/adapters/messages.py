@@ -125,8 +125,8 @@ class MessageFeed:
         clock = self._schema.binding.clock
         if any((bound.clock or clock) is Clock.HEADER for bound in bounds.values()):
             self._stamped.add(topic.name)
-        made = self._readers[topic.name] = MessageReaders(bounds, self._schema)
-        return made
+        readers = self._readers[topic.name] = MessageReaders(bounds, self._schema)
+        return readers
 
     def lose(self, topic: str, why: str, *, before: bool = False, for_good: bool = False) -> None:
         """Report an outage of the names that a topic feeds.
@@ -154,8 +154,8 @@ class MessageFeed:
 
     def _names_of(self, topic: str) -> list[str]:
         """The names of the current specification that a topic feeds, or may feed."""
-        declared, own = self._driver.spec.schema, self._schema
+        declared, schema = self._driver.spec.schema, self._schema
         names = self._fed.get(topic) or [
-            name for name in (*own.signals, *own.events) if topic in self._topics_of(name)
+            name for name in (*schema.signals, *schema.events) if topic in self._topics_of(name)
         ]
         return [name for name in names if name in declared.signals or name in declared.events]

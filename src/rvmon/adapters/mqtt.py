@@ -110,7 +110,7 @@ class MqttSource:
         self._verdicts = verdicts
         self._connected = Event()
         self._dropped: int | None = None
-        self._told = self._heard = objects.driver.now_ns
+        self._counted_at = self._heard = objects.driver.now_ns
         self._refusal = ""
         self._client = Client(CallbackAPIVersion.VERSION2)
         self._client.on_connect = self._on_connect
@@ -201,8 +201,8 @@ class MqttSource:
         if self._dropped is not None and count > self._dropped:
             why = "the broker has dropped messages, to this or to other clients"
             _log.warning("%s: %d", why, count - self._dropped)
-            driver.lose(since_ns=self._told, is_over=True, why=why)
-        self._dropped, self._told = count, driver.now_ns
+            driver.lose(since_ns=self._counted_at, is_over=True, why=why)
+        self._dropped, self._counted_at = count, driver.now_ns
 
     def publish(self, judgement: Judgement) -> None:
         """Publish a verdict: to be called by a driver, as its `on_judged`."""

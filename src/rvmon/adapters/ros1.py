@@ -109,8 +109,8 @@ class Ros1Source:
         """Have lost what a topic feeds where a connection of it was lost, or made anew."""
         topic = subscriber.resolved_name
         connections = tuple(subscriber.impl.connections or ())  # none: rospy has ended
-        made = [connection.header for connection in connections if connection.socket is not None]
-        now = {header["callerid"]: header for header in made if header and "callerid" in header}
+        headers = [connection.header for connection in connections if connection.socket is not None]
+        now = {header["callerid"]: header for header in headers if header and "callerid" in header}
         for name, node in [link for link in self._links if link[0] == topic]:
             link, header = (name, node), now.get(node)
             # By identity: a connection that was made anew has another header of the same content.

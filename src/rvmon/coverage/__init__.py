@@ -185,13 +185,15 @@ def merged(several: Iterable[Hits]) -> dict[str, dict[str, Hit]]:
     >>> merged([one, {"gaze": {"yes": Hit(1, 3), "no": Hit(1)}}])["gaze"]["yes"].count
     3
     """
-    found: dict[str, dict[str, Hit]] = {}
+    total: dict[str, dict[str, Hit]] = {}
     for hits in several:
         for group, items in hits.items():
-            own = found.setdefault(group, {})
+            group_hits = total.setdefault(group, {})
             for item, hit in items.items():
-                own[item] = Hit(hit.count + (own[item].count if item in own else 0))
-    return found
+                group_hits[item] = Hit(
+                    hit.count + (group_hits[item].count if item in group_hits else 0)
+                )
+    return total
 
 
 def count_of(hits: Hits, group: str, item: str) -> int:
@@ -237,9 +239,9 @@ def weighted(scores: Iterable[tuple[Group, Score]]) -> float:
             subjects.setdefault(group.subject, []).append((group.weight, one))
     means = [
         # As fractions: thirds as floats add up to 1 with a goal open, or to more than 1.
-        sum(Fraction(weight * one.covered, one.items) for weight, one in own)
-        / sum(weight for weight, _ in own)
-        for own in subjects.values()
+        sum(Fraction(weight * one.covered, one.items) for weight, one in scored)
+        / sum(weight for weight, _ in scored)
+        for scored in subjects.values()
     ]
     return float(sum(means) / len(means)) if means else 1.0
 

@@ -124,11 +124,11 @@ class Database:
             # The error of a contradiction names the file that brought it.
             source = other._path or self._path
             write_groups(self._tables, source, self._stored(), groups)
-            own = _Items(self._stored())
-            ids = np.array([own.ids[own.places[item]] for item in coverage.items], np.int64)
+            stored = _Items(self._stored())
+            ids = np.array([stored.ids[stored.places[item]] for item in coverage.items], np.int64)
             write_entries(self._tables, coverage.entries, ids)
-            self._explain(own, coverage.reasons)
-            self._explain(own, coverage.unreachable, "unreachable")
+            self._explain(stored, coverage.reasons)
+            self._explain(stored, coverage.unreachable, "unreachable")
 
     def coverage(self) -> Coverage:
         """The contents.
@@ -153,13 +153,13 @@ class Database:
     def _reasons(
         self, named: Mapping[int, tuple[str, str]], table: str
     ) -> dict[tuple[str, str], list[str]]:
-        found: dict[tuple[str, str], list[str]] = {}
+        reasons: dict[tuple[str, str], list[str]] = {}
         words = f"SELECT item, reason FROM {table} ORDER BY item, reason"  # noqa: S608 - our words
         for item, reason in self._tables.execute(words):
             if item not in named:
                 raise damaged(self._path, "a reason stands at no item")
-            found.setdefault(named[item], []).append(str(reason))
-        return found
+            reasons.setdefault(named[item], []).append(str(reason))
+        return reasons
 
     def _stored(self) -> Stored:
         with readable_errors(self._path):

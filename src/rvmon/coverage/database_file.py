@@ -150,7 +150,7 @@ _WORDS = {
 def _refuse(path: Path, *, create: bool) -> None:
     """Refuse paths for which SQLite's own error would be poor, or opening would block."""
     try:
-        found = path.stat()
+        status = path.stat()
     except (FileNotFoundError, NotADirectoryError):
         if not create:
             raise CoverageError(
@@ -164,9 +164,9 @@ def _refuse(path: Path, *, create: bool) -> None:
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or error
         raise CoverageError(f"error: cannot open {path}: {why}: name another") from None
-    if stat.S_ISDIR(found.st_mode):
+    if stat.S_ISDIR(status.st_mode):
         raise CoverageError(f"error: {path} is a folder: name a database in it")
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         raise CoverageError(f"error: {path} is no regular file: name one")
 
 
@@ -214,12 +214,12 @@ def _check(database: sqlite3.Connection, path: str | Path | None) -> None:
             f"error: {name_of(path)} was written by an older rvmon (version {version} of its "
             f"tables, this one reads {VERSION}): record again, or install that one"
         )
-    found = {
+    statements = {
         sql
         for name, sql in database.execute("SELECT name, sql FROM sqlite_schema")
         if sql is not None or not str(name).startswith("sqlite_autoindex_")
     }
-    if found != set(TABLES):
+    if statements != set(TABLES):
         raise damaged(path, "its tables are not those of a database of coverage")
 
 

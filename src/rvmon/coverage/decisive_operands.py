@@ -62,15 +62,15 @@ def variants_of(requirement: Requirement) -> list[Variant]:
         (part, replace(requirement, consequent=without), is_steady and change is _Change.WEAKER)
         for part, without, change in _without_one(required)
     ]
-    found: list[Variant] = []
+    variants: list[Variant] = []
     counts: Counter[str] = Counter()
     for part, other, by_failure in changed:
         text = format_formula(part)
         counts[text] += 1
         name = text if counts[text] == 1 else f"{text} ({counts[text]})"
         # A property is of the requirement as a whole.
-        found.append(Variant(name, replace(other, ctl=None), by_failure))
-    return found
+        variants.append(Variant(name, replace(other, ctl=None), by_failure))
+    return variants
 
 
 def _is_steady(required: Formula) -> bool:

@@ -21,7 +21,7 @@ def nearest_tests(
     goals: Iterable[Goal], tests: Sequence[tuple[str, Hits]], model: Model
 ) -> dict[Goal, str]:
     """By item, the test that came nearest (the first of equals); absent if none came near."""
-    found = {}
+    names = {}
     for goal in goals:
         near, name = max(
             ((nearness(goal, hits, model), name) for name, hits in tests),
@@ -29,8 +29,8 @@ def nearest_tests(
             default=(0.0, ""),
         )
         if near:
-            found[goal] = name
-    return found
+            names[goal] = name
+    return names
 
 
 def nearness(goal: Goal, hits: Hits, model: Model) -> float:

@@ -72,24 +72,24 @@ class Bins:
             name: range(len(watches), 1 + [watch(bin_.formula) for bin_ in point.bins][-1])
             for name, point in points.items()
         }
-        asked: list[tuple[tuple[str, ...], Formula | None]]
-        asked = [((name,), point.upon) for name, point in points.items()]
-        asked += [(cross.points, cross.upon) for cross in crosses.values()]
+        sampled: list[tuple[tuple[str, ...], Formula | None]]
+        sampled = [((name,), point.upon) for name, point in points.items()]
+        sampled += [(cross.points, cross.upon) for cross in crosses.values()]
         groups = [
             WatchGroup(tuple(axes[name] for name in names), None if upon is None else watch(upon))
-            for names, upon in asked
+            for names, upon in sampled
         ]
         return plan_of_watches(self.spec, watches, groups)
 
     def hits(self, counted: bytes) -> Hits:
         """The hits of a run, from the counters of the core: pairs of count and first instant."""
         numbers = iter_unpack("=qq", counted)
-        found: dict[str, dict[str, Hit]] = {}
+        hits: dict[str, dict[str, Hit]] = {}
         for group in self.groups:
             for item, (count, first) in zip(group.items, numbers, strict=False):
                 if count:
-                    found.setdefault(group.name, {})[item] = Hit(count, first)
-        return found
+                    hits.setdefault(group.name, {})[item] = Hit(count, first)
+        return hits
 
 
 def bin_groups(spec: CheckedSpec) -> Iterator[Group]:
@@ -251,10 +251,10 @@ class _Watched:
 
         So a sample that the first run accepts is accepted by all.
         """
-        found = {} if self._requirements is None else dict(self._requirements.planned)
+        plans = {} if self._requirements is None else dict(self._requirements.planned)
         if self._bins.groups:
-            found[CompiledSpec(self._bins.spec)] = self._bins.planned
-        return found
+            plans[CompiledSpec(self._bins.spec)] = self._bins.planned
+        return plans
 
     def bin_hits(self, runs: Sequence[native.Monitor]) -> Hits:
         """The bins and combinations hit so far."""
@@ -264,8 +264,10 @@ class _Watched:
         """All hits of finished runs."""
         hits = dict(self.bin_hits(runs))
         if self._requirements is not None:
-            own = runs[: len(self._requirements.planned)]
-            hits |= {name: items for name, items in self._requirements.hits(own) if items}
+            requirement_runs = runs[: len(self._requirements.planned)]
+            hits |= {
+                name: items for name, items in self._requirements.hits(requirement_runs) if items
+            }
         return hits
 
 

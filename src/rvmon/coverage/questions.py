@@ -205,32 +205,32 @@ class Answers:
     @cached_property
     def strategies(self) -> Mapping[str, Sequence[int]]:
         """The tests of each strategy, in order."""
-        found: dict[str, list[int]] = {}
+        tests: dict[str, list[int]] = {}
         for place, entry in enumerate(self.coverage.entries):
-            found.setdefault(entry.record.strategy, []).append(place)
-        return found
+            tests.setdefault(entry.record.strategy, []).append(place)
+        return tests
 
     @cached_property
     def unique(self) -> Sequence[Sequence[int]]:
         """Per test, the items that would not be covered without it."""
-        counts, found = self.totals.counts, []
+        counts, unique = self.totals.counts, []
         for entry in self.coverage.entries:
             items = entry.row.items
             rest = counts[items] - entry.row.counts
             needed = self.covered[items] & (rest < self.goals.goal[items])
-            found.append(items[needed].tolist())
-        return found
+            unique.append(items[needed].tolist())
+        return unique
 
     def hitters(self, most: int) -> dict[int, list[int]]:
         """By item, the first tests that hit it, at most `most`."""
-        found: dict[int, list[int]] = {}
+        tests: dict[int, list[int]] = {}
         counts = np.zeros(len(self.coverage.items), np.int64)
         for place, entry in enumerate(self.coverage.entries):
             items = entry.row.items
             for item in items[counts[items] < most].tolist():
-                found.setdefault(item, []).append(place)
+                tests.setdefault(item, []).append(place)
             counts[items] += 1
-        return found
+        return tests
 
     def _scores(self, covered: NDArray[np.bool_]) -> dict[str, Score]:
         goals, groups = self.goals, self.coverage.model.groups
@@ -247,8 +247,8 @@ class Answers:
 
 
 def _places(chosen: NDArray[np.bool_]) -> list[int]:
-    found: list[int] = np.flatnonzero(chosen).tolist()
-    return found
+    places: list[int] = np.flatnonzero(chosen).tolist()
+    return places
 
 
 def only(coverage: Coverage, wanted: Callable[[TestRecord], bool]) -> Coverage:

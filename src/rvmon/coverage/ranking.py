@@ -113,20 +113,20 @@ def _scarce(rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]) -> di
     hitters = _hitters(rows)
     kept: dict[int, int] = {}
     for item in sorted(needed, key=lambda one: (hitters[one].bit_count(), one)):
-        own = hitters[item]
+        item_hitters = hitters[item]
         # A goal of several hits is not reached with a scarcer item that is hit once.
-        if needed[item] > 1 or not any(hitters[one] & own == hitters[one] for one in kept):
+        if needed[item] > 1 or not any(hitters[one] & item_hitters == hitters[one] for one in kept):
             kept[item] = needed[item]
     return kept
 
 
 def _hitters(rows: Mapping[int, dict[int, int]]) -> dict[int, int]:
     """By item, the set of tests that hit it, as bits of an integer."""
-    found: dict[int, int] = {}
+    hitters: dict[int, int] = {}
     for place, row in rows.items():
         for item in row:
-            found[item] = found.get(item, 0) | 1 << place
-    return found
+            hitters[item] = hitters.get(item, 0) | 1 << place
+    return hitters
 
 
 class _Search:

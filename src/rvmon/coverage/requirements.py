@@ -50,7 +50,7 @@ class Judged(NamedTuple):
 
 def attempts_of(ids: Sequence[str], run: native.Monitor) -> dict[str, list[Judged]]:
     """By requirement, its attempts except those in doubt."""
-    found: dict[str, list[Judged]] = {name: [] for name in ids}
+    attempts: dict[str, list[Judged]] = {name: [] for name in ids}
     records = np.frombuffer(run.records()[0], RECORD)
     records = records[records["in_doubt"] == 0]
     columns = ("requirement", "triggered", "decided", "verdict", "decision")
@@ -58,21 +58,21 @@ def attempts_of(ids: Sequence[str], run: native.Monitor) -> dict[str, list[Judge
         *(records[column].tolist() for column in columns), strict=True
     ):
         at = None if decision == _OPEN else decided
-        found[ids[number]].append(Judged(triggered, at, VERDICTS[verdict]))
-    return found
+        attempts[ids[number]].append(Judged(triggered, at, VERDICTS[verdict]))
+    return attempts
 
 
 def passages_of(ids: Sequence[str], run: native.Monitor) -> dict[str, Passages]:
     """By requirement, the passages of its attempts through its automaton."""
-    found: dict[str, Passages] = {}
+    passages: dict[str, Passages] = {}
     for number, name in enumerate(ids):
         locations, counted = run.passages(number)
-        found[name] = {
+        passages[name] = {
             divmod(place, locations): Hit(count, first)
             for place, (count, first) in enumerate(iter_unpack("=qq", counted))
             if count
         }
-    return found
+    return passages
 
 
 def goals_as_requirements(spec: CheckedSpec) -> CheckedSpec:
@@ -248,11 +248,11 @@ class WatchedRequirements:
             attempts |= attempts_of(ids, run)
             passages |= passages_of(ids, run)
         for name, watched in self._watched.items():
-            own = attempts[name]
-            found = dict(_of_attempts(own, watched.deadline))
+            judged_attempts = attempts[name]
+            hits = dict(_of_attempts(judged_attempts, watched.deadline))
             for key, variant in self._variants[name].items():
-                found |= _hit(decides(variant.part), _apart(own, attempts[key]))
-            yield name, found
+                hits |= _hit(decides(variant.part), _apart(judged_attempts, attempts[key]))
+            yield name, hits
             if watched.graph is not None:
                 yield from _passages(watched.graph, name, passages[name])
         for name in self._goals:
@@ -266,8 +266,8 @@ def _instant(attempt: Judged) -> int:
 
 def _hit(item: str, instants: Iterable[int]) -> dict[str, Hit]:
     """The hits of an item at some instants; empty without any."""
-    found = [*instants]
-    return {item: Hit(len(found), min(found))} if found else {}
+    hit_instants = [*instants]
+    return {item: Hit(len(hit_instants), min(hit_instants))} if hit_instants else {}
 
 
 def _of_attempts(attempts: Sequence[Judged], deadline: int | None) -> Iterator[tuple[str, Hit]]:
@@ -290,17 +290,20 @@ def _of_attempts(attempts: Sequence[Judged], deadline: int | None) -> Iterator[t
     yield from _hit(AFTER, late).items()
 
 
-def _apart(own: Iterable[Judged], others: Iterable[Judged]) -> list[int]:
+def _apart(originals: Iterable[Judged], variants: Iterable[Judged]) -> list[int]:
     """The instants of attempts in which two requirements differ in existence or decision."""
     first, second = (
-        {(judged.triggered, judged.decided, judged.verdict): _instant(judged) for judged in some}
-        for some in (own, others)
+        {
+            (judged.triggered, judged.decided, judged.verdict): _instant(judged)
+            for judged in attempts
+        }
+        for attempts in (originals, variants)
     )
     return [
         at
-        for here, there in ((first, second), (second, first))
-        for key, at in here.items()
-        if key not in there
+        for some, others in ((first, second), (second, first))
+        for key, at in some.items()
+        if key not in others
     ]
 
 
@@ -327,14 +330,14 @@ def _passages(
     locations = {
         place: Hit(max(hit.count for hit in hits), min(hit.first or 0 for hit in hits))
         for place in (came | left)
-        if (hits := [own[place] for own in (came, left) if place in own])
+        if (hits := [counted[place] for counted in (came, left) if place in counted])
     }
     yield locations_of(name), locations
     yield edges_of(name), edges
 
 
-def _add(found: dict[str, Hit], name: str, hit: Hit) -> None:
-    known = found.get(name)
+def _add(hits: dict[str, Hit], name: str, hit: Hit) -> None:
+    known = hits.get(name)
     if known is not None:
         hit = Hit(hit.count + known.count, min(hit.first or 0, known.first or 0))
-    found[name] = hit
+    hits[name] = hit

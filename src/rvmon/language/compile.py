@@ -66,10 +66,10 @@ def compile_text(
     >>> spec.requirements["R"].pulse, warnings
     (True, ())
     """
-    made = compilation(Source(name, text), directory, constants or {}, read)
-    if made.checked is None or made.broken:
-        raise SpecError(made.findings, render_full(made.findings))
-    return made.checked, made.findings
+    compiled = compilation(Source(name, text), directory, constants or {}, read)
+    if compiled.checked is None or compiled.broken:
+        raise SpecError(compiled.findings, render_full(compiled.findings))
+    return compiled.checked, compiled.findings
 
 
 def compilation(
@@ -99,10 +99,10 @@ def compilation(
             findings.extend(unused_names(resolved, checked))
         if not files[0].items and not findings.diagnostics:
             findings.add(empty_file(Span(source, 0, 0)))
-    found = sorted(findings.diagnostics, key=lambda finding: _place(finding, source))
+    ordered = sorted(findings.diagnostics, key=lambda finding: _place(finding, source))
     if findings.more:
-        found.append(too_many(MOST, broken=_errors(found)))
-    return Compilation(files, checked, tuple(found))
+        ordered.append(too_many(MOST, broken=_errors(ordered)))
+    return Compilation(files, checked, tuple(ordered))
 
 
 def _errors(findings: Iterable[Diagnostic]) -> bool:

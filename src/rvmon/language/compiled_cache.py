@@ -56,11 +56,11 @@ def compile_cached(
     about = name, text, sorted((constants or {}).items()), str(directory or "")
     content = json.dumps([this_rvmon(), *about])
     path = folder / f"spec-{hashlib.sha256(content.encode()).hexdigest()}.json"
-    found = _read(path, directory or Path())
-    if found is None:
-        found = _compiled(text, name, constants, directory, read)
-        keep(path, json.dumps([imported, to_plain(found)], separators=(",", ":")).encode())
-    return found
+    compiled = _read(path, directory or Path())
+    if compiled is None:
+        compiled = _compiled(text, name, constants, directory, read)
+        keep(path, json.dumps([imported, to_plain(compiled)], separators=(",", ":")).encode())
+    return compiled
 
 
 def _compiled(

@@ -105,8 +105,8 @@ def format_text(text: str, *, name: str = "<string>") -> str:
     gap = text[: places[0][0]].split("\n")[:-1]
     for start, end in places:
         pieces, rest = pieces_of(text[start:end])
-        own, following = _own_comments(rest)
-        lines = _item_lines(pieces) + [f"  {comment}" for comment in own]
+        comments, following = _own_comments(rest)
+        lines = _item_lines(pieces) + [f"  {comment}" for comment in comments]
         blocks.append(Block(pieces, lines, _gap_lines(gap)))
         gap = following.split("\n")[1:-1] if end < len(text) else following.split("\n")[1:]
     _align(blocks)
@@ -144,21 +144,21 @@ def _within_choice(before: Sequence[Piece]) -> bool:
 
 def _own_comments(rest: str) -> tuple[list[str], str]:
     """The indented comments right below an item, which belong to it; and what follows."""
-    own = []
-    while found := re.match(r"\n[ \t]+(#[^\n]*)", rest):
-        own.append(found[1].rstrip())
-        rest = rest[found.end() :]
-    return own, rest
+    comments = []
+    while comment := re.match(r"\n[ \t]+(#[^\n]*)", rest):
+        comments.append(comment[1].rstrip())
+        rest = rest[comment.end() :]
+    return comments, rest
 
 
 def _gap_lines(lines: Sequence[str]) -> list[str]:
     """Comments at the left margin, and never two blank lines in a row."""
-    found: list[str] = []
+    kept: list[str] = []
     for line in lines:
         comment = line.strip()
-        if comment or not found or found[-1]:
-            found.append(comment)
-    return found
+        if comment or not kept or kept[-1]:
+            kept.append(comment)
+    return kept
 
 
 def _align(blocks: Sequence[Block]) -> None:
@@ -269,8 +269,8 @@ def _canonical(kind: str, text: str) -> str:
     if kind == "STRING":
         return text
     if kind == "NUMBER":
-        found = _NUMBER.match(text)
-        return f"{found[1]} {found[2]}".rstrip() if found else text
+        number = _NUMBER.match(text)
+        return f"{number[1]} {number[2]}".rstrip() if number else text
     words = " ".join(text.split())
     if kind in _REWRITTEN:
         return _CANONICAL.get(words, words)

@@ -239,12 +239,12 @@ def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozens
 
 
 def _used(item: items.DefineItem | items.ConstItem) -> Iterator[str]:
-    own: frozenset[str] = frozenset()
+    parameters: frozenset[str] = frozenset()
     body: Expression = item.value if isinstance(item, items.ConstItem) else item.body
     if isinstance(item, items.DefineItem) and item.parameters:
-        own = frozenset(parameter.text for parameter in item.parameters)
+        parameters = frozenset(parameter.text for parameter in item.parameters)
     for part in expressions_in(body):
-        if isinstance(part, Name) and part.text not in own:
+        if isinstance(part, Name) and part.text not in parameters:
             yield part.text
         elif isinstance(part, Call):
             yield part.function.text
@@ -292,12 +292,12 @@ def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
     for requirement in spec.requirements.values():
         lets = [clause for clause in requirement.clauses if isinstance(clause, items.LetClause)]
         if lets and requirement.span.source is main:
-            own = Counter(_names(requirement.span.text))
-            for let in (clause.name for clause in lets if own[clause.name.text] < 2):
+            uses_within = Counter(_names(requirement.span.text))
+            for let in (clause.name for clause in lets if uses_within[clause.name.text] < 2):
                 yield rules.unused(let.span, "let", let.text)
 
 
 def _names(text: str) -> Iterator[str]:
     """The names in a text, wherever they stand but in comments and strings."""
-    for found in _NAME.finditer(_NO_CODE.sub(" ", text)):
-        yield found[0].strip("`")
+    for match in _NAME.finditer(_NO_CODE.sub(" ", text)):
+        yield match[0].strip("`")

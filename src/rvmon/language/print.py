@@ -275,9 +275,9 @@ def _numeric(numeric: Numeric, level: int) -> str:
         case UpdateValue(function=function, name=name):
             return f"{function}({_name(name)})"
         case Arithmetic():
-            own = _ARITHMETIC.get(numeric.op, _OPERAND)
+            binding = _ARITHMETIC.get(numeric.op, _OPERAND)
             text = _arithmetic(numeric)
-            return f"({text})" if own < level else text
+            return f"({text})" if binding < level else text
         case _:
             assert_never(numeric)
 

@@ -164,16 +164,13 @@ class Driver:
             if not self._is_room_for(robot):
                 return False
             if t_ns is None:
-                # By a wall clock no two stamps are equal, so that each sample is judged at once; a
-                # simulated one stands still, and samples of one instant are merged.
                 t_ns = max(self._clock.now_ns(), self._stamped)
-                self._stamped = t_ns + self._runs_by_itself
+                self._stamped = t_ns + self._runs_by_itself  # by a wall clock all stamps differ
             was_empty = not len(self._waiting)
-            took = self._waiting.put(Offered(robot, t_ns, kept))
-        # Else somebody was woken for what waits already, and takes this, too.
-        if was_empty:
+            is_queued = self._waiting.put(Offered(robot, t_ns, kept))
+        if was_empty:  # else somebody was woken, and takes this, too
             self.wake()
-        return took
+        return is_queued
 
     def lose(
         self,
@@ -251,11 +248,10 @@ class Driver:
         with self._driving():
             watching, former = self._watching(spec), self._watch
             with self._has_room:
-                # What was offered before is judged by the former specification.
                 entries = self._waiting.take(len(self._waiting))
                 self._watch, self._lag = watching
                 self._has_room.notify_all()
-            for entry in entries:
+            for entry in entries:  # offered before, and judged by the former one
                 self._take(entry, former)
             for robot in self._robots.values():
                 robot.end()
@@ -331,21 +327,21 @@ class Driver:
                 robot.restart(HealthKind.CLOCK, entry.why)
                 self._timers.forget(robot.name)
             return
-        found = self._robots.get(entry.robot)
-        if found is None:
+        robot = self._robots.get(entry.robot)
+        if robot is None:
             _log.info("%sis watched", _heading(entry.robot))
-            found = self._robots[entry.robot] = Robot(entry.robot, watch, self._judged, self._ended)
+            robot = self._robots[entry.robot] = Robot(entry.robot, watch, self._judged, self._ended)
         match entry:
             case Offered(t=t, values=values):
-                if why := found.take(t, values):
+                if why := robot.take(t, values):
                     _input_log.warning("%srefused a sample: %s", _heading(entry.robot), why)
             case Dropped(last=t, count=count):
                 _input_log.warning("%slost %d samples: no room", _heading(entry.robot), count)
-                found.drop(entry)
+                robot.drop(entry)
             case Gap():
-                found.hear(entry)
-        if found.last is not None:
-            self._timers.set(entry.robot, found.last + self._lag + self._patience)
+                robot.hear(entry)
+        if robot.last is not None:
+            self._timers.set(entry.robot, robot.last + self._lag + self._patience)
 
     def _pass_to(self, now: int) -> float | None:
         """Advance the robots that are due by `now`; returns the seconds to the next one."""
@@ -356,8 +352,7 @@ class Driver:
                 self._timers.set(name, quiet)
                 continue
             robot.pass_to(now - self._lag)
-            if (due := robot.due) is not None:
-                # Later than now, lest what time does not settle is taken again at once, for ever.
+            if (due := robot.due) is not None:  # set later than now, lest it be due for ever
                 self._timers.set(name, max(due + self._lag, now + 1))
         first = self._timers.first
         return None if first is None else self._clock.seconds_until(first)

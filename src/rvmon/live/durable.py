@@ -72,10 +72,10 @@ class DurableMonitor:
         self._number = 0
         self.taken = 0
         self.mark = (0, 0)
-        found = self._found()
-        self.monitor = spec.monitor(**options) if found is None else self._taken_up(spec, found)
+        kept = self._found()
+        self.monitor = spec.monitor(**options) if kept is None else self._taken_up(spec, kept)
         self.monitor.on_decided(self._hear)
-        for line in [] if found is None else found[1:]:
+        for line in [] if kept is None else kept[1:]:
             self._again(line)
         # The verdicts of these samples are reported now: a new snapshot includes them.
         self.save()
@@ -89,9 +89,9 @@ class DurableMonitor:
                 "one to start again"
             ) from None
 
-    def _taken_up(self, spec: Spec, found: list[bytes]) -> Monitor:
+    def _taken_up(self, spec: Spec, kept: list[bytes]) -> Monitor:
         try:
-            head = json.loads(found[0])
+            head = json.loads(kept[0])
             self._number, data = int(head["reported"]), str(head["snapshot"]).encode()
             self.taken = int(head["taken"])
             count, check = head.get("mark", self.mark)

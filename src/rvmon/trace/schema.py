@@ -286,8 +286,8 @@ class Schema:
         >>> Schema({}, {}, columns={"speed": "Speed [m/s]"}).aliases
         {'speed': '', 'Speed [m/s]': 'speed'}
         """
-        own = {column: name for name, column in self.columns.items()}
-        return {**dict.fromkeys(self.columns, ""), **own}
+        aliases = {column: name for name, column in self.columns.items()}
+        return {**dict.fromkeys(self.columns, ""), **aliases}
 
     @property
     def named(self) -> Mapping[str, str]:

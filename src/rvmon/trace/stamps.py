@@ -159,20 +159,20 @@ def ticks_of_iso(text: str) -> int:
     1
     """
     shown = _SHOWN.repr(text)[1:-1]
-    found = _ISO.fullmatch(text.strip())
-    if found is None:
+    match = _ISO.fullmatch(text.strip())
+    if match is None:
         raise TraceError(
             f"time `{shown}` is no date and time of ISO 8601 such as "
             "2024-05-01T12:00:00.123456789+02:00, of at most nine digits behind the point"
         )
-    clock = (found["clock"] or "00:00").replace(",", ".").partition(".")[0]
+    clock = (match["clock"] or "00:00").replace(",", ".").partition(".")[0]
     try:
-        whole = datetime.fromisoformat(f"{found['date']}T{clock}{(found['zone'] or 'Z').upper()}")
+        whole = datetime.fromisoformat(f"{match['date']}T{clock}{(match['zone'] or 'Z').upper()}")
         since = whole - _EPOCH
     except (ValueError, OverflowError) as error:
         raise TraceError(f"time `{shown}` does not exist: {error}") from None
     seconds = since.days * 86_400 + since.seconds
-    return whole_ticks(seconds * TICKS_PER_SECOND + int((found["part"] or "0").ljust(9, "0")))
+    return whole_ticks(seconds * TICKS_PER_SECOND + int((match["part"] or "0").ljust(9, "0")))
 
 
 def _other_unit(stamp: object, stamps: Stamps) -> str:

@@ -78,8 +78,8 @@ def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
     """
     sides = _sides(operands, node, scope)
     time = operands.table.time
-    made = spread(sides, node.span, lambda values: _compared(time, node, *values))
-    return decided(made, node.span)
+    formulas = spread(sides, node.span, lambda values: _compared(time, node, *values))
+    return decided(formulas, node.span)
 
 
 def _compared(time: TimeModel, node: Comparison, left: Value, right: Value) -> Formula:
@@ -104,16 +104,16 @@ def _compared(time: TimeModel, node: Comparison, left: Value, right: Value) -> F
         lone = first[0].lone
         if not lone.of.measured.recalls:
             return _amount(lone, first[0].unit, op, limit, node.span)
-        if (made := _extreme(lone, op, limit, node.span)) is not None:
-            return made
-    found = _quantities(op, first, limit, node.span)
-    if not any(windows) or not isinstance(found, Compare):
-        return found
-    if any(fields_in(found.left, found.right)):
+        if (extreme := _extreme(lone, op, limit, node.span)) is not None:
+            return extreme
+    comparison = _quantities(op, first, limit, node.span)
+    if not any(windows) or not isinstance(comparison, Compare):
+        return comparison
+    if any(fields_in(comparison.left, comparison.right)):
         raise Refusal(rules.limit_of_event(node.span))
     if time is TimeModel.HELD and any(window.moves for window in (*windows[0], *windows[1])):
-        return brought_alone(found, node.span)
-    return found
+        return brought_alone(comparison, node.span)
+    return comparison
 
 
 def _windows_of(placed: Placed) -> tuple[WindowValue, ...]:

@@ -74,14 +74,14 @@ def checked_coverpoint(checker: Checker, item: items.CoverpointItem) -> Coverpoi
 
     bins = [one for syntax in item.bins if (one := checker.collected(bin_of, syntax)) is not None]
     wrong = len(bins) < len(item.bins)
-    found = _clauses(checker, item.clauses)
+    sampling = _clauses(checker, item.clauses)
     for clause in item.clauses:
         if isinstance(clause, items.UnwantedClause):
             checker.report(rules.unwanted_in_point(clause.span))
             wrong = True
-    if wrong or found is None:
+    if wrong or sampling is None:
         return None
-    return Coverpoint(item.name.text, tuple(bins), *found, item.span)
+    return Coverpoint(item.name.text, tuple(bins), *sampling, item.span)
 
 
 def checked_cross(
@@ -114,10 +114,10 @@ def checked_cross(
         kind: _combinations(checker, item, dict(zip(names, bins, strict=True)), kind)
         for kind in (BinKind.IGNORE, BinKind.ILLEGAL)
     }
-    found = _clauses(checker, item.clauses)
-    if found is None:
+    sampling = _clauses(checker, item.clauses)
+    if sampling is None:
         raise Reported
-    upon, goal, weight = found
+    upon, goal, weight = sampling
     if upon is None:
         sampled = [one for name in names if (one := points[name].upon) is not None]
         if not all(_alike(one, sampled[0]) for one in sampled):
@@ -213,8 +213,8 @@ class _Point:
         expression = self.expression
         if self.labelled and isinstance(wanted, expressions.Name):
             return self._compared(CompareOp.EQ, wanted, wanted.span)
-        (found,) = self.checker.values((wanted,), EVERYWHERE)
-        if isinstance(found, Quantity) and found.constant is not None:
+        (value,) = self.checker.values((wanted,), EVERYWHERE)
+        if isinstance(value, Quantity) and value.constant is not None:
             return self._compared(CompareOp.EQ, wanted, wanted.span)
         formula = self.checker.formula(wanted, EVERYWHERE)
         if isinstance(formula, Constant) and expression is not None:
@@ -233,7 +233,7 @@ class _Point:
         prev = expressions.Ident(UpdateFunction.PREV.value, expression.span)
         call = expressions.Call(prev, (expression,), expression.span)
         before = replace(self, expression=call)
-        made: Formula | None = None
+        taken: Formula | None = None
         entered: Formula | None = None
         for start, end in pairwise(steps.values):
             now, was = self._valued(end), before._valued(start)
@@ -242,14 +242,14 @@ class _Point:
             rise = Unary(UnaryOp.RISE, now, None, span)
             came = Binary(BinaryOp.AND, rise, was, None, span)
             # The value that is left now was last entered by the step before: no `entered` since
-            # `made`.
-            if made is not None and entered is not None:
+            # `taken`.
+            if taken is not None and entered is not None:
                 stayed = Unary(UnaryOp.NOT, entered, None, span)
-                latest = Binary(BinaryOp.SINCE, stayed, made, Interval(), span)
+                latest = Binary(BinaryOp.SINCE, stayed, taken, Interval(), span)
                 came = Binary(BinaryOp.AND, came, latest, None, span)
-            made, entered = came, rise
-        assert made is not None, "there are two values at least"
-        return made
+            taken, entered = came, rise
+        assert taken is not None, "there are two values at least"
+        return taken
 
     def _in_window(self, window: expressions.Window) -> Formula:
         """The bounds of a range as comparisons; `inf` bounds nothing."""

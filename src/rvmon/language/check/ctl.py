@@ -309,10 +309,10 @@ def property_of(checker: Checker, item: RequirementItem) -> Property | None:
     """The CTL property that a requirement states; `None` if it is none."""
     for clause in item.clauses:
         if isinstance(clause, PropertyClause):
-            found = checked_property(checker, item.name.text, clause.formula)
-            if found is None:
+            ctl = checked_property(checker, item.name.text, clause.formula)
+            if ctl is None:
                 raise Reported
-            return found
+            return ctl
     return None
 
 

@@ -151,9 +151,9 @@ class Checker:
         Raises:
             Reported: one is wrong; the findings of all are recorded.
         """
-        found = [self.value(expression, scope) for expression in expressions]
-        values = [value for value in found if value is not None]
-        if len(values) < len(found):
+        checked = [self.value(expression, scope) for expression in expressions]
+        values = [value for value in checked if value is not None]
+        if len(values) < len(checked):
             raise Reported
         return values
 
@@ -283,13 +283,13 @@ class Checker:
             mark = self.effort.mark()
             value = self._body_value(declared)
             self._defined[name.text] = value, self.effort.since(mark)
-        found, cost = self._defined[name.text]
-        if found is None:
+        body_value, cost = self._defined[name.text]
+        if body_value is None:
             raise Reported
         # The value is shared, but what reads formulas later walks through each use of it: a chain
         # of macros that use the one before twice doubles with each.
         self.effort.add(cost, name.span)
-        return found
+        return body_value
 
     def _body_value(self, declared: DefineItem | ConstItem) -> Value | None:
         if isinstance(declared, DefineItem):
@@ -321,8 +321,8 @@ class Checker:
             match expression:
                 case Group(inner=inner):
                     expression = inner
-                case Name(text=text) if isinstance(found := scope.names.get(text), Closure):
-                    expression, scope = found.expression, found.scope
+                case Name(text=text) if isinstance(argument := scope.names.get(text), Closure):
+                    expression, scope = argument.expression, argument.scope
                 case _:
                     return expression, scope
 

@@ -117,10 +117,10 @@ def _role(table: Table, conjunct: Formula, place: Span) -> Role:
     for name, role in roles.items():
         if role is None:
             raise Refusal(rules.no_role(place, name))
-    found = set(roles.values())
-    if len(found) != 1:
+    kinds = set(roles.values())
+    if len(kinds) != 1:
         raise Refusal(rules.mixed_roles(place, {name: str(role) for name, role in roles.items()}))
-    return Role(str(found.pop()))
+    return Role(str(kinds.pop()))
 
 
 def scoped_trigger(trigger: Formula, opening: Formula | None, closing: Formula | None) -> Formula:

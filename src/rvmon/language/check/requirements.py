@@ -136,11 +136,11 @@ def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
             continue
         for subformula in subformulas(window.operand):
             read = {*names_read(subformula)} & events if isinstance(subformula, Compare) else set()
-            own = (
+            is_itself = (
                 isinstance(subformula, Compare)
                 and subformula.left == subformula.right == window.value
             )
-            if len(events) > 1 or (read and not own):
+            if len(events) > 1 or (read and not is_itself):
                 raise Refusal(type_rules.sum_of_instances(window.operand.span or place))
 
 
@@ -247,12 +247,12 @@ def _warn_of_traps(
 ) -> None:
     mode, trigger, consequent = parts
     time = checker.table.time
-    found = [*traps_at_trigger(trigger, consequent, time, item.span)]
+    traps = [*traps_at_trigger(trigger, consequent, time, item.span)]
     if not any(_clauses(item, ScopeClause)):  # else the start is where the scope opens
-        found += traps_at_start(mode, trigger, consequent, item.span)
+        traps += traps_at_start(mode, trigger, consequent, item.span)
     lets = zip(_clauses(item, LetClause), captures, strict=True)
-    found += capture_traps(mode, trigger, lets, time)
-    for diagnostic in found:
+    traps += capture_traps(mode, trigger, lets, time)
+    for diagnostic in traps:
         checker.report(diagnostic)
 
 

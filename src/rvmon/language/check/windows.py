@@ -72,10 +72,10 @@ class _Window:
 def _window(operands: Operands, call: Call, scope: Scope) -> _Window:
     """The window of the last D, of `last(n, x)`, since the trigger, or since the first instant."""
     of, inner = operands.peeled(call.args[0], scope)
-    found = _Window(call.args[0], scope)
+    window = _Window(call.args[0], scope)
     match of:
         case Call(function=function, args=(count, x)) if function.text == LAST:
-            found = _Window(x, inner, most=_count(operands, count, inner))
+            window = _Window(x, inner, most=_count(operands, count, inner))
         case Infix(op=BinaryOp.SINCE, left=left, right=right, window=None):
             name, place = operands.peeled(right, inner)
             if (
@@ -85,15 +85,15 @@ def _window(operands: Operands, call: Call, scope: Scope) -> _Window:
             ):
                 if scope.trigger is None:
                     raise Refusal(rules.since_no_trigger(of.span))
-                found = _Window(left, inner, since=True)
+                window = _Window(left, inner, since=True)
     if len(call.args) == 1:
-        return found
-    if found.most is not None or found.since:
+        return window
+    if window.most is not None or window.since:
         raise Refusal(rules.two_windows(call.span))
     ticks = operands.duration(call.args[1], scope)
     if ticks == 0:
         raise Refusal(rules.no_duration(call.args[1].span))
-    return replace(found, ticks=ticks)
+    return replace(window, ticks=ticks)
 
 
 def _count(operands: Operands, expression: Expression, scope: Scope) -> int:
@@ -127,12 +127,12 @@ def amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> 
     added = lone.added or Quantity(integral=True)
     whole = added.integral and measured not in (Measured.MEAN, Measured.VARIANCE)
     unit = _unit_of(measured, added.unit)
-    found = Quantity(of, unit=unit, integral=whole and not measured.of_time)
+    quantity = Quantity(of, unit=unit, integral=whole and not measured.of_time)
     if lone.share:
         seconds = Fraction(of.window or 0, TICKS_PER_SECOND)
         span = Quantity(constant=seconds, unit=_SECONDS)
-        found = arithmetic(NumericOp.DIV, ((found, call.span), (span, call.span)), call.span)
-    return replace(found, lone=lone)
+        quantity = arithmetic(NumericOp.DIV, ((quantity, call.span), (span, call.span)), call.span)
+    return replace(quantity, lone=lone)
 
 
 def _unit_of(measured: Measured, unit: Unit) -> Unit:

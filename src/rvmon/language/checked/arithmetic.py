@@ -156,10 +156,10 @@ class NumericOp(StrEnum):
 
     def __new__(cls, sign: str, entry: Operation) -> NumericOp:
         """A member: the text that it is written as, with its entry."""
-        made = str.__new__(cls, sign)
-        made._value_ = sign
-        made.entry = entry
-        return made
+        member = str.__new__(cls, sign)
+        member._value_ = sign
+        member.entry = entry
+        return member
 
     @classmethod
     def of(cls, sign: str) -> NumericOp:

@@ -116,8 +116,8 @@ class WindowValue:
     @property
     def operands(self) -> tuple[Formula, ...]:
         """φ, what says whether a member counts, and what is chosen."""
-        asked = (self.operand, self.counted, *self.chosen)
-        return tuple(part for part in asked if part is not None)
+        operands = (self.operand, self.counted, *self.chosen)
+        return tuple(part for part in operands if part is not None)
 
     @property
     def moves(self) -> bool:
@@ -184,10 +184,10 @@ class CompareOp(StrEnum):
         cls, sign: str, holds: Callable[[Any, Any], Any] = operator.eq, said: str = ""
     ) -> CompareOp:
         """A member: its sign, with the comparison, and how it is said."""
-        made = str.__new__(cls, sign)
-        made._value_ = sign
-        made.holds, made.said = holds, said
-        return made
+        member = str.__new__(cls, sign)
+        member._value_ = sign
+        member.holds, member.said = holds, said
+        return member
 
     @property
     def mirrored(self) -> CompareOp:
@@ -318,10 +318,11 @@ class Amount:
     @property
     def operands(self) -> tuple[Formula, ...]:
         """The operands of the window, then the condition that the limit is known."""
-        own = self.of.operands
-        chosen = len(own) - len(self.of.chosen)
         # Chosen comparisons come last: the core counts them from the end (`core/nodes.py`).
-        return own if self.known is None else (*own[:chosen], self.known, *own[chosen:])
+        operands = self.of.operands
+        chosen = len(operands) - len(self.of.chosen)
+        known = () if self.known is None else (self.known,)
+        return (*operands[:chosen], *known, *operands[chosen:])
 
     @property
     def comparison(self) -> Compare:

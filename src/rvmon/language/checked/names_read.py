@@ -63,8 +63,8 @@ def names_of_spec(spec: CheckedSpec) -> Iterator[str]:
     """The names that requirements, properties and goals read, with repetitions."""
     for requirement in spec.requirements.values():
         yield from names_of_requirement(requirement)
-    for found in spec.properties.values():
-        for part in state_formulas(found.formula):
+    for property_ in spec.properties.values():
+        for part in state_formulas(property_.formula):
             if isinstance(part, StateAtom):
                 yield from names_read(part.formula)
     for cover in spec.covers.values():
@@ -76,9 +76,9 @@ def names_of_spec(spec: CheckedSpec) -> Iterator[str]:
 def names_of_coverage(spec: CheckedSpec) -> Iterator[tuple[str, Iterator[str]]]:
     """Each coverpoint and cross, and the names that it reads itself, with repetitions."""
     for point in spec.coverpoints.values():
-        asked = [bin_.formula for bin_ in point.bins]
-        asked += [] if point.upon is None else [point.upon]
-        yield point.name, (name for formula in asked for name in names_read(formula))
+        formulas = [bin_.formula for bin_ in point.bins]
+        formulas += [] if point.upon is None else [point.upon]
+        yield point.name, (name for formula in formulas for name in names_read(formula))
     for cross in spec.crosses.values():
         if cross.upon is not None:
             yield cross.name, names_read(cross.upon)
@@ -134,13 +134,13 @@ def labelled(
         known = sorted(set().union(*of.values()))
         for word in words or [""]:
             if word not in known:
-                there = f"there are {', '.join(known)}" if known else f"none has a {kind}"
-                meant = did_you_mean(word, known, there)
+                listed = f"there are {', '.join(known)}" if known else f"none has a {kind}"
+                meant = did_you_mean(word, known, listed)
                 raise UnknownNameError(f"no requirement has the {kind} `{word}`: {meant}")
         left = [name for name in left if not of[name].isdisjoint(words)]
     if not left:
-        asked = ", ".join(f"the {kind} {' or '.join(words)}" for kind, words in wanted)
-        raise UnknownNameError(f"no requirement that is asked for has {asked}")
+        labels = ", ".join(f"the {kind} {' or '.join(words)}" for kind, words in wanted)
+        raise UnknownNameError(f"no requirement that is asked for has {labels}")
     return tuple(left)
 
 
@@ -155,10 +155,10 @@ def sources_asked(spec: CheckedSpec, names: Iterable[str] | None) -> frozenset[s
         UnknownNameError: there is no such signal or event.
         RvmonError: one text was given for several names.
     """
-    asked = several(names)
-    given = None if asked is None else frozenset(asked)
+    given = several(names)
+    chosen = None if given is None else frozenset(given)
     declared = [*spec.signals, *spec.events]
-    for name in sorted((given or frozenset()).difference(declared)):
+    for name in sorted((chosen or frozenset()).difference(declared)):
         meant = did_you_mean(name, declared, f"there are {', '.join(declared)}")
         raise UnknownNameError(f"no signal or event named `{name}`: {meant}")
-    return given
+    return chosen

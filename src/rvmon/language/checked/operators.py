@@ -127,10 +127,10 @@ class _Sign(StrEnum):
 
     def __new__(cls, entry: Operator) -> _Sign:
         """A member: its sign, with its entry."""
-        made = str.__new__(cls, entry.sign)
-        made._value_ = entry.sign
-        made.entry = entry
-        return made
+        member = str.__new__(cls, entry.sign)
+        member._value_ = entry.sign
+        member.entry = entry
+        return member
 
     @classmethod
     def of(cls, text: str) -> Self:

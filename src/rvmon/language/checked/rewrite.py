@@ -24,8 +24,8 @@ def read(formula: Unary | Binary, of: Callable[[Formula], T], reading: Connectiv
     """
     operands = (formula.operand,) if isinstance(formula, Unary) else (formula.left, formula.right)
     window = formula.interval or Interval()
-    found: T = formula.op.entry.meaning(reading, *map(of, operands), window)
-    return found
+    result: T = formula.op.entry.meaning(reading, *map(of, operands), window)
+    return result
 
 
 @dataclass(frozen=True, slots=True)

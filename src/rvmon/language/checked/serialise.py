@@ -30,8 +30,10 @@ def _class_named(name: str) -> type | None:
 @cache
 def _classes() -> Mapping[str, type]:
     modules = (formula, specification, diagnostics)
-    own = {one.__name__: one for one in (Measured, NumericOp, UnaryOp, BinaryOp, Interval, Kind)}
-    return {**own, **dict(_own_classes(*modules))}
+    classes = {
+        one.__name__: one for one in (Measured, NumericOp, UnaryOp, BinaryOp, Interval, Kind)
+    }
+    return {**classes, **dict(_own_classes(*modules))}
 
 
 @cache
@@ -72,8 +74,8 @@ def _to_plain(value: Any, sources: dict[int, int]) -> Any:
     name = type(value).__name__
     if isinstance(value, Enum) and _class_named(name) is type(value):
         return [name, value.name]
-    own: Any = type(value)
-    names = _attributes(own)
+    class_: Any = type(value)
+    names = _attributes(class_)
     if names is not None:
         return [name, *[_to_plain(getattr(value, name), sources) for name in names]]
     if isinstance(value, Mapping):
@@ -111,10 +113,10 @@ def _from_plain(data: Any, sources: list[Source]) -> Any:
         raise LookupError(f"no class `{name}`")
     if issubclass(class_, Enum):
         return class_[rest[0]]
-    made = class_(*values)
-    if isinstance(made, Source):
-        sources.append(made)
-    return made
+    restored = class_(*values)
+    if isinstance(restored, Source):
+        sources.append(restored)
+    return restored
 
 
 def identity_text(spec: specification.CheckedSpec, *, without: Collection[str] = ()) -> str:
@@ -131,15 +133,15 @@ def identity_text(spec: specification.CheckedSpec, *, without: Collection[str] =
 
 def _parts(without: Collection[str], value: Any) -> Any:
     """The parts of a value for a JSON text: one level, freed once it is written."""
-    own: Any = type(value)
-    names = _attributes(own)
+    class_: Any = type(value)
+    names = _attributes(class_)
     if names is not None:
         wanted = [name for name in names if name not in without] if without else names
         parts = map(partial(getattr, value), wanted)
-        return {own.__name__: [None if type(part) in (Source, Span) else part for part in parts]}
-    if own is frozenset:
+        return {class_.__name__: [None if type(part) in (Source, Span) else part for part in parts]}
+    if class_ is frozenset:
         return sorted(value)
-    raise TypeError(f"a {own.__name__} is no part of a specification")
+    raise TypeError(f"a {class_.__name__} is no part of a specification")
 
 
 @cache

@@ -116,11 +116,11 @@ class Measured(StrEnum):
         steady: bool = True,
     ) -> Measured:
         """A member: the name that it is called by, with the rest of its entry."""
-        made = str.__new__(cls, name)
-        made._value_ = name
-        made.of, made.dimension, made.doc, made.unknown = of, dimension, doc, unknown
-        made.each, made.fixed, made.steady = each, fixed, steady
-        return made
+        member = str.__new__(cls, name)
+        member._value_ = name
+        member.of, member.dimension, member.doc, member.unknown = of, dimension, doc, unknown
+        member.each, member.fixed, member.steady = each, fixed, steady
+        return member
 
     @property
     def memory(self) -> str:

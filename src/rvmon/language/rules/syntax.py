@@ -43,13 +43,13 @@ def two_sides(whole: Span, operator: Span, connective: Span, near: Span) -> Diag
     behind = connective.start >= whole.end
     text, side = short(whole.text), short(near.text)
     other = f"{first} ({side} {second} …)" if behind else f"(… {second} {side}) {first}"
-    own = f"({text}) {second} …" if behind else f"… {second} ({text})"
+    alone = f"({text}) {second} …" if behind else f"… {second} ({text})"
     return finding(
         REACH,
         f"`{first}` beside `{second}` can be read in two ways here",
         whole,
         connective,
-        fix=f"write `… {other}` or `{own}`" if behind else f"write `{other} …` or `{own}`",
+        fix=f"write `… {other}` or `{alone}`" if behind else f"write `{other} …` or `{alone}`",
     )
 
 
@@ -97,5 +97,5 @@ empty_file = Breach(
 def too_many(most: int, *, broken: bool) -> Diagnostic:
     """The end of a long list of findings: an error where one of them is."""
     message = f"only the first {most} findings are shown"
-    made = finding(TOO_MANY, message, fix="fix these first")
-    return made if broken else replace(made, severity=Severity.WARNING)
+    breach = finding(TOO_MANY, message, fix="fix these first")
+    return breach if broken else replace(breach, severity=Severity.WARNING)

@@ -36,9 +36,9 @@ def parser_of(grammar: str, options: Mapping[str, Any]) -> lark.Lark:
     known = _read(path)
     if known is not None:
         return known
-    made = lark.Lark(grammar, **options)
-    _write(path, made)
-    return made
+    parser = lark.Lark(grammar, **options)
+    _write(path, parser)
+    return parser
 
 
 def _read(path: Path) -> lark.Lark | None:
@@ -54,8 +54,8 @@ def _read(path: Path) -> lark.Lark | None:
     return known
 
 
-def _write(path: Path, made: lark.Lark) -> None:
-    data, memo = made.memo_serialize([TerminalDef, Rule])
+def _write(path: Path, parser: lark.Lark) -> None:
+    data, memo = parser.memo_serialize([TerminalDef, Rule])
     keep(path, json.dumps(_frozen({"data": data, "memo": memo}), separators=(",", ":")).encode())
 
 

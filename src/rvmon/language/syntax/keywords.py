@@ -77,11 +77,11 @@ def split_items(text: str) -> list[tuple[int, int]]:
     """
     starts: list[int] = []
     inside = ""
-    for found in _ITEM.finditer(text):
-        word = found["word"]
-        if word == "property" and inside == "requirement" and not found["named"]:
+    for head in _ITEM.finditer(text):
+        word = head["word"]
+        if word == "property" and inside == "requirement" and not head["named"]:
             continue
-        starts.append(found.start("word"))
+        starts.append(head.start("word"))
         inside = word
     first = starts[0] if starts else len(text)
     places = list(pairwise([*starts, len(text)]))

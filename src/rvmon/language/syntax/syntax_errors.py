@@ -91,11 +91,11 @@ _TYPES = {
 }
 
 
-def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> str:
+def fix_of(unexpected: str, accepted: set[str], parser: lark.Lark, before: Span) -> str:
     """The fix for a syntax error; empty if none is known.
 
     Args:
-        found: the word or sign that could not stand there; empty at the end of the item.
+        unexpected: the word or sign that could not stand there; empty at the end of the item.
         accepted: the terminals that could have.
         parser: knows their patterns.
         before: the part of the item before it.
@@ -103,50 +103,50 @@ def fix_of(found: str, accepted: set[str], parser: lark.Lark, before: Span) -> s
     return (
         # From what is certainly meant to what is guessed: the first that knows a fix says it.
         if_fix(before.text)
-        or _FIX.get(found, "")
-        or _unit_fix(found, before.text)
-        or _held_fix(found, before)
-        or _range_fix(found, before)
-        or _number_fix(found, before)
+        or _FIX.get(unexpected, "")
+        or _unit_fix(unexpected, before.text)
+        or _held_fix(unexpected, before)
+        or _range_fix(unexpected, before)
+        or _number_fix(unexpected, before)
         or _dash_fix(before.text)
-        or _clause_fix(found, before.text)
-        or _fix_written(found, accepted, before.text)
-        or _word_fix(found, accepted, parser, before.text)
+        or _clause_fix(unexpected, before.text)
+        or _fix_written(unexpected, accepted, before.text)
+        or _word_fix(unexpected, accepted, parser, before.text)
         or _decimal_comma(before.text)
     )
 
 
 def if_fix(before: str) -> str:
     """The fix for an `if` that is no choice between numbers; empty if there is none."""
-    found = re.search(r"(?<![\w.])if(?![\w.])(?!.*(?<![\w.])else(?![\w.]))", before, re.DOTALL)
-    return _TRIGGER_WORDS.format("if") if found else ""
+    unfinished = re.search(r"(?<![\w.])if(?![\w.])(?!.*(?<![\w.])else(?![\w.]))", before, re.DOTALL)
+    return _TRIGGER_WORDS.format("if") if unfinished else ""
 
 
-def _unit_fix(found: str, before: str) -> str:
+def _unit_fix(unexpected: str, before: str) -> str:
     """The fix for `40 A` and `5 W`, whose letters are operators behind a number."""
-    written = re.search(r"(?<![\w.])(\d[\d.]*)[ \t]*([AW])[ \t]*\Z", f"{before}{found}")
+    written = re.search(r"(?<![\w.])(\d[\d.]*)[ \t]*([AW])[ \t]*\Z", f"{before}{unexpected}")
     written = written or re.search(r"(?<![\w.])(\d[\d.]*)[ \t]*([AW])\s*\Z", before)
     if written is None:
         return ""
     return f"`{written[2]}` is an operator here: write `{written[1]} {SPOKEN[written[2]]}`"
 
 
-def _range_fix(found: str, before: Span) -> str:
+def _range_fix(unexpected: str, before: Span) -> str:
     """The fix for `x in [a, b]`, where labels in braces are expected."""
     said = re.search(rf".*(?:{_BEGINNINGS})\s*(.*\S)\s+in\s*\Z", before.text, re.DOTALL)
     ends = re.compile(r"\s*\[([^],]+),([^]]+)\]").match(before.source.text, before.end)
-    if found != "[" or said is None or ends is None:
+    if unexpected != "[" or said is None or ends is None:
         return ""
     low, high = (end.strip() for end in ends.groups())
     return f"`in` is of labels: write `({said[1]} >= {low} and {said[1]} <= {high})`"
 
 
-def _held_fix(found: str, before: Span) -> str:
+def _held_fix(unexpected: str, before: Span) -> str:
     """The fix for `φ for 1 s`, where the past is meant."""
     text = before.text
     said = re.search(rf".*(?:{_BEGINNINGS}|\()\s*([^()]*\S)\s*\Z", text, re.DOTALL)
     length = re.compile(r"for[ \t]+(\d[\d.]*[ \t]*\w+)").match(before.source.text, before.end)
-    if found != "for" or said is None or length is None:
+    if unexpected != "for" or said is None or length is None:
         return ""
     ahead = f"for {length[1]} ({said[1]})"
     return (
@@ -162,49 +162,49 @@ def _dash_fix(before: str) -> str:
     return f"`{dashed[1]}` is no name: write `{name}`, or quote it: `` `{dashed[1]}` ``"
 
 
-def _fix_written(found: str, accepted: set[str], before: str) -> str:
+def _fix_written(unexpected: str, accepted: set[str], before: str) -> str:
     """The fix for one of `_WRITTEN`, or for a unit without brackets."""
-    if found in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before):
-        return f"a unit stands in brackets: `[{found}]`"
+    if unexpected in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before):
+        return f"a unit stands in brackets: `[{unexpected}]`"
     for pattern, terminal, fix in _WRITTEN:
-        written = re.search(pattern, f"{before}\0{found}", re.DOTALL)
+        written = re.search(pattern, f"{before}\0{unexpected}", re.DOTALL)
         if written and (not terminal or terminal in accepted):
             return fix.format(*written.groups())
     return ""
 
 
-def _clause_fix(found: str, before: str) -> str:
+def _clause_fix(unexpected: str, before: str) -> str:
     """The fix for a clause above the formula, where the first word of most reads as a name."""
-    clause = _CLAUSE.fullmatch(f"{before.rstrip()} {found}")
+    clause = _CLAUSE.fullmatch(f"{before.rstrip()} {unexpected}")
     return f"a clause, as `{clause[1]} …`, stands behind the formula" if clause else ""
 
 
-def _word_fix(found: str, accepted: set[str], parser: lark.Lark, before: str) -> str:
+def _word_fix(unexpected: str, accepted: set[str], parser: lark.Lark, before: str) -> str:
     """The fix for a word that the language does not have, or does not allow there."""
-    if not re.fullmatch(r"[^\W\d]\w*", found):
+    if not re.fullmatch(r"[^\W\d]\w*", unexpected):
         return ""
-    if "LBRACE" in accepted and found.lower() in _TYPES:
-        return f"write `{_TYPES[found.lower()]}`"
+    if "LBRACE" in accepted and unexpected.lower() in _TYPES:
+        return f"write `{_TYPES[unexpected.lower()]}`"
     phrases = " ".join(phrase for one in accepted for phrase in words_of(one, parser))
     words = re.findall(r"[a-z]{3,}", phrases)
-    close = nearest(found, sorted({*words, *ITEM_WORDS}), 0.75)
-    if close and close != found:
+    close = nearest(unexpected, sorted({*words, *ITEM_WORDS}), 0.75)
+    if close and close != unexpected:
         return f"did you mean `{close}`?"
     if "AND" not in accepted:
         return ""
-    if found in ("within", "for"):
-        return f"`{found}` comes before its operand: `{found} 3 s (…)`"
+    if unexpected in ("within", "for"):
+        return f"`{unexpected}` comes before its operand: `{unexpected} 3 s (…)`"
     last = re.search(r"(\w+)\s*$", before)
     if last and last[1].lower() in ("when", "where", "once"):
         return _TRIGGER_WORDS.format(last[1])
-    return f"an operator is missing before `{found}`, or a word too many"
+    return f"an operator is missing before `{unexpected}`, or a word too many"
 
 
-def _number_fix(found: str, before: Span) -> str:
+def _number_fix(unexpected: str, before: Span) -> str:
     """The fix for a number or duration in the notation of another language."""
     digits = re.search(r"(?<![\w.])\d*$", before.text)
     behind = re.compile(r"[.,](\d*)").match(before.source.text, before.end)
-    if digits and behind and (behind[1] or (digits[0] and found == ".")):
+    if digits and behind and (behind[1] or (digits[0] and unexpected == ".")):
         return f"write `{digits[0] or 0}.{behind[1] or 0}`"
     word = re.search(r"(?<![\w.])(within|for)[ \t]+([\w.]+(?:[ \t]+\w+)?)?[ \t]*$", before.text)
     if word is None:
@@ -212,10 +212,10 @@ def _number_fix(found: str, before: Span) -> str:
     if word[2] is None:
         operator = "eventually" if word[1] == "within" else "always"
         window = f"`{word[1]}` takes a duration; a window stands behind `{operator}`"
-        return window if found == "[" else ""
-    if found in ("+", "-", "*", "/"):
+        return window if unexpected == "[" else ""
+    if unexpected in ("+", "-", "*", "/"):
         return "a duration that is computed stands in brackets"
-    return "no comma stands behind a duration" if found == "," else ""
+    return "no comma stands behind a duration" if unexpected == "," else ""
 
 
 def _decimal_comma(text: str) -> str:
@@ -307,19 +307,19 @@ def explain_unexpected(
     """
     place = _place(error, source, start, end)
     accepted, _ = accepted_terminals(parser, source.text[start:end], rule)
-    found = place.text
-    nameless = found in NAMELESS and _is_demanded(source.text[start : place.start], place)
+    unexpected = place.text
+    nameless = unexpected in NAMELESS and _is_demanded(source.text[start : place.start], place)
     nameless = nameless or bool(if_fix(source.text[start : place.start]))
-    if found in RESERVED and "NAME" in accepted and not (accepted >= _OPERAND or nameless):
+    if unexpected in RESERVED and "NAME" in accepted and not (accepted >= _OPERAND or nameless):
         return names.reserved(place)
     if swallowed := _SWALLOWED.search(source.text, start, place.start):
         number, name = swallowed[1], Span(source, swallowed.start(2), swallowed.end(2))
         if name.text not in unit_table() and name.text not in NOT_UNITS:
             return types.swallowed_name(name, number)
     expected = _in_words(accepted, parser)
-    shown = f"`{short(found)}`" if found else "the end of the item"
+    shown = f"`{short(unexpected)}`" if unexpected else "the end of the item"
     message = f"found {shown}" + (f", expected {expected}" if expected else "")
-    fix = fix_of(found, accepted, parser, Span(source, start, place.start))
+    fix = fix_of(unexpected, accepted, parser, Span(source, start, place.start))
     return finding(syntax.SYNTAX, message, place, fix=fix)
 
 

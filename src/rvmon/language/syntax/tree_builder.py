@@ -341,9 +341,9 @@ def _are_alike(operands: Sequence[Any]) -> bool:
     return len(firsts) == 1 and not firsts & {None, UnaryOp.NOT}
 
 
-def first_of(found: Sequence[_T]) -> _T | None:
+def first_of(elements: Sequence[_T]) -> _T | None:
     """The first element, if there is one."""
-    return found[0] if found else None
+    return elements[0] if elements else None
 
 
 def unquoted(token: Token) -> str:
