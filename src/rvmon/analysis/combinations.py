@@ -72,10 +72,10 @@ class Letters:
         """The possible values of a group, seen through `view`; `None` if there are too many."""
         nodes = _nodes(states)
         leaves = _leaves_by_source(nodes, self.spec)
-        shown = [self._shown(source, own) for source, own in leaves.items()]
+        shown = [self._shown(source, cases) for source, cases in leaves.items()]
         size = 1
-        for own in shown:
-            size *= len(own)
+        for cases in shown:
+            size *= len(cases)
         if size > MOST_COMBINATIONS:
             return None
         # Per formula, its truth value in every row.
@@ -86,15 +86,16 @@ class Letters:
             elif isinstance(node.leaf, Lapsed) or node.leaf == Elapsed(0):
                 # Everything is known here, and the position exists.
                 values[node] = np.full(size, node.leaf == Elapsed(0))
+        # Rows are numbered as `product` lists them below: the last source changes fastest.
         rest = np.arange(size)
-        for read, own in zip(reversed(leaves.values()), reversed(shown), strict=True):
-            rest, case = np.divmod(rest, len(own))
-            values.update(zip(read, np.array(own).T[:, case], strict=True))
+        for read, cases in zip(reversed(leaves.values()), reversed(shown), strict=True):
+            rest, case = np.divmod(rest, len(cases))
+            values.update(zip(read, np.array(cases).T[:, case], strict=True))
         for node in nodes:
             if not _is_free(node):
                 values[node] = _value(node, [values[arg] for arg in node.args])
-        found = np.array([values[state] for state in states]).reshape(len(states), size)
-        truths = [*map(tuple, found.T.tolist())]
+        columns = np.array([values[state] for state in states]).reshape(len(states), size)
+        truths = [*map(tuple, columns.T.tolist())]
         views = {one: view(one) for one in {*truths}}
         rows = dict(zip(product(*shown), map(views.__getitem__, truths), strict=True))
         return Table(tuple(leaves), tuple(leaves.values()), rows)
@@ -112,21 +113,21 @@ class Letters:
             live, relation = _join(live, relation, _Part.of(table, shared), later)
             if sum(map(len, relation.values())) > MOST_COMBINATIONS:
                 return None
-        return frozenset(together for found in relation.values() for together in found)
+        return frozenset(together for values in relation.values() for together in values)
 
     def _shared(self, tables: Sequence[Table[T]]) -> dict[Source, dict[State, Truths]]:
         """For each source that several tables read, the truth values of each leaf by case."""
         readers: dict[Source, list[tuple[State, ...]]] = defaultdict(list)
         for table in tables:
-            for source, own in zip(table.sources, table.leaves, strict=True):
-                readers[source].append(own)
-        found = {}
+            for source, group in zip(table.sources, table.leaves, strict=True):
+                readers[source].append(group)
+        by_source = {}
         for source, groups in readers.items():
             if len(groups) > 1:
-                leaves = tuple(dict.fromkeys(leaf for own in groups for leaf in own))
+                leaves = tuple(dict.fromkeys(leaf for group in groups for leaf in group))
                 columns = zip(*self._shown(source, leaves), strict=True)
-                found[source] = dict(zip(leaves, columns, strict=True))
-        return found
+                by_source[source] = dict(zip(leaves, columns, strict=True))
+        return by_source
 
     def _shown(self, source: Source, leaves: tuple[State, ...]) -> tuple[Truths, ...]:
         """The combinations of truth values that the leaves of a source can have."""
@@ -134,11 +135,11 @@ class Letters:
         if not isinstance(source, str) or isinstance(alone, SignalAtom | EventAtom):
             return ((False,), (True,))
         if (source, leaves) not in self._seen:
-            own = [leaf.leaf for leaf in leaves if leaf.leaf is not None]
-            values = values_of(self.spec, own, source)
+            conditions = [leaf.leaf for leaf in leaves if leaf.leaf is not None]
+            values = values_of(self.spec, conditions, source)
             tried = [{} if isinstance(value, Silence) else {source: value} for value in values]
-            found = truths_tried(self.spec, own, tried)
-            shown = dict.fromkeys(tuple(truth == TRUE for truth in truths) for truths in found)
+            valuations = truths_tried(self.spec, conditions, tried)
+            shown = dict.fromkeys(tuple(truth == TRUE for truth in truths) for truths in valuations)
             self._seen[source, leaves] = tuple(shown)
         return self._seen[source, leaves]
 
@@ -157,17 +158,19 @@ class _Part(Generic[T]):
         cases: list[dict[Truths, list[int]]] = []
         for place in places:
             columns = [shared[table.sources[place]][leaf] for leaf in table.leaves[place]]
-            own: dict[Truths, list[int]] = defaultdict(list)
+            numbers: dict[Truths, list[int]] = defaultdict(list)
             for case, truths in enumerate(zip(*columns, strict=True)):
-                own[truths].append(case)
-            cases.append(own)
+                numbers[truths].append(case)
+            cases.append(numbers)
         views: dict[tuple[Truths, ...], set[T]] = defaultdict(set)
         for chosen, view in table.rows.items():
             views[tuple(chosen[place] for place in places)].add(view)
         rows: dict[tuple[int, ...], set[T]] = {}
-        for shown, found in views.items():
-            for key in product(*(own[part] for own, part in zip(cases, shown, strict=True))):
-                rows[key] = found
+        for shown, group_views in views.items():
+            for key in product(
+                *(numbers[part] for numbers, part in zip(cases, shown, strict=True))
+            ):
+                rows[key] = group_views
         return cls(tuple(table.sources[place] for place in places), rows)
 
 
@@ -195,37 +198,37 @@ def _join(
         rests = matches.setdefault(tuple(chosen[place] for place in theirs), {})
         rests.setdefault(tuple(chosen[place] for place in fresh), set()).update(views)
     joined: dict[tuple[int, ...], set[tuple[T, ...]]] = defaultdict(set)
-    for chosen, found in relation.items():
+    for chosen, tuples in relation.items():
         head = tuple(chosen[place] for place in kept)
         for rest, views in matches.get(tuple(chosen[place] for place in ours), {}).items():
-            joined[head + rest] |= {(*one, view) for one in found for view in views}
+            joined[head + rest] |= {(*one, view) for one in tuples for view in views}
     sources = (*(live[place] for place in kept), *(part.sources[place] for place in fresh))
     return sources, dict(joined)
 
 
 def _leaves_by_source(nodes: Iterable[State], spec: CheckedSpec) -> dict[Source, tuple[State, ...]]:
     """The sources of formulas, each with the leaves that read it."""
-    found: dict[Source, tuple[State, ...]] = {}
+    leaves: dict[Source, tuple[State, ...]] = {}
     for node in nodes:
         if node.leaf is not None and _is_plain(node.leaf, spec):
             for name in sorted(names_of(node.leaf)):
-                found[name] = (*found.get(name, ()), node)
+                leaves[name] = (*leaves.get(name, ()), node)
         elif _is_free(node):
-            found[node] = (node,)
-    return found
+            leaves[node] = (node,)
+    return leaves
 
 
 def _nodes(states: Iterable[State]) -> list[State]:
     """The formulas and their subformulas outside of operators with memory, operands first."""
-    found: set[State] = set()
+    nodes: set[State] = set()
     waiting = list(states)
     while waiting:
         node = waiting.pop()
-        if node not in found:
-            found.add(node)
+        if node not in nodes:
+            nodes.add(node)
             if not _is_free(node):
                 waiting.extend(node.args)
-    return sorted(found, key=lambda node: node.id)
+    return sorted(nodes, key=lambda node: node.id)
 
 
 def _is_free(node: State) -> bool:

@@ -98,6 +98,8 @@ class ConflictSearch:
 
     def run(self) -> None:
         """Examine pairs triggered at once, groups, triples, pairs apart in time, larger sets."""
+        # Cheap questions first: pairs that never start together, conflicts and groups that can hold
+        # spare the later ones most of theirs.
         decided = set()
         for pair in self._pairs:
             if not self._is_late() and self._pair_at_once(*pair) is not None:
@@ -166,6 +168,8 @@ class ConflictSearch:
         ]
         members = [Member(first), Member(second, offset), *always[:MOST_ALWAYS]]
         holds = self._can_hold(members)
+        # The product was too large; what conflicts without the `always` ones conflicts with them,
+        # too.
         if holds is None:
             members = members[:2]
             holds = self._can_hold(members)
@@ -194,8 +198,8 @@ class ConflictSearch:
             if not self.together.can_reach(subjects, offsets, Aim(frozenset([place]))):
                 return False
         self._bad.append(group)
-        found = Conflict(tuple(subject.id for subject in subjects), tuple(offsets))
-        self.conflicts.append(found)
+        conflict = Conflict(tuple(subject.id for subject in subjects), tuple(offsets))
+        self.conflicts.append(conflict)
         return True
 
     # Sets of more than two, triggered at one instant.
@@ -271,8 +275,8 @@ class ConflictSearch:
 def _offsets(first: Subject, second: Subject) -> list[int]:
     """Distances (ticks) at which bounds of the two meet, within a tick; round ones first."""
     theirs = {0, *_cuts(second)}
-    found = {a - b + step for a in _cuts(first) for b in theirs for step in (-1, 0, 1)}
-    return sorted((at for at in found if at > 0), key=_roundness)[:MOST_OFFSETS]
+    distances = {a - b + step for a in _cuts(first) for b in theirs for step in (-1, 0, 1)}
+    return sorted((at for at in distances if at > 0), key=_roundness)[:MOST_OFFSETS]
 
 
 def _roundness(offset: int) -> tuple[int, int]:
@@ -308,12 +312,13 @@ def implications_among(
         The implications, and whether all requirements were tested. Of requirements that imply each
         other, the later ones are reported as implied.
     """
-    found: list[Implication] = []
+    implications: list[Implication] = []
+    # What is implied implies nothing itself: of two that say the same, each would drop the other.
     dropped: set[str] = set()
     bad = [frozenset(conflict.ids) for conflict in conflicts]
     for implied in reversed(falling):
         if time.monotonic() > deadline:
-            return found[::-1], False
+            return implications[::-1], False
         others = [
             other
             for other in subjects
@@ -325,8 +330,8 @@ def implications_among(
         by = _by_one(together, implied, others) or _by_several(together, implied, others, bad)
         if by:
             dropped.add(implied.id)
-            found.append(Implication(implied.id, tuple(subject.id for subject in by)))
-    return found[::-1], True
+            implications.append(Implication(implied.id, tuple(subject.id for subject in by)))
+    return implications[::-1], True
 
 
 def starts_with(together: Together, other: Subject, implied: Subject) -> bool:

@@ -54,26 +54,27 @@ def examine(spec: CheckedSpec, subjects: Sequence[Subject], seconds: float) -> E
         seconds: the budget; analyses not reached within it count as not decided.
     """
     deadline = time.monotonic() + seconds
-    found: dict[str, Possible] = {}
+    results: dict[str, Possible] = {}
     for subject in subjects:
         if time.monotonic() > deadline:
             break
         requirement = subject.requirement
-        found[subject.id] = possible(spec, subject.trigger, subject.automaton, requirement.at_end)
+        results[subject.id] = possible(spec, subject.trigger, subject.automaton, requirement.at_end)
     undecided = tuple(
         subject.id
         for subject in subjects
-        if (one := found.get(subject.id)) is None
+        if (one := results.get(subject.id)) is None
         or (one.trigger is not False and None in (one.trigger, one.fail, one.pass_))
     )
-    sound = [subject for subject in subjects if _is_sound(subject, found)]
+    # One that cannot pass would conflict with all others, and imply them.
+    sound = [subject for subject in subjects if _is_sound(subject, results)]
     together = Together(spec)
     search = ConflictSearch(together, sound, deadline)
     search.run()
-    falling = [subject for subject in sound if found[subject.id].fail is not False]
+    falling = [subject for subject in sound if results[subject.id].fail is not False]
     implications, done = implications_among(together, sound, falling, search.conflicts, deadline)
     return Examination(
-        found,
+        results,
         tuple(search.conflicts),
         tuple(implications),
         undecided,
@@ -85,29 +86,29 @@ def examine(spec: CheckedSpec, subjects: Sequence[Subject], seconds: float) -> E
     )
 
 
-def _is_sound(subject: Subject, found: Mapping[str, Possible]) -> bool:
+def _is_sound(subject: Subject, results: Mapping[str, Possible]) -> bool:
     """Whether a requirement can trigger and pass by itself, as far as is known."""
-    one = found.get(subject.id)
-    if one is None or subject.trigger is None or subject.automaton is None:
+    result = results.get(subject.id)
+    if result is None or subject.trigger is None or subject.automaton is None:
         return False
-    return one.trigger is True and one.pass_ is True
+    return result.trigger is True and result.pass_ is True
 
 
-def findings_of(spec: CheckedSpec, found: Examination) -> list[Diagnostic]:
+def findings_of(spec: CheckedSpec, examination: Examination) -> list[Diagnostic]:
     """The diagnostics: single requirements in file order, then conflicts, then implications."""
     singles = [
         diagnostic
         for name in spec.requirements
-        if name in found.possible
-        for diagnostic in _single(spec, found, name)
+        if name in examination.possible
+        for diagnostic in _single(spec, examination, name)
     ]
-    conflicts = [_conflict(spec, conflict) for conflict in found.conflicts]
-    implied = [_implied(spec, implication) for implication in found.implications]
+    conflicts = [_conflict(spec, conflict) for conflict in examination.conflicts]
+    implied = [_implied(spec, implication) for implication in examination.implications]
     return [*singles, *conflicts, *implied]
 
 
-def _single(spec: CheckedSpec, found: Examination, name: str) -> Iterator[Diagnostic]:
-    can, place = found.possible[name], _places(spec, name)
+def _single(spec: CheckedSpec, examination: Examination, name: str) -> Iterator[Diagnostic]:
+    can, place = examination.possible[name], _places(spec, name)
     if can.trigger is False:
         yield finding(
             NEVER_TRIGGERS,
@@ -132,12 +133,13 @@ def _single(spec: CheckedSpec, found: Examination, name: str) -> Iterator[Diagno
         )
 
 
-def _implied(spec: CheckedSpec, found: Implication) -> Diagnostic:
+def _implied(spec: CheckedSpec, implication: Implication) -> Diagnostic:
+    implied, by = implication.implied, implication.by
     return finding(
         IMPLIED,
-        f"{found.implied} fails only where {listed(found.by, 'or')} fails: it adds nothing",
-        *_places(spec, found.implied, *found.by),
-        fix=f"drop {found.implied}, or look whether it was meant otherwise",
+        f"{implied} fails only where {listed(by, 'or')} fails: it adds nothing",
+        *_places(spec, implied, *by),
+        fix=f"drop {implied}, or look whether it was meant otherwise",
     )
 
 

@@ -65,7 +65,7 @@ def _primes(vectors: set[Cube]) -> list[Cube]:
 
 
 def _covers(cube: Cube, vector: Cube) -> bool:
-    return all(own in (ANY, truth) for own, truth in zip(cube, vector, strict=True))
+    return all(literal in (ANY, truth) for literal, truth in zip(cube, vector, strict=True))
 
 
 MOST_PROPOSITIONS = 8
@@ -193,8 +193,8 @@ class _Reader:
         cuts = automaton.locations[index].cuts
         can_be = self.first if index == automaton.initial else self.later
         never = self.letters.keys() - can_be
-        found: dict[tuple[int, tuple[int, ...], tuple[Cube, ...]], list[tuple[int, ...]]] = {}
-        for regions in product(*(range(len(own) + 1) for own in cuts)):
+        rows_of: dict[tuple[int, tuple[int, ...], tuple[Cube, ...]], list[tuple[int, ...]]] = {}
+        for regions in product(*(range(len(clock_cuts) + 1) for clock_cuts in cuts)):
             row = row_of(automaton, index, regions)
             groups: dict[tuple[int, tuple[int, ...]], list[Cube]] = {}
             for cube in sorted(can_be, reverse=True):
@@ -204,8 +204,9 @@ class _Reader:
                     key = (automaton.targets[edge], automaton.sources[edge])
                     groups.setdefault(key, []).append(cube)
             for (target, sources), letters in groups.items():
-                found.setdefault((target, sources, cubes_of(letters, never)), []).append(regions)
-        for (target, sources, cubes), rows in found.items():
+                edge_key = target, sources, cubes_of(letters, never)
+                rows_of.setdefault(edge_key, []).append(regions)
+        for (target, sources, cubes), rows in rows_of.items():
             yield target, self._condition(cubes), _when(rows, cuts), _sets(sources)
 
     def _condition(self, cubes: Sequence[Cube]) -> str:
@@ -227,9 +228,9 @@ def letters_of(alphabet: Alphabet, most: int) -> Mapping[Cube, int]:
     """The letters without unknowns, by valuation; empty for more than `most` propositions."""
     if len(alphabet.propositions) > most:
         return {}
-    digits = [(own[FALSE], own[TRUE]) for own in alphabet.pessimistic]
+    digits = [(weights[FALSE], weights[TRUE]) for weights in alphabet.pessimistic]
     return {
-        truths: sum(own[truth] for own, truth in zip(digits, truths, strict=True))
+        truths: sum(weights[truth] for weights, truth in zip(digits, truths, strict=True))
         for truths in product((1, 0), repeat=len(digits))
     }
 
@@ -244,7 +245,9 @@ def inputs_of(
     if vectors is None:
         return letters.keys(), letters.keys()
     starting = {vector for vector in vectors if len(vector) == width or vector[-1]}
-    first, later = ({tuple(map(int, v[:width])) for v in own} for own in (starting, vectors))
+    first, later = (
+        {tuple(map(int, v[:width])) for v in valuations} for valuations in (starting, vectors)
+    )
     return first & letters.keys(), later & letters.keys()
 
 

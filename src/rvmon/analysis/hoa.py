@@ -107,14 +107,15 @@ class _Machine:
     ) -> None:
         self.automaton, self.letters = automaton, letters
         self.edges = [self._edges(index, can_be) for index in range(len(automaton.locations))]
-        found = (
+        ends = (
             compiled.forecaster.of(location.residual, (), None) for location in automaton.locations
         )
-        self.words = [{True: "P", False: "F", None: "?"}[end] for end in found]
+        self.words = [{True: "P", False: "F", None: "?"}[end] for end in ends]
         while ahead := {at: w for at, e in enumerate(self.edges) if (w := self._ahead(at, e))}:
             for index, word in ahead.items():
                 self.words[index] = word
         for index, word in enumerate(self.words):
+            # What is said stays said: the letters behind it lead nowhere else.
             if word != "?":
                 self.edges[index] = dict.fromkeys(can_be, index)
 
@@ -148,8 +149,8 @@ class _Machine:
         begun = self._edges(initial, first) if is_open else self.edges[initial]
         word, edges = self._ahead(initial, begun) or self.words[initial], _renamed(begun, blocks)
         states = {
-            block: (own, _renamed(its, blocks))
-            for block, own, its in zip(blocks, self.words, self.edges, strict=True)
+            block: (said, _renamed(its, blocks))
+            for block, said, its in zip(blocks, self.words, self.edges, strict=True)
         }
         states[START] = word, edges
         order = [*dict.fromkeys(edges.values())]
@@ -169,7 +170,7 @@ class _Machine:
         blocks = _numbered(self.words)
         while True:
             looks = zip(blocks, self.edges, strict=True)
-            finer = _numbered([(own, *(blocks[to] for to in e.values())) for own, e in looks])
+            finer = _numbered([(block, *(blocks[to] for to in e.values())) for block, e in looks])
             if max(finer) == max(blocks):
                 return blocks
             blocks = finer

@@ -23,14 +23,14 @@ def joined(intervals: Any) -> NDArray[np.int64]:
     >>> joined([(1, 2), (3, 4), (6, 7)]).tolist()
     [[1, 4], [6, 7]]
     """
-    found = np.asarray(intervals, np.int64).reshape(-1, 2)
-    if len(found) < 2:
-        return found
-    apart = np.ones(len(found) + 1, np.bool_)
-    apart[1:-1] = found[1:, 0] > found[:-1, 1] + 1
+    spans = np.asarray(intervals, np.int64).reshape(-1, 2)
+    if len(spans) < 2:
+        return spans
+    apart = np.ones(len(spans) + 1, np.bool_)
+    apart[1:-1] = spans[1:, 0] > spans[:-1, 1] + 1
     if apart.all():
-        return found
-    return np.column_stack((found[apart[:-1], 0], found[apart[1:], 1]))
+        return spans
+    return np.column_stack((spans[apart[:-1], 0], spans[apart[1:], 1]))
 
 
 def within(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
@@ -39,11 +39,11 @@ def within(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
     >>> within(joined([(1, 4), (6, 7), (9, 9)]), 3, 6).tolist()
     [[3, 4], [6, 6]]
     """
-    found = spans[spans[:, 1].searchsorted(low) : spans[:, 0].searchsorted(high, "right")].copy()
-    if len(found):
-        found[0, 0] = max(found[0, 0], low)
-        found[-1, 1] = min(found[-1, 1], high)
-    return found
+    part = spans[spans[:, 1].searchsorted(low) : spans[:, 0].searchsorted(high, "right")].copy()
+    if len(part):
+        part[0, 0] = max(part[0, 0], low)
+        part[-1, 1] = min(part[-1, 1], high)
+    return part
 
 
 def outside(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
@@ -52,10 +52,10 @@ def outside(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
     >>> outside(joined([(2, 3)]), 0, 5).tolist()
     [[0, 1], [4, 5]]
     """
-    found = np.empty((len(spans) + 1, 2), np.int64)
-    found[0, 0], found[1:, 0] = low, spans[:, 1] + 1
-    found[:-1, 1], found[-1, 1] = spans[:, 0] - 1, high
-    return found[found[:, 0] <= found[:, 1]]
+    gaps = np.empty((len(spans) + 1, 2), np.int64)
+    gaps[0, 0], gaps[1:, 0] = low, spans[:, 1] + 1
+    gaps[:-1, 1], gaps[-1, 1] = spans[:, 0] - 1, high
+    return gaps[gaps[:, 0] <= gaps[:, 1]]
 
 
 def hold(spans: NDArray[np.int64], ticks: Any) -> NDArray[np.bool_]:
@@ -67,8 +67,8 @@ def hold(spans: NDArray[np.int64], ticks: Any) -> NDArray[np.bool_]:
     if not len(spans):
         return np.zeros(np.shape(ticks), np.bool_)
     place = np.searchsorted(spans[:, 0], ticks, "right") - 1
-    found: NDArray[np.bool_] = (place >= 0) & (np.asarray(ticks) <= spans[place, 1])
-    return found
+    inside: NDArray[np.bool_] = (place >= 0) & (np.asarray(ticks) <= spans[place, 1])
+    return inside
 
 
 def distinct(ticks: Sequence[NDArray[np.int64]]) -> NDArray[np.int64]:
@@ -77,7 +77,7 @@ def distinct(ticks: Sequence[NDArray[np.int64]]) -> NDArray[np.int64]:
     >>> distinct([np.array([3, 7]), np.array([5, 3])]).tolist()
     [3, 5, 7]
     """
-    found: NDArray[np.int64] = np.sort(np.concatenate(ticks))
-    is_last = np.ones(len(found), np.bool_)
-    is_last[:-1] = found[:-1] != found[1:]
-    return found[is_last]
+    ordered: NDArray[np.int64] = np.sort(np.concatenate(ticks))
+    is_last = np.ones(len(ordered), np.bool_)
+    is_last[:-1] = ordered[:-1] != ordered[1:]
+    return ordered[is_last]

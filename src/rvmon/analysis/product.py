@@ -20,6 +20,7 @@ from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
 from rvmon.logic.clock_regions import region_bounds
 
 MOST_STATES = 4000
+"""The most states of a search; beyond it nothing is decided."""
 FOREVER = 1 << 63
 
 Spot = tuple[int, Regions, tuple[int, ...]]
@@ -116,8 +117,8 @@ def _view(subject: Subject) -> Callable[[Truths], tuple[int, bool]]:
     automaton, triggered = _automaton(subject), subject.trigger is not None
 
     def view(truths: Truths) -> tuple[int, bool]:
-        own = truths[:-1] if triggered else truths
-        return automaton_letter(automaton, own), triggered and truths[-1]
+        letter = truths[:-1] if triggered else truths
+        return automaton_letter(automaton, letter), triggered and truths[-1]
 
     return view
 
@@ -141,6 +142,7 @@ class _Search:
         self.offsets = offsets
         self.letters = letters
         self.automata = [_automaton(subject) for subject in subjects]
+        # The instant of the first trigger is a cell of its own.
         cuts = {0, 1}
         for automaton, offset in zip(self.automata, offsets, strict=True):
             cuts |= {offset, offset + 1} | {offset + cut for cut in _cuts(automaton)}
@@ -172,7 +174,7 @@ class _Search:
         if cell not in self._at:
             starting = [i for i, at in enumerate(self.offsets) if at == self.starts[cell]]
             self._at[cell] = frozenset(
-                tuple(own for own, _ in letter)
+                tuple(class_ for class_, _ in letter)
                 for letter in self.letters
                 if all(letter[index][1] for index in starting)
             )
@@ -191,9 +193,11 @@ class _Search:
         if cell < 0:
             return (0,)
         width = self.starts[cell + 1] - self.starts[cell] if cell < last else 2
+        # A cell of one tick has no second position.
         first = cell if width > 1 else cell + 1
         if self.dense:
             return range(first, min(cell + 1, last) + 1)
+        # Samples may pass over any cell but one in which a requirement is triggered.
         ends = [i for i, at in enumerate(self.starts) if at in self.offsets and i > cell]
         return range(first, min([*ends, last]) + 1)
 
@@ -224,11 +228,11 @@ class _Search:
         location, regions, began = spot
         cuts = self.automata[index].locations[location].cuts
         ranges = []
-        for own, region, start in zip(cuts, regions, began, strict=True):
+        for clock_cuts, region, start in zip(cuts, regions, began, strict=True):
             youngest = max(self.starts[cell] - self._last(start), 0)
             oldest = self._last(cell) - self.starts[start]
-            low = max(bisect_right(own, youngest), region)
-            ranges.append(range(low, max(bisect_right(own, oldest), low) + 1))
+            low = max(bisect_right(clock_cuts, youngest), region)
+            ranges.append(range(low, max(bisect_right(clock_cuts, oldest), low) + 1))
         yield from product(*ranges)
 
     def _last(self, cell: int) -> int:
@@ -273,8 +277,8 @@ def _after_edge(automaton: Automaton, location: int, regions: Regions, edge: int
     """The least possible regions after an edge, by the cuts of the target location."""
     ours = automaton.locations[location].cuts
     theirs = automaton.locations[automaton.targets[edge]].cuts
-    found = []
+    least = []
     for source, cuts in zip(automaton.sources[edge], theirs, strict=True):
         age = 0 if source == NOW else region_bounds(ours[source], regions[source])[0]
-        found.append(bisect_right(cuts, age))
-    return tuple(found)
+        least.append(bisect_right(cuts, age))
+    return tuple(least)

@@ -185,8 +185,8 @@ def truths_tried(
     # One position per valuation: a sample each, at consecutive ticks or periods.
     gap = spec.gap or 1
     samples = [Sample(place * gap, values) for place, values in enumerate(tried)]
-    found = known_truths(spec, cores, samples, samples[-1].t)
-    columns = [_column(known, len(tried)) for known in found]
+    known_by_leaf = known_truths(spec, cores, samples, samples[-1].t)
+    columns = [_column(known, len(tried)) for known in known_by_leaf]
     return list(zip(*columns, strict=True))
 
 
@@ -249,18 +249,18 @@ def choices_of(
     options = _Options(spec, leaves, captured, remembered, windows)
     added = {name for window in windows for name in names_read(window) if name in read}
     seen = _Seen(spec, leaves, remembered | added)
-    found: dict[tuple[object, ...], Valuation] = {}
+    kept: dict[tuple[object, ...], Valuation] = {}
     waiting = _defaults_first([options.of(name) for name in names])
     for _ in range(MOST_TRIED // MOST_VALUATIONS):
         tried = [
             dict(zip(names, chosen, strict=True)) for chosen in islice(waiting, MOST_VALUATIONS)
         ]
         for key, valuation in zip(seen.keys(tried), tried, strict=True):
-            if key not in found and len(found) == MOST_VALUATIONS:
-                return Choices(names, tuple(found.values()), remembered, False)
-            found.setdefault(key, valuation)
+            if key not in kept and len(kept) == MOST_VALUATIONS:
+                return Choices(names, tuple(kept.values()), remembered, False)
+            kept.setdefault(key, valuation)
     complete = next(waiting, None) is None and not windows
-    return Choices(names, tuple(found.values()), remembered, complete)
+    return Choices(names, tuple(kept.values()), remembered, complete)
 
 
 def values_of(spec: CheckedSpec, leaves: Sequence[Leaf], name: str) -> list[Value | Silence]:
@@ -313,13 +313,13 @@ class _Options:
     def _payloads(self, event: str) -> list[Value]:
         fields = self.spec.events[event].fields
         values = [self._scalars(FieldValue(event, name), fields[name]) for name in fields]
-        made: list[Value] = []
+        payloads: list[Value] = []
         for chosen in _defaults_first(values):
             payload: Payload = dict(zip(fields, chosen, strict=True))
-            made.append(payload or True)
-            if len(made) == MOST_PAYLOADS and len(fields) > 1:
+            payloads.append(payload or True)
+            if len(payloads) == MOST_PAYLOADS and len(fields) > 1:
                 break
-        return made
+        return payloads
 
     def _scalars(self, variable: Variable, type_: Type) -> Sequence[Scalar]:
         match type_.kind:
@@ -360,7 +360,10 @@ def _departing(options: Sequence[Sequence[T]], count: int) -> Iterator[tuple[T, 
     """The combinations in which exactly `count` entries are not the first option."""
     for places in combinations(range(len(options)), count):
         yield from product(
-            *(own[1:] if place in places else own[:1] for place, own in enumerate(options))
+            *(
+                choices[1:] if place in places else choices[:1]
+                for place, choices in enumerate(options)
+            )
         )
 
 
@@ -374,9 +377,9 @@ class _Seen:
         self.plain: list[Leaf] = []
         self.raw: set[str] = set(remembered)
         for leaf in leaves:
-            own = names_of(leaf)
-            if captured_names(leaf) or own & remembered or isinstance(leaf, ProbeAtom):
-                self.raw |= own
+            names = names_of(leaf)
+            if captured_names(leaf) or names & remembered or isinstance(leaf, ProbeAtom):
+                self.raw |= names
             elif isinstance(leaf, SignalAtom | EventAtom | Compare):
                 self.plain.append(leaf)
 
@@ -387,9 +390,9 @@ class _Seen:
             for valuation in valuations
         ]
         truths = truths_tried(self.spec, self.plain, spoken)
-        for own, valuation in zip(truths, valuations, strict=True):
+        for leaf_truths, valuation in zip(truths, valuations, strict=True):
             raw = (_hashable(value) for name, value in valuation.items() if name in self.raw)
-            yield (*own, *raw)
+            yield (*leaf_truths, *raw)
 
 
 def _hashable(value: Value | Silence) -> object:

@@ -178,6 +178,7 @@ def shortest_examples(
         add(iter((first,)), next(number))
     while heap and missing and runs < budget.runs:
         *_, order, node, nodes = heappop(heap)
+        # The next of these runs is queued only now: most are never looked at.
         add(nodes, order)
         played = player.play(node.samples, node.end)
         runs += 1
@@ -188,6 +189,7 @@ def shortest_examples(
         if (played.situation, node.at_cut) in seen:
             continue
         seen.add((played.situation, node.at_cut))
+        # No later sample changes a verdict of these.
         if all(verdict is Verdict.FAIL for verdict in played.example.verdicts.values()):
             continue
         for further in search.after(node, played.cut):
@@ -217,17 +219,19 @@ class _Search:
 
     def first(self) -> Iterator[_Node]:
         """The runs of one sample; signals have a value from the start."""
-        some: dict[str, Value] = {}
+        defaults: dict[str, Value] = {}
         for valuation in self.choices.valuations:
             for name, value in valuation.items():
                 if not isinstance(value, Silence):
-                    some.setdefault(name, value)
+                    defaults.setdefault(name, value)
         tried: set[int] = set()
         for valuation in self.choices.valuations:
             # At the first sample silent names get a default, lest few valuations remain.
-            whole = {n: some[n] if v is SILENT else v for n, v in valuation.items() if n in some}
+            whole = {
+                n: defaults[n] if v is SILENT else v for n, v in valuation.items() if n in defaults
+            }
             number = self._number(whole)
-            if len(whole) == len(some) and number not in tried:
+            if len(whole) == len(defaults) and number not in tried:
                 tried.add(number)
                 changes = self._changes(whole, {})
                 yield _Node((Sample(0, changes),), 0, number, _stir(changes))
@@ -237,6 +241,8 @@ class _Search:
         end = node.end
         if len(node.samples) < self.most:
             yield self._sampled(node, end + (self.gap if node.at_cut else self.step))
+        # Waiting leads to both sides of the instant at which a window opens or closes; if that is
+        # the next position, a wait of a step passes it.
         soon = cut - end <= self.gap and not node.at_cut
         for t in {end + self.step} if soon else {cut - 1, cut}:
             if end < t < TIME_LIMIT:
@@ -258,8 +264,10 @@ class _Search:
         brought = (
             (self._changes(valuation, held), valuation) for valuation in self.choices.valuations
         )
-        found = [(_stir(changes), changes, valuation) for changes, valuation in brought if changes]
-        return sorted(found, key=itemgetter(0))
+        samples = [
+            (_stir(changes), changes, valuation) for changes, valuation in brought if changes
+        ]
+        return sorted(samples, key=itemgetter(0))
 
     def _number(self, held: Valuation) -> int:
         number = self._numbers.setdefault(repr(sorted(held.items())), len(self.held))
@@ -306,13 +314,13 @@ def _choices(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> 
 def _windows(requirement: Requirement) -> Iterator[Compare]:
     """The comparisons of numeric windows in a requirement."""
     for part in (*subformulas(requirement.trigger), *subformulas(requirement.consequent)):
-        found = part
+        comparison = part
         if isinstance(part, Amount):
-            found = Compare(CompareOp.GE, part.of, part.limit)
-        if isinstance(found, Compare) and any(
-            window.value is not None for window in windows_in(found.left, found.right)
+            comparison = Compare(CompareOp.GE, part.of, part.limit)
+        if isinstance(comparison, Compare) and any(
+            window.value is not None for window in windows_in(comparison.left, comparison.right)
         ):
-            yield found
+            yield comparison
 
 
 CONFLICT_RUNS = 400
@@ -353,13 +361,13 @@ def analyse(compiled: CompiledSpec, *, seconds: float = 8.0, timelines: int = 3)
         )
         for requirement in compiled.requirements.values()
     ]
-    found = examine(compiled.checked, subjects, seconds)
+    examination = examine(compiled.checked, subjects, seconds)
     drawn = []
-    for conflict in found.conflicts[:timelines]:
+    for conflict in examination.conflicts[:timelines]:
         example = conflict_example(compiled, conflict)
         if example is not None:
             drawn.append((conflict, example))
-    return Analysis(tuple(findings_of(compiled.checked, found)), found, tuple(drawn))
+    return Analysis(tuple(findings_of(compiled.checked, examination)), examination, tuple(drawn))
 
 
 def conflict_example(compiled: CompiledSpec, conflict: Conflict) -> Example | None:
@@ -371,8 +379,8 @@ def conflict_example(compiled: CompiledSpec, conflict: Conflict) -> Example | No
     goal = _triggered_as(conflict.ids, conflict.offsets)
     step = min((offset for offset in conflict.offsets if offset), default=0)
     budget = Budget(runs=CONFLICT_RUNS, samples=3, step=step)
-    found = shortest_examples(compiled, chosen, goal, [_OPEN, _MET], budget).examples
-    return found.get(_OPEN) or found.get(_MET)
+    examples = shortest_examples(compiled, chosen, goal, [_OPEN, _MET], budget).examples
+    return examples.get(_OPEN) or examples.get(_MET)
 
 
 def _triggered_as(ids: Sequence[str], offsets: Sequence[int]) -> Goal:

@@ -92,7 +92,7 @@ def late_in(
         waits: from `waits_of`.
         seen: the truths of the waits over the recording.
     """
-    found = {}
+    responses = {}
     for attempt in attempts:
         if attempt.number not in waits or attempt.blame is None or seen.begin is None:
             continue
@@ -100,8 +100,8 @@ def late_in(
         deadline = attempt.blame.window[1] or 0
         came = _first_after(deadline, truth.sure, seen.positions)
         if came is not None:
-            found[attempt.number] = came
-    return found
+            responses[attempt.number] = came
+    return responses
 
 
 def _first_after(deadline: int, spans: NDArray[np.int64], positions: Positions) -> int | None:
@@ -279,11 +279,11 @@ class TriggerParts:
             options = []
         self.question = Question(tuple(dict.fromkeys(chain(*options))))
         parts = {}
-        asked = zip(self.question.formulas, self.question.texts, strict=True)
-        for place, (formula, text) in enumerate(asked):
+        operands = zip(self.question.formulas, self.question.texts, strict=True)
+        for place, (formula, text) in enumerate(operands):
             reads = frozenset(spec.signals.keys() & {*names_read(formula)})
             parts[formula] = _Part(formula, text, place, reads)
-        self._options = [tuple(parts[formula] for formula in own) for own in options]
+        self._options = [tuple(parts[formula] for formula in option) for option in options]
         self._is_told = requirement.for_each is None and not is_end(requirement.trigger)
 
     def miss_in(self, seen: RecordedTruths) -> str:
@@ -315,14 +315,14 @@ class Looking:
     def trigger(self, requirement: str) -> TriggerParts:
         """The parts of the trigger of a requirement, given by its id."""
         if requirement not in self._triggers:
-            own = self._spec.requirements[requirement]
-            self._triggers[requirement] = TriggerParts(self._spec, own)
+            owner = self._spec.requirements[requirement]
+            self._triggers[requirement] = TriggerParts(self._spec, owner)
         return self._triggers[requirement]
 
 
 def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
     match formula:
-        case Binary(op=found, left=left, right=right) if found is op:
+        case Binary(op=connective, left=left, right=right) if connective is op:
             return tuple(dict.fromkeys((*_flat(left, op), *_flat(right, op))))
         case _:
             return (formula,)
@@ -376,8 +376,8 @@ def _apart(
         elif isinstance(part.formula, EventAtom):
             word = "never occurred"
         groups.setdefault(word, []).append(part)
-    for word, own in groups.items():
-        yield f"{_either(own)} {word}"
+    for word, alike in groups.items():
+        yield f"{_either(alike)} {word}"
     signals = {part.formula.name for part in parts if isinstance(part.formula, SignalAtom)}
     for name in sorted(valueless.keys() - signals):
         yield f"`{name}` {valueless[name]}"

@@ -102,8 +102,8 @@ class RecordedTruths:
 
     def truths(self, question: Question) -> list[Truth]:
         """The truths of the formulas of a question, in order."""
-        own = self._truths[question.whose]
-        return [own[text] for text in question.texts]
+        by_text = self._truths[question.whose]
+        return [by_text[text] for text in question.texts]
 
 
 def look_through(
@@ -225,13 +225,13 @@ class _Group:
         """End the run; returns the truths by text of the formula."""
         assert self._made is not None, "it began"
         known = [] if self._run is None else self._run.known()
-        found: dict[Core | None, Truth] = {
+        truths: dict[Core | None, Truth] = {
             core: Truth(ticks.spans(one.true), ticks.others(one.false))
             for core, one in zip(self._made.order, known, strict=True)
         }
         nowhere = np.empty((0, 2), np.int64)
-        found[None] = Truth(nowhere, ticks.others(nowhere))
-        return {text: found[core] for text, core in self._made.cores.items()}
+        truths[None] = Truth(nowhere, ticks.others(nowhere))
+        return {text: truths[core] for text, core in self._made.cores.items()}
 
 
 def _samples(piece: Batch | Sample) -> Sequence[Sample]:
@@ -312,7 +312,7 @@ def _of_instance(
 
     An occurrence with an unknown key is an unknown occurrence for every instance.
     """
-    event, own = each.value.event, captured[each.name]
+    event, key_of_instance = each.value.event, captured[each.name]
     for sample in samples:
         if event not in sample.values:
             yield sample
@@ -323,7 +323,7 @@ def _of_instance(
             key = None if payload is None else payload.get(each.value.field)
             if key is None or key != key:
                 seen.append(None)
-            elif key == own:
+            elif key == key_of_instance:
                 seen.append(payload)
         if seen:
             values[event] = _reported(seen)
@@ -374,5 +374,5 @@ def truths_of_parts(
         seen: the truths of `parts_of(requirement, attempt)` over the recording.
     """
     question = parts_of(requirement, attempt)
-    found = zip(question.formulas, seen.truths(question), strict=True)
-    return {id(formula): truth for formula, truth in found}
+    pairs = zip(question.formulas, seen.truths(question), strict=True)
+    return {id(formula): truth for formula, truth in pairs}

@@ -92,14 +92,14 @@ def possible(
     Source: AUTOMATA 2, regions after Alur and Dill 1994.
     """
     if automaton is None:
-        found = None if trigger is None else combinations_of(spec, [trigger])
-        return Possible(trigger=None if found is None else (True,) in found)
+        combinations = None if trigger is None else combinations_of(spec, [trigger])
+        return Possible(trigger=None if combinations is None else (True,) in combinations)
     propositions = automaton.alphabet.propositions
     states = [*propositions, *([] if trigger is None else [trigger])]
-    found = combinations_of(spec, states)
-    if found is None:
+    combinations = combinations_of(spec, states)
+    if combinations is None:
         return Possible()
-    first = {v for v in found if trigger is None or v[-1]}
+    first = {v for v in combinations if trigger is None or v[-1]}
     if not first:
         return Possible(trigger=False)
     # The exploration covers every run, and perhaps more. So "cannot fail" is proved and becomes a
@@ -108,7 +108,7 @@ def possible(
     reach = _Reach(automaton, spec.gap)
     reach.run(
         {automaton_letter(automaton, v[:width]) for v in first},
-        {automaton_letter(automaton, v[:width]) for v in found},
+        {automaton_letter(automaton, v[:width]) for v in combinations},
     )
     undecided = bool(reach.rows)
     fail = reach.failed or (undecided and policy in (EndPolicy.STRONG, EndPolicy.FAIL))
@@ -121,7 +121,8 @@ def automaton_letter(automaton: Automaton, truths: Iterable[bool]) -> int:
     """The class of the letter with these truth values, all of them known."""
     weights = automaton.alphabet.pessimistic
     letter = sum(
-        own[TRUE] if truth else own[FALSE] for own, truth in zip(weights, truths, strict=True)
+        digits[TRUE] if truth else digits[FALSE]
+        for digits, truth in zip(weights, truths, strict=True)
     )
     return automaton.class_of[letter]
 

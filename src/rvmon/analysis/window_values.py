@@ -51,17 +51,17 @@ def windows_blamed(spec: CheckedSpec, requirement: Requirement, blame: Blame) ->
         return []
     parts = list(subformulas(requirement.consequent))
     failed = [part for part in parts if format_formula(part) == blame.subformula] or parts
-    found: dict[WindowValue, None] = {}
+    windows: dict[WindowValue, None] = {}
     for subformula in subformulas(failed[0]):
         match subformula:
             case Amount(of=window):
-                found[window] = None
+                windows[window] = None
             case Compare(left=left, right=right):
-                found |= dict.fromkeys(windows_in(left, right))
+                windows |= dict.fromkeys(windows_in(left, right))
     is_held = spec.time is TimeModel.HELD
     return [
         window
-        for window in found
+        for window in windows
         if not (is_held and window.moves) and unit_of(spec, window) is not None
     ]
 
@@ -99,9 +99,12 @@ class WindowValues:
             str(place): _captured_at(str(place), t - origin, window)
             for place, (t, window) in enumerate(asked)
         }
-        own = replace(spec, requirements=requirements, properties={}, covers={}, max_delay=None)
-        planned = planned_core(compile_spec(own))
-        self._run = RecordingRun(own, planned, Source(recording), finds=False)
+        # Its samples come in order: a delay would only hold them back.
+        captured = replace(
+            spec, requirements=requirements, properties={}, covers={}, max_delay=None
+        )
+        planned = planned_core(compile_spec(captured))
+        self._run = RecordingRun(captured, planned, Source(recording), finds=False)
 
     def take(self, piece: Batch | Sample) -> None:
         """Take the next piece of the recording."""
@@ -118,5 +121,5 @@ class WindowValues:
 
 def _captured_at(name: str, since_origin: int, window: WindowValue) -> Requirement:
     """A requirement that captures a window at the first position from an instant on."""
-    there = Unary(UnaryOp.ONCE, Constant(True), Interval(since_origin))
-    return Requirement(name, Mode.UPON, there, Constant(True), captures=(Capture("it", window),))
+    reached = Unary(UnaryOp.ONCE, Constant(True), Interval(since_origin))
+    return Requirement(name, Mode.UPON, reached, Constant(True), captures=(Capture("it", window),))

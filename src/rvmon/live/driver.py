@@ -323,9 +323,9 @@ class Driver:
     def _take(self, entry: Entry, watch: Watch) -> None:
         if isinstance(entry, NewRun):
             _input_log.warning("%s", entry.why)
-            for robot in self._robots.values():
-                robot.restart(HealthKind.CLOCK, entry.why)
-                self._timers.forget(robot.name)
+            for name, known in self._robots.items():
+                known.restart(HealthKind.CLOCK, entry.why)
+                self._timers.forget(name)
             return
         robot = self._robots.get(entry.robot)
         if robot is None:
