@@ -33,7 +33,7 @@ from typing import Any
 import numpy as np
 from benchmarks.program import program
 from tests.tools import killed_watch
-from tests.tools.forked import Forked
+from tests.tools.killed_watch import Forked
 
 import handover.cli
 import rvmon

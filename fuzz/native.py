@@ -26,8 +26,8 @@ from benchmarks.program import program
 from fuzz.driver import Found, fuzz
 from tests.tools.coverage import with_random_coverage
 from tests.tools.drive import told
-from tests.tools.guarded import guarded_memory
 from tests.tools.put_away import HEAD, Twins
+from tests.tools.sanitize import guarded_memory
 from tests.tools.timed_plans import search_plans
 from tests.tools.watched import is_small, truths_plan
 

@@ -15,8 +15,7 @@ from typing import Any
 from benchmarks.comparisons.comparison import Comparison, Found
 from tests.tools.differential import cases_of
 from tests.tools.doors import Content, content_of, doors, in_pieces, whole
-from tests.tools.lossy_doors import DOORS
-from tests.tools.lost import outcomes
+from tests.tools.lossy_doors import DOORS, outcomes
 
 from rvmon.errors import RvmonError
 from rvmon.session import Spec

@@ -15,8 +15,7 @@ from benchmarks.comparisons.timed_ltl import LinearTruth, random_linear, satisfi
 from fuzz.timed_damage import damaged, survives
 from tests.tools.timed_ctl import holds_at_start
 from tests.tools.timed_generate import random_model
-from tests.tools.timed_regions import Steps, TooManyRegionsError
-from tests.tools.timed_runs import shows
+from tests.tools.timed_regions import Steps, TooManyRegionsError, shows
 
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on

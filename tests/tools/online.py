@@ -14,8 +14,7 @@ from rvmon.verdicts.report import Report
 from tests.tools.compare import Key, Outcome, key_of
 from tests.tools.drive import Monitored, feed
 from tests.tools.forms import HeldBack
-from tests.tools.judgement import Judgement
-from tests.tools.waiting import Waiting, moments
+from tests.tools.judgement import Judgement, Waiting, moments
 
 
 def is_silent(monitor: Monitored) -> bool:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from statistics import median
 from typing import Any, ClassVar
@@ -11,6 +12,7 @@ from typing import Any, ClassVar
 import pytest
 
 from rvmon.errors import TimeOrderError
+from rvmon.monitor.monitor import Monitor
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile
@@ -35,11 +37,10 @@ from tests.tools.compare import differences
 from tests.tools.differential import campaign, cases_of
 from tests.tools.drive import drive
 from tests.tools.health import expected_health, health_differences
-from tests.tools.judgement import Judgement
+from tests.tools.judgement import Judgement, Moment
 from tests.tools.law import judge, word
 from tests.tools.online import differences_after_end, online_differences
 from tests.tools.shrink import shrink
-from tests.tools.waiting import Moment
 
 pytestmark = pytest.mark.law
 
@@ -68,36 +69,32 @@ class LateFailure(Right):
         return replace(report, attempts=tuple(attempts))
 
 
-class Silent(Right):
-    """Right in the end, but it tells nothing before."""
+class Stepping(Right):
+    """Does something else with a sample."""
+
+    step: ClassVar[Callable[[Monitor, int, Mapping[str, Value]], Sequence[Attempt]]]
 
     def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
-        self.monitor.step_ns(t_ns, values)
-        return []
+        return type(self).step(self.monitor, t_ns, values)
 
 
-class Repeating(Right):
-    """Tells everything twice."""
-
-    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
-        return [*self.monitor.step_ns(t_ns, values)] * 2
-
-
-class Broken(Right):
-    """Raises at every call."""
-
-    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
-        raise ZeroDivisionError(f"no {t_ns}")
+def _gullible(monitor: Monitor, t: int, values: Mapping[str, Value]) -> Sequence[Attempt]:
+    with suppress(TimeOrderError):
+        return monitor.step_ns(t, values)
+    return []
 
 
-class Gullible(Right):
-    """Takes samples that come too late."""
-
-    def step_ns(self, t_ns: int, values: Mapping[str, Value], /) -> Sequence[Attempt]:
-        try:
-            return self.monitor.step_ns(t_ns, values)
-        except TimeOrderError:
-            return []
+WRONG: Mapping[str, tuple[Callable[..., Sequence[Attempt]], str]] = {
+    "right": (lambda m, t, values: m.step_ns(t, values), ""),
+    "tells nothing": (lambda m, t, values: [*m.step_ns(t, values)][:0], "returned []"),
+    "tells all twice": (
+        lambda m, t, values: [*m.step_ns(t, values)] * 2,
+        "decides [('R1', False, 1)], returned [('R1', False, 1), ('R1', False, 1)]",
+    ),
+    "raises": (lambda *_: [1 // 0], "raised ZeroDivisionError: "),
+    "takes what is late": (_gullible, "and it was taken"),
+}
+"""What monitors do with a sample, and what is said of each."""
 
 
 class Showing(Right):
@@ -116,34 +113,28 @@ class Showing(Right):
         return self.due[0] if self.due else self.monitor.next_due
 
 
-def found_in(kind: type[Right], pairs: int = 30) -> Sequence[str]:
-    """The disagreements of a monitor with the oracle on random cases."""
-    engines = {"one": kind}
-    return campaign(
-        engines, range(pairs), Profile(), TraceProfile(), online_every=2, shrunk=1
+def test_wrong_monitors_are_found() -> None:
+    """What each does wrong is said; of one that is right nothing is."""
+    engines = {
+        name: type("Wrong", (Stepping,), {"step": staticmethod(step)})
+        for name, (step, _) in WRONG.items()
+    }
+    found = campaign(
+        engines, range(15), Profile(), TraceProfile(), online_every=1, shrunk=0
     ).disagreements
+    for name, (_, said) in WRONG.items():
+        own = [text for text in found if text.startswith(f"{name}, seed")]
+        assert any(said in text for text in own) if said else own == []
 
 
-@pytest.mark.parametrize(
-    ("kind", "said"),
-    [
-        (Right, ""),
-        (LateFailure, "shrunk:"),
-        (Silent, "returned []"),
-        (Repeating, "decides [('R1', False, 1)], returned [('R1', False, 1), ('R1', False, 1)]"),
-        (Broken, "raised ZeroDivisionError: no"),
-        (Gullible, "and it was taken"),
-    ],
-)
-def test_a_wrong_monitor_is_found(kind: type[Right], said: str) -> None:
-    """What it does wrong is said, in a case of a few lines; of one that is right nothing is."""
-    found = found_in(kind)
-    assert any(said in text for text in found) if said else found == []
-    if kind is LateFailure:
-        shown = found[0].split("shrunk:")[1]
-        assert "F" in shown
-        assert shown.count("sample ") <= 2
-        assert shown.count("requirement ") == 1
+def test_a_disagreement_is_shown_in_a_case_of_a_few_lines() -> None:
+    found = campaign(
+        {"late": LateFailure}, range(15), Profile(), TraceProfile(), online_every=0, shrunk=1
+    ).disagreements
+    shown = found[0].split("shrunk:")[1]
+    assert "F" in shown
+    assert shown.count("sample ") <= 2
+    assert shown.count("requirement ") == 1
 
 
 def test_what_is_open_and_due_is_compared() -> None:

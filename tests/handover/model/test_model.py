@@ -1,7 +1,7 @@
 """The handover network: the seed's queries, the claims on all runs, and what it cannot say."""
 
 import pytest
-from tests.tools.timed_runs import shows
+from tests.tools.timed_regions import shows
 
 from handover.model import handover_network
 from rvmon.errors import ModelError

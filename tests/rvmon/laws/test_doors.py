@@ -3,8 +3,7 @@
 from itertools import islice
 
 import pytest
-from tests.tools.lossy_doors import DOORS
-from tests.tools.lost import outcomes, trials
+from tests.tools.lossy_doors import DOORS, outcomes, trials
 
 pytestmark = pytest.mark.law
 RUNS = 30

@@ -11,8 +11,7 @@ from hypothesis import strategies as st
 from tests.rvmon.laws.tried import ONE, TRIED, judge, known_from_the_first
 from tests.tools.build import start
 from tests.tools.compare import outcomes
-from tests.tools.refill import refilled
-from tests.tools.sound import is_spoken_of
+from tests.tools.sound import is_spoken_of, refilled
 
 from rvmon.language.checked.specification import CheckedSpec, EndPolicy, Mode
 from rvmon.testing.strategies import specs, traces

@@ -1,7 +1,7 @@
 """Functions, records and whole arrays: what they compute, and what of them is refused."""
 
 import pytest
-from tests.tools.timed_runs import shows
+from tests.tools.timed_regions import shows
 
 from rvmon.errors import ModelError
 from rvmon.models.language.load import loads_network

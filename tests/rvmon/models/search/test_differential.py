@@ -3,8 +3,7 @@
 import pytest
 from tests.tools.timed_ctl import holds_at_start
 from tests.tools.timed_generate import random_model
-from tests.tools.timed_regions import TooManyRegionsError
-from tests.tools.timed_runs import shows
+from tests.tools.timed_regions import TooManyRegionsError, shows
 
 from rvmon.models.language.load import loads_network
 from rvmon.models.search.budget import Policy

@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from tests.tools.timed_runs import shows
+from tests.tools.timed_regions import shows
 
 from rvmon.models.language.load import load_network, loads_network
 from rvmon.models.search.budget import Policy
