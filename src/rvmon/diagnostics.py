@@ -272,14 +272,14 @@ def coloured(text: str) -> str:
     lines = []
     mark = ""
     for line in text.split("\n"):
-        if found := _HEADING.fullmatch(line):
-            mark = SEVERITIES[found[1]]
-            line = f"{BOLD}{mark}{found[1]}{found[2]}{RESET}{BOLD}: {found[3]}{RESET}"
-        elif found := _ARROW.fullmatch(line):
-            line = f"{BLUE}{found[1]}{RESET}{found[2]}"
-        elif found := _UNDERLINE.fullmatch(line):
-            own = mark if found[2][0] == "^" else BLUE
-            line = f"{BLUE}{found[1]}{RESET}{own}{found[2]}{found[3]}{RESET}"
+        if match := _HEADING.fullmatch(line):
+            mark = SEVERITIES[match[1]]
+            line = f"{BOLD}{mark}{match[1]}{match[2]}{RESET}{BOLD}: {match[3]}{RESET}"
+        elif match := _ARROW.fullmatch(line):
+            line = f"{BLUE}{match[1]}{RESET}{match[2]}"
+        elif match := _UNDERLINE.fullmatch(line):
+            own = mark if match[2][0] == "^" else BLUE
+            line = f"{BLUE}{match[1]}{RESET}{own}{match[2]}{match[3]}{RESET}"
         elif line.startswith("help:"):
             line = f"{CYAN}help:{RESET}{line.removeprefix('help:')}"
         lines.append(line)

@@ -179,13 +179,13 @@ def is_ours(path: Path) -> bool:
     Raises:
         OSError: there is none.
     """
-    found = path.stat()
-    if not (stat.S_ISREG(found.st_mode) or stat.S_ISDIR(found.st_mode)):
+    status = path.stat()
+    if not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)):
         return False
     if not hasattr(os, "getuid"):
         return True
-    owners = {found.st_uid, path.lstat().st_uid}  # of the file, and of a link to it
-    return owners == {os.getuid()} and not found.st_mode & 0o022
+    owners = {status.st_uid, path.lstat().st_uid}  # of the file, and of a link to it
+    return owners == {os.getuid()} and not status.st_mode & 0o022
 
 
 @cache

@@ -305,12 +305,14 @@ class ImportTree:
 
 def tree_of(directory: Path) -> ImportTree:
     """The tree of a main file in a folder: that of its project, else the folder itself."""
-    own = directory.resolve()
+    root = directory.resolve()
     marked = (
-        folder for folder in (own, *own.parents) if any((folder / mark).exists() for mark in _MARKS)
+        folder
+        for folder in (root, *root.parents)
+        if any((folder / mark).exists() for mark in _MARKS)
     )
     named = os.environ.get("RVMON_ALLOW_IMPORTS", "").split(os.pathsep)
-    return ImportTree(next(marked, own), tuple(Path(name).resolve() for name in named if name))
+    return ImportTree(next(marked, root), tuple(Path(name).resolve() for name in named if name))
 
 
 def shorten(text: str, width: int = 40) -> str:

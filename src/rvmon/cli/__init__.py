@@ -116,8 +116,8 @@ def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
                 code = namespace.run(namespace)
                 sys.stdout.flush()
     except RvmonError as error:
-        found = error.diagnostics if isinstance(error, DiagnosedError) else ()
-        text = rendered(found) if found else str(error)
+        findings = error.diagnostics if isinstance(error, DiagnosedError) else ()
+        text = rendered(findings) if findings else str(error)
         headed = text.startswith(("error", "warning"))  # diagnostics bring their own heading
         warn(text if headed else f"error: {text}")
         return 2

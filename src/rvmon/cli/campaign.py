@@ -121,15 +121,15 @@ def add_commands(
     first = ("all", "the first", "the test's", "the test's", "the first")
     for (name, parser), handler, robot in zip(parsers.items(), handlers, first, strict=True):
         parser.set_defaults(run=handler, campaign=campaign, command=name, again=())
-        own = (defaults or {}).get(name, {})
+        preset = (defaults or {}).get(name, {})
         metavar = "NAMES" if name == "run" else "NAME"
-        about = f"of {robots} (default: {own.get('robot', robot)})"
-        parser.add_argument("--robot", metavar=metavar, default=own.get("robot"), help=about)
+        about = f"of {robots} (default: {preset.get('robot', robot)})"
+        parser.add_argument("--robot", metavar=metavar, default=preset.get("robot"), help=about)
         if name not in ("replay", "shrink"):
-            drawn = own.get("strategy", "those of the campaign" if name == "close" else "all")
+            drawn = preset.get("strategy", "those of the campaign" if name == "close" else "all")
             about = f"of {strategies} (default: {drawn})"
             parser.add_argument(
-                "--strategy", metavar="NAMES", default=own.get("strategy"), help=about
+                "--strategy", metavar="NAMES", default=preset.get("strategy"), help=about
             )
     add_run_options(parsers["run"])
     add_closing_options(parsers["close"])

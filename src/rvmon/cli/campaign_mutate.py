@@ -36,18 +36,18 @@ MOST_LISTED = 10
 
 def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments: Namespace) -> int:
     """Play suites on mutants of a robot's code, show and keep the scores, return an exit code."""
-    found = _mutants(campaign, robot, arguments)
+    mutants = _mutants(campaign, robot, arguments)
     if arguments.list:
-        say(list_text([*found.code, *found.spec], held_out=arguments.held_out), end="")
+        say(list_text([*mutants.code, *mutants.spec], held_out=arguments.held_out), end="")
         return 0
     folder = output_folder(arguments.out) if arguments.out else None
-    report = _reported(campaign, robot, strategies, found, arguments)
+    report = _reported(campaign, robot, strategies, mutants, arguments)
     if arguments.format == "json":
         say_json(to_json(report.document()).decode().removesuffix("\n"))
     else:
         is_short = folder is not None or sys.stdout.isatty()
         say(report_text(report, most=MOST_LISTED if is_short else None))
-        say(f"{len(found.code) + len(found.spec)} mutants in {report.seconds:.1f} s.")
+        say(f"{len(mutants.code) + len(mutants.spec)} mutants in {report.seconds:.1f} s.")
     if folder is not None:
         write_whole(folder / "mutation.txt", report_text(report))
         write_whole(folder / "mutation.json", to_json(report.document()))
@@ -86,7 +86,7 @@ def _reported(
     campaign: Campaign,
     robot: str,
     strategies: Sequence[str],
-    found: _Mutants,
+    mutants: _Mutants,
     arguments: Namespace,
 ) -> MutationReport:
     jobs = arguments.jobs or os.cpu_count() or 1
@@ -96,22 +96,22 @@ def _reported(
     for name, tests in _suites(campaign, strategies, arguments).items():
         with bar(f"{name}: tests", len(tests)) as show:
             suite = record_suite(campaign, robot, tests, jobs=jobs, progress=show)
-        with bar(f"{name}: mutants", len(found.code)) as show:
+        with bar(f"{name}: mutants", len(mutants.code)) as show:
             tried = play_mutants(
                 suite,
-                found.code,
+                mutants.code,
                 jobs=jobs,
                 every=arguments.all,
-                keep=bool(found.spec),
+                keep=bool(mutants.spec),
                 progress=show,
             )
-        spec_tried = try_spec_mutants(spec, found.spec, {**suite.recorded, **failing_runs(tried)})
+        spec_tried = try_spec_mutants(spec, mutants.spec, {**suite.recorded, **failing_runs(tried)})
         suites[name] = SuiteTried(len(suite.tests), suite.left_out, tuple(tried), tuple(spec_tried))
     return MutationReport(
         campaign.name,
         campaign.robots[robot].title or robot,
         suites,
-        found.equivalent,
+        mutants.equivalent,
         readers(spec.checked),
         shows_held_out=arguments.held_out,
         seconds=time.perf_counter() - begun,

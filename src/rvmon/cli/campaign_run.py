@@ -133,6 +133,7 @@ def conduct(
         results = execute(chosen, jobs=jobs, kept=kept, progress=show, spool=spool)
     if kept is not None and kept.shard is not None and len(results.played) == planned:
         warn(f"{kept.path}: the same command without --shard joins what lies beside it")
+        # The folder is written by the command that joins the shards.
         return written(results, specs, None, arguments, again)
     conducted = written(results, specs, folder, arguments, again, spool)
     if texts is not None and results.cut_short:
@@ -278,20 +279,21 @@ def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
     # A folder that cannot be written to is reported before anything is played.
     folder = output_folder(arguments.out) if arguments.out else None
     with busy("shrinking"):
-        found = _smallest(campaign, job, requirement)
-    if found is None:
+        smallest = _smallest(campaign, job, requirement)
+    if smallest is None:
         why = f"{requirement} does not fail" if requirement else "no requirement fails"
         warn(f"{arguments.test}: {why}: there is nothing to shrink")
         return 1
-    small = regression_test(campaign, job, found)
+    small = regression_test(campaign, job, smallest)
     left = removed(job.test, small)
     say_json(to_json(small).decode().removesuffix("\n"))
-    if not found.is_minimal:
+    if not smallest.is_minimal:
         warn("it was ended early: an even smaller test may fail alike")
     if not job.test.removable:
         kind = type(job.test).__name__
         warn(f"`{kind}` names nothing in `removable`: only values can be simpler")
-    warn(f"{found.failure}: {left or 'values'}; {found.tried} tests in {found.seconds:.1f} s")
+    effort = f"{smallest.tried} tests in {smallest.seconds:.1f} s"
+    warn(f"{smallest.failure}: {left or 'values'}; {effort}")
     if folder is not None:
         for written in save_regression(campaign, small, folder):
             warn(f"written: {written}")

@@ -37,8 +37,8 @@ def run(arguments: argparse.Namespace) -> int:
             warn(f"error: {why}")
             unreadable += 1
             continue
-        checked, found = _checked(text, name, constants)
-        findings += found
+        checked, reported = _checked(text, name, constants)
+        findings += reported
         broken += checked is None
         remarks += [] if checked is None else memory_lines(checked)
         if arguments.binding is not None and checked is not None:
@@ -119,8 +119,8 @@ def _show(form: str, findings: list[Diagnostic]) -> None:
 def _summary(files: int, findings: list[Diagnostic]) -> str:
     errors = sum(finding.severity == "error" for finding in findings)
     counts = ((errors, "error"), (len(findings) - errors, "warning"))
-    found = ", ".join(counted(count, noun) for count, noun in counts if count)
-    return f"{counted(files, 'file')}: {found or 'nothing to report'}"
+    listed = ", ".join(counted(count, noun) for count, noun in counts if count)
+    return f"{counted(files, 'file')}: {listed or 'nothing to report'}"
 
 
 def memory_lines(spec: CheckedSpec) -> list[str]:

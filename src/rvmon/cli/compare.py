@@ -21,35 +21,35 @@ LISTED = 20
 def run(arguments: argparse.Namespace) -> int:
     """Read, compare, show, and return the exit code."""
     with busy("comparing verdicts"):
-        found = compare(read_results(arguments.before), read_results(arguments.after))
+        comparison = compare(read_results(arguments.before), read_results(arguments.after))
     if arguments.format == "json":
-        say_json(_json(found))
+        say_json(_json(comparison))
     else:
         from rvmon.report.terminal import Terminal
 
-        _print(found, Terminal(), None if arguments.all else LISTED)
-    return int(any(difference.change.is_loss for difference in found.differences))
+        _print(comparison, Terminal(), None if arguments.all else LISTED)
+    return int(any(difference.change.is_loss for difference in comparison.differences))
 
 
-def _json(found: Comparison) -> str:
+def _json(comparison: Comparison) -> str:
     import msgspec
 
-    return msgspec.json.encode(found).decode()
+    return msgspec.json.encode(comparison).decode()
 
 
-def _print(found: Comparison, console: Console, most: int | None) -> None:
-    for change, group in groupby(found.differences, key=lambda difference: difference.change):
+def _print(comparison: Comparison, console: Console, most: int | None) -> None:
+    for change, group in groupby(comparison.differences, key=lambda difference: difference.change):
         _print_kind(change, list(group), console, most)
-    failing = sum(map(len, found.failing.values()))
+    failing = sum(map(len, comparison.failing.values()))
     for names, where in (
-        (found.only_before, "only in the earlier"),
-        (found.only_after, "only in the later"),
+        (comparison.only_before, "only in the earlier"),
+        (comparison.only_after, "only in the later"),
     ):
         if names:
             rest = f" and {len(names) - 3:,} more" if len(names) > 3 else ""
             console.print(f"{where}: {', '.join(names[:3])}{rest}", style="dim", markup=False)
     fail = f", {failing:,} of them still fail" if failing else ""
-    console.print(f"{found.same:,} verdicts are as before{fail}")
+    console.print(f"{comparison.same:,} verdicts are as before{fail}")
 
 
 def _print_kind(

@@ -61,8 +61,8 @@ def run(arguments: argparse.Namespace) -> int:
             _verify(kept, arguments, differ, unchecked)
     except TamperedError as error:
         differ.append(str(error))
-    for heading, found in (("differs", differ), ("not checked", unchecked)):
-        for one in found:
+    for heading, facts in (("differs", differ), ("not checked", unchecked)):
+        for one in facts:
             say(f"{heading}: {one}")
     if differ:
         say("It does not hold.")
@@ -76,7 +76,7 @@ def _verify(
 ) -> None:
     about = kept.about
     say(f"{arguments.file}: {about.name}, evaluated by rvmon {about.rvmon}, law {about.law}")
-    there = set(kept.items)
+    intact = set(kept.items)
     for name, sha256 in _shown(about.recordings):
         if not is_recording(name):
             unchecked.append(f"{name} is not there")
@@ -84,7 +84,7 @@ def _verify(
             differ.append(f"{name} is not the recording that was evaluated")
         else:
             continue
-        there.discard(name)
+        intact.discard(name)
     if about.law != LAW:
         unchecked.append(f"verdicts, which are of law {about.law}: this rvmon has law {LAW}")
         return
@@ -105,8 +105,9 @@ def _verify(
         again = partial(played_again, campaign)
         if not programs_of(campaign).items() <= about.programs.items():
             say(f"{campaign.name} has changed since: its tests are played as it is now")
-    size = len(there) if arguments.sample is None else min(arguments.sample, len(there))
-    chosen = random.Random(arguments.seed).sample(sorted(there), size)  # noqa: S311 - no secret
+    size = len(intact) if arguments.sample is None else min(arguments.sample, len(intact))
+    chosen = random.Random(arguments.seed).sample(sorted(intact), size)  # noqa: S311 - no secret
+    # By way of CSV, as the kept rows came: both have lost the same in it.
     now = rows_by_item(csv_bytes(again(kept, chosen, arguments.jobs)))
     columns = [field for field in VerdictRow._fields if is_same or field not in ("reason", "error")]
     for item in chosen:
@@ -149,9 +150,9 @@ def _differences(
     item: str, before: Sequence[Row], now: Sequence[Row], columns: Sequence[str]
 ) -> Iterator[str]:
     """The changed verdicts of a recording or a test, a sentence for each attempt."""
-    was, found = _by_attempt(before), _by_attempt(now)
-    for name in {**was, **found}:
-        old, new = was.get(name), found.get(name)
+    was, current = _by_attempt(before), _by_attempt(now)
+    for name in {**was, **current}:
+        old, new = was.get(name), current.get(name)
         if old is None or new is None:
             yield f"{name} in {item} {'was not there before' if old is None else 'is gone'}"
             continue
@@ -186,12 +187,12 @@ def begun(
     Raises:
         RvmonError: evidence cannot be kept of it.
     """
-    found: dict[str, str] = {}
+    hashes: dict[str, str] = {}
     for trace in traces:
-        if not is_recording(trace) or shown_path(trace) in found:
+        if not is_recording(trace) or shown_path(trace) in hashes:
             raise RvmonError(f"--evidence: {trace}: name files that are there, each once")
-        found[shown_path(trace)] = sha256_of(*map(Path, files_of(trace)))
-    return *texts_of({"": arguments.spec}, arguments.binding), found
+        hashes[shown_path(trace)] = sha256_of(*map(Path, files_of(trace)))
+    return *texts_of({"": arguments.spec}, arguments.binding), hashes
 
 
 def write_run(

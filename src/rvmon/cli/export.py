@@ -100,8 +100,9 @@ def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
 
         from rvmon.analysis.hoa import automaton_json
 
-        found = [automaton_json(compiled, spec.checked) for compiled in chosen]
-        return shown_json(msgspec.json.format(msgspec.json.encode(found), indent=1).decode()) + "\n"
+        automata = [automaton_json(compiled, spec.checked) for compiled in chosen]
+        encoded = msgspec.json.format(msgspec.json.encode(automata), indent=1)
+        return f"{shown_json(encoded.decode())}\n"
     from rvmon.analysis.graph import graph_dot, graph_of
 
     texts = []

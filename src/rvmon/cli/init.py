@@ -80,10 +80,10 @@ def _write_campaign(folder: Path, *, force: bool) -> int:
     from rvmon.recordings.starter import campaign_files
 
     files = campaign_files()
-    there = [name for name in files if (folder / name).exists()]
-    if there and not force:
+    existing = [name for name in files if (folder / name).exists()]
+    if existing and not force:
         raise RvmonError(
-            f"error: {folder / there[0]} is there already: name another folder, or --force to "
+            f"error: {folder / existing[0]} is there already: name another folder, or --force to "
             "overwrite"
         )
     try:

@@ -113,16 +113,16 @@ def busy(what: str) -> AbstractContextManager[object]:
     return Terminal(stderr=True).status(what)
 
 
-def shown_while_reading(recording: FileRecording, found: Iterator[T]) -> Iterator[T]:
+def shown_while_reading(recording: FileRecording, parts: Iterator[T]) -> Iterator[T]:
     """The parts of a recording as they are read, with a progress bar.
 
     Args:
         recording: knows the progress.
-        found: its samples, or pieces of it with many rows each.
+        parts: its samples, or pieces of it with many rows each.
     """
     with bar(recording.path, 1.0) as show:
-        for one in found:
+        for one in parts:
             yield one
             if isinstance(one, Sample):
-                yield from islice(found, SAMPLES_PER_LOOK)
+                yield from islice(parts, SAMPLES_PER_LOOK)
             show(recording.fraction_read)

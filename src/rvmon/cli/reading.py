@@ -40,13 +40,13 @@ def with_values(words: Sequence[str]) -> list[str]:
     ['run', '--allow-missing=', 'a.rv', '--allow-missing=p']
     """
     optional = OPTIONAL_OF_COVER if words[:1] == ["cover"] else OPTIONAL_VALUES
-    made: list[str] = []
+    completed: list[str] = []
     for place, word in enumerate(words):
         if word == "--":
-            return [*made, *words[place:]]
+            return [*completed, *words[place:]]
         short = len(word) > 2 and any(name.startswith(word) for name in optional)
-        made.append(f"{word}=" if short else word)
-    return made
+        completed.append(f"{word}=" if short else word)
+    return completed
 
 
 def allowed_names(text: str | None) -> bool | tuple[str, ...]:
@@ -69,16 +69,16 @@ def mapped_names(texts: Sequence[str]) -> dict[str, str]:
     >>> mapped_names(["speed=Speed [m/s]"])
     {'speed': 'Speed [m/s]'}
     """
-    found: dict[str, str] = {}
+    columns: dict[str, str] = {}
     for text in texts:
         name, sign, column = text.partition("=")
         name = name.strip()
         if not name or not sign or not column:
             raise RvmonError(f"--map {text}: expected NAME=COLUMN, such as speed=v_mean")
-        if name in found:
+        if name in columns:
             raise RvmonError(f"--map {text}: `{name}` is mapped twice")
-        found[name] = column
-    return found
+        columns[name] = column
+    return columns
 
 
 def time_words(arguments: argparse.Namespace) -> list[str]:
@@ -168,13 +168,13 @@ def named_attempt(text: str, spec: Spec) -> tuple[str, str | None]:
         RvmonError: the text is no such name.
         UnknownNameError: there is no such requirement.
     """
-    found = re.fullmatch(r"(?P<name>[^#?]+)((?P<mark>[#?])(?P<number>\d{1,9}))?", text)
-    if found is None:
+    match = re.fullmatch(r"(?P<name>[^#?]+)((?P<mark>[#?])(?P<number>\d{1,9}))?", text)
+    if match is None:
         raise RvmonError(
             f"error: `{text}` names no attempt: write R1#3, R1?2 if its trigger is uncertain, or "
             "R1 for the first failed attempt"
         )
-    name, mark, number = found["name"], found["mark"], found["number"]
+    name, mark, number = match["name"], match["mark"], match["number"]
     from rvmon.language.checked.names_read import requirements_asked
 
     requirements_asked(spec.checked, [name])
@@ -200,8 +200,8 @@ def chosen_attempt(report: Report, name: str, exact: str | None) -> Attempt:
         if attempt.name == exact:
             return attempt
     first, last = attempts[0].name, attempts[-1].name
-    there = f"there are {first} to {last}" if last != first else f"there is {first} only"
-    raise UnknownNameError(f"error: no attempt {exact}: {there}")
+    listed = f"there are {first} to {last}" if last != first else f"there is {first} only"
+    raise UnknownNameError(f"error: no attempt {exact}: {listed}")
 
 
 def _most_telling(attempts: Sequence[Attempt]) -> Attempt:

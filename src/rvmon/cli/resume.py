@@ -107,14 +107,14 @@ def unfinished(
 
 
 def _entries(path: Path, heading: bytes) -> list[_Entry]:
-    found = journal.entries(path)
-    if found and found[0] != heading:
+    lines = journal.entries(path)
+    if lines and lines[0] != heading:
         raise RvmonError(
             f"{path} was begun with another specification, other options or another rvmon: "
             "leave out --resume to start again"
         )
     try:
-        return [msgspec.json.decode(entry, type=_Entry) for entry in (found or [])[1:]]
+        return [msgspec.json.decode(entry, type=_Entry) for entry in (lines or [])[1:]]
     except msgspec.MsgspecError:
         raise RvmonError(f"{path} is no unfinished run: leave out --resume") from None
 
@@ -154,12 +154,12 @@ def _stamp(trace: str) -> tuple[int, int] | None:
     """Size and time of the files of a recording; `None` if there are none."""
     try:
         files = list(os.scandir(trace)) if form_of_folder(trace) else [Path(trace)]
-        found = [file.stat() for file in [*files, *map(Path, databases_beside(trace))]]
+        statuses = [file.stat() for file in [*files, *map(Path, databases_beside(trace))]]
     except (OSError, ValueError):
         return None
     # A file may be given any time of change; that of its place on the disk is the system's.
-    changed = max(max(one.st_mtime_ns, one.st_ctime_ns) for one in found)
-    return sum(one.st_size for one in found), changed
+    changed = max(max(one.st_mtime_ns, one.st_ctime_ns) for one in statuses)
+    return sum(one.st_size for one in statuses), changed
 
 
 def _heading(spec: Spec, options: Options, reading: Sequence[str]) -> bytes:

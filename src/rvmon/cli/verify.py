@@ -68,42 +68,43 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
     in_words = arguments.format == "text"
     failed = False
     with _shown() as watch:
-        for asked, query in chosen_queries(network, arguments.query):
+        for extended, query in chosen_queries(network, arguments.query):
             match query.formula:
                 case Chance() | Mean():
                     going = Meter(budget, watch).goes_on
-                    one = sample(asked, query, seed=arguments.seed, watch=going)
+                    one = sample(extended, query, seed=arguments.seed, watch=going)
                     failed |= bool(one.margin) and not one.holds
                     data["simulated"].append(sampled_data(one))
                     if in_words:
                         _print_sampled(one)
                 case Simulation():
                     going = Meter(budget, watch).goes_on
-                    drawn = trajectories(asked, query, seed=arguments.seed, watch=going)
+                    drawn = trajectories(extended, query, seed=arguments.seed, watch=going)
                     data["simulated"].append(simulation_data(query, drawn))
                     if in_words:
                         _print_query(query, "simulated")
                         for number, run in enumerate(drawn, start=1):
                             say(f"    run {number}:")
-                            for line in trajectory_lines(asked, query, run):
+                            for line in trajectory_lines(extended, query, run):
                                 say(f"      {line}")
                         say(flush=True)
                 case Extremes():
-                    found = list(extremes(asked, query, budget=budget, watch=watch))
-                    failed |= not all(extreme.exact for extreme in found)
-                    data["extremes"] += [extreme_data(asked, extreme) for extreme in found]
+                    values = list(extremes(extended, query, budget=budget, watch=watch))
+                    failed |= not all(extreme.exact for extreme in values)
+                    data["extremes"] += [extreme_data(extended, extreme) for extreme in values]
                     if in_words:
-                        _print_extremes(asked, found)
+                        _print_extremes(extended, values)
                 case _:
                     policy = Policy(arguments.trace)
-                    outcome = verify(asked, query, budget=budget, watch=watch, policy=policy)
+                    outcome = verify(extended, query, budget=budget, watch=watch, policy=policy)
                     failed |= not outcome.holds
-                    data["queries"].append(outcome_data(asked, outcome))
+                    data["queries"].append(outcome_data(extended, outcome))
                     if in_words:
-                        _print_outcome(asked, outcome)
+                        _print_outcome(extended, outcome)
     if not in_words:
         always = {"queries": data.pop("queries")}
-        say_json(json.dumps(always | {key: some for key, some in data.items() if some}, indent=2))
+        others = {key: results for key, results in data.items() if results}
+        say_json(json.dumps(always | others, indent=2))
     return int(failed)
 
 
@@ -141,11 +142,11 @@ def _print_outcome(network: Network, outcome: Outcome) -> None:
     say(flush=True)
 
 
-def _print_extremes(network: Network, found: Sequence[Extreme]) -> None:
+def _print_extremes(network: Network, values: Sequence[Extreme]) -> None:
     _print_query(
-        found[0].query, "answered" if all(extreme.exact for extreme in found) else "not decided"
+        values[0].query, "answered" if all(extreme.exact for extreme in values) else "not decided"
     )
-    for extreme in found:
+    for extreme in values:
         statistics = extreme.statistics
         say(f"    {extreme_text(extreme)}")
         say(f"    {statistics.visited:,} states, {statistics.seconds:.2f} s")
@@ -287,6 +288,7 @@ def _timeline(observation: Observation, shown: Run, spec: Spec) -> list[str]:
             if name in names and (name not in signals or last.get(name) != value)
         }
         last.update(values)
+        # The first sample is the start of the run, also if nothing happens in it.
         if values or not samples:
             samples.append(Sample(record.t, values))
     monitor = spec.monitor(only=[observation.requirement])

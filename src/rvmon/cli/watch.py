@@ -291,10 +291,10 @@ def _is_recording(path: str) -> bool:
 def _age(path: str) -> tuple[int, int] | None:
     """Time and size of a file, which change when it is written; `None` while there is none."""
     try:
-        found = os.stat(path)
+        status = os.stat(path)
     except OSError:
         return None
-    return found.st_mtime_ns, found.st_ino
+    return status.st_mtime_ns, status.st_ino
 
 
 def _opened(arguments: argparse.Namespace) -> FileIO:

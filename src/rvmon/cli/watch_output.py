@@ -61,6 +61,8 @@ class Output(logging.Handler):
 
     def __enter__(self) -> Output:
         self._log.addHandler(self)
+        # The root's handlers would print each line once more; the parent, of verdicts, has none:
+        # without a handler Python prints warnings itself.
         self._log.propagate = False
         logging.getLogger("rvmon.live").addHandler(logging.NullHandler())
         return self
@@ -193,8 +195,8 @@ def tables(driver: Driver, height: int | None = None) -> RenderableType:
         driver: of the robots.
         height: the number of lines; requirements that do not fit are counted. `None`: all.
     """
-    found = driver.status(most_open=_MOST_OPEN)
-    robots = sorted(found.values(), key=lambda status: _need(fold(status.verdicts.values())))
+    statuses = driver.status(most_open=_MOST_OPEN)
+    robots = sorted(statuses.values(), key=lambda status: _need(fold(status.verdicts.values())))
     requirements = len(driver.spec.requirements)
     most, rows = _SHOWN_ROBOTS, requirements
     if height is not None:
@@ -326,6 +328,7 @@ def watch_kept(
     except KeyboardInterrupt:
         warn("ended; the same command continues the run")
     # Also what earlier processes of the run lost; what it goes on to is not known yet.
+    # A copy is ended: the run itself may go on.
     at_end = spec.restore(monitor.monitor.snapshot()).finish_ns()
     lost = [health for health in at_end.health if health.kind in _LOSSES and health.requirements]
     for names, fact in health_facts(lost, at_end.origin):

@@ -61,8 +61,8 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     until = recording.end if arguments.until is None else ticks_of_seconds(arguments.until)
     pieces: list[Batch | Sample] = []
 
-    def kept(found: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
-        for piece in shown_while_reading(recording, iter(found)):
+    def kept(parts: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
+        for piece in shown_while_reading(recording, iter(parts)):
             pieces.append(piece)
             yield piece
 
@@ -113,8 +113,10 @@ def _window_values(
     if not windows:
         return {}
     instants = sorted({attempt.triggered, attempt.decided})
-    asked = [(t, window) for window in windows for t in instants]
-    run = WindowValues(checked, asked, report.origin, Trace((), names, report.end, samples.outages))
+    questions = [(t, window) for window in windows for t in instants]
+    run = WindowValues(
+        checked, questions, report.origin, Trace((), names, report.end, samples.outages)
+    )
     for piece in samples.pieces:
         run.take(piece)
     values = run.values()

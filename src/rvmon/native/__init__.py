@@ -29,14 +29,14 @@ def extension(name: str, folder: str, called: str) -> ModuleType:
     """
     module = f"rvmon.native.{name}"
     try:
-        found = import_module(module)
+        imported = import_module(module)
     except ModuleNotFoundError as error:
         if error.name != module:
             raise
         raise CoreError(f"{called} is not built ({folder}): {_MEND}") from None
-    if found.source_hash != (source_hash(folder) or found.source_hash):
+    if imported.source_hash != (source_hash(folder) or imported.source_hash):
         raise CoreError(f"{called} is older than its sources in {folder}: {_MEND}")
-    return found
+    return imported
 
 
 if TYPE_CHECKING:

@@ -47,8 +47,8 @@ def proposals(names: Names, place: Span) -> tuple[Span, dict[str, str]]:
     items = split_items(before)
     item = before[items[-1][0] :] if items else ""
     alone = not before[before.rfind("\n") + 1 :].strip()
-    found = dict(_found(names, item, alone=alone))
-    return Span(place.source, start, place.start), found
+    completions = dict(_found(names, item, alone=alone))
+    return Span(place.source, start, place.start), completions
 
 
 def _found(names: Names, item: str, *, alone: bool) -> Iterator[tuple[str, str]]:
@@ -58,6 +58,7 @@ def _found(names: Names, item: str, *, alone: bool) -> Iterator[tuple[str, str]]
         yield from ((label.span.text, "label") for label in type_.labels)
         return
     yield from _units(item)
+    # The item is wrong before this place: nobody knows what may follow.
     if not read:
         accepted = {terminal.name for terminal in grammar().terminals}
     if {"NAME", "NUMBER"} <= accepted:
@@ -85,7 +86,7 @@ def _units(item: str) -> Iterator[tuple[str, str]]:
 def _operands(names: Names, item: str, *, formulas: bool) -> Iterator[tuple[str, str]]:
     """Names that a formula, or else a duration, may have in it."""
     for name, parameters in _OWN.findall(item):
-        yield from ((own.strip(), "name") for own in (name or parameters).split(","))
+        yield from ((local.strip(), "name") for local in (name or parameters).split(","))
     if item.startswith("cross"):
         yield from _coverpoints(names)
         return
@@ -115,8 +116,8 @@ def _coverpoints(names: Names) -> Iterator[tuple[str, str]]:
 
 def hover(names: Names, checked: CheckedSpec | None, place: Span) -> tuple[Span, str] | None:
     """The word at a place and what it means; `None` if that is nothing."""
-    if found := names.at(place):
-        return found[0], _about(names, checked, found[1])
+    if use := names.at(place):
+        return use[0], _about(names, checked, use[1])
     word = about_word(place)
     return word if word and word[1] else None
 
@@ -124,12 +125,16 @@ def hover(names: Names, checked: CheckedSpec | None, place: Span) -> tuple[Span,
 def _about(names: Names, checked: CheckedSpec | None, name: Ident) -> str:
     """A requirement in words; of all else how it is declared: type, unit, role, staleness."""
     item = names.item_at(name.span)
-    own = checked.requirements.get(name.text) if checked else None
-    if own is not None and isinstance(item, RequirementItem) and name is item.name:
-        kept = {"source": own.source, "rationale": own.rationale, "severity": own.severity}
+    requirement = checked.requirements.get(name.text) if checked else None
+    if requirement is not None and isinstance(item, RequirementItem) and name is item.name:
+        kept = {
+            "source": requirement.source,
+            "rationale": requirement.rationale,
+            "severity": requirement.severity,
+        }
         clauses = [f"*{word}*: {text}" for word, text in kept.items() if text]
-        words = "  \n".join(requirement_in_words(own))
-        return "\n\n".join([f"**{own.id}** {own.text}", words, *clauses])
+        words = "  \n".join(requirement_in_words(requirement))
+        return "\n\n".join([f"**{requirement.id}** {requirement.text}", words, *clauses])
     clauses_ = item.clauses if isinstance(item, RequirementItem) else ()
     spans = (clause.span for clause in clauses_)
     whole = item.span if item else name.span

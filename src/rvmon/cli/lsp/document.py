@@ -166,12 +166,12 @@ class Document:
     @cached_property
     def diagnostics(self) -> dict[str, list[lsp.Diagnostic]]:
         """The findings, by the address of their file."""
-        found: dict[str, list[lsp.Diagnostic]] = {self.uri: []}
+        by_address: dict[str, list[lsp.Diagnostic]] = {self.uri: []}
         for finding in self.compiled.findings:
             spans = finding.spans
             place = self.location(spans[0].span if spans else Span(self.source, 0, 0))
-            found.setdefault(place.uri, []).append(self._diagnostic(finding, place.range))
-        return found
+            by_address.setdefault(place.uri, []).append(self._diagnostic(finding, place.range))
+        return by_address
 
     def _diagnostic(self, finding: Diagnostic, where: lsp.Range) -> lsp.Diagnostic:
         help_ = f"\nhelp: {finding.help}" if finding.help else ""
@@ -242,13 +242,13 @@ class Document:
                 s for s in sources if s.name == file or str(Path(s.name).parent) == item.target
             )
             return [self.location(Span(source, 0, 0)) for source in meant]
-        found = self.names.at(place)
-        return [self.location(found[1].span)] if found else []
+        use = self.names.at(place)
+        return [self.location(use[1].span)] if use else []
 
     def key(self, position: lsp.Position) -> Key | None:
         """The declaration that the name at a position stands for."""
-        found = self.names.at(self.place(position))
-        return _key(found[1]) if found else None
+        use = self.names.at(self.place(position))
+        return _key(use[1]) if use else None
 
     def uses(self, key: Key) -> Iterator[Span]:
         """All places of the names that stand for a declaration."""
@@ -256,8 +256,8 @@ class Document:
 
 
 def _badness(compiled: Compilation) -> tuple[int, int]:
-    found = compiled.findings
-    return sum(diagnostic.severity is Severity.ERROR for diagnostic in found), len(found)
+    findings = compiled.findings
+    return sum(diagnostic.severity is Severity.ERROR for diagnostic in findings), len(findings)
 
 
 @cache

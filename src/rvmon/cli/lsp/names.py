@@ -114,10 +114,10 @@ def about_word(place: Span) -> tuple[Span, str] | None:
     text = place.source.text
     first = text.rfind("\n", 0, place.start) + 1
     stop = text.find("\n", place.start)
-    for found in _word().finditer(text, first, len(text) if stop < 0 else stop):
-        if found.lastgroup and found.start() <= place.start <= found.end():
-            word = " ".join(found[0].split())
-            return Span(place.source, *found.span()), meanings().get(word, "")
+    for match in _word().finditer(text, first, len(text) if stop < 0 else stop):
+        if match.lastgroup and match.start() <= place.start <= match.end():
+            word = " ".join(match[0].split())
+            return Span(place.source, *match.span()), meanings().get(word, "")
     return None
 
 
@@ -197,9 +197,9 @@ class Names:
     def of(self, item: Item) -> Iterator[Use]:
         """Every place of a name in an item."""
         nodes = list(_nodes(item))
-        own = _own(item)
+        local = _own(item)
         labels = {id(name) for node in nodes for name in self._labels(node)}
-        places = {id(name) for name in own.values()}
+        places = {id(name) for name in local.values()}
         for node in nodes:
             match node:
                 case Ident() if id(node) in places or id(node) in self.owners:
@@ -210,8 +210,8 @@ class Names:
                     yield from (
                         (p.span, self.goals[p.text]) for p in points if p.text in self.goals
                     )
-                case Name(text=text) if text in own:
-                    yield node.span, own[text]
+                case Name(text=text) if text in local:
+                    yield node.span, local[text]
                 case Name(text=text) if isinstance(item, CrossItem):
                     if text in self.goals:
                         yield node.span, self.goals[text]
@@ -254,8 +254,8 @@ def _own(item: Item) -> dict[str, Ident]:
         case DefineItem(parameters=parameters):
             return {name.text: name for name in parameters or ()}
         case RequirementItem(clauses=clauses):
-            own = [c.name for c in clauses if isinstance(c, LetClause | ForEachClause)]
-            return {name.text: name for name in own}
+            names = [c.name for c in clauses if isinstance(c, LetClause | ForEachClause)]
+            return {name.text: name for name in names}
         case _:
             return {}
 

@@ -88,6 +88,7 @@ class Server(LanguageServer):
         for other, document in [*self._documents.items()]:
             if other not in self.texts or (other != uri and "import" in document.source.text):
                 del self._documents[other]
+        # Only typing comes in quick succession.
         delay = 0 if uri not in self._sent or text is None else QUIET
         asyncio.get_running_loop().call_later(delay, self._publish_unless_changed, uri, text)
 
@@ -99,23 +100,23 @@ class Server(LanguageServer):
         """Send what is found now; of files that are not open, too, if an open one imports them."""
         documents = [self.document(uri) for uri in self.texts]
         opened = {to_fs_path(uri) for uri in self.texts}
-        found = {
+        findings = {
             document.uri: (document, document.diagnostics[document.uri]) for document in documents
         }
         for document in documents:
             for uri, elsewhere in document.diagnostics.items():
                 if to_fs_path(uri) not in opened:
-                    found.setdefault(uri, (document, elsewhere))
-        for uri in self._sent.keys() - found.keys():
+                    findings.setdefault(uri, (document, elsewhere))
+        for uri in self._sent.keys() - findings.keys():
             del self._sent[uri]
             self._send(uri, [])
-        for uri, (document, diagnostics) in found.items():
+        for uri, (document, diagnostics) in findings.items():
             if self._sent.get(uri) is not document:
                 self._sent[uri] = document
                 self._send(uri, diagnostics)
 
-    def _send(self, uri: str, found: list[lsp.Diagnostic]) -> None:
-        self.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, found))
+    def _send(self, uri: str, diagnostics: list[lsp.Diagnostic]) -> None:
+        self.text_document_publish_diagnostics(lsp.PublishDiagnosticsParams(uri, diagnostics))
 
 
 def _opened(server: Server, params: lsp.DidOpenTextDocumentParams) -> None:
@@ -143,11 +144,11 @@ def _closed(server: Server, params: lsp.DidCloseTextDocumentParams) -> None:
 
 def _hover(server: Server, params: lsp.HoverParams) -> lsp.Hover | None:
     document = server.document(params.text_document.uri)
-    found = hover(document.names, document.compiled.checked, document.place(params.position))
-    if found is None:
+    word = hover(document.names, document.compiled.checked, document.place(params.position))
+    if word is None:
         return None
-    content = lsp.MarkupContent(lsp.MarkupKind.Markdown, found[1])
-    return lsp.Hover(content, document.location(found[0]).range)
+    content = lsp.MarkupContent(lsp.MarkupKind.Markdown, word[1])
+    return lsp.Hover(content, document.location(word[0]).range)
 
 
 def _definition(server: Server, params: lsp.DefinitionParams) -> list[lsp.Location]:
@@ -206,7 +207,7 @@ def _completion(server: Server, params: lsp.CompletionParams) -> list[lsp.Comple
     text = server.texts[uri]
     offset = text.offset(params.position)
     place = Span(Source(uri, text.code), offset, offset)
-    word, found = proposals(server.latest(uri).names, place)
+    word, completions = proposals(server.latest(uri).names, place)
     where = text.range(word.start, word.end)
     return [
         lsp.CompletionItem(
@@ -215,7 +216,7 @@ def _completion(server: Server, params: lsp.CompletionParams) -> list[lsp.Comple
             documentation=meanings().get(proposal.removesuffix("(")) if kind != "name" else None,
             text_edit=lsp.TextEdit(where, proposal),
         )
-        for proposal, kind in found.items()
+        for proposal, kind in completions.items()
     ]
 
 
