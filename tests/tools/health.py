@@ -9,7 +9,7 @@ from itertools import pairwise
 from rvmon.language.checked.formula import BoundAtom, Constant, Literal, Passed
 from rvmon.language.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.testing.generate.trace import Case
-from rvmon.testing.law.sample_words import heard
+from rvmon.testing.law.sample_words import without_ignored
 from rvmon.testing.law.syntax import subformulas
 from rvmon.testing.law.word import Word
 from rvmon.trace.sample import Health, HealthKind, Value
@@ -18,7 +18,7 @@ from tests.tools.law import names_read
 
 def expected_health(case: Case, word: Word) -> list[Health]:
     """The findings on the inputs of a case, without remarks."""
-    case = replace(case, actions=tuple(heard(case.spec, case.samples)))
+    case = replace(case, actions=tuple(without_ignored(case.spec, case.samples)))
     readers = readers_of(case.spec)
     found = [*_unknown(case), *_stale(case, word), *_unfed(case, readers)]
     return [

@@ -1,8 +1,8 @@
-"""The reference oracle: the law of SEMANTICS.md in its slow, obvious, executable form.
+"""The reference oracle: the semantics in slow, obvious, executable form.
 
-Every position is explicit, every truth is computed by recursion from its definition, and the
-instant of a decision is found by trying every instant in turn. Engines are tested against it; it
-shares no code with them. Traces have to be short: every tick of held time is a position.
+Every position is explicit, every truth is computed recursively from its definition, and the instant
+of a decision is found by trying every instant in turn. The core is tested against the oracle, which
+shares no code with it. Traces have to be short: every tick of held time is a position.
 """
 
 from __future__ import annotations
@@ -24,11 +24,11 @@ from rvmon.verdicts.report import Report, report_of
 
 
 class HasChecked(Protocol):
-    """A public spec: it carries the checked one."""
+    """A public specification (`rvmon.Spec`): it has the checked one."""
 
     @property
     def checked(self) -> CheckedSpec:
-        """Names, types, units and formulas, settled."""
+        """The checked specification."""
 
 
 def evaluate(
@@ -40,13 +40,13 @@ def evaluate(
     names: frozenset[str] | None = None,
     outages: Iterable[Outage] = (),
 ) -> Report:
-    """Judge a trace by the definitions.
+    """Judge a trace by the definitions of the semantics.
 
     Args:
         spec: checked, or the public `Spec`.
         samples: a trace, or samples or pairs `(ticks, values)` with strictly increasing times.
         end: the instant given to `finish`, ticks; default the trace's own, if it has one.
-        advances: the instants given to `advance`, ticks, in whatever order fits the samples.
+        advances: the instants given to `advance`, ticks, in an order that fits the samples.
         names: the names that have a source; default the trace's own, else all.
         outages: the outages, in any order.
 
@@ -55,11 +55,10 @@ def evaluate(
 
     Raises:
         TimeOrderError: the times do not increase.
-        TraceError: the trace is too long to be laid out tick by tick, a sample holds a name
-            without a source, or two payloads of an event though not every requirement is a `for
-            each`.
+        TraceError: the trace is too long to be laid out tick by tick; a sample holds a name
+            without a source, or two payloads of an event while some requirement has no `for each`.
 
-    Cost: without bound on purpose; some milliseconds for a dozen samples within forty ticks.
+    Cost: unbounded, on purpose; some milliseconds for a dozen samples within forty ticks.
 
     Source: SEMANTICS, sections 1 to 3 and 5; decision records 1 and 4.
     """
@@ -84,7 +83,7 @@ def judge_views(spec: CheckedSpec, word: Word, samples: Sequence[Sample]) -> dic
     """The attempts of each requirement on a word, judged.
 
     Raises:
-        TraceError: two payloads of an event, though not every requirement is a `for each`.
+        TraceError: two payloads of an event while some requirement has no `for each`.
         RvmonError: a requirement's `pulse` is not what its trigger's syntax says.
     """
     _refuse_double_payloads(spec.requirements.values(), samples)
@@ -94,7 +93,7 @@ def judge_views(spec: CheckedSpec, word: Word, samples: Sequence[Sample]) -> dic
 def report_on(
     spec: CheckedSpec, followings: Mapping[str, Followings], *, origin: int, end: int | None
 ) -> Report:
-    """The report on attempts that were followed to the end of the trace."""
+    """The report of attempts that were followed to the end of the trace."""
     attempts = [
         record
         for following in followings.values()
@@ -108,7 +107,7 @@ def report_on(
 
 
 def _record(followed: Followed, origin: int) -> Attempt | None:
-    """The record of an attempt; of one in doubt whose obligation was met there is none."""
+    """The record of an attempt; `None` for an attempt in doubt whose obligation was met."""
     start = followed.start
     requirement = start.view.requirement
     triggered = start.triggered

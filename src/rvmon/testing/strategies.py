@@ -1,6 +1,6 @@
-"""Hypothesis strategies: the random specs and traces of this package, drawn so that they shrink.
+"""Hypothesis strategies for random specifications and traces, which shrink.
 
-Needs `hypothesis`, which rvmon itself does not install.
+Needs `hypothesis`, which rvmon does not install.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ _ANY_FORMULA = Shape()
 
 
 class _Drawn:
-    """Rng that Hypothesis throws."""
+    """An `Rng` that draws from Hypothesis."""
 
     def __init__(self, draw: Callable[[st.SearchStrategy[int]], int]) -> None:
         self._draw = draw
@@ -39,8 +39,8 @@ def formulas(draw: st.DrawFn, shape: Shape = _ANY_FORMULA, *, depth: int = 3) ->
 
     Args:
         draw: given by Hypothesis.
-        shape: their limits.
-        depth: the greatest nesting of their operators.
+        shape: the limits of the formulas.
+        depth: the greatest nesting of operators.
     """
     return formula(_Drawn(draw), shape, draw(st.integers(0, depth)))
 
@@ -51,20 +51,20 @@ def specs(draw: st.DrawFn, profile: Profile = _ANY_SPEC) -> CheckedSpec:
 
     Args:
         draw: given by Hypothesis.
-        profile: their limits.
+        profile: the limits of the specifications.
     """
     return random_spec(_Drawn(draw), profile)
 
 
 @st.composite
 def traces(draw: st.DrawFn, spec: CheckedSpec, profile: TraceProfile = _ANY_TRACE) -> Case:
-    """Traces for a specification of yours, biased to its bounds and thresholds.
+    """Traces for a given specification, biased to its bounds and thresholds.
 
     Args:
         draw: given by Hypothesis.
-        spec: the checked specification (`Spec.checked`); its bounds should be a few ticks if the
-            oracle is to judge.
-        profile: their limits.
+        spec: the checked specification (`Spec.checked`); for the oracle its bounds should be a few
+            ticks.
+        profile: the limits of the traces.
     """
     return _noted(random_trace(_Drawn(draw), spec, profile))
 
@@ -73,18 +73,18 @@ def traces(draw: st.DrawFn, spec: CheckedSpec, profile: TraceProfile = _ANY_TRAC
 def cases(
     draw: st.DrawFn, profile: Profile = _ANY_SPEC, trace_profile: TraceProfile = _ANY_TRACE
 ) -> Case:
-    """Specifications with a trace each.
+    """Specifications, each with a trace.
 
     Args:
         draw: given by Hypothesis.
-        profile: of the specs.
-        trace_profile: of the traces.
+        profile: the limits of the specifications.
+        trace_profile: the limits of the traces.
     """
     rng = _Drawn(draw)
     return _noted(random_trace(rng, random_spec(rng, profile), trace_profile))
 
 
 def _noted(case: Case) -> Case:
-    """The case itself; a failing test shows it as text."""
+    """The case; a failing test shows it as text."""
     note(show_case(case))
     return case

@@ -1,6 +1,6 @@
-"""Random formulas, specifications and traces, biased towards what monitors get wrong.
+"""Random formulas, specifications and traces, biased towards cases that monitors get wrong.
 
-Here are the random choices, and the names that test specifications use.
+This module has the random choices, and the names that random specifications declare.
 """
 
 from __future__ import annotations
@@ -18,21 +18,21 @@ class Rng(Protocol):
     """A source of integers; `random.Random` is one."""
 
     def randint(self, a: int, b: int, /) -> int:
-        """An integer from `a` to `b`, both included; the least is the simplest."""
+        """An integer from `a` to `b`, both included; `a` is the simplest."""
 
 
 def chance(rng: Rng, percent: int) -> bool:
-    """True in so many cases of a hundred; false is the simpler."""
+    """True with a probability in per cent; false is the simplest."""
     return rng.randint(1, 100) > 100 - percent
 
 
 def pick(rng: Rng, options: Sequence[T]) -> T:
-    """One of the options, each as likely; the first is the simplest."""
+    """One of the options, all equally likely; the first is the simplest."""
     return options[rng.randint(0, len(options) - 1)]
 
 
 def weighted(rng: Rng, options: Sequence[tuple[int, T]]) -> T:
-    """One of the options, as likely as its weight says; the first is the simplest."""
+    """One of the options, in proportion to their weights; the first is the simplest."""
     rest = rng.randint(0, sum(weight for weight, _ in options) - 1)
     for weight, option in options:
         if rest < weight:
@@ -43,7 +43,7 @@ def weighted(rng: Rng, options: Sequence[tuple[int, T]]) -> T:
 
 BOOLS = ("p", "q", "r")
 NUMBERS = ("x", "y")
-"""A real number and a whole one."""
+"""A real signal and an integer one."""
 LABEL = "mode"
 LABELS = ("red", "green", "blue")
 EVENTS = ("e", "f")
@@ -54,13 +54,13 @@ FURTHER = "h"
 """Another event with a payload."""
 SIZE = "m"
 WIDE = (-(2**63), -(2**53) - 1, 0, 2**53, 2**53 + 1, 2**62, 2**63 - 1)
-"""Whole numbers that doubles do not tell from their neighbours, but for 0."""
+"""Whole numbers that a double cannot tell from their neighbours, and 0."""
 
 
 def signals(
     stale: Mapping[str, int] | None = None, ignoring: Container[str] = ()
 ) -> dict[str, Signal]:
-    """The signals.
+    """The declared signals.
 
     Args:
         stale: the signals that are `stale after` a number of ticks.
@@ -79,6 +79,6 @@ def signals(
 
 
 def events() -> dict[str, Event]:
-    """The events."""
+    """The declared events."""
     fields = {CARRIER: {FIELD: Type(Kind.INT)}, FURTHER: {SIZE: Type(Kind.REAL)}}
     return {name: Event(name, fields.get(name, {})) for name in (*EVENTS, CARRIER, FURTHER)}

@@ -39,7 +39,7 @@ from rvmon.testing.generate.numbers import (
 
 
 def interval(rng: Rng, shape: Shape, *, from_zero: bool = False) -> Interval:
-    """A random interval: bounded or not, from zero or later, a point or more."""
+    """A random interval: bounded or unbounded, from zero or later, a single tick or longer."""
     low = 0 if from_zero or chance(rng, 55) else rng.randint(1, shape.longest // 2)
     if chance(rng, 25):
         return Interval(low, None)
@@ -88,7 +88,7 @@ _LIKELY: dict[UnaryOp | BinaryOp, int] = {
     UnaryOp.ONCE: 3,
     UnaryOp.HISTORICALLY: 3,
 }
-"""The weight of an operator among those of its kind, if not 2."""
+"""The weight of an operator among those of its kind; default 2."""
 
 _STEPS = (UnaryOp.NOT, UnaryOp.NEXT, UnaryOp.PREVIOUS)
 
@@ -99,7 +99,7 @@ def _unary_of(tense: Tense) -> tuple[tuple[int, UnaryOp], ...]:
 
 
 def consequent(rng: Rng, shape: Shape, depth: int) -> Formula:
-    """A random formula that mostly speaks of the future at its top."""
+    """A random formula, mostly with a future operator at its top."""
     if shape.future and chance(rng, 50):
         return (_future_unary if chance(rng, 50) else _future_binary)(rng, shape, depth)
     return formula(rng, shape, depth)
@@ -175,7 +175,7 @@ def _binary(rng: Rng, shape: Shape, depth: int, tense: Tense) -> Formula:
 
 
 def past_unary(rng: Rng, shape: Shape, depth: int) -> Formula:
-    """A random unary past operator over a formula one less deep."""
+    """A random unary past operator over a formula of depth `depth - 1`."""
     op = weighted(rng, _unary_of(Tense.PAST))
     operand = formula(rng, shape, depth - 1)
     match op.entry.window:

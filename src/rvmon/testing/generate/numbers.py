@@ -1,4 +1,4 @@
-"""Random numbers, comparisons and windows of the past beside a limit, over a small vocabulary."""
+"""Random numeric expressions, comparisons and measures of windows, over a small vocabulary."""
 
 from __future__ import annotations
 
@@ -62,12 +62,12 @@ class Shape:
         numbers: whether comparisons and probes may occur.
         events: whether events may be read.
         captured: names of captured numbers that may be read.
-        wide: whether whole numbers lie at the ends of 64 bits; nothing is computed with them then.
-        constants: the weight of constants among propositions; all others have about 100.
+        wide: whether whole numbers reach the ends of 64 bits; then nothing is computed with them.
+        constants: the weight of constants among propositions; the others together have about 100.
         longest: the greatest bound of an interval, ticks.
-        amounts: the weight of measures of windows; all others have about 120.
+        amounts: the weight of measures of windows; the other formulas together have about 120.
         instants: names of captured instants.
-        form: the only one that is measured; empty: any.
+        form: the only measure; empty: any.
     """
 
     step: bool = False
@@ -90,14 +90,14 @@ _UNITS = {
     **dict.fromkeys((UnitRule.TO_ANGLE, UnitRule.DIRECTION, UnitRule.TURN), _RADIAN),
     UnitRule.PLACES: Literal(1, "m"),
 }
-"""The units of the results that have one."""
+"""The unit of the result of an operation, if it has one."""
 _CALCULATING = tuple(op for op in NumericOp if op is not NumericOp.BIT)
 _CHOOSING = (NumericOp.MIN, NumericOp.MAX)
 """The operations that return one of their operands, so that whole numbers stay within 64 bits."""
 
 
 def comparison(rng: Rng, shape: Shape) -> Formula:
-    """A random comparison: of numbers, of a payload field, of a label."""
+    """A random comparison of numbers, of a payload field, or of a label."""
     if chance(rng, 12):
         op = pick(rng, (CompareOp.EQ, CompareOp.NE))
         return Compare(op, SignalValue(LABEL), Literal(pick(rng, LABELS)))
@@ -119,7 +119,7 @@ def comparison(rng: Rng, shape: Shape) -> Formula:
 
 
 def arithmetic(rng: Rng, shape: Shape) -> Numeric:
-    """A random expression: of the last two updates, or an operation on a few numbers."""
+    """A random expression over the last two updates, or an operation on a few numbers."""
     if chance(rng, 40):
         functions = (UpdateFunction.PREV,) if shape.wide else tuple(UpdateFunction)
         return UpdateValue(pick(rng, functions), pick(rng, NUMBERS))
@@ -132,7 +132,7 @@ def arithmetic(rng: Rng, shape: Shape) -> Numeric:
 
 
 def _with_units(op: NumericOp, args: list[Numeric]) -> Numeric:
-    """An operation on plain numbers that yields one, with the units that it asks for between."""
+    """An operation on numbers without units; its arguments get the units that it requires."""
     rule = op.entry.unit
     if rule is UnitRule.BITS:
         args = [arg if isinstance(arg, Literal) else SignalValue(NUMBERS[1]) for arg in args]
@@ -146,12 +146,12 @@ def _with_units(op: NumericOp, args: list[Numeric]) -> Numeric:
 
 
 def field_value(rng: Rng) -> Numeric:
-    """A field of one of the events that carry some."""
+    """A field of an event with a payload."""
     return FieldValue(FURTHER, SIZE) if chance(rng, 35) else FieldValue(CARRIER, FIELD)
 
 
 def input_number(rng: Rng, shape: Shape) -> Numeric:
-    """A random number that is read: of a signal, a field, or captured."""
+    """A random number to read: of a signal, a field, or captured."""
     if shape.events and chance(rng, 15):
         return field_value(rng)
     if shape.captured and chance(rng, 20):
@@ -168,11 +168,11 @@ def probe(rng: Rng, shape: Shape) -> Formula:
 
 
 Draw = Callable[[Rng, Shape], Formula]
-"""A function that draws an operand."""
+"""Draws an operand."""
 
 
 def late(rng: Rng, shape: Shape) -> Formula:
-    """A comparison of the time since an instant, with or without data in the duration."""
+    """A comparison of the time since an instant with a constant duration or one from data."""
     after: Numeric = Literal(pick(rng, (1e-9, 2e-9, 3e-9, 5e-9, 0)))
     if chance(rng, 60):
         after = Arithmetic(
@@ -183,13 +183,13 @@ def late(rng: Rng, shape: Shape) -> Formula:
 
 
 ALONE = tuple(measured for measured in Measured if not measured.recalls)
-"""The measures that can stand beside a limit by themselves."""
+"""The measures that can be compared with a limit alone."""
 EXPRESSION = "expression"
-"""The form of windows that are numbers among others."""
+"""The form of windows within numeric expressions."""
 
 
 def amount(rng: Rng, shape: Shape, draw: Draw) -> Formula:
-    """A limit on a measure of a formula or number, in a window or since the first instant."""
+    """A limit on a measure of a formula or number, in a window or over the whole past."""
     mode, _, form = shape.form.rpartition(" ")
     plain = replace(shape, events=False)
     several = form == EXPRESSION or (not form and chance(rng, 30))
@@ -215,7 +215,7 @@ def _above(of: WindowValue, limit: Numeric, strict: bool) -> Amount:
 
 
 def _compared(rng: Rng, shape: Shape, draw: Draw, mode: str) -> Formula:
-    """An expression of one window or more, beside another; of what moves one alone at most."""
+    """A comparison of expressions with windows; at most one window changes between samples."""
 
     def side(most: int) -> Numeric:
         return number_of_windows(rng, shape, draw, most, mode)
@@ -232,14 +232,14 @@ def _compared(rng: Rng, shape: Shape, draw: Draw, mode: str) -> Formula:
 
 
 def number_of_windows(rng: Rng, shape: Shape, draw: Draw, most: int = 2, mode: str = "") -> Numeric:
-    """An expression of windows, signals and constants; in `time held` none of them moves.
+    """An expression of windows, signals and constants; in `time held` none changes between samples.
 
     Args:
         rng: see `random_spec`.
-        shape: its limits; without `step` it is of held time.
-        draw: draws what is counted.
-        most: the most operations.
-        mode: of windows.
+        shape: its limits; without `step`, time is held.
+        draw: draws the formulas that are counted.
+        most: the greatest number of operations.
+        mode: see `Profile.form`.
     """
 
     def term() -> Numeric:
@@ -275,7 +275,7 @@ def _window(
     *,
     settled: bool = False,
 ) -> WindowValue:
-    """A window; `settled`: one that changes by jumps alone, in `time held`."""
+    """A window; `settled`: in `time held`, one that changes only at samples."""
     if settled and measured.of_time:
         measured = Measured.COUNT
     window = None if chance(rng, 15) else rng.randint(1, shape.longest)
@@ -305,7 +305,7 @@ def _window(
         if settled and measured is Measured.MEAN:
             fields = True
         if measured is Measured.VARIANCE and not shape.step:
-            fields = True  # that of what is held moves along a curve: the language refuses it
+            fields = True  # of a held number it changes along a curve: the language refuses it
         number = field_value(rng) if fields else _held(rng, plain)
         if measured is Measured.INTEGRAL and chance(rng, 10):
             number = Literal(1)
@@ -314,7 +314,7 @@ def _window(
         bounded = measured in (Measured.DELTA, Measured.AGO) or (
             measured is Measured.VARIANCE and not fields
         )
-        if bounded:  # the language asks for a D
+        if bounded:  # the language requires a duration
             window = window or shape.longest
     since = mode == "since" or chance(rng, 30)
     if shape.instants and since and not (bounded or most):
@@ -324,7 +324,7 @@ def _window(
 
 
 def _held(rng: Rng, shape: Shape) -> Numeric:
-    """A number that is held: what was captured alone is none, says the language."""
+    """A held number; the language requires that it reads more than captured values."""
     number = arithmetic(rng, shape) if chance(rng, 30) else input_number(rng, shape)
     return number if any(names_in(number)) else SignalValue(pick(rng, NUMBERS))
 

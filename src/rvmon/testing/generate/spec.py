@@ -1,4 +1,4 @@
-"""Random specifications, biased towards what monitors get wrong."""
+"""Random specifications, biased towards cases that monitors get wrong."""
 
 from __future__ import annotations
 
@@ -58,19 +58,19 @@ class Profile:
 
     Attributes:
         time: the time model; `None`: any.
-        depth: of the deepest consequent.
-        requirements: the most of them.
-        many: the per cent of specifications that hold 8 to 14, half of them on truth values and
-            their past alone: plans share what such requirements have in common.
-        crowded: the per cent that hold 20 to 26.
-        wide: the per cent whose whole numbers reach to the ends of 64 bits; these are compared, not
-            computed with.
+        depth: the greatest depth of a consequent.
+        requirements: the greatest number of requirements.
+        many: the per cent of specifications with 8 to 14 requirements; half of these only read
+            truth values and their past, so that plans share subformulas.
+        crowded: the per cent of specifications with 20 to 26 requirements.
+        wide: the per cent of specifications whose whole numbers reach the ends of 64 bits; these
+            are compared, but not computed with.
         numbers: whether comparisons and probes may occur.
-        constants: the weight of constants among propositions; all others have about 100.
-        amounts: the weight of measures of windows; all others have about 120.
-        form: the only one of these, at least one in each specification: a name (`mean`), or
-            `expression` of several, which may
-            stand behind `last` (updates), `since` (the trigger) or `each` (several occurrences).
+        constants: the weight of constants among propositions; the others together have about 100.
+        amounts: the weight of measures of windows; the other formulas together have about 120.
+        form: the only measure, at least once in each specification: a name (`mean`), or
+            `expression` for several; after `last` (updates), `since` (the trigger) or `each`
+            (several occurrences) it is measured over these.
         past: whether past operators may occur.
         future: whether future operators may occur.
         events: whether events may be read.
@@ -107,8 +107,8 @@ def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
     """A random specification over a fixed small vocabulary, with bounds of a few ticks.
 
     Args:
-        rng: `random.Random` with a seed, or what a Hypothesis strategy draws from.
-        profile: their limits.
+        rng: `random.Random` with a seed, or one that draws from Hypothesis.
+        profile: the limits.
     """
     time = profile.time or pick(rng, tuple(TimeModel))
     number = rng.randint(1, profile.requirements)
@@ -213,7 +213,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
 
 
 def _law(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requirement:
-    """`always φ`, of truth values and their past."""
+    """`always φ` over truth values and their past."""
     shape = Shape(time is not TimeModel.HELD, future=False, numbers=False, events=False)
     lasting = formula(rng, shape, min(profile.depth, 3))
     start = BoundAtom(Bound.START)
@@ -230,7 +230,7 @@ def _captures(rng: Rng, profile: Profile, time: TimeModel) -> tuple[Capture, ...
         simple: tuple[Numeric, ...] = (SignalValue("x"), FieldValue(CARRIER, FIELD))
         value = arithmetic(rng, earlier) if chance(rng, 25) else pick(rng, simple)
         if profile.amounts and not profile.wide and chance(rng, 40):
-            # A window reads no `let`: the language has the expression there instead.
+            # The language admits no `let` in a window, only its expression.
             held = Shape(step=time is not TimeModel.HELD, longest=4)
             value = number_of_windows(rng, held, partial(_simple, profile))
         found.append(Capture(name, value))

@@ -1,4 +1,4 @@
-"""A specification with a trace to judge, and random ones, biased to its bounds and thresholds."""
+"""Test cases: a specification with a trace, random and biased to its bounds and thresholds."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from rvmon.trace.schema import Kind
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One thing to compare a monitor and the law on.
+    """A case on which a monitor and the oracle are compared.
 
     Attributes:
-        spec: the specification to judge by.
+        spec: the specification.
         actions: the calls of a monitor, in order: a sample, or the instant of an `advance`.
         end: the argument of `finish`, ticks.
         names: the names that have a source; `None`: all.
@@ -42,17 +42,17 @@ class Case:
 
     @property
     def samples(self) -> tuple[Sample, ...]:
-        """The samples alone."""
+        """Only the samples."""
         return tuple(action for action in self.actions if isinstance(action, Sample))
 
     @property
     def advances(self) -> tuple[int, ...]:
-        """The instants of `advance` alone."""
+        """Only the instants of `advance`, ticks."""
         return tuple(action for action in self.actions if isinstance(action, int))
 
 
 def show_case(case: Case) -> str:
-    """The specification as `.rv` text, then what the monitor is given, line by line."""
+    """The specification as `.rv` text, then the calls of the monitor, a line each."""
     lines = [show_spec(case.spec), ""]
     if case.names is not None:
         lines.append(f"sources: {', '.join(sorted(case.names)) or 'none'}")
@@ -107,16 +107,16 @@ class TraceProfile:
     """The limits of random traces.
 
     Attributes:
-        samples: the most of them.
-        fewest: the fewest, if the span allows.
-        span: ticks from the first to the last sample, about.
-        long: the per cent of traces that may be three times as long, where signals come later and
-            more seldom.
-        sparse: the per cent of traces that have some dozens of samples, each of few names, now and
-            then far apart.
+        samples: the greatest number of samples.
+        fewest: the least number of samples, if the span allows.
+        span: the ticks from the first to the last sample, about.
+        long: the per cent of traces that may be three times as long; their signals come later and
+            are updated less often.
+        sparse: the per cent of traces with some dozens of samples of few names, some of them far
+            apart.
         unknowns: whether values may be `None` or NaN and sources absent.
         advances: whether `advance` is called.
-        outages: the per cent of traces in which something was lost over stretches of time.
+        outages: the per cent of traces with outages.
     """
 
     samples: int = 12
@@ -130,23 +130,22 @@ class TraceProfile:
 
 
 def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
-    """A random trace for a specification, with what else a monitor is given.
+    """A random trace for a specification, with `advance`, `finish`, sources and outages.
 
-    Gaps between samples are often a bound of the spec, or one tick more; numbers lie at and
-    beside its literals.
+    Gaps between samples are often a bound of the specification, or one tick longer; numbers are its
+    literals and their neighbours.
 
     Args:
-        rng: `random.Random` with a seed, or what a Hypothesis strategy draws from.
-        spec: any; its bounds should be a few ticks if the oracle is to judge.
-        profile: their limits.
+        rng: `random.Random` with a seed, or one that draws from Hypothesis.
+        spec: any specification; for the oracle its bounds should be a few ticks.
+        profile: the limits.
     """
     gaps = _gaps(spec)
     numbers = _numbers(spec)
     names = None
     if profile.unknowns and chance(rng, 8):
         names = frozenset(name for name in (*spec.signals, *spec.events) if not chance(rng, 20))
-    # Some sensors fail often: what was known before they did then matters, above all to instances
-    # that begin later.
+    # Some sensors fail often: then earlier values matter, above all to instances that begin later.
     often = 40 if any(requirement.for_each for requirement in spec.requirements.values()) else 25
     unknown = (30 if chance(rng, often) else 5) if profile.unknowns else 0
     longer = 3 if profile.long and chance(rng, profile.long) else 1
@@ -178,9 +177,9 @@ def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
 
 
 def _outage(rng: Rng, spec: CheckedSpec, read: Sequence[int]) -> Outage:
-    """A stretch of some ticks, or one, of some names; it may lie before or behind the samples.
+    """A random outage of one or more ticks and some names, often from or up to a sample.
 
-    Often it begins, or ends, with one.
+    It may lie before or after all samples.
     """
     percent = pick(rng, (100, 50, 20))
     names = frozenset(n for n in (*spec.signals, *spec.events) if chance(rng, percent))
@@ -198,7 +197,7 @@ def _gap(rng: Rng, gaps: Sequence[int]) -> int:
 
 
 def _gaps(spec: CheckedSpec) -> list[int]:
-    """One tick, each bound of the spec, the tick after it, and the same for staleness."""
+    """One tick; and each bound and staleness of the specification, exactly and one tick more."""
     gaps = {1}
     for window in _intervals(spec):
         for bound in (window.low, window.high):
@@ -220,7 +219,7 @@ def _intervals(spec: CheckedSpec) -> list[Interval]:
 
 
 def _numbers(spec: CheckedSpec) -> list[int | float]:
-    """Each literal that the spec compares with, and its neighbours; a few small numbers."""
+    """The literals of all comparisons with their neighbours, and a few small numbers."""
     found: set[int | float] = {0, 1}
     for requirement in spec.requirements.values():
         for part in (requirement.trigger, requirement.consequent):
@@ -234,17 +233,17 @@ def _numbers(spec: CheckedSpec) -> list[int | float]:
 
 
 def _several(spec: CheckedSpec) -> frozenset[str]:
-    """The events that may occur more than once at an instant: every requirement is `for each`."""
+    """The events that may occur more than once at an instant, if each requirement is `for each`."""
     found = [requirement.for_each for requirement in spec.requirements.values()]
     return frozenset() if None in found else frozenset(each.value.event for each in found if each)
 
 
 @dataclass(frozen=True, slots=True)
 class _Values:
-    """Draws the values of one sample; `unknown` per cent of them are not known.
+    """Draws the values of a sample; `unknown` per cent of them are unknown.
 
-    Signals that are `late` have no update before that many samples, or only unknown ones; then they
-    are updated in `often` per cent of the samples. In `sparse` traces events are rare.
+    A signal has no update, or only unknown ones, before the sample whose number `late` gives; from
+    then on `often` per cent of the samples update it. In `sparse` traces events are rare.
     """
 
     spec: CheckedSpec
@@ -257,7 +256,7 @@ class _Values:
     sparse: bool
 
     def sample(self, rng: Rng, index: int) -> dict[str, Value]:
-        """Random updates; most signals get a value in the first sample that may bring one."""
+        """Random updates; most signals have a value in the first sample that may update them."""
         values: dict[str, Value] = {}
         for name, signal in self.spec.signals.items():
             first = self.late.get(name, 0)

@@ -1,4 +1,4 @@
-"""The measures of windows, straight from their definitions."""
+"""Measures of windows, computed from their definitions."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ _OF_SOME = (
     *(Measured.MEAN, Measured.VARIANCE, Measured.DELTA),
     *(Measured.MIN, Measured.MAX, Measured.AGO),
 )
-"""The measures that an empty window does not have."""
+"""The measures that are undefined for an empty window."""
 _WHOLE = (
     *(Measured.COUNT, Measured.DISTINCT, Measured.SUM),
     *(Measured.DELTA, Measured.MIN, Measured.MAX, Measured.AGO),
 )
-"""The measures that are whole numbers if their members are."""
+"""The measures that are whole numbers if all members are."""
 UNKNOWN = Arithmetic(NumericOp.DIV, (Literal(0), Literal(0)))
-"""A number that nobody knows."""
+"""An expression whose value is unknown."""
 State = Callable[[Formula, int], Truth]
 """The truth of a formula at a position."""
 
@@ -48,9 +48,9 @@ class Member:
     """A member of a window.
 
     Attributes:
-        value: its number; `None`: not known.
-        sure: whether it is one.
-        size: for so many positions, or ticks, it stands.
+        value: its number; `None` if unknown.
+        sure: whether it surely is a member.
+        size: the number of positions, or ticks, that it stands for.
     """
 
     value: int | float | None
@@ -60,12 +60,12 @@ class Member:
 
 @dataclass(frozen=True, slots=True)
 class Past:
-    """The positions of a word as an amount looks at them.
+    """Evaluates windows on the letters of a word.
 
     Attributes:
-        letters: of the word.
+        letters: the letters.
         captured: values of `let` and `for each`.
-        state: the truth of a formula at a position.
+        state: gives the truth of a formula at a position.
     """
 
     letters: Sequence[Letter]
@@ -73,9 +73,9 @@ class Past:
     state: State
 
     def truth(self, formula: Amount, i: int) -> Truth:
-        """Whether the members of the window of a position come to as much as the limit.
+        """Whether the measure of the window of a position reaches the limit.
 
-        Unborn as the limit is, and what is of nothing without signals as these are.
+        UNBORN if the limit is, or if the measure is undefined without a signal that is unborn.
         """
         known = formula.known and self.state(formula.known, i)
         if known is Truth.UNBORN or not self.is_born(formula.of, i):
@@ -97,7 +97,7 @@ class Past:
         return found.pop() if len(found) == 1 else Truth.UNKNOWN
 
     def compared(self, formula: Compare, i: int) -> Truth:
-        """A comparison of windows as numbers."""
+        """The truth of a comparison of expressions with windows."""
         parts = [part for side in (formula.left, formula.right) for part in parts_of(side)]
         plain = [itself(part) for part in parts if not isinstance(part, WindowValue | Arithmetic)]
         windows = [part for part in parts if isinstance(part, WindowValue)]
@@ -108,11 +108,11 @@ class Past:
         return compare(Compare(formula.op, *found), self.letters[i], self.captured)
 
     def number(self, expression: Numeric, i: int) -> int | float | None:
-        """An expression over windows at a position; `None` if it is not known."""
+        """The value of an expression with windows at a position; `None` if unknown."""
         return finite(number(self.settled(expression, i), self.letters[i], {}, self.captured))
 
     def settled(self, expression: Numeric, i: int) -> Numeric:
-        """An expression with what its windows come to in place of these."""
+        """An expression with each window replaced by its value at a position."""
         match expression:
             case Arithmetic(args=args):
                 return replace(expression, args=tuple(self.settled(arg, i) for arg in args))
@@ -123,7 +123,7 @@ class Past:
                 return expression
 
     def is_born(self, window: WindowValue, i: int) -> bool:
-        """Whether it has all that it asks for; what was D ago, D ago."""
+        """Whether the signals of a window have values; for `ago`, whether they had them D ago."""
         if window.value is None or window.measured not in _OF_SOME:
             return True
         letter = self.letters[i] if window.measured is not Measured.AGO else self._ago(window, i)
@@ -135,9 +135,9 @@ class Past:
         return held[-1] if held else None
 
     def amount(self, window: WindowValue, i: int) -> int | float | None:
-        """The value of a window, rounded once; `None` where that is not certain.
+        """The value of a window, rounded once; `None` if it is not certain.
 
-        Whole numbers are counts, and what is made of whole numbers alone without a division.
+        Counts are whole numbers; so are measures of whole numbers that need no division.
         """
         if window.measured is Measured.AGO:
             letter = self._ago(window, i)
@@ -157,24 +157,24 @@ class Past:
 
     def _value(self, window: WindowValue, letter: Letter) -> int | float | None:
         if window.value is None:
-            raise AssertionError("it is of a number")
+            raise AssertionError("`ago` has a value")
         return finite(number(window.value, letter, {}, self.captured))
 
     def members(self, window: WindowValue, i: int) -> list[Member] | None:
-        """The members of the window of a position; `None` if it is not known which these are."""
+        """The members of the window of a position; `None` if it is unknown which these are."""
         return self.last(window, i) if window.most else [*self.window(window, i)]
 
     def window(self, formula: WindowValue, i: int) -> Iterator[Member]:
-        """The members of the last D, the first one first."""
+        """The members of a window of duration, the oldest first."""
         for k in range(self.begin(formula, i), i + 1):
             if size := _size(self.letters, k, i, formula):
                 for value, sure in self.at(formula, k):
                     yield Member(value, sure, size)
 
     def begin(self, formula: WindowValue, i: int) -> int:
-        """The first position that is not before a captured instant, if members are behind one.
+        """The first position of a window that starts at a captured instant; else the first of all.
 
-        Where there may be a position before it, too, that is no member.
+        Possible positions before that instant are no members.
         """
         since = self.letters[i].since
         left = getattr(formula.operand, "left", formula.operand)
@@ -188,14 +188,14 @@ class Past:
         )
 
     def last(self, formula: WindowValue, i: int) -> list[Member] | None:
-        """The last so many members; `None` if it is not known which these are."""
+        """The members of a window of the last N; `None` if it is unknown which these are."""
         found: list[Member] = []
         for k in range(i, -1, -1):
             there = self.state(formula.operand, k)
             if there is Truth.UNKNOWN:
                 return None
             at = [*self.at(formula, k)]
-            if len(at) > 1:  # at one instant none is later
+            if len(at) > 1:  # members of one instant have no order
                 return None
             found += [Member(value, sure, 1) for value, sure in at]
             if len(found) == formula.most:
@@ -203,9 +203,10 @@ class Past:
         return found[::-1]
 
     def at(self, formula: WindowValue, k: int) -> Iterator[tuple[int | float | None, bool]]:
-        """The numbers of the members at a position, and whether they are some.
+        """The members at a position: the number of each, and whether it surely is a member.
 
-        What is false whatever is read makes none with a number, though there may be a position.
+        A condition that is constantly false has no member with a number, even at a possible
+        position, where it is UNKNOWN as every formula.
         """
         there = self.state(formula.operand, k)
         never = formula.value is not None and constant_value(formula.operand) is Truth.FALSE
@@ -250,18 +251,18 @@ class Past:
 
 
 def finite(value: Scalar) -> int | float | None:
-    """A number, if it is one."""
+    """A finite number as it is; `None` for anything else."""
     if value is None or isinstance(value, str) or not math.isfinite(value):
         return None
     return value
 
 
 Ends = tuple[Fraction, Fraction | None]
-"""The least and the most that something comes to; `None`: no number bounds it."""
+"""Lower and upper bound of a measure; `None`: no upper bound."""
 
 
 def ends_of(window: WindowValue, members: Sequence[Member]) -> Ends | None:
-    """The bounds of a measure of members; `None`: nothing is known of it."""
+    """The bounds of a measure over members; `None` if it has no known bounds."""
     measured = window.measured
     if measured is Measured.DISTINCT:
         known = Fraction(
@@ -287,7 +288,7 @@ def ends_of(window: WindowValue, members: Sequence[Member]) -> Ends | None:
 
 
 def _of_sure(measured: Measured, numbers: Sequence[tuple[Fraction, bool, int]]) -> Fraction | None:
-    """The measure of known members."""
+    """A measure of sure members with known numbers; `None` if there are none."""
     count = sum(size for _, _, size in numbers)
     if count == 0:
         return None
@@ -307,7 +308,7 @@ def _of_sure(measured: Measured, numbers: Sequence[tuple[Fraction, bool, int]]) 
 
 
 def _size(letters: Sequence[Letter], k: int, i: int, formula: WindowValue) -> int:
-    """The number of positions, or ticks, of the window of `i` that a position stands for."""
+    """The number of positions, or ticks, that position `k` contributes to the window of `i`."""
     begin = letters[k].instant
     first = begin if formula.window is None else max(begin, letters[i].instant - formula.window)
     if not formula.measured.of_time:

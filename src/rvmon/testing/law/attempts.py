@@ -103,21 +103,22 @@ def _binary(op: BinaryOp, left: Formula, right: Formula, negated: bool) -> bool:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Start:
-    """One attempt at its trigger.
+    """The beginning of an attempt.
 
     Attributes:
-        view: the requirement on the trace as this instance of it sees it.
-        position: of the trigger; of an attempt in doubt, the first at which there may be one.
-        owes: the positions at which something is required; of a `whenever`, of its episode.
+        view: the requirement, or the instance of it, on the trace.
+        position: the position of the trigger; for an attempt in doubt, the first possible one.
+        positions: the positions at which the consequent is required; of a `whenever`, those of its
+            episode.
         captured: values of `let` and `for each`.
-        blurred: the position from which on it is not known which values of `let` are required.
-        stop: the first position that is none of its own, where it is over; `None` if none is known.
-        sure: the first of its positions at which the trigger is TRUE; `None`: it is in doubt.
+        blurred: the position from which on the values of its `let` are unknown.
+        stop: the first position after its episode; `None` if it is not over.
+        sure: the first of its positions at which the trigger is TRUE; `None` if it is in doubt.
     """
 
     view: View
     position: int
-    owes: Sequence[int]
+    positions: Sequence[int]
     captured: Mapping[str, Scalar]
     blurred: int | None
     stop: int | None = None
@@ -125,7 +126,7 @@ class Start:
 
     @property
     def word(self) -> Word:
-        """The trace as this instance sees it."""
+        """The trace with the occurrences of this instance."""
         return self.view.word
 
     @property
@@ -135,27 +136,27 @@ class Start:
 
     @property
     def may_be_over(self) -> bool:
-        """Whether it is an episode that ran to the end, and may have been over before."""
+        """Whether it is an episode that reached the end of the trace, but may have ended before."""
         if self.view.requirement.mode is Mode.UPON or self.stop is not None:
             return False
-        return any(self.view.trigger[k] is Truth.UNKNOWN for k in self.owes)
+        return any(self.view.trigger[k] is Truth.UNKNOWN for k in self.positions)
 
     def restarted(self, position: int) -> Start:
         """The rest of the episode as a new attempt."""
-        owes = [k for k in self.owes if k >= position]
-        known = (k for k in owes if self.blurred is None or k < self.blurred)
-        return replace(self, position=position, owes=owes, sure=self.view.first_true(known))
+        rest = [k for k in self.positions if k >= position]
+        known = (k for k in rest if self.blurred is None or k < self.blurred)
+        return replace(self, position=position, positions=rest, sure=self.view.first_true(known))
 
 
 class View:
-    """A requirement on a word, or an instance of it, and the truth of its formulas there.
+    """A requirement, or an instance of it, on a word, with the truth of its formulas there.
 
     Args:
         requirement: as checked.
-        word: the trace as it sees it.
+        word: the trace, with the occurrences of this instance.
         captured: the value of its `for each`.
-        first: no attempt starts before this position.
-        doubted: whether it is not known that there is such an instance.
+        first: the first position at which an attempt can start.
+        doubted: whether the instance may not exist.
     """
 
     def __init__(
@@ -175,12 +176,12 @@ class View:
         self._readings: dict[Rest, Readings] = {}
 
     def readings(self, rest: Rest = Rest.UNKNOWN) -> Readings:
-        """The truth of formulas under an assumption on what is not known yet."""
+        """The truth of formulas under an assumption about pending operators."""
         return self._readings.setdefault(rest, Readings(self.word, rest))
 
     @cached_property
     def trigger(self) -> Sequence[Truth]:
-        """The truth of the trigger at each position, where unborn counts as FALSE."""
+        """The truth of the trigger at each position; UNBORN counts as FALSE."""
         if is_upon_end(self.requirement):
             return [Truth.FALSE for _ in self.word.letters]
         return [Truth.FALSE if truth is Truth.UNBORN else truth for truth in self._trigger]
@@ -205,23 +206,23 @@ class View:
         return conjunction([now, negation(self.trigger[k - 1]) if k else Truth.TRUE])
 
     def stretch(self, k: int) -> tuple[Sequence[int], int | None]:
-        """The positions from `k` on at which the trigger is not FALSE, and the one behind them."""
+        """The positions from `k` on up to the first where the trigger is FALSE, and that one."""
         later = (j for j in range(k, len(self.trigger)) if self.trigger[j] is Truth.FALSE)
         stop = next(later, None)
         return range(k, len(self.trigger) if stop is None else stop), stop
 
-    def begin(self, position: int, owes: Sequence[int], stop: int | None) -> Start:
-        """An attempt that captures its values at a position."""
+    def begin(self, position: int, positions: Sequence[int], stop: int | None) -> Start:
+        """An attempt that captures its values at `position`."""
         captured = self._captures(position)
         lets = [capture.name for capture in self.requirement.captures]
-        hidden = (k for k in owes if self.doubted or self.edge(k) is Truth.UNKNOWN)
+        hidden = (k for k in positions if self.doubted or self.edge(k) is Truth.UNKNOWN)
         other = (k for k in hidden if not _same(captured, self._captures(k), lets))
         blurred = next(other, None) if lets else None
-        known = (k for k in owes if blurred is None or k < max(blurred, position + 1))
-        return Start(self, position, owes, captured, blurred, stop, self.first_true(known))
+        known = (k for k in positions if blurred is None or k < max(blurred, position + 1))
+        return Start(self, position, positions, captured, blurred, stop, self.first_true(known))
 
     def first_true(self, positions: Iterable[int]) -> int | None:
-        """The first of some positions at which the trigger is surely TRUE."""
+        """The first of some positions at which the trigger is surely TRUE, or `None`."""
         if self.doubted:
             return None
         return next((k for k in positions if self.trigger[k] is Truth.TRUE), None)
@@ -242,7 +243,7 @@ class View:
         return captured
 
     def is_unborn(self, position: int) -> bool:
-        """Whether something that the consequent reads has had no value by a position."""
+        """Whether a signal that the consequent reads has had no value up to a position."""
         letter = self.word.letters[position]
         for part in subformulas(self.requirement.consequent):
             if isinstance(part, SignalAtom) and not letter.signals[part.name].born:
@@ -257,11 +258,11 @@ def _same(one: Mapping[str, Scalar], other: Mapping[str, Scalar], names: Iterabl
 
 
 class Readings:
-    """The truth of formulas on a word by captured values; what is asked for often is kept.
+    """The truth of formulas on a word, cached by captured values.
 
     Args:
         word: the trace.
-        rest: the assumption about the unknown rest.
+        rest: the assumption about pending operators.
     """
 
     def __init__(self, word: Word, rest: Rest) -> None:
@@ -271,13 +272,13 @@ class Readings:
         self._made: dict[tuple[object, ...], Truths] = {}
 
     def reach(self, reached: int) -> None:
-        """Speak of the prefix that is known at an instant; instants may only grow."""
+        """Evaluate on the prefix known at an instant; instants must not decrease."""
         self._reached = reached
         for truths in self._made.values():
             truths.reach(reached)
 
     def of(self, captured: Mapping[str, Scalar], *, favour: bool = False) -> Truths:
-        """The truths under captured values."""
+        """The truth of formulas under captured values; `favour` as in `Truths`."""
         key = (favour, *((name, type(value), value) for name, value in captured.items()))
         found = self._made.get(key)
         if found is None:
@@ -287,7 +288,7 @@ class Readings:
 
 
 def obligation(start: Start, readings: Readings) -> Truth:
-    """The truth of what an attempt owes, after the prefix that the readings speak of.
+    """The truth of an attempt's obligation after the prefix that the readings have reached.
 
     Source: SEMANTICS, sections 1 (Birth) and 3 (Doubt, `whenever`); decision record 4.
     """
@@ -297,7 +298,7 @@ def obligation(start: Start, readings: Readings) -> Truth:
         return Truth.UNKNOWN if value is Truth.FALSE and start.sure is None else value
     truths = readings.of(start.captured)
     ended = start.stop is not None and start.stop < truths.known
-    required = [_required(start, readings, k) for k in start.owes if k < truths.known]
+    required = [_required(start, readings, k) for k in start.positions if k < truths.known]
     if requirement.mode is Mode.UPON and start.sure is not None:
         return required[0]
     blurred = start.blurred is not None and start.blurred < truths.known
@@ -323,12 +324,12 @@ def _required(start: Start, readings: Readings, k: int) -> Truth:
 
 
 def counts_in_favour(requirement: Requirement) -> bool:
-    """Whether what is not born counts in favour: in the episodes of a level `whenever`."""
+    """Whether unborn propositions count as met: in the episodes of a level `whenever`."""
     return requirement.mode is Mode.WHENEVER and not requirement.pulse
 
 
 def starts_upon(view: View) -> list[Start]:
-    """The attempts of a requirement `upon` a trigger, those in doubt included."""
+    """The attempts of a requirement `upon` a trigger, including those in doubt."""
     if is_upon_end(view.requirement):
         last = len(view.word.letters) - 1
         if last < view.first:
@@ -339,21 +340,21 @@ def starts_upon(view: View) -> list[Start]:
     edges = [view.edge(k) for k in range(len(view.trigger))]
     k = view.first
     while k < len(edges):
-        owes, stop = view.stretch(k)
-        certain = [] if view.doubted else [j for j in owes if edges[j] is Truth.TRUE]
+        stretch, stop = view.stretch(k)
+        certain = [] if view.doubted else [j for j in stretch if edges[j] is Truth.TRUE]
         found += [view.begin(j, [j], j + 1) for j in certain]
-        hidden = [j for j in owes if edges[j] is not Truth.FALSE and j not in certain]
+        hidden = [j for j in stretch if edges[j] is not Truth.FALSE and j not in certain]
         if hidden:
             one = view.begin(hidden[0], hidden, stop)
             found.append(replace(one, sure=None))
-        k = (owes[-1] if owes else k) + 1
+        k = (stretch[-1] if stretch else k) + 1
     return found
 
 
 def views(requirement: Requirement, word: Word) -> list[View]:
-    """The instances of a requirement on a word: of `for each` one per value, else one.
+    """The instances of a requirement on a word: one per value of `for each`, else one.
 
-    That of occurrences whose value is unknown comes first; it is doubted.
+    The first one is for occurrences whose value is unknown; it may not exist.
 
     Source: SEMANTICS, section 3 (Doubt); decision record 1 (`for each`).
     """
@@ -383,10 +384,9 @@ def _field(payload: Payload, field: FieldValue) -> Scalar:
 
 
 def _only(letter: Letter, field: FieldValue, value: Scalar) -> Letter:
-    """The letter with those occurrences of the event only whose field has the value.
+    """The letter with only those occurrences of the event whose field has the value.
 
-    Where the field is not known, it is not known whether the event occurs for the value, nor what
-    it says then.
+    If the field is unknown, so is the occurrence for this value, and its payload.
     """
     whole = letter.events[field.event]
     kept = tuple(
@@ -394,7 +394,7 @@ def _only(letter: Letter, field: FieldValue, value: Scalar) -> Letter:
         for occurrence in whole.occurrences
         if (found := _field(occurrence.payload, field)) is None or found == value
     )
-    # Beside what was lost, what was said of another value is no update of this one.
+    # Apart from lost occurrences, those for other values are no updates of this one.
     updated = whole.updated if len(kept) > whole.lost else Truth.UNKNOWN if kept else Truth.FALSE
     only = {field.event: EventState(updated, kept, whole.lost)}
     return replace(letter, events={**letter.events, **only})

@@ -1,4 +1,4 @@
-"""Attempts through time: when each is decided, and where an episode goes on after a failure."""
+"""Finds when attempts are decided, and where an episode continues after a failure."""
 
 from __future__ import annotations
 
@@ -23,15 +23,15 @@ from rvmon.testing.law.word import Truth, Word
 
 @dataclass(slots=True, eq=False)
 class Followed:
-    """One attempt, and the first instant at which the prefix decides it, with its truth then.
+    """An attempt, and the first instant at which a prefix of the trace decides it.
 
     Attributes:
-        start: its position, and the formula that it requires.
-        decided: instant and truth; `None` if no prefix decides it.
-        number: among those whose trigger was TRUE, in the order in which it was first; 0 if in
-            doubt.
-        doubtful_number: among those whose trigger was not TRUE at first, in the order of their
-            starts; 0 for the others.
+        start: the beginning of the attempt.
+        decided: instant (ticks) and truth; `None` if no prefix decides it.
+        number: its number among the attempts whose trigger was TRUE, in the order of the first
+            instants at which it was; 0 for an attempt in doubt.
+        doubtful_number: its number among the attempts whose trigger was not TRUE at their start, in
+            the order of starts; 0 for the others.
     """
 
     start: Start
@@ -46,7 +46,7 @@ class Followings:
 
     Attributes:
         attempts: in the order of their starts.
-        is_determined: whether its trigger was ever TRUE or FALSE.
+        is_determined: whether the trigger was ever TRUE or FALSE.
     """
 
     attempts: Sequence[Followed]
@@ -96,7 +96,7 @@ def _followed(view: View) -> list[Followed]:
 
 
 def _decide(attempts: Iterable[Followed], view: View, reached: int) -> None:
-    """See what the prefix known at an instant decides."""
+    """Record the attempts that the prefix known at an instant decides."""
     for attempt in attempts:
         if attempt.decided is None and attempt.start.triggered <= reached:
             truth = obligation(attempt.start, view.readings())
@@ -105,7 +105,7 @@ def _decide(attempts: Iterable[Followed], view: View, reached: int) -> None:
 
 
 def _episodes(view: View) -> list[Followed]:
-    """The attempts of a `whenever`, of which each failure begins another."""
+    """The attempts of a `whenever`: after a failure its episode continues as a new attempt."""
     requirement, letters, readings = view.requirement, view.word.letters, view.readings()
     at_once = opened_at_once(requirement.consequent)
     goes_on = not looks_back_at_future(requirement.consequent)
@@ -120,8 +120,8 @@ def _episodes(view: View) -> list[Followed]:
             if view.trigger[k] is Truth.FALSE:
                 episode = None
             elif episode is None and k >= view.first:
-                owes, stop = view.stretch(k)
-                episode = view.begin(k, owes, stop)
+                positions, stop = view.stretch(k)
+                episode = view.begin(k, positions, stop)
                 found.append(Followed(episode))
             elif episode is not None and goes_on and _has_failed(found[-1]):
                 truths = readings.of(episode.captured, favour=favour)
@@ -141,12 +141,12 @@ _UNTILS = {UnaryOp.EVENTUALLY, BinaryOp.UNTIL, BinaryOp.STRONG_RELEASE}
 
 
 def opened_at_once(formula: Formula, *, positive: bool = True) -> Formula:
-    """The formula with the windows of all that has to be kept up opened at once.
+    """The formula with the windows of all obligations to last opened at once.
 
     In negation normal form these are the windows of `G` and `R`: their lower bounds become 0.
 
     Args:
-        formula: a consequent or a part of one, with nothing of the future below the past.
+        formula: a consequent or a part of one, without future operators below past ones.
         positive: whether an even number of negations stands above it.
 
     Source: SEMANTICS, section 3 (After a failure).
@@ -160,9 +160,9 @@ def opened_at_once(formula: Formula, *, positive: bool = True) -> Formula:
 
     if not speaks_of_future(formula) or not isinstance(formula, Unary | Binary):
         return formula
-    kept_up = _RELEASES if positive else _UNTILS
+    lasting = _RELEASES if positive else _UNTILS
     interval = formula.interval
-    if formula.op in kept_up and interval is not None:
+    if formula.op in lasting and interval is not None:
         interval = Interval(0, interval.high)
     match formula:
         case Unary(op=UnaryOp.NOT, operand=operand):

@@ -1,8 +1,8 @@
-"""The robustness of attempts, straight from its definition.
+"""The robustness of attempts, computed from its definition.
 
-Every position is explicit and every operator a minimum of maxima over positions. Unknown input and
-what lies behind the end may be anything: each figure is an interval. Where positions may not be
-there a trace is in pieces: what lies outside the one in which an attempt begins may be anything.
+Every position is explicit, and every operator is a minimum of maxima over positions. Each figure is
+an interval, as unknown input and all input after the end may be anything. Possible positions cut a
+trace into pieces: outside the piece in which an attempt begins, input may be anything, too.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from rvmon.testing.law.truths import EVER
 from rvmon.testing.law.word import Truth, Word, truth_of
 
 Key = tuple[str, bool, int]
-"""Requirement, whether in doubt, and number."""
+"""Requirement, whether the attempt is in doubt, and its number."""
 
 
 def margins(
@@ -30,14 +30,14 @@ def margins(
     """The robustness of attempts.
 
     Args:
-        followings: by requirement, its attempts.
+        followings: the attempts by requirement.
         recorded: the attempts with a record; others are left out.
-        time: the model of it.
+        time: the time model.
 
     Returns:
-        The least it can be, the greatest, and the least if all is well behind the end that has
-        begun and only has to be kept up. Of one in doubt the greatest is infinite, as what was not
-        triggered owes nothing.
+        Lower bound, upper bound, and the lower bound if after the end every opened unbounded `R`
+        (`always`) holds. The upper bound of an attempt in doubt is infinite, as it may not have
+        been triggered and then has no obligation.
 
     Source: SEMANTICS, sections 1 (Birth), 2, 3 and 5.
     """
@@ -55,7 +55,7 @@ def margins(
 
 
 def _piece(word: Word, position: int) -> tuple[Word, int]:
-    """The word as far as there surely are positions around one, and the first of these."""
+    """The piece of sure positions around a position: the word up to its end, and its first one."""
     letters = word.letters
     last = next((k for k in range(position, len(letters)) if not letters[k].sure), None)
     first = next((k + 1 for k in reversed(range(position)) if not letters[k].sure), 0)
@@ -70,7 +70,7 @@ def _required(start: Start, *, kept: bool, held: bool) -> Range:
     if not start.word.letters[start.position].sure:
         return ANY
     word, first = _piece(start.word, start.position)
-    owes = [k for k in start.owes if k < len(word.letters)]
+    positions = [k for k in start.positions if k < len(word.letters)]
     over = start.stop is not None and start.stop < len(word.letters)
     past = Past(word, start.captured, first, held=held)
     ranges = _Ranges(word, past, first, favour=favour, kept=kept)
@@ -90,7 +90,7 @@ def _required(start: Start, *, kept: bool, held: bool) -> Range:
         return most([excused, consequent(k)])
 
     end = over or (kept and len(word.letters) == len(start.word.letters))
-    return least([*map(required, owes), TOP if end else ANY])
+    return least([*map(required, positions), TOP if end else ANY])
 
 
 class _Ranges:

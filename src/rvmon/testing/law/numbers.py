@@ -1,4 +1,4 @@
-"""Numbers and comparisons at one position."""
+"""Numeric expressions and comparisons at a position."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def compare(
 ) -> Truth:
     """The truth of a comparison; over fields of an event `e` it means `e and comparison`.
 
-    Of several occurrences (or pairs of occurrences of two events) one has to satisfy it.
+    With several occurrences (or pairs of occurrences of two events), one has to satisfy it.
 
     Source: SEMANTICS, section 1 (Unknown, Birth).
     """
@@ -66,7 +66,7 @@ def compare_at(
     payloads: Mapping[str, Payload],
     captured: Mapping[str, Scalar],
 ) -> Truth:
-    """The truth of a comparison by one occurrence of each event that it reads."""
+    """The truth of a comparison for one occurrence of each event that it reads."""
     if not is_born(comparison, letter):
         return Truth.UNBORN
     left = number(comparison.left, letter, payloads, captured)
@@ -77,7 +77,7 @@ def compare_at(
 
 
 def is_born(comparison: Compare, letter: Letter) -> bool:
-    """Whether all signals of a comparison have had what it reads of them."""
+    """Whether all signals of a comparison have had the values that it reads."""
     return all(
         letter.signals[part.name].moved
         if isinstance(part, UpdateValue)
@@ -89,7 +89,7 @@ def is_born(comparison: Compare, letter: Letter) -> bool:
 
 
 def known_scalar(value: Scalar) -> Scalar:
-    """The value itself, or `None` for NaN."""
+    """The value, or `None` for NaN."""
     return None if isinstance(value, float) and math.isnan(value) else value
 
 
@@ -132,7 +132,7 @@ def number(
             values = (number(arg, letter, payloads, captured) for arg in args)
             return _calculate(op, list(values))
         case WindowValue():
-            raise AssertionError("of windows it is worked out by their members")
+            raise AssertionError("windows are evaluated by `Past`")
         case _:
             assert_never(expression)
 
@@ -170,10 +170,10 @@ _OF_BITS: dict[NumericOp, Callable[[int, int], int | None]] = {
 
 
 def _calculate(op: NumericOp, args: list[Scalar]) -> Scalar:
-    """The value of an operation; of whole numbers it is one of int64, else of binary64.
+    """The value of an operation: an int64 if all arguments are whole numbers, else a binary64.
 
-    Division, roots and lengths are of reals; where a real stands beside a whole number, that is
-    rounded first. So is the difference in a `rate`, which is per second.
+    Division, roots and lengths are operations on reals. Next to a real, a whole number is rounded
+    to a binary64 first; so is the difference in a `rate`, which is per second.
 
     Source: SEMANTICS, section 5.
     """
@@ -193,7 +193,7 @@ def _calculate(op: NumericOp, args: list[Scalar]) -> Scalar:
 
 
 def as_ticks(seconds: float) -> int:
-    """A duration of data in ticks, rounded as the stamps of data are; at most the bounds of time.
+    """Seconds in ticks, rounded as stamps of data are, and clamped to the bounds of time.
 
     >>> as_ticks(0.3), as_ticks(2)
     (300000000, 2000000000)
@@ -206,7 +206,7 @@ _WHOLE = range(-(2**63), 2**63)
 
 
 def at_edge(value: Scalar, kind: Kind) -> Scalar:
-    """A value as a signal or field of a kind holds it; unknown if it cannot.
+    """A value as a signal or field of a kind holds it; `None` if it cannot.
 
     Source: SEMANTICS, section 5.
 
@@ -285,7 +285,7 @@ def _of_reals(op: NumericOp, x: float, y: float = 0.0, *more: float) -> float:
 
 
 def _distance(lat1: float, lon1: float, lat2: float, lon2: float) -> float:
-    """By haversines, on a sphere."""
+    """The great-circle distance in metres, by the haversine formula; angles in radians."""
     north, east = math.sin((lat2 - lat1) / 2), math.sin((lon2 - lon1) / 2)
     share = north * north + math.cos(lat1) * math.cos(lat2) * (east * east)
     return 2 * 6371008.8 * math.asin(min(math.sqrt(share), 1.0))

@@ -1,4 +1,4 @@
-"""The operators of the past, from the truth of their operands at the positions so far."""
+"""The past operators, evaluated from the truth of their operands at all positions so far."""
 
 from __future__ import annotations
 
@@ -33,9 +33,9 @@ def always_false(_: int) -> Truth:
 
 
 def unless_constant(part: Formula, operand: Operand, value: Truth) -> Operand:
-    """An operand that has to last up to some position; a constant needs no position to exist.
+    """An operand that has to last up to some position; a constant lasts without any position.
 
-    So `true U φ` is `F φ` where there may be positions, too: where every formula is unknown.
+    So `true U φ` equals `F φ` also across possible positions, at which every formula is unknown.
     """
     return (lambda _: value) if constant_value(part) is value else operand
 
@@ -57,15 +57,15 @@ def since(
     i: int,
     interval: Interval,
     *,
-    mortal: bool = False,
+    can_be_unborn: bool = False,
 ) -> Truth:
     """Some position of the window had `right`, and all after it, up to `i`, have `left`.
 
-    Positions at which an operand is not born are passed over; if `right` is at none of the
-    window, the whole is not. If `mortal`, and it is nowhere TRUE or FALSE there, the whole
-    is unknown, though `left` be FALSE: what an outage swallowed may not be born either.
+    Positions at which an operand is unborn are skipped; if `right` is unborn throughout the window,
+    so is the whole. If it can be unborn and is nowhere TRUE or FALSE there, the whole is UNKNOWN
+    even where `left` is FALSE: a value lost in an outage may have been unborn, too.
     """
-    shows_birth = {Truth.TRUE, Truth.FALSE} if mortal else {*Truth} - {Truth.UNBORN}
+    shows_birth = {Truth.TRUE, Truth.FALSE} if can_be_unborn else {*Truth} - {Truth.UNBORN}
     now = letters[i].instant
     value, so_far = Truth.FALSE, Truth.TRUE
     seen: set[Truth] = set()
@@ -82,28 +82,28 @@ def since(
 
 
 def historically(letters: Sequence[Letter], operand: Operand, i: int, interval: Interval) -> Truth:
-    """All positions of the window had it."""
+    """All positions of the window had the operand."""
     return negation(since(letters, always_true, inverted(operand), i, interval))
 
 
 def held(
-    letters: Sequence[Letter], operand: Operand, i: int, interval: Interval, *, mortal: bool
+    letters: Sequence[Letter], operand: Operand, i: int, interval: Interval, *, can_be_unborn: bool
 ) -> Truth:
-    """All positions of the window had it, which has to lie behind its birth whole.
+    """All positions of the window had the operand, and the whole window lies after its birth.
 
-    What is unknown may not be born either: it shows nothing of where the birth was.
+    Where the operand is UNKNOWN it may be unborn, so that shows no birth.
     """
     now = letters[i].instant
     window = [k for k in range(i + 1) if is_within(now - letters[k].instant, interval)]
     values = [operand(k) for k in window]
-    if mortal and not {Truth.TRUE, Truth.FALSE}.intersection(values):
+    if can_be_unborn and not {Truth.TRUE, Truth.FALSE}.intersection(values):
         return disjunction(values)
     long_enough = lasted(letters, i, interval.high or 0)
     return conjunction([long_enough, *(born_or_false(value) for value in values)])
 
 
 def lasted(letters: Sequence[Letter], i: int, duration: int) -> Truth:
-    """Whether the trace began so long before a position; it may have at any that may be there."""
+    """Whether the trace began at least so many ticks before a position."""
     starts = [k for k in range(i + 1) if letters[i].instant - letters[k].instant >= duration]
     if any(letters[k].sure for k in starts):
         return Truth.TRUE

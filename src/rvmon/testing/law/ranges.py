@@ -1,4 +1,4 @@
-"""The robustness of formulas of the present and past, as intervals, straight from definitions."""
+"""The robustness of formulas of the present and past as intervals, from its definition."""
 
 from __future__ import annotations
 
@@ -35,18 +35,18 @@ OF_TRUTH = {Truth.FALSE: BOTTOM, Truth.UNKNOWN: ANY, Truth.TRUE: TOP}
 
 
 def negated(value: Range) -> Range:
-    """The robustness of the negation."""
+    """The robustness of a negation."""
     return -value[1], -value[0]
 
 
 def least(values: Iterable[Range]) -> Range:
-    """The range of a conjunction; of an empty one `TOP`."""
+    """The range of a conjunction; `TOP` if it is empty."""
     lows, highs = zip(TOP, *values, strict=True)
     return min(lows), min(highs)
 
 
 def most(values: Iterable[Range]) -> Range:
-    """The range of a disjunction; of an empty one `BOTTOM`."""
+    """The range of a disjunction; `BOTTOM` if it is empty."""
     lows, highs = zip(BOTTOM, *values, strict=True)
     return max(lows), max(highs)
 
@@ -56,8 +56,8 @@ class Operand:
     """A formula at a position.
 
     Attributes:
-        state: its truth, or that it is not born.
-        read: its robustness, by what it is taken for if it is not born.
+        state: its truth, UNBORN included.
+        read: gives its robustness; the argument is the truth that UNBORN is read as.
     """
 
     state: Truth
@@ -70,8 +70,8 @@ class Past:
     Args:
         word: the trace.
         captured: values of `let` and `for each`.
-        first: what lies before this position may be anything; nothing lies before the first one.
-        held: whether time is held: what moves between samples has no distance.
+        first: the first sure position; before it, letters may be anything; 0: nothing is before it.
+        held: whether time is held: then measures that change between samples have no distance.
 
     Source: SEMANTICS, sections 1 (Birth), 2 and 5; decision record 4.
     """
@@ -87,7 +87,7 @@ class Past:
         self._known: dict[tuple[int, int, Truth], Range] = {}
 
     def range(self, formula: Formula, i: int, unborn: Truth) -> Range:
-        """The robustness at a position; `unborn` is what counts where it is not born."""
+        """The robustness at a position; UNBORN is read as `unborn`."""
         key = (id(formula), i, unborn)
         if key not in self._known:
             self._known[key] = self._range(formula, i, unborn)
@@ -136,14 +136,14 @@ class Past:
                 return _all([_not(here), _settled(self._before(operand, i))]).read(unborn)
             case UnaryOp.ONCE:
                 value = self._since(None, self._candidate(operand), i, window)
-                return _besides(value, is_unborn, unborn)
+                return _or_unborn(value, is_unborn, unborn)
             case UnaryOp.HISTORICALLY:
                 value = self._since(None, self._candidate(operand, positive=False), i, window)
-                return negated(_besides(value, is_unborn, negation(unborn)))
+                return negated(_or_unborn(value, is_unborn, negation(unborn)))
             case UnaryOp.HELD:
                 return self._held(operand, i, window, unborn)
             case _:
-                raise AssertionError("it speaks of the future")
+                raise AssertionError("a future operator is no proposition")
 
     def _binary(self, formula: Binary, i: int, unborn: Truth) -> Range:
         left, right = self._operand(formula.left, i), self._operand(formula.right, i)
@@ -165,10 +165,10 @@ class Past:
                 value = self._since(formula.left, self._candidate(formula.right), i, window)
                 return self._unless_unborn(value, formula.right, i, window, unborn)
             case _:
-                raise AssertionError("it speaks of the future")
+                raise AssertionError("a future operator is no proposition")
 
     def _candidate(self, formula: Formula, *, positive: bool = True) -> Callable[[int], Range]:
-        """The operand sought in a window, which does not count where it is unborn."""
+        """The robustness of the operand sought in a window, which UNBORN does not satisfy."""
         if positive:
             return lambda k: self.range(formula, k, Truth.FALSE)
         return lambda k: negated(self.range(formula, k, Truth.TRUE))
@@ -176,7 +176,7 @@ class Past:
     def _since(
         self, left: Formula | None, right: Callable[[int], Range], i: int, window: Interval
     ) -> Range:
-        """Positions at which `left` is not born do not stand in the way."""
+        """The robustness of `since`; positions at which `left` is unborn are skipped."""
         now = self._letters[i].instant
         own = range(self._first, i + 1)
         kept = [TOP if left is None else self.range(left, k, Truth.TRUE) for k in own]
@@ -190,7 +190,7 @@ class Past:
         return most(ways)
 
     def reaches_out(self, i: int, window: Interval) -> bool:
-        """Whether a window of the past holds something that may be anything."""
+        """Whether a window of the past extends before the first sure position."""
         if self._first == 0:
             return False
         outside = self._letters[i].instant - self._letters[self._first - 1].instant
@@ -201,7 +201,7 @@ class Past:
             return Operand(Truth.FALSE, lambda _: BOTTOM)
         state = self._truths.state(operand, i - 1)
         value = ANY if i == self._first else self.range(operand, i - 1, Truth.FALSE)
-        return Operand(state, lambda unborn: _besides(value, state is Truth.UNBORN, unborn))
+        return Operand(state, lambda unborn: _or_unborn(value, state is Truth.UNBORN, unborn))
 
     def _held(self, operand: Formula, i: int, window: Interval, unborn: Truth) -> Range:
         now = self._letters[i].instant
@@ -215,7 +215,7 @@ class Past:
     def _unless_unborn(
         self, value: Range, sought: Formula, i: int, window: Interval, unborn: Truth
     ) -> Range:
-        """`value`, or unborn if the sought operand may be unborn throughout the window."""
+        """`value`, or that of UNBORN if the sought operand may be unborn throughout the window."""
         now = self._letters[i].instant
         states = {
             self._truths.state(sought, k)
@@ -224,16 +224,16 @@ class Past:
         }
         if Truth.UNKNOWN in states and not states & {Truth.TRUE, Truth.FALSE}:
             return most([value, ANY])
-        return _besides(value, states == {Truth.UNBORN}, unborn)
+        return _or_unborn(value, states == {Truth.UNBORN}, unborn)
 
 
-def _besides(value: Range, is_unborn: bool, unborn: Truth) -> Range:
-    """The range of a value that is at least `unborn` where it is unborn."""
+def _or_unborn(value: Range, is_unborn: bool, unborn: Truth) -> Range:
+    """A range, raised to that of `unborn` if the formula is unborn."""
     return most([value, OF_TRUTH[unborn]]) if is_unborn else value
 
 
 def _settled(operand: Operand) -> Operand:
-    """False where it is not born, as what lies before the trace."""
+    """The operand with UNBORN read as FALSE, as before the beginning of the trace."""
     state = Truth.FALSE if operand.state is Truth.UNBORN else operand.state
     return Operand(state, lambda _: operand.read(Truth.FALSE))
 
@@ -247,7 +247,7 @@ def _any(parts: Sequence[Operand]) -> Operand:
 
 
 def _all(parts: Sequence[Operand]) -> Operand:
-    """The conjunction of parts; where a part was lost, unborn parts do not narrow it."""
+    """The conjunction of parts; next to an UNKNOWN part, unborn ones do not make it FALSE."""
     states = {part.state for part in parts}
 
     def read(unborn: Truth) -> Range:
@@ -285,7 +285,7 @@ def _distance(
         return TOP if (left == right) is (op is CompareOp.EQ) else BOTTOM
     apart = 0.0 if left == right else float(left - right)
     value = {
-        CompareOp.LT: 0.0 - apart,  # nothing is -0
+        CompareOp.LT: 0.0 - apart,  # avoids -0.0
         CompareOp.LE: 0.0 - apart,
         CompareOp.GT: apart,
         CompareOp.GE: apart,

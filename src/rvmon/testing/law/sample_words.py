@@ -1,4 +1,4 @@
-"""From samples to words: which instants are positions, and what is known at each."""
+"""Turns samples into words: finds the positions and the state of each name there."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from rvmon.testing.law.word import (
 from rvmon.trace.sample import Payload, Sample, Value
 
 MOST_TICKS = 1_000_000
-"""Longer traces are refused: every tick is a position here, so tests count in nanoseconds."""
+"""The longest trace; as every tick is a position here, tests count time in nanoseconds."""
 
 
 def word_of(
@@ -36,13 +36,13 @@ def word_of(
     names: frozenset[str] | None = None,
     outages: Sequence[Outage] = (),
 ) -> Word:
-    """Lay a trace out position by position.
+    """Lay out a trace position by position.
 
     Args:
         spec: gives the time model and the names.
         samples: with strictly increasing times.
         end: the argument of `finish`, ticks.
-        advances: the arguments of `advance`, ticks; the samples are taken to fit.
+        advances: the arguments of `advance`, ticks; assumed to fit the samples.
         names: the names that have a source; `None`: all.
         outages: the outages, in any order.
 
@@ -56,44 +56,43 @@ def word_of(
     for earlier, later in pairwise(samples):
         if later.t <= earlier.t:
             raise TimeOrderError(f"sample at {later.t} ns after one at {earlier.t} ns")
-    heard_of = [*(sample.t for sample in samples), *(outage.last for outage in outages)]
-    reached = max([*advances, *heard_of, *_given(end)], default=0)
-    if not heard_of:
+    stamps = [*(sample.t for sample in samples), *(outage.last for outage in outages)]
+    reached = max([*advances, *stamps, *_given(end)], default=0)
+    if not stamps:
         return Word((), None, reached)
-    samples = heard(spec, samples)
+    samples = without_ignored(spec, samples)
     begun = samples[0].t if samples else None
     first = min([*(outage.first for outage in outages), *_given(begun)])
-    # In sampled time `advance` says only what will not come; else it settles all ticks before.
+    # `advance` settles all ticks before it, but in sampled time, where it adds no position.
     settled = [] if spec.time is TimeModel.SAMPLED else [t - 1 for t in advances]
-    known_to = max([*heard_of, *settled, *_given(end)])
+    known_to = max([*stamps, *settled, *_given(end)])
     reached = max(reached, known_to + 1)
     if reached - first > MOST_TICKS:
         raise TraceError(
-            f"the trace spans {reached - first} ns, and the oracle walks every one of them: "
+            f"the trace spans {reached - first} ns, and the oracle visits every one of them: "
             f"scale durations and times so that at most {MOST_TICKS} remain"
         )
     instants = _positions(spec, samples, outages, first, known_to)
-    said = {
-        name: _said_of(name, samples, outages, has_source=names is None or name in names)
+    histories = {
+        name: _history_of(name, samples, outages, has_source=names is None or name in names)
         for name in (*spec.signals, *spec.events)
     }
     letters: list[Letter] = []
     for index, instant in enumerate(instants):
         if _is_sure(spec, instant, begun, outages):
             before = instants[index - 1] if index else None
-            history = {name: history.by(before, instant) for name, history in said.items()}
-            begins = letters[0] if letters else None
-            since = instant if begins is None else begins.since
-            letters.append(replace(_letter(spec, instant, history), since=since))
+            so_far = {name: history.by(before, instant) for name, history in histories.items()}
+            since = letters[0].since if letters else instant
+            letters.append(replace(_letter(spec, instant, so_far), since=since))
         else:
             letters.append(_blank(spec, instant))
     return Word(tuple(letters), known_to, reached)
 
 
-def heard(spec: CheckedSpec, samples: Sequence[Sample]) -> Sequence[Sample]:
-    """The samples, each without NaN and null of a signal that ignores them.
+def without_ignored(spec: CheckedSpec, samples: Sequence[Sample]) -> Sequence[Sample]:
+    """The samples, without NaN and null of signals that ignore them.
 
-    A sample that says nothing else is a sample all the same.
+    A sample with nothing else stays a sample, and so a position of sampled time.
     """
 
     def counts(name: str, value: Value) -> bool:
@@ -117,7 +116,7 @@ def _positions(
     first: int,
     end: int,
 ) -> Sequence[int]:
-    """The instants at which there is a position, or may be one."""
+    """The instants of all positions, certain or possible."""
     match spec.time:
         case TimeModel.HELD:
             return range(first, end + 1)
@@ -130,12 +129,11 @@ def _positions(
 
 
 def _is_sure(spec: CheckedSpec, instant: int, begun: int | None, outages: Iterable[Outage]) -> bool:
-    """Whether there is a position; where nobody knows, every formula is unknown.
+    """Whether an instant is surely a position; where it may be none, every formula is unknown.
 
-    In an outage of sampled time nobody does, at any of its ticks, though a sample was read there:
-    what `next` and the like speak of is unknown all the same. In the other time models the trace
-    may have begun in an outage, and every position from there to the first sample that was read
-    may lie before it.
+    In an outage of sampled time no tick surely is, even if a sample was read there: `next` and
+    `previous` cannot know which position is the neighbour. In the other time models the trace may
+    have begun in an outage, so no position before the first sample that was read is sure.
 
     Args:
         spec: gives the time model.
@@ -149,7 +147,7 @@ def _is_sure(spec: CheckedSpec, instant: int, begun: int | None, outages: Iterab
 
 
 def _blank(spec: CheckedSpec, instant: int) -> Letter:
-    """The letter of an instant at which there may be no position."""
+    """The letter of a possible position."""
     unknown = SignalState(
         updated=Truth.UNKNOWN, changed=Truth.UNKNOWN, born=True, moved=True, lost=True
     )
@@ -170,9 +168,9 @@ class _Entry:
 
     Attributes:
         t: its instant.
-        value: the new value; of a lost update, `None`.
-        since: the instant from which on it counts: the end of an outage, if it came in one.
-        lost: whether it stands for all updates that an outage swallowed.
+        value: the new value; `None` for lost updates.
+        since: the instant from which on it counts; for lost updates the first of the outage.
+        lost: whether it stands for all updates lost in an outage.
     """
 
     t: int
@@ -187,9 +185,9 @@ class _History:
 
     Attributes:
         entries: its updates, in order.
-        outages: of it that have begun.
+        outages: its outages that have begun.
         before: the previous position; updates after it belong to this one.
-        instant: of this position.
+        instant: the instant of this position.
         has_source: whether the name can be updated at all.
     """
 
@@ -216,21 +214,21 @@ class _History:
 
     @property
     def is_touched(self) -> bool:
-        """Whether what falls to this position may have been lost."""
+        """Whether updates of this position may have been lost."""
         return any(outage.touches(self.before, self.instant) for outage in self.outages)
 
     def is_new(self, entry: _Entry) -> bool:
-        """Whether an entry falls to this position."""
+        """Whether an update belongs to this position."""
         return self.before is None or entry.t > self.before
 
 
-def _said_of(
+def _history_of(
     name: str, samples: Sequence[Sample], outages: Sequence[Outage], *, has_source: bool
 ) -> _History:
-    """All that is told of a name; what was lost comes before what bears the same stamp.
+    """All updates of a name; lost ones come before one that was read with the same stamp.
 
     Raises:
-        TraceError: something is, though it has no source.
+        TraceError: it is updated without having a source.
     """
     read = [sample for sample in samples if name in sample.values]
     if read and not has_source:
@@ -258,12 +256,12 @@ def _event(history: _History, event: Event) -> EventState:
     if not history.has_source or history.is_within:
         return _UNKNOWN_EVENT
     new = [entry for entry in history.entries if history.is_new(entry)]
-    told_of = (occurrence for entry in new for occurrence in _occurrences(entry.value))
-    found = (
-        replace(occurrence, payload=_at_edge(occurrence.payload, event)) for occurrence in told_of
+    occurrences = tuple(
+        replace(occurrence, payload=_at_edge(occurrence.payload, event))
+        for entry in new
+        for occurrence in _occurrences(entry.value)
     )
-    lost = sum(entry.lost for entry in new)
-    return EventState(_updated(history), tuple(found), lost)
+    return EventState(_updated(history), occurrences, sum(entry.lost for entry in new))
 
 
 def _at_edge(payload: Payload, event: Event) -> Payload:
@@ -278,11 +276,13 @@ def _signal(history: _History, signal: Signal) -> SignalState:
         return SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN, born=True, moved=True)
     if not history.entries:
         return SignalState()
-    said = (_update(entry.t, entry.value) for entry in history.entries)
-    updates = [replace(update, value=at_edge(update.value, signal.type.kind)) for update in said]
+    updates = [
+        Update(entry.t, at_edge(_update(entry.t, entry.value).value, signal.type.kind))
+        for entry in history.entries
+    ]
     last, within = updates[-1], history.is_within
     stale = signal.stale_after is not None and history.instant > last.t + signal.stale_after
-    # What was lost may have been the first value, and the update behind it.
+    # The lost updates may have been the first value, and the update after it.
     may_be_born = bool(history.outages)
     since_birth = list(dropwhile(lambda update: update.value is None, updates))
     return SignalState(
@@ -298,7 +298,7 @@ def _signal(history: _History, signal: Signal) -> SignalState:
 
 
 def _updated(history: _History) -> Truth:
-    """Whether something said of the name falls to this position."""
+    """Whether an update of the name belongs to this position."""
     if history.is_within:
         return Truth.UNKNOWN
     kept = any(history.is_new(entry) and not entry.lost for entry in history.entries)
@@ -306,7 +306,7 @@ def _updated(history: _History) -> Truth:
 
 
 def _changed(history: _History, updates: Sequence[Update]) -> Truth:
-    """Whether an update to another value does."""
+    """Whether an update to another value belongs to it."""
     if history.is_within:
         return Truth.UNKNOWN
     pairs = zip(pairwise(updates), history.entries[1:], strict=True)

@@ -1,4 +1,4 @@
-"""The parts of formulas, as the law needs them."""
+"""Properties of formulas that can be read off their syntax."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from rvmon.testing.law.word import Truth, conjunction, disjunction, negation, tr
 
 
 def subformulas(formula: Formula) -> Iterator[Formula]:
-    """The formula and all below it, from the top."""
+    """The formula and all its subformulas, from the top."""
     yield formula
     match formula:
         case Unary(operand=operand):
@@ -58,14 +58,14 @@ _BOOLEAN = {
 
 
 def speaks_of_future(formula: Formula) -> bool:
-    """Whether a formula speaks of later positions."""
+    """Whether a formula has a future operator."""
     return any(
         isinstance(part, Unary | Binary) and part.op in _FUTURE for part in subformulas(formula)
     )
 
 
 def looks_back_at_future(formula: Formula) -> bool:
-    """Whether something of the future stands below an operator of the past."""
+    """Whether a future operator stands below a past operator."""
     return any(
         isinstance(part, Unary | Binary)
         and part.op not in _BOOLEAN | _FUTURE
@@ -75,7 +75,7 @@ def looks_back_at_future(formula: Formula) -> bool:
 
 
 def is_proposition(formula: Formula) -> bool:
-    """Whether it is read off the trace so far, and no combination of what is."""
+    """Whether a formula has no future operator, and is no Boolean combination."""
     if isinstance(formula, Unary | Binary):
         return formula.op not in _BOOLEAN and not speaks_of_future(formula)
     return True
@@ -97,7 +97,7 @@ def numerics(formula: Formula) -> Iterator[Numeric]:
 
 
 def parts_of(expression: Numeric) -> Iterator[Numeric]:
-    """The expression and all below it, from the top."""
+    """The expression and all its parts, from the top."""
     yield expression
     if isinstance(expression, Arithmetic):
         for arg in expression.args:
@@ -105,7 +105,7 @@ def parts_of(expression: Numeric) -> Iterator[Numeric]:
 
 
 def constant_value(formula: Formula) -> Truth:
-    """The truth of a formula that holds for all values of its propositions; else UNKNOWN."""
+    """The truth of a formula if it is the same for all values of its propositions; else UNKNOWN."""
     match formula:
         case Constant(value=value):
             return truth_of(value)

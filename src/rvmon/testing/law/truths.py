@@ -1,7 +1,7 @@
-"""The truth of formulas after a prefix, straight from their definitions.
+"""The truth of formulas after a prefix, computed from the definitions of their operators.
 
-Operators are read here as SEMANTICS says, not by their entries: those are to be found right by it.
-So are they in `walk`, `ready` and `pulse` beside it.
+The meaning of each operator is written here as SEMANTICS gives it, and not taken from the table of
+operators (`rvmon.language.checked.operators`), so that errors of the table are found.
 """
 
 from __future__ import annotations
@@ -62,16 +62,15 @@ EVER = Interval(0, None)
 
 
 class Truths:
-    """The truth of formulas at positions of one word, after a prefix of it.
+    """The truth of formulas at positions of a word, after a prefix of it.
 
-    A truth other than UNKNOWN stays what it is when more becomes known; that alone is what the
-    memory over prefixes relies on.
+    A truth other than UNKNOWN is final: it stays the same for longer prefixes, so it is cached.
 
     Args:
         word: the trace.
         captured: values of `let` and `for each`.
-        rest: the assumption about the unknown rest.
-        favour: whether a proposition that is not born counts in favour, or else as unknown.
+        rest: the assumption about pending operators.
+        favour: whether an unborn proposition counts as met; else it is UNKNOWN.
 
     Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
     """
@@ -97,9 +96,9 @@ class Truths:
         self.reach(word.reached)
 
     def reach(self, reached: int) -> None:
-        """Speak of the prefix that is known at the instant `reached`.
+        """Evaluate on the prefix known at the instant `reached`.
 
-        Once a truth was asked for, instants may only grow.
+        After the first evaluation, instants must not decrease.
         """
         self._reached = reached
         self._known = sum(letter.instant <= reached for letter in self._letters)
@@ -111,13 +110,13 @@ class Truths:
         return self._known
 
     def truth(self, formula: Formula, i: int, *, positive: bool = True) -> Truth:
-        """The truth of what is required, at a known position: never UNBORN.
+        """The truth of a required formula at a known position: never UNBORN.
 
         Args:
-            formula: any.
+            formula: any formula.
             i: the position.
-            positive: whether an even number of negations stands above the formula; it matters for
-                the rest of its operators, and for what counts in favour.
+            positive: whether an even number of negations stands above the formula; it decides how
+                pending operators and unborn propositions count.
         """
         if not self._letters[i].sure:
             return Truth.UNKNOWN
@@ -145,7 +144,7 @@ class Truths:
     def state(self, formula: Formula, i: int) -> Truth:
         """The truth of a formula of the present and past at a position; it may be UNBORN.
 
-        Where there may be no position it is UNKNOWN, of a constant too.
+        At a possible position every formula is UNKNOWN, even a constant.
         """
         if not self._letters[i].sure:
             return Truth.UNKNOWN
@@ -187,12 +186,12 @@ class Truths:
                 assert_never(formula)
 
     def settled(self, expression: Numeric, i: int) -> Numeric:
-        """An expression with what its windows come to at a position in place of these."""
+        """An expression with each window replaced by its value at a position."""
         past = Past(self._letters, self._captured, self.state)
         return past.settled(expression, i) if self._letters[i].sure else UNKNOWN
 
     def _passed(self, formula: Passed, i: int) -> Truth:
-        """A first instant that may have been earlier leaves unknown what is since then."""
+        """Whether enough time has passed; UNKNOWN if that depends on when the trace began."""
         after = number(formula.after, self._letters[i], {}, self._captured)
         since = 0 if formula.since is None else self._captured[formula.since]
         if not isinstance(after, int | float) or not isinstance(since, int):
@@ -205,12 +204,12 @@ class Truths:
         return truth_of(late.pop()) if len(late) == 1 else Truth.UNKNOWN
 
     def _is_first(self, i: int) -> Truth:
-        """Whether no position is before this one."""
+        """Whether a position is the first one."""
         before = {letter.sure for letter in self._letters[:i]}
         return Truth.FALSE if True in before else Truth.UNKNOWN if before else Truth.TRUE
 
     def release_rest(self, opened: bool) -> Truth:
-        """The truth assumed of the rest of an unbounded `R`; `opened`: whether its window has."""
+        """The assumed truth of a pending unbounded `R`; `opened`: whether its window has opened."""
         match self._rest:
             case Rest.UNKNOWN:
                 return Truth.UNKNOWN
@@ -222,11 +221,11 @@ class Truths:
                 return Truth.FALSE
 
     def _other_rest(self) -> Truth:
-        """The truth assumed of the rest of any other pending operator."""
+        """The assumed truth of any other pending operator."""
         return self.release_rest(opened=False)
 
     def _composed(self, formula: Formula, i: int, positive: bool, sub: Sub) -> Truth:
-        """The truth of an operator, from that of its operands at positions."""
+        """The truth of an operator from the truths of its operands."""
         match formula:
             case Unary():
                 return self._unary(formula, i, positive, sub)
@@ -260,8 +259,8 @@ class Truths:
             case UnaryOp.HISTORICALLY:
                 return historically(self._letters, operand, i, interval)
             case UnaryOp.HELD:
-                mortal = not speaks_of_future(formula.operand)
-                return held(self._letters, operand, i, interval, mortal=mortal)
+                can_be_unborn = not speaks_of_future(formula.operand)
+                return held(self._letters, operand, i, interval, can_be_unborn=can_be_unborn)
             case UnaryOp.RISE:  # φ and not previous φ
                 before = born_or_true(negated(i - 1)) if i else Truth.TRUE
                 return conjunction([operand(i), before])
@@ -317,8 +316,10 @@ class Truths:
                 )
             case BinaryOp.SINCE:
                 lasting = unless_constant(formula.left, left, Truth.TRUE)
-                mortal = not speaks_of_future(formula)
-                return since(self._letters, lasting, right, i, interval, mortal=mortal)
+                can_be_unborn = not speaks_of_future(formula)
+                return since(
+                    self._letters, lasting, right, i, interval, can_be_unborn=can_be_unborn
+                )
             case _:
                 assert_never(formula.op)
 
@@ -356,7 +357,7 @@ class Truths:
     ) -> Truth:
         """Some position of the window has `right`, and all before it, from `i` on, have `left`.
 
-        While the window is not over, there may be one behind the known ones: `rest`.
+        As long as the window is not over, that position may be yet to come: then `rest` counts.
         """
         now = self._letters[i].instant
         value, so_far = Truth.FALSE, Truth.TRUE
@@ -371,7 +372,7 @@ class Truths:
 
 
 class Sub(Protocol):
-    """The truth of an operand at a position; `same`: no negation stands between."""
+    """Gives the truth of an operand at a position; `same`: no negation stands above it."""
 
     def __call__(self, part: Formula, k: int, same: bool = True, /) -> Truth:
-        """Work it out."""
+        """Evaluate the operand."""

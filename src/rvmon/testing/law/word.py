@@ -1,6 +1,6 @@
-"""A trace as a word: one letter per position, with all that the propositions can read there.
+"""A trace as a word: a letter per position, with everything that propositions can read there.
 
-An outage is a stretch of time over which a source may have said anything.
+In an outage, a source may have sent anything.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from rvmon.trace.sample import Payload, Scalar
 class Outage:
     """An outage: any number of updates of some names may have been lost.
 
-    The trace reaches to its last instant: the passing of time is not among the losses. If a source
-    is lost for good, its last instant is the latest that time is known to have reached.
+    The trace extends to its last instant, as time passed all the same. If a source is lost for
+    good, its last instant is the latest that time is known to have reached.
 
     Attributes:
-        names: the signals and events that may have been updated; may be empty, as a line without
-            updates is a position of sampled time all the same.
+        names: the signals and events that may have been updated; may be empty: in sampled time a
+            line without updates is a position, too.
         first: its first instant, ticks.
         last: its last instant, ticks; not before the first.
 
@@ -42,14 +42,14 @@ class Outage:
         return self.first <= instant <= self.last
 
     def touches(self, before: int | None, instant: int) -> bool:
-        """Whether some tick of it is behind `before` and not behind `instant`."""
+        """Whether a tick of it lies after `before`, up to `instant`."""
         return self.first <= instant and (before is None or before < self.last)
 
     def hides(self, instant: int) -> bool:
-        """Whether what was read at an instant of it may have been followed by what was lost.
+        """Whether a lost update may have come after the one that was read at an instant.
 
-        What bears the last stamp ended the outage, so it came last. Of an outage that is but one
-        instant nobody can say that: what was read there may have come before and behind it.
+        An update with the last stamp ended the outage, so nothing was lost after it. An outage of a
+        single instant is different: its updates may have come before or after the one read.
         """
         return self.covers(instant) and not self.first < instant == self.last
 
@@ -61,17 +61,17 @@ class Truth(IntEnum):
     UNKNOWN = 1
     TRUE = 2
     UNBORN = 3
-    """The truth of formulas of the present and past over signals without a value so far."""
+    """A formula of the present and past reads a signal that has had no value so far."""
 
 
 _NEGATION = (Truth.TRUE, Truth.UNKNOWN, Truth.FALSE, Truth.UNBORN)
 _FALSE_FIRST = (0, 1, 3, 2)
 _TRUE_FIRST = (3, 1, 0, 2)
-"""By truth, its place: of several, the first counts."""
+"""By truth, its rank in a conjunction and in a disjunction: the value of least rank wins."""
 
 
 def negation(value: Truth) -> Truth:
-    """TRUE and FALSE exchanged.
+    """Exchange TRUE and FALSE.
 
     >>> negation(Truth.UNKNOWN).name
     'UNKNOWN'
@@ -80,7 +80,7 @@ def negation(value: Truth) -> Truth:
 
 
 def conjunction(values: Iterable[Truth]) -> Truth:
-    """FALSE if any is, else UNKNOWN if any is, else UNBORN if any is; of nothing TRUE.
+    """FALSE if any is, else UNKNOWN if any is, else UNBORN if any is; TRUE of no values.
 
     >>> conjunction([Truth.UNBORN, Truth.TRUE]).name
     'UNBORN'
@@ -91,17 +91,17 @@ def conjunction(values: Iterable[Truth]) -> Truth:
 
 
 def disjunction(values: Iterable[Truth]) -> Truth:
-    """TRUE if any is, else UNKNOWN if any is, else UNBORN if any is; of nothing FALSE."""
+    """TRUE if any is, else UNKNOWN if any is, else UNBORN if any is; FALSE of no values."""
     return min(values, key=_TRUE_FIRST.__getitem__, default=Truth.FALSE)
 
 
 def both(truth: Truth, other: Truth) -> Truth:
-    """The conjunction of two, as quickly as it goes."""
+    """The conjunction of two values; faster than `conjunction`."""
     return truth if _FALSE_FIRST[truth] <= _FALSE_FIRST[other] else other
 
 
 def either(truth: Truth, other: Truth) -> Truth:
-    """The disjunction of two, as quickly as it goes."""
+    """The disjunction of two values; faster than `disjunction`."""
     return truth if _TRUE_FIRST[truth] <= _TRUE_FIRST[other] else other
 
 
@@ -111,18 +111,18 @@ def truth_of(value: bool) -> Truth:
 
 
 def born_or_true(value: Truth) -> Truth:
-    """TRUE in place of UNBORN."""
+    """Read UNBORN as TRUE."""
     return Truth.TRUE if value is Truth.UNBORN else value
 
 
 def born_or_false(value: Truth) -> Truth:
-    """FALSE in place of UNBORN."""
+    """Read UNBORN as FALSE."""
     return Truth.FALSE if value is Truth.UNBORN else value
 
 
 @dataclass(frozen=True, slots=True)
 class Update:
-    """One entry for a signal in a sample; `value` is `None` for NaN as well."""
+    """The value of a signal in a sample; `None` if unknown or NaN."""
 
     t: int
     value: Scalar
@@ -133,14 +133,14 @@ class SignalState:
     """The state of a signal at a position, as far as it is known.
 
     Attributes:
-        value: the held one; `None` if unknown for whatever reason.
-        updated: whether an update falls to this position; unknown of a name without a source.
-        changed: whether an update to another value does.
+        value: the held value; `None` if unknown for any reason.
+        updated: whether an update belongs to this position; UNKNOWN for a name without a source.
+        changed: whether an update to another value belongs to it.
         last: the last update so far.
-        before: the one before that.
+        before: the update before that.
         born: whether an update has brought a known value so far, or may have in an outage.
-        moved: whether one came after the first that did, or may have.
-        lost: whether an outage hides what the value is.
+        moved: whether another update came after that one, or may have in an outage.
+        lost: whether the value is unknown because of an outage.
     """
 
     value: Scalar = None
@@ -155,7 +155,7 @@ class SignalState:
 
 @dataclass(frozen=True, slots=True)
 class Occurrence:
-    """An event at a position: surely there, surely not, or not known; with its payload."""
+    """An occurrence of an event at a position, with its payload; UNKNOWN if it may not be there."""
 
     truth: Truth
     payload: Payload
@@ -166,9 +166,9 @@ class EventState:
     """The state of an event at a position, as far as it is known.
 
     Attributes:
-        updated: whether it was reported, as occurring or not.
+        updated: whether the event was reported, as occurring or as not occurring.
         occurrences: the certain and the possible ones.
-        lost: the number of them that stand for lost ones.
+        lost: the number of occurrences that stand for lost ones.
     """
 
     updated: Truth = Truth.FALSE
@@ -178,15 +178,15 @@ class EventState:
 
 @dataclass(frozen=True, slots=True)
 class Letter:
-    """One position: its instant and the state of every declared name there.
+    """A position: its instant and the state of every declared name.
 
     Attributes:
         instant: ticks.
         signals: the state of each.
         events: the state of each.
-        sure: whether there is such a position; in an outage of sampled time, and before the first
-            sample that was read, there may be none.
-        since: the first position; `None` if it is not known.
+        sure: whether the position exists; in an outage of sampled time, and before the first
+            sample that was read, it may not.
+        since: the instant of the first position, ticks; `None` if unknown.
     """
 
     instant: int
@@ -198,12 +198,12 @@ class Letter:
 
 @dataclass(frozen=True, slots=True)
 class Word:
-    """All positions of a trace, and how far it is known.
+    """All positions of a trace.
 
     Attributes:
         letters: one per position; instants increase strictly.
-        end: the last instant whose letter is known; `None` before the first sample.
-        reached: an instant that time is known to have come to.
+        end: the last instant whose letter is known, ticks; `None` before the first sample.
+        reached: the instant that time is known to have reached, ticks.
     """
 
     letters: tuple[Letter, ...]
@@ -212,19 +212,19 @@ class Word:
 
 
 class Rest(Enum):
-    """Assumptions about the part of an operator beyond the known positions."""
+    """Assumptions about pending operators, beyond the known positions."""
 
     UNKNOWN = auto()
-    """Nothing: the truth after a prefix."""
+    """None: the truth after a prefix."""
 
     END = auto()
-    """The trace has ended: an unbounded `always` that has begun counts as TRUE."""
+    """The trace has ended: an unbounded `always` whose window has opened counts as TRUE."""
 
     WEAK = auto()
-    """All that is pending counts as TRUE."""
+    """All pending operators count as TRUE."""
 
     STRONG = auto()
-    """All that is pending counts as FALSE."""
+    """All pending operators count as FALSE."""
 
 
 def probed(probe: Probe, name: str, letter: Letter) -> Truth:
@@ -233,7 +233,7 @@ def probed(probe: Probe, name: str, letter: Letter) -> Truth:
         event = letter.events[name]
         if probe is Probe.UPDATED:
             return event.updated
-        raise ValueError(f"`{probe}({name})`: only `updated` speaks of events")
+        raise ValueError(f"`{probe}({name})`: only `updated` reads events")
     signal = letter.signals[name]
     match probe:
         case Probe.UPDATED:
