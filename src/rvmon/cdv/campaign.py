@@ -294,7 +294,7 @@ def unreachable_items(
     Raises:
         UnknownNameError: nothing in the model is called so.
     """
-    found: dict[tuple[str, str], str] = {}
+    reasons: dict[tuple[str, str], str] = {}
     for unreachable in campaign.closing.unreachable:
         if unreachable.robot not in ("", robot):
             continue
@@ -314,8 +314,8 @@ def unreachable_items(
                 f"measured is called so; {fix}"
             )
         if not (closing and unreachable.by_model):
-            found |= dict.fromkeys(items, unreachable.reason)
-    return found
+            reasons |= dict.fromkeys(items, unreachable.reason)
+    return reasons
 
 
 def _named(unreachable: Unreachable, model: Model) -> Iterable[tuple[str, str]]:

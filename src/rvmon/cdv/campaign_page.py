@@ -183,7 +183,7 @@ def _tables(
     tests: Mapping[tuple[str, str], str],
 ) -> tuple[Markup, Markup | None]:
     """The table of a robot, whose counts lead to examples, and that of its control."""
-    own = table_html(
+    table = table_html(
         tables.own,
         beside=tables.beside,
         link=lambda *cell: examples.get((robot, *cell)),
@@ -194,15 +194,15 @@ def _tables(
         },
     )
     if tables.control is None or not tables.control_label:
-        return own, None
-    return own, table_html(tables.control, beside=tables.beside)
+        return table, None
+    return table, table_html(tables.control, beside=tables.beside)
 
 
 def _silent(
     robot: str, table: VerdictTable, examples: Mapping[Cell, str]
 ) -> list[tuple[str, str | None]]:
     """The requirements that no test triggered, each with a run that says what it lacked."""
-    found: list[tuple[str, str | None]] = []
+    silent: list[tuple[str, str | None]] = []
     for name in table.requirements:
         groups = [group for group in table.groups if name in group.counts]
         counts = [group.counts[name] for group in groups]
@@ -211,5 +211,5 @@ def _silent(
             shown = (
                 examples.get((robot, group.name, name, Verdict.NOT_TRIGGERED)) for group in groups
             )
-            found.append((name, next((one for one in shown if one is not None), None)))
-    return found
+            silent.append((name, next((one for one in shown if one is not None), None)))
+    return silent

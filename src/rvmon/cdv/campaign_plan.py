@@ -63,9 +63,11 @@ def plan(
     for name in strategies:
         if name not in campaign.strategies:
             raise UnknownNameError(f"no strategy `{name}`: there are {known}")
-    made = {name: _made(campaign, name, tests, seed) for name in strategies or campaign.strategies}
-    _refuse_names(campaign, [test for several in made.values() for test in several])
-    return Plan(campaign, seed, made)
+    generated = {
+        name: _made(campaign, name, tests, seed) for name in strategies or campaign.strategies
+    }
+    _refuse_names(campaign, [test for several in generated.values() for test in several])
+    return Plan(campaign, seed, generated)
 
 
 def plan_of_folder(campaign: Campaign, folder: str | Path) -> Plan:
@@ -79,10 +81,10 @@ def plan_of_folder(campaign: Campaign, folder: str | Path) -> Plan:
         raise TestError(f"{folder}: no test (.json) in this folder: name one that `--out` wrote")
     tests = [load(path, campaign.test) for path in paths]
     _refuse_names(campaign, tests)
-    made: dict[str, list[Test]] = {}
+    by_strategy: dict[str, list[Test]] = {}
     for test in tests:
-        made.setdefault(test.strategy, []).append(test)
-    return Plan(campaign, 0, made)
+        by_strategy.setdefault(test.strategy, []).append(test)
+    return Plan(campaign, 0, by_strategy)
 
 
 def _refuse_names(campaign: Campaign, tests: Sequence[Test]) -> None:
@@ -103,8 +105,8 @@ def _refuse_names(campaign: Campaign, tests: Sequence[Test]) -> None:
 
 def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test]:
     with blamed(f"strategy `{strategy}` cannot make its tests"):
-        made = [*campaign.strategies[strategy](tests, seed)]
-    for test in made:
+        generated = [*campaign.strategies[strategy](tests, seed)]
+    for test in generated:
         if not isinstance(test, campaign.test):
             kind = campaign.test.__name__
             raise TestError(f"strategy `{strategy}` makes {test!r}, which is no {kind}")
@@ -113,8 +115,9 @@ def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test
                 f"test `{test.name}` of strategy `{strategy}` names another strategy, "
                 f"`{test.strategy}`"
             )
+        # What cannot be read back could not be replayed: that is said before hours of playing.
         from_json(to_json(test), campaign.test, source=f"test `{test.name}` of `{strategy}`")
-    return made
+    return generated
 
 
 @dataclass(frozen=True, slots=True)

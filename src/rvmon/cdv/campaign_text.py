@@ -94,8 +94,8 @@ def _print_in_short(
     whole = [sum(strategy.statements.values(), NOTHING) for strategy in figures.strategies.values()]
     if any(coverage.statements for coverage in whole):
         shares = zip(figures.strategies, map(_share, whole), strict=True)
-        told = ", ".join(f"{name} {share}" for name, share in shares)
-        console.print(f"{figures.title}: statements of its code that ran: {told}")
+        listed = ", ".join(f"{name} {share}" for name, share in shares)
+        console.print(f"{figures.title}: statements of its code that ran: {listed}")
     if not (figures.requirements and figures.strategies):
         return
     counts = _together(figures)
@@ -104,14 +104,14 @@ def _print_in_short(
         for name, verdicts in counts.items()
         if name not in foremost and not (verdicts[Verdict.FAIL] or verdicts[Verdict.INCONCLUSIVE])
     }
-    own = replace(
+    shown = replace(
         tables.own,
         requirements={name: "" for name in counts if name not in rest},
         notes=(),
         shows_intervals=False,
     )
     control = tables.control and replace(tables.control, shows_intervals=False)
-    _print_verdicts(replace(tables, own=own, control=control), console)
+    _print_verdicts(replace(tables, own=shown, control=control), console)
     if rest:
         passed = sum(bool(verdicts[Verdict.PASS]) for verdicts in rest.values())
         console.print(
@@ -122,16 +122,16 @@ def _print_in_short(
 
 def _together(figures: RobotSummary) -> dict[str, Counter[Verdict]]:
     """Verdicts by requirement, under all strategies, but those that their tests know."""
-    found: dict[str, Counter[Verdict]] = {name: Counter() for name in figures.requirements}
+    counts: dict[str, Counter[Verdict]] = {name: Counter() for name in figures.requirements}
     for strategy in figures.strategies.values():
         for name, verdicts in strategy.counts.items():
-            found[name].update(verdicts)
+            counts[name].update(verdicts)
     for answer in figures.known:
         if answer.test.mutation is None:
             for name, verdict in answer.test.expected.items():
                 if answer.verdicts[name] == verdict:
-                    found[name][answer.verdicts[name]] -= 1
-    return found
+                    counts[name][answer.verdicts[name]] -= 1
+    return counts
 
 
 def _named(name: str, text: str) -> Text:

@@ -56,6 +56,7 @@ class Meter:
         """From now on, what runs belongs to a new test."""
         self._tests += 1
         self._coverage.start()
+        # Coverage.py switches contexts only while it measures.
         self._coverage.switch_context(str(self._tests))
         self._coverage.stop()
 
@@ -79,12 +80,12 @@ class Meter:
             ran[path] = {str(line) for line in data.lines(path) or ()}
             if self._code.branches:
                 ran[path].update(self._files[path].branches_of(data.arcs(path) or ()))
-        found = {}
+        hits = {}
         for group, path in self._groups:
             items = {name: Hit(1) for name in group.items if name in ran[path]}
             if items:
-                found[group.name] = items
-        return found
+                hits[group.name] = items
+        return hits
 
     @cached_property
     def _files(self) -> Mapping[str, _File]:
@@ -227,14 +228,14 @@ def source_and_target(transition: str) -> tuple[str, str]:
 def hits_of_states(run: Run) -> dict[str, Mapping[str, Hit]]:
     """The hits of states and transitions: how often, and when first."""
     names = [state for _, state in run.states]
-    found = {STATES: _counted(run.states)}
+    hits = {STATES: _counted(run.states)}
     for group, length in ((TRANSITIONS, 2), (PAIRS, 3)):
-        found[group] = _counted(
+        hits[group] = _counted(
             (t_ns, _ARROW.join(names[end - length : end]))
             for end, (t_ns, _) in enumerate(run.states, start=1)
             if end >= length
         )
-    return {group: items for group, items in found.items() if items}
+    return {group: items for group, items in hits.items() if items}
 
 
 def _counted(happened: Iterable[tuple[int, str]]) -> dict[str, Hit]:

@@ -112,6 +112,8 @@ def write_database(path: Path, robot: str, played: Sequence[Played], results: Re
                 error=outcome.error or "",
                 number=number,
                 seconds=outcome.seconds,
+                # The place in the plan, not the time of day: the same campaign writes the same
+                # file.
                 when=number,
                 expected=accepted_failures(test_run, campaign.expected_failures),
             )
@@ -153,9 +155,9 @@ def write_coverage(
         ]
         write_database(path, robot, played, results)
         up = "../" * len(path.parent.relative_to(folder).parts)
-        own = {test: f"{up}{page}" for (of, test), page in pages.items() if of == robot}
+        addresses = {test: f"{up}{page}" for (of, test), page in pages.items() if of == robot}
         title = campaign.robots[robot].title or robot
-        summary = Summary(f"{campaign.name}, {title}", read([path]), pages=own)
+        summary = Summary(f"{campaign.name}, {title}", read([path]), pages=addresses)
         page = path.with_suffix(".html")
         write_whole(page, coverage_page(summary))
         if campaign.code is not None:

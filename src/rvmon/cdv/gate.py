@@ -112,23 +112,25 @@ def judge_campaign(
         checks |= _expected_failures(expected, results.played)
         checks |= dict(_contradicted(campaign, results.played))
         checks |= dict(_gated(campaign, requirements, results.played)) if strict else {}
-        for (robot, name), found in decisions.items():
+        for (robot, name), by_strategy in decisions.items():
             if not any(
                 failure.requirement == name and failure.robot in ("", robot) for failure in expected
             ):
-                share = next(iter(found.values())).share
-                checks[f"{name} {share} ({robot})"] = _undecided(found, strict=strict)
+                share = next(iter(by_strategy.values())).share
+                checks[f"{name} {share} ({robot})"] = _undecided(by_strategy, strict=strict)
     return CampaignJudgement(tests, checks, results.cut_short)
 
 
-def _undecided(found: Mapping[str, Decision], *, strict: bool) -> str:
+def _undecided(decisions: Mapping[str, Decision], *, strict: bool) -> str:
     """The complaint about a share of runs; empty if it holds, or need not be decided."""
     rejected = [
-        f"under {name} it {decision}" for name, decision in found.items() if decision.holds is False
+        f"under {name} it {decision}"
+        for name, decision in decisions.items()
+        if decision.holds is False
     ]
-    if strict and not any(decision.holds for decision in found.values()):
+    if strict and not any(decision.holds for decision in decisions.values()):
         rejected = rejected or [
-            f"under {name} it is {decision}" for name, decision in found.items()
+            f"under {name} it is {decision}" for name, decision in decisions.items()
         ]
     return "; ".join(rejected)
 
@@ -207,6 +209,7 @@ def _contradicted(campaign: Campaign, played: Sequence[Played]) -> Iterator[tupl
         out = unreachable_items(campaign, robot, coverage_model(campaign, robot))
         first = {
             f"{group}: {item}": test_run.job.test.name
+            # Reversed, so that of several tests the first stays.
             for test_run in reversed(played)
             if test_run.job.robot == robot and test_run.job.test.mutation is None
             for group, items in test_run.outcome.hits.items()

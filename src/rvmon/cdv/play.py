@@ -125,17 +125,18 @@ class Bench:
         marked = measured if self._marked else None
         observer = Observer(takers, code=marked, wants_scene=wants_scene)
         begun = time.process_time()
+        # Measured is all that plays the test, or only what the system marks by `observer.code()`.
         with nullcontext() if self._marked else measured:
             run = run_of(self._system, test, observer)
         cpu_s = time.process_time() - begun
         hits = hits_of_states(run)
         if self._meter is not None:
             hits |= self._meter.hits()
-        found = self._checker.hits(run.end_ns)
+        covered = self._checker.hits(run.end_ns)
         report = self._checker.finish(run.end_ns)
-        illegal = tuple(hit.sentence(report.origin) for hit in self._checker.illegal(found))
+        illegal = tuple(hit.sentence(report.origin) for hit in self._checker.illegal(covered))
         seconds = time.perf_counter() - started
-        return Recorded(run, report, samples, {**hits, **found}, illegal, seconds, cpu_s)
+        return Recorded(run, report, samples, {**hits, **covered}, illegal, seconds, cpu_s)
 
 
 def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
@@ -309,7 +310,7 @@ class PlayerApart:
         self._waiting.jobs.append(Job(test, self._robot))
         try:
             return next(self._results)[0]
-        except TestError:
+        except TestError:  # a generator that has raised gives nothing more
             self._results = self._begun()
             raise
 

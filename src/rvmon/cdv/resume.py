@@ -91,21 +91,22 @@ def unfinished(
     """
     path = folder / NAME if shard is None else shard.name(folder / NAME)
     shards = shards_beside(path) if shard is None else []
-    own = _Heading(_inputs(plan, specs), command)
+    heading = _Heading(_inputs(plan, specs), command)
     jobs = {(job.test.name, job.robot): job for job in plan.jobs()}
     places = {key: place for place, key in enumerate(jobs)}
     known: dict[tuple[str, str], Played] = {}
     seconds = 0.0
     try:
+        # `path` comes last: `entries` and `ordered` are its own behind the loop.
         for one in (*shards, path):
             left = journal.entries(one)
-            entries = [msgspec.json.encode(own)] if left is None else left
-            _refuse_another(one, entries[:1], own)
-            found = list(_in_order(entries[1:], places))
-            for key, entry in found:
+            entries = [msgspec.json.encode(heading)] if left is None else left
+            _refuse_another(one, entries[:1], heading)
+            ordered = list(_in_order(entries[1:], places))
+            for key, entry in ordered:
                 known[key] = Played(jobs[key], entry.outcome, entry.control)
-            seconds += found[-1][1].seconds if found else 0.0
-        journal.begin(path, entries[: 1 + len(found)])
+            seconds += ordered[-1][1].seconds if ordered else 0.0
+        journal.begin(path, entries[: 1 + len(ordered)])
     except OSError as error:
         raise RvmonError(f"{path}: {error.strerror}: remove it, or name another --out") from None
     chosen = [*jobs.values()] if shard is None else shard.of([*jobs.values()])
@@ -126,16 +127,16 @@ def _in_order(
         yield key, one
 
 
-def _refuse_another(path: Path, heading: Sequence[bytes], own: _Heading) -> None:
+def _refuse_another(path: Path, heading: Sequence[bytes], wanted: _Heading) -> None:
     try:
-        found = msgspec.json.decode(b"".join(heading), type=_Heading)
+        kept = msgspec.json.decode(b"".join(heading), type=_Heading)
     except msgspec.DecodeError:
         content = "no campaign: move it away"
     else:
-        if found.inputs == own.inputs:
+        if kept.inputs == wanted.inputs:
             return
-        content = f"another campaign, which `{found.command}` finishes: remove it to give that up"
-        if found.command == own.command:
+        content = f"another campaign, which `{kept.command}` finishes: remove it to give that up"
+        if kept.command == wanted.command:
             content = (
                 "this campaign before its tests, requirements or programs changed: remove it to "
                 "start again"

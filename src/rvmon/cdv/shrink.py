@@ -195,6 +195,7 @@ class _Search(Generic[_Test]):
                     is_smaller = True
                 else:
                     start += size
+            # Single parts are tried anew as long as one goes: without it others may go, too.
             size = (size + 1) // 2 if size > 1 else int(is_smaller)
 
     def _simplify(self) -> bool:

@@ -160,13 +160,13 @@ def _drawn(requirement: str, played: Sequence[Played]) -> Iterator[Verdict]:
 
 
 def _errors(played: Sequence[Played]) -> dict[Ending, dict[str, str]]:
-    found: dict[Ending, dict[str, str]] = {
+    errors: dict[Ending, dict[str, str]] = {
         ending: {} for ending in Ending if ending != Ending.COMPLETED
     }
     for test_run in played:
-        if test_run.outcome.ending in found:
-            found[test_run.outcome.ending][test_run.job.test.name] = test_run.outcome.error or ""
-    return found
+        if test_run.outcome.ending in errors:
+            errors[test_run.outcome.ending][test_run.job.test.name] = test_run.outcome.error or ""
+    return errors
 
 
 def _counts(outcomes: Iterable[Outcome], requirements: Sequence[str]) -> Mapping[str, Counts]:

@@ -120,14 +120,14 @@ def close(
         ended = INTERRUPTED
     choices = {}
     for times in range(1, margin + 1):
-        found = _smallest(tests, goals, times)
-        choices[times] = [tests[place].played.job.test.name for place in found.places]
-    kept = {*found.places, *_gone_wrong(tests)}
+        smallest_set = _smallest(tests, goals, times)
+        choices[times] = [tests[place].played.job.test.name for place in smallest_set.places]
+    kept = {*smallest_set.places, *_gone_wrong(tests)}
     return Closed(
         tests=tests,
         suite=[test.played for place, test in enumerate(tests) if place in kept],
         choices=choices,
-        fewest=found.at_least,
+        fewest=smallest_set.at_least,
         goals=goals.met + len(goals.open),
         share=goals.share,
         proved=goals.proved,

@@ -48,8 +48,8 @@ def with_mutants(
     drawn = _drawn(mutated_code(campaign), mutants)
     steps = len(closed.choices) + 3
 
-    def killers(names: Sequence[str], some: Sequence[Mutant], step: int) -> Killers:
-        found = _killers(_only(suite, names), some, jobs)
+    def killers(names: Sequence[str], mutants_played: Sequence[Mutant], step: int) -> Killers:
+        found = _killers(_only(suite, names), mutants_played, jobs)
         progress(step / steps)
         return found
 
@@ -91,9 +91,9 @@ def with_mutants(
 
 def _drawn(code: Code, count: int) -> list[Mutant]:
     """`count` mutants, spread evenly over the code."""
-    found = code_mutants(code)
-    known = {} if code.equivalent is None else equivalents(code.equivalent, found)
-    left = [mutant for mutant in found if mutant.identity not in known]
+    all_mutants = code_mutants(code)
+    known = {} if code.equivalent is None else equivalents(code.equivalent, all_mutants)
+    left = [mutant for mutant in all_mutants if mutant.identity not in known]
     count = min(count, len(left))
     return [left[place * len(left) // count] for place in range(count)]
 
@@ -108,7 +108,7 @@ def _killers(suite: Suite, mutants: Sequence[Mutant], jobs: int) -> Killers:
         return {}
     tried = play_mutants(suite, mutants, jobs=jobs)
     return {
-        trial.mutant.identity: frozenset(found.test for found in trial.findings if found.test)
+        trial.mutant.identity: frozenset(finding.test for finding in trial.findings if finding.test)
         for trial in tried
         if trial.killed
     }
@@ -121,8 +121,8 @@ def _fewest(killers: Killers) -> list[str]:
         {place: 1 for place, identity in enumerate(mutants) if test in killers[identity]}
         for test in tests
     ]
-    found = smallest(rows, dict.fromkeys(range(len(mutants)), 1))
-    return [tests[place] for place in found.places]
+    smallest_set = smallest(rows, dict.fromkeys(range(len(mutants)), 1))
+    return [tests[place] for place in smallest_set.places]
 
 
 def _choice(times: int | None, tests: int, kills: Killers, drawn: Sequence[Mutant]) -> Choice:

@@ -86,12 +86,12 @@ class Goals:
     @property
     def share(self) -> float:
         """The share of the model that is covered, from 0 to 1, without what cannot be."""
-        hits = merged(found for _, found in self._seen)
+        hits = merged(hits_of_test for _, hits_of_test in self._seen)
         return share(hits, without(self.model, [*self.proved, *self.argued]))
 
     def holes(self) -> dict[Goal, Hole]:
         """The open items, in words."""
-        hits = merged(found for _, found in self._seen)
+        hits = merged(hits_of_test for _, hits_of_test in self._seen)
         nearest = nearest_tests(self.open, self._seen, self.model)
         return {goal: hole_of(goal, self.model, hits, nearest.get(goal, "")) for goal in self.open}
 

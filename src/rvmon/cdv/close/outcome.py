@@ -257,10 +257,10 @@ def _table(useful: Sequence[Added], closed: Closed) -> Table:
 
 
 def _by_text(reasons: Mapping[Goal, str]) -> dict[str, list[Goal]]:
-    found: dict[str, list[Goal]] = {}
+    goals_by_text: dict[str, list[Goal]] = {}
     for goal, text in reasons.items():
-        found.setdefault(text, []).append(goal)
-    return found
+        goals_by_text.setdefault(text, []).append(goal)
+    return goals_by_text
 
 
 def _print_reasons(heading: str, reasons: Mapping[str, Sequence[Goal]], console: Console) -> None:

@@ -92,11 +92,11 @@ class Proposer:
             TestError: a test cannot be made, or not be written to a file.
             ModelError: what the campaign asks its model about an item is no query.
         """
-        made: list[Proposal] = []
+        proposals: list[Proposal] = []
         aimed: set[Goal] = set()
         for _ in range(ASKED * size):
             goals = self._goals.open
-            if len(made) == size or not goals:
+            if len(proposals) == size or not goals:
                 break
             goal = min(goals, key=lambda one: (one in aimed, self._tries[one], self._rank(one)))
             self._tries[goal] += 1
@@ -105,8 +105,8 @@ class Proposer:
             if proposal is None and goal not in self._goals.proved:
                 proposal = self._by_chance(goal)
             if proposal is not None:
-                made.append(proposal)
-        return made
+                proposals.append(proposal)
+        return proposals
 
     def learn(self, proposal: Proposal, played: Played, *, added: bool) -> None:
         """Learn what became of a test: one that came nearer to its goal than before paid, too."""
@@ -121,8 +121,8 @@ class Proposer:
         """Goals of the model first, then the specific ones: others are met on the way to them."""
         is_known = self._witnesses is not None and self._witnesses.knows(goal)
         subject = self._goals.model.groups[goal[0]].subject
-        found = [place for place, one in enumerate(_SPECIFIC_FIRST) if one is subject]
-        return not is_known, found[0] if found else len(_SPECIFIC_FIRST)
+        places = [place for place, one in enumerate(_SPECIFIC_FIRST) if one is subject]
+        return not is_known, places[0] if places else len(_SPECIFIC_FIRST)
 
     def _following(self, goal: Goal) -> Proposal | None:
         """A test that follows a run of the model to a goal; notes a proof that there is none."""
@@ -136,8 +136,8 @@ class Proposer:
         name, seed = self._name(), self._rng.getrandbits(32)
         origin = f"a run of the model that shows {answer.query}"
         witnesses = self._witnesses
-        made = self._by_campaign("closing.model.make", lambda: witnesses.test(answer, name, seed))
-        return Proposal(self._named(made, name, origin), origin, goal, (), answer)
+        test = self._by_campaign("closing.model.make", lambda: witnesses.test(answer, name, seed))
+        return Proposal(self._named(test, name, origin), origin, goal, (), answer)
 
     def _by_chance(self, goal: Goal) -> Proposal | None:
         """A written test, then changed, biased and drawn ones; `None` if none can be made."""
@@ -148,12 +148,12 @@ class Proposer:
         ways = [*(["draw"] if self._streams else []), *(["change"] if self._tests else [])]
         ways += ["bias"] if self._campaign.closing.biased is not None else []
         way = self._learned.choose(self._rng, "way", ways, drawn) if ways else ""
-        made = None
+        proposal = None
         if way == "change":
-            made = self._changed(goal, drawn)
+            proposal = self._changed(goal, drawn)
         elif way == "bias":
-            made = self._biased(goal, drawn)
-        return made or self._drawn(goal, drawn)
+            proposal = self._biased(goal, drawn)
+        return proposal or self._drawn(goal, drawn)
 
     def _changed(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
         """One of the tests that came nearest to a goal, changed."""
@@ -163,6 +163,7 @@ class Proposer:
         if made is None:
             return None
         origin = f"{nearest.name}, changed towards {goal[0]}: {goal[1]}"
+        # What the nearest test knows of its run is not known of another.
         made = structs.replace(made, expected={}, reaches={})
         return Proposal(self._named(made, self._name(), origin), origin, goal, drawn)
 
@@ -176,9 +177,9 @@ class Proposer:
             return self._learned.choose(self._rng, name, options, drawn, near)
 
         biased, seed = self._campaign.closing.biased, self._rng.getrandbits(32)
-        made = self._by_campaign("closing.biased", lambda: biased(choose, seed))
+        test = self._by_campaign("closing.biased", lambda: biased(choose, seed))
         origin = f"choices biased towards {goal[0]}: {goal[1]}"
-        return Proposal(self._named(made, self._name(), origin), origin, goal, drawn)
+        return Proposal(self._named(test, self._name(), origin), origin, goal, drawn)
 
     def _drawn(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
         while self._streams:
@@ -209,11 +210,11 @@ class Proposer:
             TestError: it fails, or makes none.
         """
         with blamed(f"`{what}` of the campaign cannot make a test"):
-            made: object = make()
+            test: object = make()
         kind = self._campaign.test
-        if not isinstance(made, kind):
-            raise TestError(f"`{what}` of the campaign makes {made!r}, which is no {kind.__name__}")
-        return made
+        if not isinstance(test, kind):
+            raise TestError(f"`{what}` of the campaign makes {test!r}, which is no {kind.__name__}")
+        return test
 
     def _name(self) -> str:
         self._made += 1
@@ -244,7 +245,9 @@ def _of_strategies(
     campaign: Campaign, strategies: Sequence[str], robot: str, tests: int, seed: int
 ) -> Iterator[Test]:
     """The tests of strategies that are for a robot without a planted fault."""
-    made = plan(campaign, strategies, tests=tests, seed=seed).tests if strategies else {}
-    for test in chain.from_iterable(made.values()):
+    tests_by_strategy = (
+        plan(campaign, strategies, tests=tests, seed=seed).tests if strategies else {}
+    )
+    for test in chain.from_iterable(tests_by_strategy.values()):
         if test.mutation is None and test.robot in (None, robot):
             yield test

@@ -120,19 +120,19 @@ class Mutator:
             for _ in range(rng.choice(CHANGES)):
                 field = self._learned.choose(rng, "field", self._places(value), choices)
                 donor = _built(rng.choice(others), self._type) if others else value
-                found = self._fields[field]
+                kind = self._fields[field]
                 value[field] = (
                     rng.randrange(_SEEDS)
                     if field == "seed"
-                    else self._changed(value[field], found, donor[field], field, rng, choices)
+                    else self._changed(value[field], kind, donor[field], field, rng, choices)
                 )
             try:
-                made = msgspec.convert(value, self._kind)
+                changed = msgspec.convert(value, self._kind)
             except msgspec.ValidationError:
                 continue
-            if made != test:
+            if changed != test:
                 drawn.extend(choices)
-                return made
+                return changed
         return None
 
     def _places(self, value: Mapping[str, Any]) -> list[str]:
@@ -183,9 +183,9 @@ class Mutator:
                 others = list(donor) if isinstance(donor, list | tuple) else []
                 return self._sequence(list(value), kind.item_type, others, path, rng, drawn)
             case inspect.UnionType():
-                own = _member(value, kind)
-                if own is not None and _can_change(own) and rng.random() < 0.5:
-                    return self._changed(value, own, donor, path, rng, drawn)
+                member = _member(value, kind)
+                if member is not None and _can_change(member) and rng.random() < 0.5:
+                    return self._changed(value, member, donor, path, rng, drawn)
                 options = [one for one in kind.types if _can_make(one)]
                 return self._fresh(rng.choice(options), path, rng, drawn) if options else value
             case inspect.IntType() | inspect.FloatType() if rng.random() < 0.5:
@@ -237,14 +237,14 @@ class Mutator:
             case inspect.IntType() | inspect.FloatType():
                 return _number(kind, rng)
             case inspect.StructType():
-                made = {
+                values = {
                     field.encode_name: self._fresh(
                         field.type, f"{path}.{field.encode_name}", rng, drawn
                     )
                     for field in kind.fields
                     if _can_make(field.type)
                 }
-                return {kind.tag_field: kind.tag, **made} if kind.tag_field else made
+                return {kind.tag_field: kind.tag, **values} if kind.tag_field else values
             case inspect.UnionType():
                 options = [one for one in kind.types if _can_make(one)]
                 return self._fresh(rng.choice(options), path, rng, drawn)
@@ -299,10 +299,10 @@ def _filled(value: Mapping[str, Any], kind: inspect.StructType) -> dict[str, Any
     whole = dict(value)
     for field in kind.fields:
         if field.encode_name not in whole and not field.required:
-            made = field.default
-            if made is msgspec.NODEFAULT:
-                made = field.default_factory() if callable(field.default_factory) else None
-            whole[field.encode_name] = msgspec.to_builtins(made)
+            default = field.default
+            if default is msgspec.NODEFAULT:
+                default = field.default_factory() if callable(field.default_factory) else None
+            whole[field.encode_name] = msgspec.to_builtins(default)
     return whole
 
 
@@ -329,22 +329,22 @@ def _number(kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> fl
     low, high = _bounds(kind)
     spread: float = _SPREAD ** rng.random()
     if low is None and high is None:
-        found = rng.uniform(-1, 1) * spread
+        number = rng.uniform(-1, 1) * spread
     elif high is None or low is None:
         sign, start = (1, low) if high is None else (-1, high)
         assert start is not None, "one of both is"
-        found = start + sign * rng.uniform(0, spread)
+        number = start + sign * rng.uniform(0, spread)
     else:
-        found = low + (high - low) * rng.random() * rng.choice((1.0, rng.random()))
-    return round(found) if isinstance(kind, inspect.IntType) else found
+        number = low + (high - low) * rng.random() * rng.choice((1.0, rng.random()))
+    return round(number) if isinstance(kind, inspect.IntType) else number
 
 
 def _near(value: float, kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> float:
     """A number near another one, within the bounds of its type."""
     low, high = _bounds(kind)
-    found = value + rng.gauss(0, 1) * rng.choice((0.01, 0.1, 0.5)) * (abs(value) or 1.0)
+    number = value + rng.gauss(0, 1) * rng.choice((0.01, 0.1, 0.5)) * (abs(value) or 1.0)
     if isinstance(kind, inspect.IntType):
-        found = round(found) if round(found) != value else value + rng.choice((-1, 1))
-    above = found if low is None else max(found, low)
+        number = round(number) if round(number) != value else value + rng.choice((-1, 1))
+    above = number if low is None else max(number, low)
     nearby: float = above if high is None else min(above, high)
     return nearby

@@ -121,8 +121,8 @@ def _of_samples(
 ) -> tuple[int, str, str, str] | None:
     for (t_was, before), (t_now, after) in zip_longest(was, now, fillvalue=_OVER):
         t_ns = min(t_was, t_now)
-        if found := _first(t_ns, before if t_was == t_ns else {}, after if t_now == t_ns else {}):
-            return found
+        if place := _first(t_ns, before if t_was == t_ns else {}, after if t_now == t_ns else {}):
+            return place
     return None
 
 
@@ -168,17 +168,19 @@ class Suite:
         if mutant.function in self.code.constants.get(path, ()):
             return list(self.tests)
         statements = self._statements[path]
-        own = statements[bisect_right(statements, mutant.line) - 1]
-        return [name for name, recorded in self.recorded.items() if own in recorded.lines[path]]
+        statement = statements[bisect_right(statements, mutant.line) - 1]
+        return [
+            name for name, recorded in self.recorded.items() if statement in recorded.lines[path]
+        ]
 
     @cached_property
     def _statements(self) -> dict[str, list[int]]:
         """The first lines of the statements of each file, ascending."""
         groups = [group for group in code_groups(self.code) if group.subject is Subject.STATEMENTS]
-        found: dict[str, list[int]] = {}
+        lines_of: dict[str, list[int]] = {}
         for block, group in zip(self.code.blocks, groups, strict=True):
-            found.setdefault(block.path, []).extend(map(int, group.items))
-        return {path: sorted(lines) for path, lines in found.items()}
+            lines_of.setdefault(block.path, []).extend(map(int, group.items))
+        return {path: sorted(lines) for path, lines in lines_of.items()}
 
 
 def mutated_code(campaign: Campaign) -> Code:
@@ -217,12 +219,12 @@ def record_suite(
     under_test = campaign.robots[robot]
     code = mutated_code(campaign)
     spec = campaign.requirements_of(robot)
-    own = [test for test in tests if test.mutation is None and test.robot in (None, robot)]
+    usable = [test for test in tests if test.mutation is None and test.robot in (None, robot)]
     recorded: dict[str, Recorded] = {}
     left_out: dict[str, str] = {}
     with closing(
         parallel.execute(
-            own,
+            usable,
             partial(recorder, robot, under_test, code),
             jobs=jobs,
             what="test",
@@ -230,7 +232,7 @@ def record_suite(
             timeout_s=campaign.timeout_s,
         )
     ) as results:
-        for number, (test, result) in enumerate(zip(own, results, strict=True), start=1):
+        for number, (test, result) in enumerate(zip(usable, results, strict=True), start=1):
             if isinstance(result, Recorded) and result.run.error is None:
                 recorded[test.name] = result
             else:
@@ -241,7 +243,7 @@ def record_suite(
     if not recorded:
         why = next(iter(left_out.values()), "it has no test for this robot without a planted fault")
         raise RvmonError(f"the suite has no result for robot `{robot}`: {why}")
-    used = {test.name: test for test in own if test.name in recorded}
+    used = {test.name: test for test in usable if test.name in recorded}
     return Suite(robot, under_test, spec, code, used, recorded, left_out)
 
 

@@ -101,6 +101,7 @@ def _change_constants(module: ModuleType, mutant: Mutant) -> None:
     for name in names:
         old = getattr(module, name, None)
         for other in list(sys.modules.values()):
+            # Modules that imported the constant by its name hold it, too.
             if getattr(other, "__dict__", {}).get(name) is old:
                 setattr(other, name, namespace[name])
 
@@ -151,7 +152,7 @@ def play_mutants(
     _load_what_runs_need(suite)
     sources = {str(mutant.path): text_of_file(mutant.path) for mutant in mutants}
     tasks = [(mutant, suite.reaching(mutant)) for mutant in mutants]
-    found: list[Tried] = []
+    tried: list[Tried] = []
     with closing(
         parallel.execute(
             (task for task in tasks if task[1]),
@@ -164,10 +165,10 @@ def play_mutants(
         )
     ) as results:
         for number, (mutant, reaching) in enumerate(tasks, start=1):
-            found.append(next(results) if reaching else Tried(mutant, 0))
+            tried.append(next(results) if reaching else Tried(mutant, 0))
             if progress is not None:
                 progress(number)
-    return found
+    return tried
 
 
 _Task = tuple[Mutant, Sequence[str]]

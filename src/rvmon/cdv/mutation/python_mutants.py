@@ -206,19 +206,19 @@ def code_mutants(code: Code) -> list[Mutant]:
 
     Source: Papadakis, Jia, Harman, Le Traon 2015, Trivial Compiler Equivalence.
     """
-    found = []
+    kept = []
     lines: dict[str, set[int]] = {path: set() for path in code.constants}
     for block in code.blocks:
         lines.setdefault(block.path, set()).update(block.lines)
-    for path, own in lines.items():
+    for path, measured in lines.items():
         known = {_meaning(compile(text_of_file(path), path, "exec"))}
-        made = mutants(Path(path), own, constants=code.constants.get(path, ()))
-        for mutant in sorted(made, key=lambda mutant: mutant.line):
+        changes = mutants(Path(path), measured, constants=code.constants.get(path, ()))
+        for mutant in sorted(changes, key=lambda mutant: mutant.line):
             meaning = _meaning_of(mutant)
             if meaning is not None and meaning not in known:
                 known.add(meaning)
-                found.append(mutant)
-    return found
+                kept.append(mutant)
+    return kept
 
 
 def _meaning_of(mutant: Mutant) -> tuple[object, ...] | None:

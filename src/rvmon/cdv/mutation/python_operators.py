@@ -84,9 +84,9 @@ class Scope:
 
     def further(self, elements: Sequence[ast.expr]) -> list[str]:
         """The next string that a set of strings has not."""
-        own = [element for element in elements if isinstance(element, ast.Constant)]
-        values = [constant.value for constant in own]
-        others = (other for constant in own for other in self._strings.others(constant))
+        constants = [element for element in elements if isinstance(element, ast.Constant)]
+        values = [constant.value for constant in constants]
+        others = (other for constant in constants for other in self._strings.others(constant))
         return [other for other in others if other not in values][:1]
 
     def bound_before(self, name: str, node: ast.stmt) -> bool:

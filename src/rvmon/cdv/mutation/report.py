@@ -108,11 +108,11 @@ class MutationReport:
 
     def survivors(self, suite: str) -> dict[Missing, list[Tried]]:
         """The survivors that are not known to be equivalent, by what may be missing."""
-        found: dict[Missing, list[Tried]] = {kind: [] for kind in Missing}
+        by_gap: dict[Missing, list[Tried]] = {kind: [] for kind in Missing}
         for tried in self.shown(suite):
             if not (tried.killed or tried.invalid or tried.mutant.identity in self.equivalent):
-                found[missing(tried)].append(tried)
-        return {kind: members for kind, members in found.items() if members}
+                by_gap[missing(tried)].append(tried)
+        return {kind: members for kind, members in by_gap.items() if members}
 
     @property
     def survives(self) -> bool:
@@ -186,9 +186,11 @@ class MutationReport:
 
 def killer(tried: Tried) -> str:
     """The killer of a mutant, in words: the requirement that fails first."""
-    found = next((each for each in tried.findings if each.how == "requirement"), tried.findings[0])
-    what = ", ".join(found.what)
-    return f"{found.how} ({what})" + (f" in {found.test}" if found.test else "")
+    finding = next(
+        (each for each in tried.findings if each.how == "requirement"), tried.findings[0]
+    )
+    what = ", ".join(finding.what)
+    return f"{finding.how} ({what})" + (f" in {finding.test}" if finding.test else "")
 
 
 def _spec_mutant(tried: SpecTried) -> dict[str, object]:
@@ -303,8 +305,8 @@ def _killers(suite: SuiteTried) -> str:
     counts = dict.fromkeys(How, 0)
     for tried in suite.tried:
         if tried.killed:
-            found = {finding.how for finding in tried.findings}
-            counts[next(how for how in How if how in found)] += 1
+            ways = {finding.how for finding in tried.findings}
+            counts[next(how for how in How if how in ways)] += 1
     kills = ", ".join(f"{count} {_HOW_TEXT[how]}" for how, count in counts.items() if count)
     invalid = sum(bool(tried.invalid) for tried in suite.tried)
     rest = f"; {invalid} cannot be planted" if invalid else ""
@@ -363,13 +365,13 @@ def mutation_page(report: MutationReport) -> str:
 
 def _shown(report: MutationReport, suite: str) -> tuple[list[Tried], list[Sequence[str]]]:
     """Mutants of a suite that were killed, and a row for each that is declared equivalent."""
-    found = report.shown(suite)
+    tried_mutants = report.shown(suite)
     equivalent = [
         (tried.mutant.identity, tried.mutant.brief, report.equivalent[tried.mutant.identity])
-        for tried in found
+        for tried in tried_mutants
         if tried.mutant.identity in report.equivalent
     ]
-    return [tried for tried in found if tried.killed], [*equivalent]
+    return [tried for tried in tried_mutants if tried.killed], [*equivalent]
 
 
 def _kill_rows(killed: Sequence[Tried]) -> list[Sequence[str]]:
@@ -377,14 +379,16 @@ def _kill_rows(killed: Sequence[Tried]) -> list[Sequence[str]]:
     counts: Counter[str] = Counter()
     tests: dict[str, Counter[str]] = {}
     for tried in killed:
-        best = min(tried.findings, key=lambda found: tuple(How).index(found.how))
+        best = min(tried.findings, key=lambda finding: tuple(How).index(finding.how))
         for what in best.what if best.how is How.REQUIREMENT else (best.how.value,):
             counts[what] += 1
             tests.setdefault(what, Counter())[best.test] += 1
     return [
         (
             what,
-            ", ".join(f"{test or 'unknown'} {own}" for test, own in tests[what].most_common()),
+            ", ".join(
+                f"{test or 'unknown'} {number}" for test, number in tests[what].most_common()
+            ),
             str(count),
         )
         for what, count in counts.most_common()

@@ -158,11 +158,11 @@ def missing(survivor: Tried) -> Missing:
 
 def readers(spec: CheckedSpec) -> dict[str, list[str]]:
     """The requirements that read a signal or event, by its name."""
-    found: dict[str, list[str]] = {}
+    readers_of: dict[str, list[str]] = {}
     for requirement in spec.requirements.values():
         for name in sorted(set(names_of_requirement(requirement))):
-            found.setdefault(name, []).append(requirement.id)
-    return found
+            readers_of.setdefault(name, []).append(requirement.id)
+    return readers_of
 
 
 def question(survivor: Tried, reading: Mapping[str, Sequence[str]]) -> str:
@@ -183,16 +183,18 @@ def question(survivor: Tried, reading: Mapping[str, Sequence[str]]) -> str:
     return "no test runs it"
 
 
-def _differs(found: Difference, reading: Mapping[str, Sequence[str]]) -> str:
-    instant = f"{found.t_ns / 1e9:.9g} s"
-    if not found.name:
-        return f"in `{found.test}` the run ends at {instant}, and no requirement fails"
-    values = f"{found.was or 'none'} → {found.now or 'none'}"
-    text = f"in `{found.test}` the run differs at {instant} in `{found.name}` ({values}), which "
-    own = reading.get(found.name, ())
-    text += f"{', '.join(own)} read{'s' * (len(own) == 1)}" if own else "no requirement reads"
-    if found.verdicts:
-        changes = ", ".join(f"{name} {was} → {now}" for name, was, now in found.verdicts)
+def _differs(difference: Difference, reading: Mapping[str, Sequence[str]]) -> str:
+    instant = f"{difference.t_ns / 1e9:.9g} s"
+    if not difference.name:
+        return f"in `{difference.test}` the run ends at {instant}, and no requirement fails"
+    values = f"{difference.was or 'none'} → {difference.now or 'none'}"
+    requirements = reading.get(difference.name, ())
+    verb = "reads" if len(requirements) == 1 else "read"
+    who = f"{', '.join(requirements)} {verb}" if requirements else "no requirement reads"
+    place = f"at {instant} in `{difference.name}` ({values})"
+    text = f"in `{difference.test}` the run differs {place}, which {who}"
+    if difference.verdicts:
+        changes = ", ".join(f"{name} {was} → {now}" for name, was, now in difference.verdicts)
         text += f"; verdicts differ, but none is a failure: {changes}"
     return text
 
@@ -207,14 +209,14 @@ def equivalents(path: str | Path, mutants: Iterable[Mutant]) -> dict[str, str]:
         RvmonError: it cannot be read, names no mutant, or one that is another change by now.
     """
     try:
-        found = tomllib.loads(text_of_file(path))
+        document = tomllib.loads(text_of_file(path))
     except OSError as error:
         raise RvmonError(f"{path}: {error.strerror}") from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise RvmonError(f"{path}: not TOML: {error}") from None
     known = {mutant.identity: mutant.brief for mutant in mutants}
     arguments: dict[str, str] = {}
-    for name, entry in found.items():
+    for name, entry in document.items():
         match entry:
             case {"because": str() as because, "mutants": dict() as changes, **rest} if (
                 because.strip() and not rest
