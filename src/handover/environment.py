@@ -118,7 +118,7 @@ class HandoverEnv(gymnasium.Env[NDArray[np.float32], np.int64]):
     def step(
         self, action: np.int64
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Begin to do something, and let a tenth of a second pass.
+        """Begin an action, and let a tenth of a second pass.
 
         Raises:
             ResetNeeded: no episode has begun.

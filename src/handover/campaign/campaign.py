@@ -1,4 +1,4 @@
-"""The campaign of simulated handovers: its robots, strategies, and what is shown of it."""
+"""The campaign of simulated handovers: its robots, strategies, tables and pages."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from rvmon.cdv.tables import Presentation
 from rvmon.errors import not_installed
 
 FOREMOST = ("R1", "R2", "R3", "R4", "R5")
-"""The paper's requirements, which both robots are judged by."""
+"""The paper's requirements; both robots are judged by them."""
 
 STRATEGIES: Mapping[str, Strategy] = {
     "pseudorandom": pseudorandom,
@@ -114,5 +114,5 @@ def _work(summary: CampaignSummary) -> str:
 
 
 def _write_templates(folder: Path, strategies: frozenset[str]) -> None:
-    """Write the templates of those strategies that take tests from the model."""
+    """Write the templates of the model-based strategies."""
     save_templates(strategies, folder / TEMPLATES)

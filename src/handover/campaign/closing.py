@@ -67,12 +67,12 @@ def closing() -> Closing:
 
 
 def _test(template: Template[Any], seed: int) -> AbstractTest:
-    """A test of a run of the model, whose signals are not lost: it is to show that run."""
+    """A test that follows a run of the model; no signals are lost, so that it shows that run."""
     return structs.replace(instantiate(template, seed), startup_loss=False)
 
 
 def query_of(group: str, item: str) -> str:
-    """The query to the model about an item of the coverage model; empty: there is none.
+    """The query to the model for an item of the coverage model; empty if there is none.
 
     >>> query_of("ending", "kept")
     'E<> withheld'
@@ -111,4 +111,4 @@ UNREACHABLE = (
         for item in (JUST_BEFORE, AT)
     ),
 )
-"""The items that no test of the correct robot can hit: a hit is an error in this list."""
+"""Items that no test of the correct robot can hit; a hit shows an error in this list."""

@@ -1,4 +1,4 @@
-"""The robot's states as a flow chart, each filled by the share of its statements that ran."""
+"""Draws the robot's states as a flow chart, filled by the share of statements that ran."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rvmon.texts import percent_text
 
 LEFT, BOX_WIDTH, BOX_HEIGHT, PITCH = 34, 200, 34, 54
 LANE = 13
-"""Units between two of the lines that lead past the other states to the last one."""
+"""Distance between two lines that bypass states on the way to the last one."""
 
 RIGHT = LEFT + BOX_WIDTH
 CENTRE = LEFT + BOX_WIDTH / 2

@@ -17,7 +17,7 @@ _NEEDS = {
     "a human who does not come": ("T22", "T24", "T49", "T50"),
     "a robot that gives up": ("T1", "T26", "T48", "T51"),
 }
-"""Requirements that only some tests trigger, by what these have to show."""
+"""Requirements that only some tests trigger, by the situation that these tests must show."""
 
 _SURPRISES = ("a scene that surprises", "a person beside the way")
 
@@ -28,7 +28,7 @@ _LACKS: Mapping[str, Collection[str]] = {
         _MODEL_BASED, ("a human who does not come", "a robot that gives up", *_SURPRISES)
     ),
 }
-"""By strategy, what its tests show by chance if at all."""
+"""By strategy, the situations that its tests show only by chance."""
 
 _COVERAGE = {
     "pseudorandom": 45.0,
@@ -37,7 +37,7 @@ _COVERAGE = {
     "disturbed": 90.0,
     "directed": 97.0,
 }
-"""Percent of the correct robot's coverage model that a hundred tests cover whatever the seed."""
+"""Per cent of the correct robot's coverage model that a hundred tests cover with any seed."""
 
 _SELDOM = ("T54", "T55", "T65", *_NEEDS["a human who does not come"])
 """The requirements that at most two of a hundred disturbed tests trigger."""

@@ -30,16 +30,16 @@ if TYPE_CHECKING:
     from rvmon.models.conform import Conformance
 
 SUFFIX = "_all"
-"""Ends the names of queries that say of all runs what a requirement demands."""
+"""Suffix of the queries that state a requirement for all runs of the model."""
 
 ROBOT = "correct"
-"""The robot that the model is of."""
+"""The robot that the model describes."""
 
 SIMULATED, SIMULATED_UNITS = 1000, 1200
-"""Random runs of the model for each query, and their length: a minute, in which it is over."""
+"""Random runs of the model per query, and their length: a handover is over within a minute."""
 
 Addresses = Mapping[RobotTest, str]
-"""The addresses of pages."""
+"""Addresses of the pages."""
 
 
 Row = tuple[str | Markup, ...]
@@ -57,7 +57,7 @@ _WITNESS = Markup('{}<a href="{}" title="the robot plays it"> (witness)</a>')
 def model_sections(
     tests: Mapping[RobotTest, Test], addresses: Addresses, count: int
 ) -> list[Markup]:
-    """The section of a campaign's page, unless no run is to be compared with the model.
+    """The section of a campaign's page; nothing if no run can be compared with the model.
 
     Args:
         tests: the played tests.
@@ -132,7 +132,7 @@ def _conformer() -> Callable[[AbstractTest], Conformance]:
 
 
 def edge_tests() -> list[str]:
-    """Edges of the model of which each has a run of its own; these runs take all that any takes."""
+    """The edges whose witnesses together cover all edges that any run can take."""
     witnesses = _witnesses()
     answers = {name: witnesses.answer((EDGES, name)) for name in witnesses.groups[0].items}
     runs = {id(answer.run): name for name, answer in answers.items() if isinstance(answer, Witness)}
@@ -147,7 +147,7 @@ def _witnesses() -> Witnesses:
 
 
 def _follower() -> Callable[[str], frozenset[str]]:
-    """A function that plays a test made from a run of the model: the edges that were shown."""
+    """A function that plays a test made from a run of the model, and returns the edges shown."""
     witnesses = _witnesses()
 
     def shown(edge: str) -> frozenset[str]:
@@ -162,7 +162,7 @@ def _follower() -> Callable[[str], frozenset[str]]:
 
 
 def _edge_rows(shown: frozenset[str]) -> list[Row]:
-    """By automaton, how many of its edges the robot's runs have shown, and the others."""
+    """By automaton, the number of edges shown by the robot's runs, and the remaining edges."""
     argued = {
         unreachable.item: unreachable.reason
         for unreachable in UNREACHABLE

@@ -14,7 +14,7 @@ OUTCOMES = {
     "released": "the piece was released",
     "withheld": "the robot kept the piece",
 }
-"""The ends of a handover, by the event that reports them."""
+"""The endings of a handover, by the event that reports each."""
 
 
 class Handover:
@@ -49,7 +49,7 @@ class Handover:
 
 
 def without_loss(test: AbstractTest) -> AbstractTest | None:
-    """A test whose signals get lost at start-up, without that loss; `None` for the others."""
+    """The test without the loss of signals at start-up; `None` if it has none."""
     if draw(test.seed, startup_loss=test.startup_loss).connected:
         return None
     return structs.replace(test, startup_loss=False)

@@ -1,4 +1,4 @@
-"""The paper's Table 1, ours beside it, what the model says, and how far counts vary with the seed.
+"""The paper's Table 1 and ours, the model's verdicts, and the spread of counts over seeds.
 
 Source: D. Araiza-Illan, D. Western, A. Pipe, K. Eder, "Coverage-Driven Verification: An approach
 to verify code for robots that directly interact with humans", Haifa Verification Conference 2015,
@@ -112,7 +112,7 @@ def spread() -> Spread:
 
 
 def write_spread(found: Spread) -> None:
-    """Keep what was computed."""
+    """Write the computed ranges."""
     write_whole(_path(), msgspec.json.encode(found) + b"\n")
 
 
@@ -161,7 +161,7 @@ WITNESSES = (
 
 
 def robot_tables(summary: CampaignSummary) -> dict[str, RobotTables]:
-    """The tables of each robot; the legacy one is that which the published table speaks of."""
+    """The tables of each robot; the published table is about the legacy one."""
     shown = {}
     checked = checked_of(summary)
     for name, table in tables.robot_tables(summary).items():
@@ -200,7 +200,7 @@ def checked_of(summary: CampaignSummary) -> dict[str, bool | None]:
 
 
 def _fitted(table: VerdictTable, unfitted: VerdictTable) -> str:
-    """Which cells were fitted, and what they are without the fit."""
+    """The cells that were fitted, and their counts without the fit."""
     shown = []
     for strategy, requirement in sorted(FITTED_BY_LOSS):
         with_fit, without = (
@@ -227,7 +227,7 @@ def _cell(table: VerdictTable, strategy: str, requirement: str) -> str:
 
 
 def table_document(summary: CampaignSummary) -> dict[str, object]:
-    """The content of `table.json`; all of it but `seconds` follows from the seed."""
+    """The content of `table.json`; everything but `seconds` follows from the seed."""
     checked = checked_of(summary)
     more: dict[str, object] = {"model_checking": checked} if checked else {}
     table = paper_table()

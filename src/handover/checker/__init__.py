@@ -1,4 +1,4 @@
-"""The checker: the requirements of the robots, and where they stand."""
+"""The checker: the files with the requirements of the robots."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def spec_path(robot: str) -> Path:
 
 
 def situations_path() -> Path:
-    """The file that says which situations a campaign should show.
+    """The file with the situations that a campaign should show.
 
     >>> situations_path().name
     'handover_situations.rv'

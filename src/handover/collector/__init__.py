@@ -1,1 +1,1 @@
-"""The coverage collector: which of the robot's statements and transitions are to be reached."""
+"""The coverage collector: the robot's statements and transitions that tests should reach."""

@@ -1,4 +1,4 @@
-"""The states and the code of the robot that coverage is measured of: a block per state."""
+"""The code of the robot whose coverage is measured: a block of statements per state."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ TRANSITIONS = (
     ("decide", "done"),
     ("release", "done"),
 )
-"""The transitions that the code allows, loops and failures included, in the order of a handover."""
+"""The transitions of the code, loops and failures included, in the order of a handover."""
 
 _EQUIVALENT = Path(__file__).with_name("equivalent.toml")
 

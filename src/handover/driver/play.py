@@ -79,7 +79,7 @@ AroundRobotStep = Callable[[], AbstractContextManager[object]]
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """One simulated test, judged by nobody yet.
+    """A simulated test, not judged yet.
 
     Attributes:
         test: the played test.

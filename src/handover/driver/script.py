@@ -94,7 +94,7 @@ class Script:
                 return
 
     def _take_posture(self, param: str, *, ok: bool) -> None:
-        """Instantiate a posture from its range; other parameters move nobody."""
+        """Draw a posture from its range, and take it; other parameters have no effect."""
         match param:
             case "hgazeOk":
                 self._look(ok=ok)

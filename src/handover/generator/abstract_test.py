@@ -1,4 +1,4 @@
-"""An abstract test: what the human does, as a linear sequence of high-level actions."""
+"""Abstract tests: the human's behaviour as a linear sequence of high-level actions."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ SEND_DELAY_S = 2.0
 """Seconds that the human takes to send a signal."""
 
 SEND_PAUSE_S = 0.2
-"""Seconds in which nothing else is done after it."""
+"""Seconds of pause after it."""
 
 
 class SendSignal(msgspec.Struct, frozen=True, forbid_unknown_fields=True, tag="send_signal"):
@@ -107,7 +107,7 @@ class AbstractTest(Test, frozen=True, kw_only=True):
     removable: ClassVar[tuple[str, ...]] = ("actions",)
 
     def simpler(self) -> Iterator[Self]:
-        """Without what disturbs it, each alone; then with a shorter wait, by a quarter at least."""
+        """Simpler tests: without one fault; then with a wait shorter by at least a quarter."""
         if self.startup_loss:
             yield structs.replace(self, startup_loss=False)
         for disturbance in ("faults", "scene"):

@@ -1,4 +1,4 @@
-"""Tests in which sensors, scene and person do other than the protocol has it.
+"""Tests in which sensors, scene and person deviate from the protocol.
 
 All that is drawn stands here. The person is a Markov chain: what people do at a handover, and how
 often they do otherwise. Sensors and scene are as they should be in about half of the tests, so that
@@ -25,7 +25,7 @@ State = Literal["arrives", "waits", "attends", "takes", "holds", "leaves"]
 Acts = Callable[[random.Random], Sequence[Action]]
 
 OK = 0.9
-"""Probability that a posture is taken up rightly, as the model's weights have it."""
+"""Probability of a correct posture, by the weights of the model."""
 
 LONGEST = 24
 """Actions after which a person who goes in circles leaves."""
@@ -94,7 +94,7 @@ PERSON: Mapping[State, Sequence[tuple[float, Acts, State]]] = {
         (0.05, _one(SetParam("hgazeOk", 0)), "leaves"),
     ),
 }
-"""State to probability, what is done, and the state after.
+"""By state: probability, action, and the next state.
 
 The weights of the network (`handover.ta`) give the share of bad postures and of those who lose
 interest, 0.05 at each step. All other rates and pauses are free: each deviation has so much that
@@ -136,7 +136,7 @@ DELAY_S: Final = (0.1, 1.0)
 """From a tracker's usual latency to that of a loaded network."""
 
 LOSS: Final = (0.1, 0.6)
-"""The share of lost readings, from a hand that is hidden now and then to one mostly hidden."""
+"""The share of lost readings: from a hand hidden now and then to one mostly hidden."""
 
 P_SLIPPERY: Final = 0.08
 GREASY: Final = 0.02
@@ -152,14 +152,14 @@ HIDDEN: Final = (0.2, 0.8)
 
 P_RAISED: Final = 0.1
 RAISED_M: Final = (0.01, 0.06)
-"""Heights of what a piece may stand on: from a tray to a box."""
+"""Heights of the object that a piece may stand on: from a tray to a box."""
 
 P_EARLY: Final = 0.1
 EARLY_S: Final = (0.0, 3.0)
 """The human's process is up before the robot listens: its first signal comes two seconds later."""
 
 P_IN_PLANE: Final = 0.5
-"""The hand beside the gripper as often as in front of it: the plane says neither."""
+"""The hand is in the plane as often as in front of it, as the plane does not tell which."""
 
 P_BESIDE: Final = 0.12
 BESIDE_M: Final = (0.35, 0.8)

@@ -87,7 +87,7 @@ def templates(policy: PolicyName = "likely") -> tuple[Template[Action], ...]:
 
 
 def save_templates(strategies: Collection[str], folder: Path) -> None:
-    """Write the templates of those strategies that take tests from the model.
+    """Write the templates of the model-based strategies.
 
     Args:
         strategies: names of any strategies.
@@ -120,7 +120,7 @@ def instantiate(template: Template[Action], seed: int) -> AbstractTest:
 
 
 def _script(template: Template[Action], times: Sequence[int]) -> list[Action]:
-    """The script that does each action at its time, as far as the driver's own delays allow."""
+    """The script that does each action at its time, as far as the driver's delays allow."""
     script: list[Action] = []
     now = 0
     for step, time in zip(template.steps, times[1:], strict=True):

@@ -1,4 +1,4 @@
-"""Tests of a human who knows the protocol and does some of it before, or after, it is time.
+"""Tests of a human who knows the protocol and takes some steps too early or too late.
 
 Sensors and scene may be disturbed as well, in ways that tests of the strategy `disturbed` have.
 """
@@ -49,7 +49,7 @@ _AFTERWARDS: dict[str, tuple[Action, ...]] = {
 
 
 def out_of_turn(choose: Choose, seed: int) -> AbstractTest:
-    """A test whose order of things, postures and pauses are choices.
+    """A test with a random order of steps, postures and pauses.
 
     Args:
         choose: draws them.
@@ -93,5 +93,5 @@ def out_of_turn(choose: Choose, seed: int) -> AbstractTest:
 
 
 def _mostly_sound(faults: Collection[str]) -> Sequence[str]:
-    """Faults, and as often none."""
+    """Faults; none in half of the tests."""
     return (*faults, *["sound"] * len(faults))

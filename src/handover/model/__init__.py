@@ -1,4 +1,4 @@
-"""The handover as a network of six timed automata, and what is asked of it."""
+"""The handover as a network of six timed automata, with its queries."""
 
 from __future__ import annotations
 

@@ -81,7 +81,7 @@ CORRECT = Behaviour(
     open_s=0.3,
     release_s=2.0,
 )
-"""The protocol as it is meant: the right signal in each state, and every wait bounded."""
+"""The intended protocol: the right signal in each state, and every wait bounded."""
 
 LEGACY = Behaviour(
     reset_s=1.0,

@@ -1,4 +1,4 @@
-"""Robots with one known fault each: what a testbench has to find."""
+"""Robots with one known fault each, which a testbench has to find."""
 
 from __future__ import annotations
 
@@ -108,7 +108,7 @@ class Hurries(HandoverRobot):
 
 
 class SwingsBlindly(HandoverRobot):
-    """Swings the piece out to a fixed posture first, and minds nobody on that way."""
+    """Swings the piece out to a fixed posture first, without regard to people in the way."""
 
     def go_to(self, x: float, z: float) -> Steps[bool]:
         """Reach far out before the handover point, without a plan."""

@@ -10,7 +10,7 @@ Steps = Generator[float, None, Result]
 """A blocking call: it waits by yielding seconds, and returns a result in the end."""
 
 Path = TypeVar("Path")
-"""Whatever the arm's planner makes and the arm follows."""
+"""A path made by the arm's planner, which the arm follows."""
 
 
 class Message(Protocol):
@@ -57,7 +57,7 @@ class Arm(Protocol[Path]):
         """
 
     def interpolate(self, joints: tuple[float, float, float], duration: float) -> Path:
-        """A path to joint angles (rad) that takes so many seconds."""
+        """Make a path to joint angles (rad) of the given duration (s)."""
 
     def follow(self, path: Path, *, minds_people: bool = False) -> Steps[bool]:
         """Move along a path; returns when it is over, and whether the arm got to its end.
@@ -77,7 +77,7 @@ class Gripper(Protocol):
 
 
 class Reading(Protocol):
-    """One reading of the sensors; `None`: this one has nothing to say yet."""
+    """A reading of the sensors; `None`: no reading of this sensor yet."""
 
     @property
     def gaze(self) -> bool | None:

@@ -29,7 +29,7 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
     Collisions: the piece with everything; gripper and hand also with table and floor. Hand and
     gripper pass each other, since the plane is a projection and the hand may be in front (how
     close they come is what requirement 5 measures), unless the faults have the hand in the
-    plane. What else a person has there who is beside the way meets gripper, piece and table.
+    plane. Forearm and other hand of a person beside the way meet gripper, piece and table.
     The arm's links touch nothing.
     """
     space = pymunk.Space()
@@ -70,7 +70,7 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
 
 
 def _arms(faults: SceneFaults) -> tuple[float, float] | tuple[None, None]:
-    """The x of the taking arm and of the other one, of a person beside the way."""
+    """The x (metres) of the taking arm and of the other arm of a person beside the way."""
     if faults.beside_m is None:
         return None, None
     near, far = (faults.beside_m + arm for arm in p.BESIDE_ARMS)
@@ -224,7 +224,7 @@ def _add_hand(
 def _pulled(
     space: pymunk.Space, body: pymunk.Body, at: tuple[float, float], force: float
 ) -> tuple[pymunk.Body, pymunk.PivotJoint]:
-    """A target that pulls a point of a body with no more than a force."""
+    """A target that pulls a point of a body with a bounded force (N)."""
     target = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     target.position = body.local_to_world(at)
     pull = pymunk.PivotJoint(target, body, (0.0, 0.0), at)

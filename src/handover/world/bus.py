@@ -1,4 +1,4 @@
-"""The message bus, and the queue of what happens when: calls at integer nanoseconds."""
+"""The message bus, and the schedule: a queue of calls at integer nanoseconds."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from handover.world.parameters import LATCH_LINGER_S, NS
 
 
 class Schedule:
-    """Calls in order of time; calls of one instant in the order in which they were entered.
+    """Calls in order of time; calls of one instant in the order in which they were added.
 
     Attributes:
         now_ns: the instant of the call that is running.
@@ -23,7 +23,7 @@ class Schedule:
         self._entered = 0
 
     def at(self, t_ns: int, call: Callable[[], None]) -> None:
-        """Enter a call at an instant that is not before now."""
+        """Add a call at an instant, now or later."""
         heapq.heappush(self._queue, (t_ns, self._entered, call))
         self._entered += 1
 
@@ -32,7 +32,7 @@ class Schedule:
         return self._queue[0][0] if self._queue else None
 
     def run_next(self) -> None:
-        """Set the time to that of the next call and make it."""
+        """Advance time to the next call and make it."""
         self.now_ns, _, call = heapq.heappop(self._queue)
         call()
 

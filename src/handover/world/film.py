@@ -48,7 +48,7 @@ class Film:
         self._frames.append((t_ns, tuple(frame)))
 
     def scene(self) -> shown.Scene:
-        """All frames, with what to draw."""
+        """All frames, with the shapes to draw."""
         bodies = (*BODIES, *BESIDE)[: len(self._bodies)]
         drawn = tuple(
             outline

@@ -28,7 +28,7 @@ class _Reach:
 
 
 class Limb:
-    """A kinematic body that is moved on minimum-jerk paths; it may be redirected in flight.
+    """A kinematic body that moves on minimum-jerk paths and can be redirected in flight.
 
     Args:
         body: the moving body.
@@ -41,7 +41,7 @@ class Limb:
         self._turns = turns
 
     def start(self, goal: tuple[float, ...]) -> float:
-        """Begin to move to a goal from where the limb is; returns the seconds that it takes."""
+        """Begin to move from the present place to a goal; returns the duration in seconds."""
         here = self._place()
         speed = self._speed()
         duration = max(
@@ -114,7 +114,7 @@ class Grasp:
 
 
 class Human:
-    """Acts on intentions after a reaction time; what comes of it, the physics decides.
+    """Acts on intentions after a reaction time; the physics decides the effect.
 
     Args:
         scene: the scene of the bodies.
@@ -207,7 +207,7 @@ class Human:
         return self._pressed(self._scene.hand, self._grasp_force())
 
     def forces_beside(self) -> tuple[float, float]:
-        """The same of forearm and other hand of a human who stands beside the way."""
+        """The same for forearm and other hand of a person who stands beside the way."""
         beside = self._scene.beside
         if not self._touches or beside is None:
             return 0.0, 0.0

@@ -105,7 +105,7 @@ def hand_offset(scene: Scene) -> tuple[float, float]:
 
 
 def person_distances(scene: Scene) -> tuple[float, float]:
-    """Metres from the gripper's mass centre to the nearest hand, and to what of the person is.
+    """Metres from the gripper's mass centre to the nearest hand, and to the nearest body part.
 
     That is a hand, the head or the forearm's axis.
     """

@@ -148,7 +148,7 @@ LOWER_ARM: Final = (0.06, 0.31)
 """m behind the middle of the hand at which wrist and elbow are."""
 
 ELBOW_FORCE: Final = 8.0
-"""N: the upper arm guides the elbow no harder than this; what pulls is the hand."""
+"""N: the greatest force of the upper arm on the elbow; it is the hand that pulls."""
 
 LOWER_ARM_RADIUS: Final = 0.04
 LOWER_ARM_MASS: Final = 2.0

@@ -41,16 +41,16 @@ class Recorder:
         self._at(t_ns)[name] = True
 
     def has(self, t_ns: int, name: str) -> bool:
-        """Whether this was noted at this instant before."""
+        """Whether this name was noted at this instant before."""
         return t_ns == self._t_ns and name in self._values
 
     def signal(self, t_ns: int, name: str, value: SampleValue) -> None:
-        """Note a signal's value, if it is another than before."""
+        """Note a signal's value if it changed."""
         if name not in self._last or self._last[name] != value:
             self.refresh(t_ns, name, value)
 
     def refresh(self, t_ns: int, name: str, value: SampleValue) -> None:
-        """Note a signal's value also if it is as before: the source is alive."""
+        """Note a signal's value even if unchanged, as its source is alive."""
         self._last[name] = value
         self._at(t_ns)[name] = value
 
@@ -80,7 +80,7 @@ def _greatest(forces: Forces, other: Forces) -> Forces:
 
 
 class Truth:
-    """Measures the bodies without error, for requirements and people, never for the robot."""
+    """Measures the bodies without error: for requirements and people, not for the robot."""
 
     def __init__(self, scene: Scene, human: Human) -> None:
         self._scene = scene

@@ -85,15 +85,19 @@ class Sensors:
         hand_known = hand_is_seen(self._scene) and not hand_moves
         force_known = hand_known and not self._human.hand_is_slack
         return Reading(
-            gaze=gaze_is_ok(self._scene, self._noise) if self._says("gaze", head_known) else None,
-            pressure=self._human.shares_piece() if self._says("pressure", force_known) else None,
+            gaze=gaze_is_ok(self._scene, self._noise)
+            if self._reads("gaze", head_known)
+            else None,
+            pressure=self._human.shares_piece()
+            if self._reads("pressure", force_known)
+            else None,
             location=location_is_ok(self._scene, self._noise)
-            if self._says("location", hand_known)
+            if self._reads("location", hand_known)
             else None,
         )
 
-    def _says(self, sensor: str, known: bool) -> bool:
-        """Whether a sensor has a reading, of what it could know."""
+    def _reads(self, sensor: str, known: bool) -> bool:
+        """Whether a sensor has a reading, given whether its quantity can be observed."""
         if not known or self.is_dead(sensor):
             return False
         return not self._faults.loss or self._rng.random() >= self._faults.loss

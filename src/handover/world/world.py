@@ -27,7 +27,7 @@ HUMAN_SIGNALS = "human_signals"
 """Topic whose text is the name of an event."""
 
 CLOSINGS = ("grip_closed", "robot_gripper")
-"""Topics at whose messages the hand's distance is measured, whatever else is going on."""
+"""Topics whose messages always come with a measurement of the hand's distance."""
 
 
 class World:
@@ -36,8 +36,8 @@ class World:
     Physics is stepped while something moves; over rest it jumps to the next scheduled call.
 
     Args:
-        rng: draws what the world leaves to chance: the planner's latency, sensor noise.
-        faults: of the sensors.
+        rng: draws the planner's latency and the noise of sensors.
+        faults: faults of the sensors.
         scene_faults: faults of the scene.
         jump: `False` steps the physics over rest, too.
         films: keep a frame at 10 Hz while something moves.
@@ -87,9 +87,9 @@ class World:
         self.recorder.finish()
 
     def sense(self) -> Reading:
-        """Read the sensors as the robot does, and publish what was read.
+        """Read the sensors as the robot does, and publish the reading.
 
-        A sensor that has nothing to say is published as false, a dead one as unknown.
+        A sensor without a reading is published as false, a dead one as unknown.
         """
         now = self.schedule.now_ns
         reading = self.sensors.read(now)
@@ -111,7 +111,7 @@ class World:
         return seen_piece(self.scene)
 
     def hand_distance(self) -> float | None:
-        """Metres between the mass centres of hand and gripper, as it is sensed."""
+        """Sensed distance between the mass centres of hand and gripper, metres; `None`: unknown."""
         self._note("hand_looked_for")
         return self._measure_hand(self.schedule.now_ns)
 
@@ -121,7 +121,7 @@ class World:
         return self._stepped * p.STEP_NS / p.NS
 
     def film(self) -> shown.Scene | None:
-        """The scene over time, if it was asked for."""
+        """The scene over time; `None` without `films`."""
         return None if self._film is None else self._film.scene()
 
     def _advance(self, t_ns: int) -> None:
@@ -145,7 +145,7 @@ class World:
                 self._watch()
 
     def _wake(self, seconds: float) -> None:
-        """The scene is going to move for so long."""
+        """Expect the scene to move for so many seconds."""
         until = self._now_step() + round((seconds + p.SETTLE_S) * p.NS) // p.STEP_NS
         self._planned_until = max(self._planned_until, until)
         self._at_rest = False
@@ -179,7 +179,7 @@ class World:
             self.recorder.signal(t_ns, name, value)
 
     def _note(self, name: str) -> None:
-        """Record what was commanded or read, with what was so at that instant."""
+        """Record an event with the state of the scene at its instant."""
         now = self.schedule.now_ns
         self._measure_truth(now)
         for signal, value in self._truth.places().items():
