@@ -85,12 +85,8 @@ class Sensors:
         hand_known = hand_is_seen(self._scene) and not hand_moves
         force_known = hand_known and not self._human.hand_is_slack
         return Reading(
-            gaze=gaze_is_ok(self._scene, self._noise)
-            if self._reads("gaze", head_known)
-            else None,
-            pressure=self._human.shares_piece()
-            if self._reads("pressure", force_known)
-            else None,
+            gaze=gaze_is_ok(self._scene, self._noise) if self._reads("gaze", head_known) else None,
+            pressure=self._human.shares_piece() if self._reads("pressure", force_known) else None,
             location=location_is_ok(self._scene, self._noise)
             if self._reads("location", hand_known)
             else None,
