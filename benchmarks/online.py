@@ -1,7 +1,7 @@
 """Nanoseconds of the processor per sample, a step for each: by form, kind of input and number.
 
     python -m benchmarks.online [--quick] [--only SECTION …] [--r2u2 FOLDER]
-    python -m benchmarks.online --kinds [WORD …] [--rows 4000] [--time sampled] [--unknown 1]
+    python -m benchmarks.online --kinds [WORD …] [--rows 4000]
 
 Beside all peers that install, in an environment of their own, made from the package index at first;
 and R2U2, of which FOLDER holds a clone. A ratio counts only where verdicts agree. `--kinds` takes
@@ -27,14 +27,12 @@ def main(
     out: Path | None = None,
     kinds: Sequence[str] | None = None,
     rows: int = 4000,
-    time: str = "held",
-    unknown: float = 0,
 ) -> None:
     """Some sections, or ours alone by requirement; `--quick` takes a few minutes."""
     if kinds is None:
         show("online", quick=quick, only=only, r2u2=r2u2, out=out)
     else:
-        measure(kinds, rows, time, unknown)
+        measure(kinds, rows)
 
 
 if __name__ == "__main__":

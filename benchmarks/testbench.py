@@ -1,7 +1,6 @@
 """The testbench at work: faults that it sees, holes that it closes, failures that it shrinks.
 
     python -m benchmarks.testbench faults --tests 60
-    python -m benchmarks.testbench gates --seeds 10
     python -m benchmarks.testbench closing --seeds 3
     python -m benchmarks.testbench shrinking --failures 20
 
@@ -9,9 +8,6 @@
 forgotten, two in the wrong order, a rule misunderstood, or a change that is meant well. Directed
 and disturbed tests are played on each until a requirement fails. Prints what sees it: a
 requirement, a signal that nobody judges, or nothing.
-
-`gates`: the tests of each strategy on each robot as it is, against its gate, for some seeds, with
-the share of the coverage model that they cover. Exits with 1 if anything is not as expected.
 
 `closing`: tests that it takes to close the holes of two campaigns, of the handover with and without
 the tests that people have written; those that added a goal, those after which each share was met,
@@ -40,24 +36,20 @@ from statistics import median
 from benchmarks.program import program
 from msgspec import structs
 
-from handover.campaign.campaign import ROBOTS, handover_campaign
-from handover.checker import spec_path
+from handover.campaign.campaign import handover_campaign
 from handover.generator.abstract_test import AbstractTest
 from handover.robot import handover as code
 from handover.robot.handover import HandoverRobot
 from handover.robot.mutants import MUTATIONS
-from rvmon.cdv import Campaign, Gate
+from rvmon.cdv import Campaign
 from rvmon.cdv.campaign_plan import Job, plan
 from rvmon.cdv.close import Budget, close
-from rvmon.cdv.coverage import covered_share
-from rvmon.cdv.gate import judge_campaign
 from rvmon.cdv.mutation.baseline import record_suite
 from rvmon.cdv.mutation.play import play_mutants
 from rvmon.cdv.mutation.python_mutants import Mutant
 from rvmon.cdv.mutation.survivors import How, Tried
-from rvmon.cdv.play import execute, player
+from rvmon.cdv.play import player
 from rvmon.cdv.shrink import Shrunk, shrink
-from rvmon.session import load
 
 EXAMPLE = Path(__file__).parents[1] / "examples" / "base_and_people"
 FAULTS = tomllib.loads(Path(__file__).with_name("planted_faults.toml").read_text("utf-8"))
@@ -93,37 +85,6 @@ def _seen(one: Tried) -> tuple[str, str]:
         found = one.difference
         return "a signal that nothing judges", f" {found.name} ({found.test})"
     return "nothing", f", {one.reaching} tests run it"
-
-
-def gates(*, tests: int = 100, seeds: int = 3, seed: int = 1) -> int:
-    """Each strategy against its gate; 1 if something is not as expected."""
-    print(
-        "robot    strategy              seeds that pass  covered, of which wanted  to be triggered"
-    )
-    all_wrong = 0
-    for robot in ROBOTS:
-        campaign = handover_campaign((robot,))
-        names = tuple(load(spec_path(robot)).requirements)
-        for strategy in campaign.strategies:
-            passed, shares, wrong = 0, [], []
-            for number in range(seed, seed + seeds):
-                chosen = plan(campaign, (strategy,), tests=tests, seed=number)
-                results = execute(chosen, controls=False)
-                found = judge_campaign(results, {robot: names}, strict=True).wrong
-                passed += not found
-                wrong += [f"  seed {number}: {what}" for what in found]
-                own = [one for one in results.played if one.job.test.mutation is None]
-                shares.append(100 * covered_share(campaign, robot, own))
-            if not chosen.jobs():
-                continue
-            gate = campaign.gates.get(strategy, Gate())
-            covered = f"{min(shares):.1f} to {max(shares):.1f} %, {gate.coverage:g} %"
-            triggered = f"{len(names) - len(gate.untriggered)} of {len(names)}"
-            passing = f"{passed} of {seeds}"
-            print(f"{robot:8} {strategy:21} {passing:15}  {covered:24}  {triggered}", flush=True)
-            print(*wrong, sep="\n", end="\n" * bool(wrong))
-            all_wrong += len(wrong)
-    return int(all_wrong > 0)
 
 
 def _mutant(name: str) -> Mutant:
@@ -221,4 +182,4 @@ def _failures(seed: int) -> Iterator[tuple[AbstractTest, Shrunk[AbstractTest], f
 
 
 if __name__ == "__main__":
-    sys.exit(program(__doc__, faults, gates, closing, shrinking))
+    sys.exit(program(__doc__, faults, closing, shrinking))

@@ -7,14 +7,13 @@ import random
 import tempfile
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from benchmarks.comparisons.comparison import Comparison, Found
 from tests.tools.differential import cases_of
-from tests.tools.doors import Content, content_of, doors, in_pieces, whole
+from tests.tools.doors import Content, content_of, doors, whole
 from tests.tools.lossy_doors import DOORS, outcomes
 
 from rvmon.errors import RvmonError
@@ -26,21 +25,12 @@ EACH = 5
 """Recordings of a specification."""
 
 
-@dataclass(frozen=True, slots=True)
-class Doors:
-    """Settings of `doors`: samples of a recording; bytes of a piece in which files are read."""
-
-    samples: int = 12
-    pieces: int = 0
-
-
-def judge_doors(seed: int, own: Doors, numbers: range) -> Found:
+def judge_doors(seed: int, numbers: range) -> Found:
     """The reports have to be those of the first door, byte by byte; none may refuse."""
     counts, texts = Counter[str](), list[str]()
-    pieces = in_pieces(own.pieces) if own.pieces else nullcontext()
-    with pieces, tempfile.TemporaryDirectory() as name:
+    with tempfile.TemporaryDirectory() as name:
         for number in numbers:
-            for place, spec, content in _contents(f"{seed}/{number}", own.samples):
+            for place, spec, content in _contents(f"{seed}/{number}"):
                 expected = None
                 for door, write in doors().items():
                     text = _told(spec, *write(content, Path(name)))
@@ -51,9 +41,9 @@ def judge_doors(seed: int, own: Doors, numbers: range) -> Found:
     return counts, texts
 
 
-def _contents(seed: str, samples: int) -> Iterator[tuple[str, Spec, Content]]:
+def _contents(seed: str) -> Iterator[tuple[str, Spec, Content]]:
     """Random recordings with their seeds; every third has a value in every cell."""
-    traces, spec = TraceProfile(samples, 4 * samples, advances=False), None
+    traces, spec = TraceProfile(12, 48, advances=False), None
     for part, case in enumerate(cases_of(seed, Profile(), traces, EACH)):
         spec = spec or Spec(case.spec)
         content = content_of(random.Random(f"{seed}/{part}"), case)
@@ -98,7 +88,6 @@ COMPARISONS = {
         "a recording as CSV, JSON lines, Parquet, arrays, frames …: one report, byte by byte",
         judge_doors,
         f"specifications of up to {EACH} recordings",
-        (Doors(),),
     ),
     "lost": Comparison(
         "doors that lose samples: no filling of what was lost may turn a green verdict",

@@ -10,18 +10,19 @@ and instant of what the prefix decides, stepped and by rows.
 from __future__ import annotations
 
 import random
+from bisect import bisect_right
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 from benchmarks.comparisons.comparison import Found
-from benchmarks.comparisons.progression import Progression, TooManyObligationsError, settle
 from tests.tools.build import scaled
 from tests.tools.drive import drive
 from tests.tools.forms import FORMS, Compiler, Maker
 from tests.tools.generate_ltl import random_mtl
 
+from rvmon.errors import RvmonError
 from rvmon.language.checked.formula import Bound, BoundAtom, Constant, SignalAtom
 from rvmon.language.checked.specification import (
     CheckedSpec,
@@ -32,11 +33,13 @@ from rvmon.language.checked.specification import (
     Type,
 )
 from rvmon.language.print import format_formula
-from rvmon.logic.alphabet import Alphabet, alphabet_of
-from rvmon.logic.automaton import PASSED, Token
-from rvmon.logic.formula import Factory
+from rvmon.logic.alphabet import Alphabet, alphabet_of, holds
+from rvmon.logic.automaton import FAILED, NOW, PASSED, Location, Token, location_of, normalise
+from rvmon.logic.formula import Factory, Literal, Temporal
 from rvmon.logic.lower import lower
-from rvmon.logic.state_formula import FALSE, TRUE, Elapsed, State, StateOp
+from rvmon.logic.progress import after, step, value
+from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClausesError
+from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Elapsed, State, StateOp
 from rvmon.testing.generate import BOOLS
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
@@ -44,6 +47,94 @@ from rvmon.trace.schema import Kind
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Decision
 from rvmon.verdicts.report import Report
+
+MOST_CLOCKS = 16
+"""Obligations with an age of their own that one attempt may owe at once.
+
+A window above 0 that is started anew at every tick of held time would need one for every tick.
+"""
+
+MOST_CLAUSES = 32
+"""Ways to fulfil what one attempt owes that may be weighed at once, before they are reduced."""
+
+
+class TooManyObligationsError(RvmonError):
+    """An attempt cannot be judged by progression within bounded memory."""
+
+
+class Progression:
+    """Judges any formula; memory grows with the residuals that occur.
+
+    Source: AUTOMATA 1.
+
+    Args:
+        required: what an attempt requires, as `X` of it: it starts before its trigger's position.
+        alphabet: of that formula.
+
+    Raises:
+        TooManyObligationsError: in a step, if an attempt owes more than `MOST_CLOCKS` at once, or
+            in more than `MOST_CLAUSES` ways.
+    """
+
+    def __init__(self, required: Temporal, alphabet: Alphabet) -> None:
+        self.alphabet = alphabet
+        self._locations: list[Location] = []
+        self._index: dict[Residual, int] = {}
+        self._edges: dict[tuple[int, tuple[int, ...], int], tuple[int, tuple[int, ...]]] = {}
+        for residual in (FAILS, HOLDS):
+            self._location(residual)
+        self.start: Token = (self._location(frozenset([frozenset([(required, NO_CLOCK)])])), ())
+
+    def _location(self, residual: Residual) -> int:
+        if residual not in self._index:
+            self._index[residual] = len(self._locations)
+            self._locations.append(location_of(residual))
+        return self._index[residual]
+
+    def step(self, token: Token, t: int, letter: int) -> Token:
+        """The token after a position at `t`."""
+        index, anchors = token
+        cuts = self._locations[index].cuts
+        ages = [t - anchor for anchor in anchors]
+        # Within a region of ages the same is owed.
+        key = index, tuple(map(bisect_right, cuts, ages)), letter
+        if key not in self._edges:
+            self._edges[key] = self._edge(index, ages, letter)
+        target, sources = self._edges[key]
+        return target, tuple([t if source == NOW else anchors[source] for source in sources])
+
+    def _edge(self, index: int, ages: list[int], letter: int) -> tuple[int, tuple[int, ...]]:
+        """The target, and the sources of its clocks."""
+        valuation = self.alphabet.valuation(letter)
+
+        def read(literal: Literal) -> Residual:
+            return HOLDS if holds(literal.sense, valuation[literal.proposition]) else FAILS
+
+        try:
+            reached = step(self._locations[index].residual, ages, read, MOST_CLAUSES)
+        except TooManyClausesError:
+            raise TooManyObligationsError("it can be fulfilled in too many ways") from None
+        residual, sources = normalise(reached, len(ages))
+        if len(sources) > MOST_CLOCKS:
+            raise TooManyObligationsError("it has too many open obligations at once")
+        return self._location(residual), sources
+
+    def settle(self, token: Token, t: int, until: int) -> tuple[Token, int]:
+        """Let time pass from `t` to `until` without a position.
+
+        Returns the token and the instant of its decision, or the next at which it might be decided.
+        """
+        index, anchors = token
+        location = self._locations[index]
+        aged = zip(location.cuts, anchors, strict=True) if anchors else ()
+        for t in sorted({anchor + cut for own, anchor in aged for cut in own if anchor + cut > t}):
+            if t > until:
+                break
+            truth = value(after(location.residual, [t - anchor for anchor in anchors]))
+            if truth != UNKNOWN:
+                return (PASSED if truth else FAILED, ()), t
+        return token, t
+
 
 TRIGGER = SignalAtom("p")
 LENGTHS = (1, 7, 40)
@@ -156,7 +247,7 @@ def _taken(
     """A token after a sample and the time behind it, and the instant if that decided it."""
     after = machine.step(token, t, letter)
     if not is_held:
-        return (after, t) if after[0] <= PASSED else settle(machine, after, t, until)
+        return (after, t) if after[0] <= PASSED else machine.settle(after, t, until)
     while after[0] > PASSED and t < until:  # in held time every tick is a position
         t, before = t + 1, after
         after = machine.step(before, t, letter)

@@ -11,7 +11,7 @@ from benchmarks.comparisons.comparison import Comparison, Found
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import prepare
-from benchmarks.peers.ways import WAYS, Judge, Question, Way, answers, ask_monitor, ask_oracle
+from benchmarks.peers.ways import WAYS, Question, Way, answers, ask_oracle
 from tests.tools.build import with_operands
 from tests.tools.common_fragment import UntranslatableError
 
@@ -36,7 +36,6 @@ from rvmon.testing.generate.formula import formula
 from rvmon.trace.sample import Sample, Trace
 from rvmon.trace.schema import Kind
 
-JUDGES: dict[str, Judge] = {"oracle": ask_oracle, "monitor": ask_monitor}
 ORDERS = (CompareOp.LT, CompareOp.LE, CompareOp.GE, CompareOp.GT)
 Values = Sequence[float | None]
 Ask = Callable[[Question], tuple[Values, Values]]
@@ -44,30 +43,22 @@ Ask = Callable[[Question], tuple[Values, Values]]
 
 
 @dataclass(frozen=True, slots=True)
-class Verdicts:
-    """Settings of `peers`."""
+class Asked:
+    """Settings of both: the ways in which peers are asked, with commas."""
 
-    ways: str = ",".join(WAYS)  # in which they are asked, with commas
-    against: str = "oracle"  # `oracle` or `monitor`
-
-
-@dataclass(frozen=True, slots=True)
-class Robustness:
-    """Settings of `peers-robustness`: the ways in which peers are asked, with commas."""
-
-    ways: str = "rtamt-discrete,rtamt-dense,sentil"
+    ways: str
 
 
-def judge_verdicts(seed: int, own: Verdicts, numbers: range) -> Found:
+def judge_verdicts(seed: int, own: Asked, numbers: range) -> Found:
     """The peer's verdict wherever it has one and ours is decided by the trace."""
 
     def asked(way: Way, peer: Peer) -> Ask:
-        return lambda one: (answers(one, JUDGES[own.against]), way.truths(peer, one))
+        return lambda one: (answers(one, ask_oracle), way.truths(peer, one))
 
     return _judge(f"{seed}", own.ways, numbers, 50, asked)
 
 
-def judge_robustness(seed: int, own: Robustness, numbers: range) -> Found:
+def judge_robustness(seed: int, own: Asked, numbers: range) -> Found:
     """Robustness, number for number, wherever ours is one: no window reaches beyond the end."""
 
     def asked(way: Way, peer: Peer) -> Ask:
@@ -167,14 +158,14 @@ COMPARISONS = {
         "reelay, rtamt, mstlo and SENTIL: verdicts at every tick (made from the package index)",
         judge_verdicts,
         "formulas for each way to ask",
-        (Verdicts(),),
+        (Asked(",".join(WAYS)),),
         250,
     ),
     "peers-robustness": Comparison(
         "rtamt and SENTIL: robustness at every tick",
         judge_robustness,
         "formulas for each way to ask",
-        (Robustness(),),
+        (Asked("rtamt-discrete,rtamt-dense,sentil"),),
         250,
     ),
 }

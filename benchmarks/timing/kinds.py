@@ -1,9 +1,9 @@
 """What a sample costs, by requirement: kinds that people write, published ones, nested windows.
 
 Kinds are demanded at every instant and upon an event that comes in 5 % of the samples, over values
-that are drawn anew and cross at every row, a second apart, of which `--unknown` per cent are NaN;
-then one for each of 1,000 keys that are all waiting. Published requirements stand in
-`benchmarks/published`, each with its source; numbers are drawn near those that they compare with.
+that are drawn anew and cross at every row, a second apart; then one for each of 1,000 keys that are
+all waiting. Published requirements stand in `benchmarks/published`, each with its source; numbers
+are drawn near those that they compare with.
 Windows within windows have 10 to 1,000 samples in the longer one; those of counts, durations and
 extremes up to 100,000. Processor time of `step`, all in, the least of three passes. With words,
 only lines that have one of them.
@@ -45,13 +45,11 @@ requirement R
 """
 
 
-def _rows(count: int, unknown: float) -> Iterator[Row]:
+def _rows(count: int) -> Iterator[Row]:
     """Samples in which all values change, and now and then an event occurs."""
     rng = random.Random("kinds")
     for _ in range(count):
-        row: Row = {
-            name: math.nan if rng.random() * 100 < unknown else rng.uniform(0, 10) for name in "xy"
-        }
+        row: Row = {name: rng.uniform(0, 10) for name in "xy"}
         yield {**row, "e": True} if rng.random() < 0.05 else row
 
 
@@ -80,13 +78,13 @@ def _published(spec: Spec, text: str, count: int) -> Iterator[Row]:
         yield row
 
 
-def _lines(count: int, model: str, unknown: float) -> Iterator[Line]:
-    rows = [*_rows(count, unknown)]
-    head = f"time {model}\nsignal x, y : real\nsignal a : bool\nevent e\nrequirement R\n  "
+def _lines(count: int) -> Iterator[Line]:
+    rows = [*_rows(count)]
+    head = "time held\nsignal x, y : real\nsignal a : bool\nevent e\nrequirement R\n  "
     for name, form in FORMS["kinds"].items():
         for when, text in (("always", f"always ({form})"), ("upon", f"upon e then ({form})")):
             yield f"{name}, {when}", loads(f"{head}{text}\n"), rows, None, 0
-    yield "each of 1,000 keys", loads(f"time {model}\n{KEYED}"), [*_keyed(count)], None, 0
+    yield "each of 1,000 keys", loads(f"time held\n{KEYED}"), [*_keyed(count)], None, 0
     for name, form in FORMS["nested"].items():
         for window in (10, 100, 1000):
             text = form.format(long=window, short=window // 5)
@@ -122,12 +120,12 @@ def _cost(spec: Spec, rows: Sequence[Row], only: str | None, filled: int) -> flo
     return best
 
 
-def measure(words: Sequence[str], rows: int, model: str, unknown: float) -> None:
+def measure(words: Sequence[str], rows: int) -> None:
     """Print what a sample costs, by requirement."""
     figures: list[float] = []
 
     def measured() -> Iterator[tuple[str, str]]:
-        for line in _lines(rows, model, unknown):
+        for line in _lines(rows):
             if not words or any(word in line[0] for word in words):
                 figures.append(_cost(*line[1:]))
                 yield line[0], f"{figures[-1]:,.0f}"
