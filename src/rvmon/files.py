@@ -113,8 +113,8 @@ def place_whole(path: Path, body: bytes, *, mode: int | None = None, synced: boo
 
 
 @contextmanager
-def beside(path: str | Path) -> Iterator[Path]:
-    """A place of the same name for a file or folder, which is put at the path when it is whole.
+def staged(path: str | Path) -> Iterator[Path]:
+    """A place of the same name for a file or folder, which is moved to the path once it is complete.
 
     Args:
         path: of the file, which is replaced if it is there, or of a new folder.
@@ -124,7 +124,7 @@ def beside(path: str | Path) -> Iterator[Path]:
 
     >>> from tempfile import TemporaryDirectory
     >>> with TemporaryDirectory() as folder:
-    ...     with beside(f"{folder}/a.txt") as place:
+    ...     with staged(f"{folder}/a.txt") as place:
     ...         _ = place.write_text("a")
     ...     os.listdir(folder)
     ['a.txt']

@@ -19,7 +19,7 @@ import msgspec
 
 from rvmon.diagnostics import Source
 from rvmon.errors import RvmonError, writing
-from rvmon.files import beside
+from rvmon.files import staged
 from rvmon.language.rules import Findings
 from rvmon.language.syntax.parse import load_files
 from rvmon.texts import cannot_read, text_of_file
@@ -102,7 +102,7 @@ def write_case(out: str, case: Case) -> None:
             names[part] = found[0][0]
             files += [pair for name, path in found for pair in _files_at(name, path)]
         described = msgspec.json.format(msgspec.json.encode(msgspec.structs.replace(case, **names)))
-        with beside(out) as made:
+        with staged(out) as made:
             with zipfile.ZipFile(
                 made, "w", zipfile.ZIP_DEFLATED, strict_timestamps=False
             ) as packed:

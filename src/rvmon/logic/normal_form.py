@@ -141,8 +141,8 @@ class Lowering:
                 whole = Unary(UnaryOp.HISTORICALLY, operand, window)
                 self._made_up[id(whole)] = whole
                 begun = self.factory.leaf(Elapsed(window.high or 0))
-                beside = begun if positive else self.factory.negation(begun)
-                return self.join_signed([(whole, positive)], positive, [beside])
+                also = begun if positive else self.factory.negation(begun)
+                return self.join_signed([(whole, positive)], positive, [also])
             case Unary() | Binary():
                 return self._core_future(self._rewritten(formula), positive)
             case _:
@@ -208,9 +208,9 @@ class Lowering:
         return self.join_signed(args, conjunction)
 
     def join_signed(
-        self, args: list[tuple[Formula, bool]], conjunction: bool, beside: Sequence[State] = ()
+        self, args: list[tuple[Formula, bool]], conjunction: bool, further: Sequence[State] = ()
     ) -> Core:
-        """The conjunction, or disjunction, of signed operands and of the states in `beside`.
+        """The conjunction, or disjunction, of signed operands and of the states in `further`.
 
         All operands without future operators are joined into a single proposition.
         """
@@ -218,12 +218,12 @@ class Lowering:
         # One proposition for all of them: each proposition multiplies the letters of the automaton.
         present = [(f, sign) for f, sign in args if not has_future(f)]
         parts = [self.core(f, sign) for f, sign in args if has_future(f)]
-        if present or beside:
+        if present or further:
             states = [
                 self.state(f, sign) if sign else factory.negation(self.state(f, sign))
                 for f, sign in present
             ]
-            whole = (factory.state_all if conjunction else factory.state_any)([*beside, *states])
+            whole = (factory.state_all if conjunction else factory.state_any)([*further, *states])
             literal = factory.literal(whole, Sense.TRUE)
             if present:
                 self.origins.setdefault(literal, Origin(_rejoined(present, conjunction), True))

@@ -83,9 +83,9 @@ class PlannedRule:
         yield from self.alphabet.propositions
         yield from self.asked
         yield from self.captures_known
-        for beside in (self.hidden, self.doubted):
-            if beside is not None:
-                yield from beside.states
+        for rule in (self.hidden, self.doubted):
+            if rule is not None:
+                yield from rule.states
 
     @property
     def captured(self) -> tuple[str, ...]:
@@ -102,7 +102,7 @@ class PlannedRule:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Uses:
-    """The uses of a signal or event beside its present value.
+    """The uses of a signal or event in addition to its present value.
 
     Attributes:
         history: whether the last two updates are read (`prev`, `delta`, `rate`, `changed`).
@@ -181,12 +181,12 @@ class Plan:
     def judges(self) -> Sequence[tuple[int, PlannedRule]]:
         """The rules, then the judges of their attempts in doubt, each with its rule's number."""
         rules = [*enumerate(self.rules)]
-        beside = [
+        for_doubts = [
             (owner, planned_rule)
             for owner, rule in rules
             for planned_rule in (rule.hidden, rule.doubted)
         ]
-        return rules + [(owner, rule) for owner, rule in beside if rule is not None]
+        return rules + [(owner, rule) for owner, rule in for_doubts if rule is not None]
 
     @property
     def judged(self) -> tuple[PlannedRule, ...]:

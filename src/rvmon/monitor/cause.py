@@ -129,7 +129,7 @@ class CauseFinder:
                 return None
             case And(args=args) | Or(args=args):
                 decided = [arg for arg in args if instance(arg, self._read) == self.wanted]
-                # A temporal operand explains more than a literal beside it.
+                # A temporal operand explains more than a literal next to it.
                 decided.sort(key=lambda arg: isinstance(arg, Literal))
                 causes = (self._of_instance(arg) for arg in decided)
                 return next((cause for cause in causes if cause is not None), None)

@@ -27,7 +27,7 @@ from rvmon.monitor.obligation_words import Words
 MOST_SEEN = 19
 """The most truth values at the trigger that the core packs into 32 bits."""
 
-_BESIDE = Budget(locations=30, clocks=3, rows=200, clauses=12)
+_DOUBT_BUDGET = Budget(locations=30, clocks=3, rows=200, clauses=12)
 """The budget of the automata for attempts in doubt: they are rarely used, so kept small."""
 
 
@@ -41,7 +41,8 @@ class CompiledRequirement:
         obligation: its formulas.
         alphabet: the alphabet of the obligation.
         gap: ticks between two positions; `None` if only samples are positions.
-        beside: the requirement whose attempts in doubt this one judges; `None` for an ordinary one.
+        ordinary: the requirement whose attempts in doubt this one judges; `None` if it is itself
+            an ordinary one.
         measured: the obligation for robustness: logically equivalent, but with the comparisons
             whose distances are measured kept apart.
     """
@@ -55,12 +56,12 @@ class CompiledRequirement:
         factory: Factory,
         shapes: Shapes,
         *,
-        beside: CompiledRequirement | None = None,
+        ordinary: CompiledRequirement | None = None,
         measured: Callable[[], Obligation],
     ) -> None:
         self._factory = factory
         self._shapes = shapes
-        self.beside = beside
+        self.ordinary = ordinary
         self._measured = measured
         self.rank = rank
         self.spec = spec
@@ -96,7 +97,7 @@ class CompiledRequirement:
 
     @property
     def _budget(self) -> Budget:
-        return Budget() if self.beside is None else _BESIDE
+        return Budget() if self.ordinary is None else _DOUBT_BUDGET
 
     @property
     def refusal(self) -> str:
@@ -118,14 +119,14 @@ class CompiledRequirement:
     @cached_property
     def hidden(self) -> CompiledRequirement | None:
         """The requirement that judges its attempts in doubt; `None` if it can have none."""
-        return self._beside(self.obligation.hidden, lambda: self.measured.hidden)
+        return self._doubt_judge(self.obligation.hidden, lambda: self.measured.hidden)
 
     @cached_property
     def doubted(self) -> CompiledRequirement | None:
         """The same for an instance of `for each` that may not exist."""
-        return self._beside(self.obligation.doubted, lambda: self.measured.doubted)
+        return self._doubt_judge(self.obligation.doubted, lambda: self.measured.doubted)
 
-    def _beside(
+    def _doubt_judge(
         self, obligation: Obligation | None, measured: Callable[[], Obligation | None]
     ) -> CompiledRequirement | None:
         if obligation is None:
@@ -137,7 +138,7 @@ class CompiledRequirement:
             obligation,
             self._factory,
             self._shapes,
-            beside=self,
+            ordinary=self,
             measured=lambda: measured() or obligation,
         )
 
@@ -170,7 +171,7 @@ class CompiledRequirement:
         """
         upon = self.requirement.mode is Mode.UPON and self.obligation.trigger is not None
         bare = self.requirement.for_each is None and not self.requirement.captures
-        return upon and bare and self.beside is None
+        return upon and bare and self.ordinary is None
 
     @cached_property
     def forecaster(self) -> Forecaster:
@@ -180,7 +181,7 @@ class CompiledRequirement:
     @cached_property
     def leaves(self) -> tuple[tuple[State, str], ...]:
         """The leaves whose values its records show, with their text; see `leaf_texts`."""
-        determined = (self.beside or self).obligation.determined
+        determined = (self.ordinary or self).obligation.determined
         return leaf_texts(self._read, () if determined is None else (determined,))
 
     @property

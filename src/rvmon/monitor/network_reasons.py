@@ -107,7 +107,7 @@ class NetworkCauseFinder:
             case Literal():
                 return Cause(core, position * self.gap, False, core)
             case And(args=args) | Or(args=args):
-                # A temporal operand explains more than a literal beside it.
+                # A temporal operand explains more than a literal next to it.
                 parts = sorted(args, key=lambda arg: isinstance(arg, Literal))
                 causes = (self.of(arg, position) for arg in parts if self._is_fresh(arg, position))
                 return next((cause for cause in causes if cause is not None), None)

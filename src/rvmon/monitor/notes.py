@@ -367,7 +367,7 @@ class NotesReader:
         parts += [[compiled] for compiled in chosen if _is_apart(compiled)]
         by_requirement: dict[str, Sequence[NoteExplainer]] = {}
         for part in parts:
-            judges = [*part, *(beside for compiled in part for beside in _doubt_judges(compiled))]
+            judges = [*part, *(judge for compiled in part for judge in _doubt_judges(compiled))]
             explainers = [NoteExplainer(judge, gap) for judge in judges]
             by_requirement |= {compiled.requirement.id: explainers for compiled in part}
         return by_requirement
@@ -384,4 +384,4 @@ def _is_apart(compiled: CompiledRequirement) -> bool:
 def _doubt_judges(compiled: CompiledRequirement) -> Sequence[CompiledRequirement]:
     """The judges of its attempts in doubt, in the order of the plan."""
     doubted = compiled.doubted if compiled.requirement.for_each is not None else None
-    return [beside for beside in (compiled.hidden, doubted) if beside is not None]
+    return [judge for judge in (compiled.hidden, doubted) if judge is not None]

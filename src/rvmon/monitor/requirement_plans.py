@@ -27,7 +27,7 @@ def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> Pl
     doubted = compiled.doubted if compiled.requirement.for_each is not None else None
     captures = bool(compiled.requirement.captures)
 
-    def beside(other: CompiledRequirement | None) -> PlannedRule | None:
+    def doubt_rule(other: CompiledRequirement | None) -> PlannedRule | None:
         if other is None:
             return None
         return planned_rule(other, measured=measured)
@@ -44,9 +44,9 @@ def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> Pl
         again=obligation.again,
         unborn=obligation.unborn,
         determined=obligation.determined,
-        hidden=beside(compiled.hidden),
+        hidden=doubt_rule(compiled.hidden),
         noted=() if measured else tuple(leaf for leaf, _ in compiled.leaves),
-        doubted=beside(doubted),
+        doubted=doubt_rule(doubted),
         running=obligation.running if captures else None,
         blurs=_blurs(compiled) if captures else None,
         blurs_anywhere=obligation.doubt is not None,
@@ -83,7 +83,7 @@ def _blurs(compiled: CompiledRequirement) -> State | None:
     """A state that is UNKNOWN where an attempt may have begun with other captured values."""
     obligation = compiled.obligation
     # An ordinary `upon` attempt begins at a single, certain position.
-    return obligation.doubt or (None if compiled.beside is None else obligation.trigger)
+    return obligation.doubt or (None if compiled.ordinary is None else obligation.trigger)
 
 
 def plan_alone(

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from rvmon.errors import RvmonError, TraceError, writing
-from rvmon.files import beside
+from rvmon.files import staged
 from rvmon.recordings.clip_piece import Copied, Piece, stamp_number, stamp_text
 from rvmon.recordings.csv_rows import Layout
 from rvmon.recordings.formats import FORMATS, MESSAGE_FORMATS
@@ -84,7 +84,7 @@ def clip(path: str, piece: Piece, out: str) -> Copied:
         RvmonError: a package is not installed, or the piece cannot be written.
         TraceError: the recording cannot be read up to the end of the piece, or has nothing in it.
     """
-    with writing(out), beside(out) as made:
+    with writing(out), staged(out) as made:
         try:
             copied = _written(path, piece, made)
         except TraceError as error:

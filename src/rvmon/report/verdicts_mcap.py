@@ -18,7 +18,7 @@ from typing import Any
 import msgspec
 
 from rvmon.errors import RvmonError, not_installed, writing
-from rvmon.files import beside, write_whole
+from rvmon.files import staged, write_whole
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.report.foxglove_layout import (
     ATTEMPTS,
@@ -119,7 +119,7 @@ def write_verdicts(
         schemas[SCENE] = "foxglove.SceneUpdate", {"deletions": "array", "entities": "array"}
     layout = foxglove_layout(spec, report.verdicts, names if recorded else (), scene)
     with writing(path):
-        with beside(path) as place:
+        with staged(path) as place:
             _write(place, schemas, messages)
         write_whole(layout_path(path), msgspec.json.format(msgspec.json.encode(layout)))
 

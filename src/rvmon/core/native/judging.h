@@ -68,7 +68,7 @@ typedef struct {
  * false, and to be true. */
 typedef struct {
     ranges known[2];
-    ranges news[2];            /* what became known since its parents read it */
+    ranges added[2];           /* by the last step */
     int64_t base;              /* the first position that is wanted and not known */
     int64_t swept;             /* from `base` up to here its value is the one it has here */
     int64_t wanted;

@@ -1,14 +1,14 @@
-/* Delay networks: judge what has no automaton (nests of bounded windows, mostly).
+/* Delay networks: they judge formulas without an automaton (nests of bounded windows, mostly).
  *
- * A network has a node per operator of the formula. Each knows at which *positions* it is TRUE and at
- * which it is FALSE, as sets of ranges; what it does not know yet depends on letters or time to come.
- * A step tells how far time (`now`) and letters (`last`) have come, and each node derives from its
- * operands' *news*, the ranges that the step made known, its own. One network serves all attempts of a
- * judge: an attempt is a position, decided when the root is known there. A step costs what it makes
- * known, in ranges, not in positions.
+ * A network has a node per operator of the formula. A node holds the *positions* at which it is known
+ * to be TRUE and those at which it is known to be FALSE, as sets of ranges; all others depend on
+ * letters or time to come. A step advances time (`now`) and letters (`last`): each node derives the
+ * ranges *added* to it from those added to its operands. One network serves all attempts of a judge:
+ * an attempt is a position, decided when the root is known there. The cost of a step is in the ranges
+ * that it adds, not in positions.
  *
- * Knowledge is a function of (now, last) alone. So a step can be undone, and the first instant at
- * which something became known is found by smaller steps (network_search.c).
+ * The known positions are a function of (now, last) alone. So a step can be undone, and the first
+ * instant at which a position became known is found by smaller steps (network_search.c).
  *
  * Positions: with a clock (gap > 0) instant / gap, so ticks with gap 1; where only samples are
  * positions the numbers of samples, from 0. From the first unknown letter on there are two networks,
@@ -136,7 +136,7 @@ int64_t earliest(const judging *g, int64_t now);
 /* ---- network_search.c: what becomes of attempts */
 bool judge_attempt(judging *g, int32_t at, int64_t t);
 int64_t decided_position(const judging *g);
-void judge_news(judging *g, int64_t t);
+void judge_added(judging *g, int64_t t);
 
 /* ---- network_state.c: sets of positions as ranges, sorted, with gaps between them */
 int32_t range_from(const ranges *r, int64_t position);

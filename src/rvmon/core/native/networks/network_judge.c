@@ -162,7 +162,7 @@ static void pass(judging *g, int64_t now, int64_t last, int64_t until)
             set_due(g, !complete ? now : (decided < NEVER) ? decided : until + 1);
             return;
         }
-        judge_news(g, decided);
+        judge_added(g, decided);
         set_due(g, decided);
     }
     set_due(g, NEVER);
@@ -268,7 +268,7 @@ static void come_to(judging *g, int64_t t)
         learn_all(g, t, position);
     }
     adopt_next_letter(g);
-    judge_news(g, t);
+    judge_added(g, t);
     set_due(g, (g->j->first < 0) ? NEVER : earliest(g, t + 1));
 }
 
@@ -293,7 +293,7 @@ bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
     }
     if (g.net->readings[0].last < last_at(&g, t)) {
         learn_all(&g, t, last_at(&g, t));
-        judge_news(&g, t);
+        judge_added(&g, t);
     }
     attempt_of(&g, at)->due = earliest(&g, t + 1);
     attempt_of(&g, at)->clocks[0] = g.net->readings[0].last;
@@ -307,7 +307,7 @@ void network_close(run *r, int32_t index, int64_t end, int64_t reached)
     judging g = judging_of(r, index);
     if ((g.j->first >= 0) && !is_given_up(&g)) {
         learn_all(&g, reached, last_at(&g, end));
-        judge_news(&g, reached); /* before the rule for the end, which decides no attempt */
+        judge_added(&g, reached); /* before the rule for the end, which decides no attempt */
         g.net->readings[0].closed = end;
         learn(&g.f, g.net, 0, g.net->readings[0].now, g.net->readings[0].last);
     }

@@ -4,10 +4,10 @@
  * `turned ^ 1` is the value that one operand, or one position of a window, decides alone, and `turned`
  * the value that needs all of them.
  *
- * An update function is called once per step, operands first, and has to add exactly what this step
- * made known: from news of the operands, and, where time or new positions matter, from the stretch
- * between `was_now` and `now`, or `was_last` and `last`. Ranges that were known already are skipped by
- * add_known(). */
+ * An update function is called once per step, operands first, and has to add exactly the ranges that
+ * this step makes known: from the ranges added to the operands, and, where time or new positions
+ * matter, from the stretch between `was_now` and `now`, or `was_last` and `last`. add_known() skips
+ * ranges that were known before. */
 #include "networks/network.h"
 
 /* The instant of a clock's position, clamped to +-LIMIT. */
@@ -63,16 +63,16 @@ bool knows(const operator_state *o, uint8_t value, int64_t position)
     return range_around(&o->known[value], position) >= 0;
 }
 
-/* Add [first, last] to what a node knows to have a value, and to its news, except for positions that it
- * knows already, or that nobody asks for (before `base`). */
+/* Add [first, last] to the positions at which a node is known to have a value, and to those added in
+ * this step, except for positions that are known already or that no attempt needs (before `base`). */
 void add_known(const form *f, operator_state *o, uint8_t value, int64_t first, int64_t last)
 {
     ranges *known = &o->known[value];
-    ranges *news = &o->news[value];
+    ranges *added = &o->added[value];
     int64_t at = (first > o->base) ? first : o->base;
     if ((at <= last) && (known->first < known->end) && (known->at[known->end - 1].last + 1 == at)) {
         known->at[known->end - 1].last = last; /* the usual case: extend the last range */
-        ranges_put(f->monitor, news, news->end, at, last);
+        ranges_put(f->monitor, added, added->end, at, last);
         return;
     }
     while (at <= last) {
@@ -86,7 +86,7 @@ void add_known(const form *f, operator_state *o, uint8_t value, int64_t first, i
             end = least(last, known->at[i].first - 1);
         }
         ranges_insert(f->monitor, known, i, at, end);
-        ranges_put(f->monitor, news, news->end, at, end);
+        ranges_put(f->monitor, added, added->end, at, end);
         at = end + 1;
     }
 }
@@ -126,15 +126,15 @@ static void update_junction(const form *f, const network *w, const operator_plan
     int32_t i;
     int32_t j;
     for (i = 0; i < n->operands.count; i++) {
-        const ranges *news = &w->nodes[operands[i]].news[some];
-        for (j = news->first; j < news->end; j++) {
-            add_known(f, o, some, news->at[j].first, news->at[j].last);
+        const ranges *added = &w->nodes[operands[i]].added[some];
+        for (j = added->first; j < added->end; j++) {
+            add_known(f, o, some, added->at[j].first, added->at[j].last);
         }
     }
     for (i = 0; i < n->operands.count; i++) {
-        const ranges *news = &w->nodes[operands[i]].news[n->turned];
-        for (j = news->first; j < news->end; j++) {
-            add_where_all(f, w, n, o, (uint8_t)n->turned, &news->at[j]);
+        const ranges *added = &w->nodes[operands[i]].added[n->turned];
+        for (j = added->first; j < added->end; j++) {
+            add_where_all(f, w, n, o, (uint8_t)n->turned, &added->at[j]);
         }
     }
 }
@@ -203,13 +203,13 @@ static void add_windows_filled(const form *f, const network *w, const operator_p
 static void update_window(const form *f, const network *w, const operator_plan *n, operator_state *o)
 {
     const operator_state *operand = &w->nodes[n->left];
-    const ranges *news = &operand->news[(uint8_t)(n->turned ^ 1)];
+    const ranges *added = &operand->added[(uint8_t)(n->turned ^ 1)];
     const bool past = n->over < 0;
     const int64_t front = past ? w->last : position_by(f, w, w->now - n->over);
     const int64_t before = past ? w->was_last : position_by(f, w, w->was_now - n->over);
     int32_t i;
-    for (i = news->first; i < news->end; i++) {
-        add_windows_with(f, w, n, o, &news->at[i], w->first, w->last);
+    for (i = added->first; i < added->end; i++) {
+        add_windows_with(f, w, n, o, &added->at[i], w->first, w->last);
     }
     if (past && (w->was_last < w->last)) {
         /* The past: windows of new positions also reach back to what was known before. */
@@ -225,10 +225,10 @@ static void update_window(const form *f, const network *w, const operator_plan *
             add_windows_with(f, w, n, o, &found, w->was_last + 1, w->last);
         }
     }
-    news = &operand->news[n->turned];
-    for (i = news->first; i < news->end; i++) {
-        add_windows_filled(f, w, n, o, from_on(f, w, news->at[i].first, -n->high),
-                least(up_to(f, w, news->at[i].last, -n->low), before));
+    added = &operand->added[n->turned];
+    for (i = added->first; i < added->end; i++) {
+        add_windows_filled(f, w, n, o, from_on(f, w, added->at[i].first, -n->high),
+                least(up_to(f, w, added->at[i].last, -n->low), before));
     }
     add_windows_filled(f, w, n, o, before + 1, front);
 }
@@ -256,9 +256,9 @@ static void update_shift(const form *f, const network *w, const operator_plan *n
     uint8_t value;
     int32_t i;
     for (value = 0; value < 2U; value++) {
-        const ranges *news = &operand->news[value];
-        for (i = news->first; i < news->end; i++) {
-            add_shifted(f, w, n, o, value, &news->at[i]);
+        const ranges *added = &operand->added[value];
+        for (i = added->first; i < added->end; i++) {
+            add_shifted(f, w, n, o, value, &added->at[i]);
         }
         if ((n->low < 0) && (w->was_last < w->last)) {
             const ranges *known = &operand->known[value];
@@ -288,8 +288,8 @@ void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t l
     for (i = 0; i < f->form->operators.count; i++) {
         const operator_plan *n = &f->nodes[i];
         operator_state *o = &w->nodes[i];
-        ranges_empty(&o->news[0]);
-        ranges_empty(&o->news[1]);
+        ranges_empty(&o->added[0]);
+        ranges_empty(&o->added[1]);
         switch (n->kind) {
         case OP_LEAF:
             add_known(f, o, (uint8_t)((net->leaf[n->left] >> reading) & 1), w->was_last + 1,
@@ -306,7 +306,7 @@ void learn(const form *f, networks *net, int32_t reading, int64_t now, int64_t l
     }
 }
 
-/* Undo the last step, by its news. Only one step can be undone. */
+/* Undo the last step, by the ranges that it added. Only one step can be undone. */
 void unlearn(const form *f, network *w)
 {
     int32_t i;
@@ -315,11 +315,11 @@ void unlearn(const form *f, network *w)
     for (i = 0; i < f->form->operators.count; i++) {
         operator_state *o = &w->nodes[i];
         for (value = 0; value < 2U; value++) {
-            for (j = o->news[value].first; j < o->news[value].end; j++) {
-                ranges_cut(f->monitor, &o->known[value], o->news[value].at[j].first,
-                           o->news[value].at[j].last);
+            for (j = o->added[value].first; j < o->added[value].end; j++) {
+                ranges_cut(f->monitor, &o->known[value], o->added[value].at[j].first,
+                           o->added[value].at[j].last);
             }
-            ranges_empty(&o->news[value]);
+            ranges_empty(&o->added[value]);
         }
     }
     w->now = w->was_now;

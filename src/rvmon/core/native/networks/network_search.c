@@ -50,10 +50,10 @@ static int32_t guess(const judging *g, int64_t position, int64_t high, int64_t *
         const operator_plan *n = &g->f.nodes[i % operators];
         for (j = 0; j < 2 * readings(g); j++) {
             const network *w = &g->net->readings[j / 2];
-            const ranges *news = &w->nodes[i % operators].news[j % 2];
+            const ranges *added = &w->nodes[i % operators].added[j % 2];
             const int64_t front = (g->f.gap > 0) ? high - (w->now - w->last * g->f.step) : high;
-            for (k = news->first; (k < news->end) && (count + 2 <= GUESSES); k++) {
-                const range *on = &news->at[k];
+            for (k = added->first; (k < added->end) && (count + 2 <= GUESSES); k++) {
+                const range *on = &added->at[k];
                 const bool within = (on->first <= position) && (position <= on->last);
                 const int64_t first = itself ? position : on->first;
                 if (!itself || within) {
@@ -123,10 +123,10 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last)
     return is_spoilt(g) ? NEVER : high;
 }
 
-/* ---- a lower bound: if the letter stays, nothing new of the root is known before earliest_change()
+/* ---- a lower bound: if the letter stays, nothing is added to the root before earliest_change()
  *
- * Per operator and value, `earliest` bounds when news of that value can come; it is computed operands
- * first, O(operators). News concern positions from `base` on, the first that is not known. */
+ * Per operator and value, `earliest` bounds when a position with that value can be added; it is
+ * computed operands first, O(operators). Positions are added from `base` on, the first unknown one. */
 
 /* Whether a value is known at some position at or behind another. */
 static bool has_from(const operator_state *o, uint8_t value, int64_t position)
@@ -136,7 +136,7 @@ static bool has_from(const operator_state *o, uint8_t value, int64_t position)
 }
 
 /* When an operator can have a value somewhere from a position on: now, if it is known to; else when
- * there can be news. */
+ * a position can be added. */
 static int64_t earliest_from(const operator_state *o, uint8_t value, int64_t position, int64_t now)
 {
     return has_from(o, value, position) ? now : o->earliest[value];
@@ -207,7 +207,7 @@ int64_t earliest_change(const form *f, networks *net, int32_t reading)
         } else if (n->kind == OP_UNTIL) {
             earliest_of_until(w, n, o);
         } else {
-            /* Operators of the past: news may come at once. */
+            /* Operators of the past: a position may be added at once. */
         }
     }
     return least(w->nodes[count - 1].earliest[0], w->nodes[count - 1].earliest[1]);
@@ -265,10 +265,10 @@ int64_t decided_position(const judging *g)
     int32_t i;
     for (value = 0; value < 2U; value++) {
         const int32_t reading = (g->net->parted && (value == 0U)) ? 1 : 0;
-        const ranges *news = &g->net->readings[reading].nodes[g->root].news[value];
-        for (i = news->first; i < news->end; i++) {
-            const int32_t at = attempt_from(g, news->at[i].first);
-            if ((at >= 0) && (position_of(attempt_of(g, at)) <= news->at[i].last)) {
+        const ranges *added = &g->net->readings[reading].nodes[g->root].added[value];
+        for (i = added->first; i < added->end; i++) {
+            const int32_t at = attempt_from(g, added->at[i].first);
+            if ((at >= 0) && (position_of(attempt_of(g, at)) <= added->at[i].last)) {
                 return position_of(attempt_of(g, at));
             }
         }
@@ -283,10 +283,10 @@ static int64_t next_new(const judging *g, int64_t position)
     int32_t i;
     int32_t j;
     for (i = 0; i < 2 * readings(g); i++) {
-        const ranges *news = &g->net->readings[i / 2].nodes[g->root].news[i % 2];
-        for (j = news->first; j < news->end; j++) {
-            if (news->at[j].last >= position) {
-                const int64_t first = news->at[j].first;
+        const ranges *added = &g->net->readings[i / 2].nodes[g->root].added[i % 2];
+        for (j = added->first; j < added->end; j++) {
+            if (added->at[j].last >= position) {
+                const int64_t first = added->at[j].first;
                 found = least(found, (first > position) ? first : position);
             }
         }
@@ -294,9 +294,9 @@ static int64_t next_new(const judging *g, int64_t position)
     return found;
 }
 
-/* Decide the attempts at positions that the last step made known, at `t`. They are in the order of
- * their positions; those before the next position with news are passed over. */
-void judge_news(judging *g, int64_t t)
+/* Decide, at `t`, the attempts at positions that the last step added. Attempts are in the order of
+ * their positions; those before the next added position are skipped. */
+void judge_added(judging *g, int64_t t)
 {
     int64_t asked = -NEVER;
     int32_t before = -1;

@@ -257,7 +257,7 @@ static void put_judge(situation *s, run *r, int32_t index)
     if (networked && (j->net != NULL) && j->net->begun && ((j->first >= 0) || needs_every_position(r, index))) {
         judging g = judging_of(r, index);
         learn_all(&g, s->now, last_at(&g, s->now));
-        judge_news(&g, s->now);
+        judge_added(&g, s->now);
         put_networks(s, r, index);
         s->next = least(s->next, (j->first >= 0) ? earliest(&g, s->now + 1) : NEVER);
     }

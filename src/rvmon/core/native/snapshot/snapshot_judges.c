@@ -245,8 +245,8 @@ void carry_judges(carrier *c, run *r)
     carry_calls(c, r);
 }
 
-/* Networks and chains. News of a step that might be taken back are not stored: none are pending between
- * two calls. */
+/* Networks and chains. The ranges added by the last step are not stored: no step is undone after the
+ * call that made it. */
 
 /* Ascending disjoint ranges that end at `most` at the latest. */
 static void carry_ranges(carrier *c, ranges *x, int64_t most)
