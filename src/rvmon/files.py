@@ -114,7 +114,7 @@ def place_whole(path: Path, body: bytes, *, mode: int | None = None, synced: boo
 
 @contextmanager
 def staged(path: str | Path) -> Iterator[Path]:
-    """A place of the same name for a file or folder, which is moved to the path once it is complete.
+    """A temporary place for a file or folder, which is moved to the path once it is complete.
 
     Args:
         path: of the file, which is replaced if it is there, or of a new folder.
