@@ -196,6 +196,7 @@ class Changes:
         """Add the change to unknown if the value goes stale before an instant, or the end."""
         if self._stale_after is None or self._last is None or self._known is None:
             return
+        # A value is still known `stale after` its update, and no longer one tick behind that.
         stale_at = self._last + self._stale_after + 1
         if t is None or t > stale_at:
             self._found.append((stale_at, None))
@@ -215,11 +216,14 @@ class Changes:
             values = np.array(cells.labels, object)[values]
         unknown = unknown_in(cells)
         hidden = np.zeros(len(rows), bool) if unknown is None else unknown[rows]
+        # The first row is compared with what came before this piece, the others with each other.
         self._add_value(int(times[0]), None if hidden[0] else _plain(values[0]))
         differs = (values[1:] != values[:-1]) & ~(hidden[1:] & hidden[:-1])
         differs |= hidden[1:] != hidden[:-1]
         if self._stale_after is not None:
             aged = (np.diff(times) > self._stale_after + 1) & ~hidden[:-1]
+            # Behind a stale value any known one is a change, also an equal one; an unknown one is
+            # none.
             differs = np.where(aged, ~hidden[1:], differs)
         else:
             aged = np.zeros(len(times) - 1, bool)
@@ -239,13 +243,14 @@ class Changes:
         from rvmon.recordings.batch import UNKNOWN, YES
 
         may = (says == UNKNOWN) | (says == YES)
-        found: dict[int, Scalar] = {}
+        occurrences: dict[int, Scalar] = {}
         for t, said in zip(times[may].tolist(), says[may].tolist(), strict=True):
-            found[t] = True if said == YES else found.get(t)
-        self._found += found.items()
+            occurrences[t] = True if said == YES else occurrences.get(t)
+        self._found += occurrences.items()
 
     def value_at(self, instant: int) -> Scalar:
         """A signal's value at an instant, not before what `forget` has discarded."""
+        # By the last update, not the last change: a value that is said again is not stale.
         if self._last is not None and instant >= self._last:
             limit = self._stale_after
             return None if limit is not None and instant > self._last + limit else self._known
@@ -274,8 +279,8 @@ class Changes:
 
 
 def _plain(value: Any) -> Scalar:
-    found: Scalar = value.item() if hasattr(value, "item") else value
-    return found
+    scalar: Scalar = value.item() if hasattr(value, "item") else value
+    return scalar
 
 
 def _known(value: Value) -> Scalar:

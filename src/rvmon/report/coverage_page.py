@@ -170,14 +170,14 @@ def _headline(summary: Summary) -> str:
 
 def _changes(summary: Summary) -> list[tuple[str, Sequence[tuple[str, str]], str]]:
     """The changes of items since an earlier campaign: heading, items, letter of the colour."""
-    found = summary.comparison
-    if found is None:
+    comparison = summary.comparison
+    if comparison is None:
         return []
     changes = (
-        ("New illegal hits", found.illegal, "F"),
-        ("Lost", found.lost, "I"),
-        ("Newly covered", found.gained, "P"),
-        ("No longer in the model", found.dropped, "NT"),
+        ("New illegal hits", comparison.illegal, "F"),
+        ("Lost", comparison.lost, "I"),
+        ("Newly covered", comparison.gained, "P"),
+        ("No longer in the model", comparison.dropped, "NT"),
     )
     return [change for change in changes if change[1]]
 
@@ -196,8 +196,10 @@ def _is_open(summary: Summary, group: Group) -> bool:
     """Whether a list of items is unfolded: it is short, or has a hole or an illegal hit."""
     if len(group.items) <= SHORT:
         return True
-    own = range(summary.starts[group.name], summary.starts[group.name] + len(group.items))
-    return len(own) <= LONG and any(hole in own for hole in (*summary.holes, *summary.illegal))
+    places = range(summary.starts[group.name], summary.starts[group.name] + len(group.items))
+    return len(places) <= LONG and any(
+        hole in places for hole in (*summary.holes, *summary.illegal)
+    )
 
 
 def _look(summary: Summary, place: int, item: Item, most: int) -> tuple[str, float | None, str]:
@@ -209,6 +211,7 @@ def _look(summary: Summary, place: int, item: Item, most: int) -> tuple[str, flo
     look, text = cell_look(kind, item.goal, count)
     if look != "covered":
         return look, None, text
+    # Hits vary by orders of magnitude: on a linear scale most cells would look alike.
     share = math.log(count) / math.log(most) if most > 1 else 1.0
     return look, PALE + (STRONG - PALE) * share, text
 
@@ -271,6 +274,7 @@ def listed_tests(summary: Summary) -> Collection[int]:
     wanted.update(place for place in summary.totals.first.tolist() if place >= 0)
     for place in summary.illegal:
         wanted.update(summary.first_hitters[place])
+    # The first test with each verdict of each requirement: the table of counts links to it.
     seen: set[tuple[str, str, Verdict]] = set()
     for place in every:
         record = summary.record(place)

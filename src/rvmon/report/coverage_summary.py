@@ -66,26 +66,26 @@ class Summary(Answers):
     @property
     def _hits(self) -> list[tuple[str, Hits]]:
         """The hits of each test; of tests with equal items, only the first."""
-        found: dict[bytes, tuple[str, Hits]] = {}
+        hits_by_row: dict[bytes, tuple[str, Hits]] = {}
         for entry in self.coverage.entries:
             key = entry.row.items.tobytes()
-            if key not in found:
+            if key not in hits_by_row:
                 hits: dict[str, dict[str, Hit]] = {}
                 row = zip(entry.row.items.tolist(), entry.row.counts.tolist(), strict=True)
                 for place, count in row:
                     group, item = self.coverage.items[place]
                     hits.setdefault(group, {})[item] = Hit(count)
-                found[key] = entry.record.name, hits
-        return [*found.values()]
+                hits_by_row[key] = entry.record.name, hits
+        return [*hits_by_row.values()]
 
     @cached_property
     def unreachable(self) -> Mapping[str, Sequence[int]]:
         """The places of unreachable items, by reason."""
-        found: dict[str, list[int]] = {}
+        places: dict[str, list[int]] = {}
         for place in np.flatnonzero(self.goals.unreachable).tolist():
             reasons = self.coverage.unreachable[self.coverage.items[place]]
-            found.setdefault("; ".join(reasons), []).append(place)
-        return found
+            places.setdefault("; ".join(reasons), []).append(place)
+        return places
 
     def kind(self, place: int, item: Item) -> BinKind:
         """The kind of an item; unreachable ones are ignored."""
@@ -144,19 +144,19 @@ class Summary(Answers):
     @cached_property
     def faults(self) -> Mapping[str, Sequence[int]]:
         """By fault in words, the tests that had it; the most frequent first."""
-        found: dict[str, list[int]] = {}
+        tests: dict[str, list[int]] = {}
         for place in self.not_fine:
-            found.setdefault(not_fine(self.record(place)), []).append(place)
-        return dict(sorted(found.items(), key=lambda fault: -len(fault[1])))
+            tests.setdefault(not_fine(self.record(place)), []).append(place)
+        return dict(sorted(tests.items(), key=lambda fault: -len(fault[1])))
 
     @cached_property
     def known(self) -> Mapping[str, Sequence[int]]:
         """By expected failure with its reason, the tests that had it."""
-        found: dict[str, list[int]] = {}
+        tests: dict[str, list[int]] = {}
         for place, entry in enumerate(self.coverage.entries):
             for name, reason in entry.record.failed_as_expected.items():
-                found.setdefault(f"{name}: {reason}", []).append(place)
-        return found
+                tests.setdefault(f"{name}: {reason}", []).append(place)
+        return tests
 
     @cached_property
     def starts(self) -> Mapping[str, int]:
@@ -179,8 +179,8 @@ class Summary(Answers):
             tests[strategy] += 1
             for name, verdict in entry.record.verdicts.items():
                 names[name] = ""
-                own = counts.setdefault(strategy, {}).setdefault(name, Counter())
-                own[verdict] += 1
+                by_verdict = counts.setdefault(strategy, {}).setdefault(name, Counter())
+                by_verdict[verdict] += 1
         groups = tuple(RunGroup(name, count, counts.get(name, {})) for name, count in tests.items())
         return VerdictTable("", names, groups)
 
@@ -198,8 +198,8 @@ class Summary(Answers):
 
     def hit_text(self, place: int) -> str:
         """The hits of an item in words, with the first test and instant."""
-        found = self.totals
-        count, tests = int(found.counts[place]), int(found.tests[place])
+        totals = self.totals
+        count, tests = int(totals.counts[place]), int(totals.tests[place])
         if not count:
             return "never hit"
         return (
@@ -360,5 +360,5 @@ def _item_names(summary: Summary, places: Iterable[int]) -> list[tuple[str, str]
 
 
 def _compared(summary: Summary) -> dict[str, Any] | None:
-    found = summary.comparison
-    return None if found is None else {"with": summary.earlier_name, **asdict(found)}
+    comparison = summary.comparison
+    return None if comparison is None else {"with": summary.earlier_name, **asdict(comparison)}

@@ -142,6 +142,7 @@ def _groups(summary: Summary, console: Console) -> Table:
 def _bar(share: float, console: Console) -> Text:
     """A share as a bar: full only at 1, empty only at 0."""
     filled = round(share * BAR)
+    # 99.9 % must not look like all, nor one hit of many like none.
     if 0 < share < 1:
         filled = min(max(filled, 1), BAR - 1)
     full, empty = ("#", ".") if console.options.ascii_only else ("█", "░")
@@ -221,19 +222,19 @@ def _bins(summary: Summary, group: Group) -> Table:
     return table
 
 
-def _print_comparison(found: Comparison, name: str, console: Console) -> None:
-    change = f": {share_text(found.before)} → {share_text(found.after)}"
+def _print_comparison(comparison: Comparison, name: str, console: Console) -> None:
+    change = f": {share_text(comparison.before)} → {share_text(comparison.after)}"
     console.print(Text.assemble("since ", (name, "bold"), change), soft_wrap=True)
     for heading, items, style in (
-        ("new illegal hits:", found.illegal, "bold red"),
-        ("lost:", found.lost, "bold yellow"),
-        ("newly covered:", found.gained, "bold green"),
-        ("no longer in the model:", found.dropped, "dim"),
+        ("new illegal hits:", comparison.illegal, "bold red"),
+        ("lost:", comparison.lost, "bold yellow"),
+        ("newly covered:", comparison.gained, "bold green"),
+        ("no longer in the model:", comparison.dropped, "dim"),
     ):
         _print_list(console, heading, [name_of(item) for item in items], style=style)
     changes = [
         f"{change.test}  {change.requirement}  {_letter(change.before)} → {_letter(change.after)}"
-        for change in found.verdicts
+        for change in comparison.verdicts
     ]
     _print_list(console, "verdicts that changed:", changes, style="bold")
 

@@ -30,6 +30,7 @@ def coverage_ucis(summary: Summary, version: str) -> str:
     root = ET.Element("UCIS", ucisVersion="1.0", writtenBy="rvmon", writtenTime=now)
     ET.SubElement(root, "sourceFiles", fileName=shown(summary.name), id="1")
     records = [entry.record for entry in summary.coverage.entries]
+    # The schema demands at least one history node.
     for number, record in enumerate(records or [TestRecord("no test")]):
         ET.SubElement(root, "historyNodes", _history(number, record, version))
     name = ", ".join(summary.campaigns) or summary.name
@@ -73,6 +74,7 @@ def _history(number: int, record: TestRecord, version: str) -> dict[str, str]:
 
 
 def _options(parent: ET.Element, group: Group) -> None:
+    # UCIS has one goal for all bins of a point: with the greatest no hole counts as covered.
     goal = max(item.goal for item in group.items.values())
     ET.SubElement(
         parent,
@@ -88,6 +90,8 @@ def _coverpoint(parent: ET.Element, summary: Summary, group: Group) -> None:
     _options(point, group)
     for number, (place, item) in enumerate(summary.places(group)):
         one = ET.SubElement(point, "coverpointBin", _bin(summary, place, item))
+        # A bin of ours is a formula; the schema demands a range of values, so its number stands
+        # there.
         values = ET.SubElement(one, "range", {"from": str(number), "to": str(number)})
         _contents(values, summary, place)
         _remarks(one, summary, group, item)

@@ -59,11 +59,11 @@ def picture_of(example: Example, spec: CheckedSpec, read: Collection[str]) -> li
 
 
 def _instants(example: Example) -> list[int]:
-    found = {sample.t for sample in example.samples} | {example.end}
+    instants = {sample.t for sample in example.samples} | {example.end}
     for attempt in example.attempts:
-        found |= {attempt.triggered}
-        found |= set() if attempt.decided is None else {attempt.decided}
-    return sorted(found)
+        instants |= {attempt.triggered}
+        instants |= set() if attempt.decided is None else {attempt.decided}
+    return sorted(instants)
 
 
 def _cells(name: str, example: Example, spec: CheckedSpec, instants: Sequence[int]) -> list[str]:
@@ -84,6 +84,7 @@ def _cells(name: str, example: Example, spec: CheckedSpec, instants: Sequence[in
         unit = spec.signals[name].type.unit
         text = f"{shown} {unit}" if unit and shown not in (HIGH, LOW, NOBODY_KNOWS) else shown
         plain = text in (HIGH, LOW, NOBODY_KNOWS)
+        # A value is written where it changes, a line says that it stays; blocks are lines already.
         cells.append("─" if text == before and not plain else text)
         before = text
     return cells
@@ -128,13 +129,13 @@ def _fill(cell: str, width: int) -> str:
 def _verdict_lines(
     name: str, example: Example, instants: Sequence[int], margin: int, width: int
 ) -> list[Text]:
-    own = [attempt for attempt in example.attempts if attempt.requirement == name]
-    if not own:
+    attempts = [attempt for attempt in example.attempts if attempt.requirement == name]
+    if not attempts:
         mark = MARKS[Verdict.NOT_TRIGGERED]
         return [Text(f"  {name:<{margin - 2}}{mark.sign} NT no attempt", style=mark.terminal)]
     lines = []
-    for attempt in own:
-        head = name if len(own) == 1 else attempt.name
+    for attempt in attempts:
+        head = name if len(attempts) == 1 else attempt.name
         mark = MARKS[attempt.verdict]
         drawn = _attempt(attempt, example, instants, width)
         verdict = f"{mark.sign} {attempt.verdict.value}"
@@ -184,33 +185,40 @@ def explained(
     compiled: CompiledSpec, name: str, budget: Budget | None = None
 ) -> Iterator[RenderableType]:
     """One requirement: in words, facts, automaton, the shortest timeline of each verdict."""
-    one = compiled.requirements[name]
-    yield _title(one.requirement)
+    compiled_requirement = compiled.requirements[name]
+    yield _title(compiled_requirement.requirement)
     yield ""
-    for line in requirement_in_words(one.requirement):
+    for line in requirement_in_words(compiled_requirement.requirement):
         yield _wrapped(line, "  ", "    ")
     yield ""
-    for heading, fact in facts_of(one).items():
+    for heading, fact in facts_of(compiled_requirement).items():
         yield _wrapped(fact, f"  {heading:<12}", " " * 14)
-    if one.automaton is not None:
+    if compiled_requirement.automaton is not None:
         yield ""
         yield Text("The automaton", style="bold")
-        for line in graph_lines(graph_of(one, one.automaton, compiled.checked)):
+        for line in graph_lines(
+            graph_of(compiled_requirement, compiled_requirement.automaton, compiled.checked)
+        ):
             yield Text(line)
     yield ""
     yield Text("The shortest run on which it …", style="bold")
-    can = possible(compiled.checked, one.obligation.trigger, one.automaton, one.requirement.at_end)
-    impossible = _impossible(one.requirement, can)
+    can = possible(
+        compiled.checked,
+        compiled_requirement.obligation.trigger,
+        compiled_requirement.automaton,
+        compiled_requirement.requirement.at_end,
+    )
+    impossible = _impossible(compiled_requirement.requirement, can)
     wanted = [verdict.value for verdict, _ in _SHOWN if verdict not in impossible]
-    found = shortest_examples(compiled, [one], verdict_of(name), wanted, budget)
+    search = shortest_examples(compiled, [compiled_requirement], verdict_of(name), wanted, budget)
     for verdict, phrase in _SHOWN:
         yield ""
-        example = found.examples.get(verdict.value)
+        example = search.examples.get(verdict.value)
         if example is not None:
             yield Text(f"… {phrase}")
-            yield from picture_of(example, compiled.checked, _names_read(one))
+            yield from picture_of(example, compiled.checked, _names_read(compiled_requirement))
         else:
-            yield _wrapped(f"… {phrase}: {impossible.get(verdict) or _not_found(found)}", "", "  ")
+            yield _wrapped(f"… {phrase}: {impossible.get(verdict) or _not_found(search)}", "", "  ")
 
 
 def difference_explained(
@@ -224,12 +232,12 @@ def difference_explained(
             yield _wrapped(line, "  ", "    ")
         yield ""
     goal = difference_of(first, second)
-    found = shortest_examples(compiled, pair, goal, ["hard", "soft"], budget)
+    search = shortest_examples(compiled, pair, goal, ["hard", "soft"], budget)
     read = _names_read(pair[0]) | _names_read(pair[1])
-    if not found.examples:
-        yield _wrapped(f"No run was found on which they differ: {_not_found(found)}", "", "  ")
+    if not search.examples:
+        yield _wrapped(f"No run was found on which they differ: {_not_found(search)}", "", "  ")
     for kind, phrase in (("hard", "one fails and the other does not"), ("soft", "they differ")):
-        example = found.examples.get(kind)
+        example = search.examples.get(kind)
         if example is not None:
             yield Text(f"The shortest run on which {phrase}", style="bold")
             yield from picture_of(example, compiled.checked, read)
@@ -245,17 +253,17 @@ def _title(requirement: Requirement) -> RenderableType:
 
 def _impossible(requirement: Requirement, can: Possible) -> Mapping[Verdict, str]:
     """The impossible verdicts, each with the reason."""
-    found = {}
+    reasons = {}
     if _is_always_triggered(requirement):
-        found[Verdict.NOT_TRIGGERED] = "never, every run triggers it"
+        reasons[Verdict.NOT_TRIGGERED] = "never, every run triggers it"
     if can.trigger is False:
         reason = "never, nothing can trigger it"
-        found |= dict.fromkeys((Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE), reason)
+        reasons |= dict.fromkeys((Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE), reason)
     if can.pass_ is False:
-        found[Verdict.PASS] = "never, whatever comes"
+        reasons[Verdict.PASS] = "never, whatever comes"
     if can.fail is False:
-        found[Verdict.FAIL] = "never, whatever comes: at worst it stays open"
-    return found
+        reasons[Verdict.FAIL] = "never, whatever comes: at worst it stays open"
+    return reasons
 
 
 def _is_always_triggered(requirement: Requirement) -> bool:
@@ -268,9 +276,9 @@ def _is_always_triggered(requirement: Requirement) -> bool:
             return False
 
 
-def _not_found(found: Found) -> str:
-    tried = f"none found in {found.runs} short runs"
-    return f"{tried}, all that there are to try" if found.exhausted else f"{tried}; not decided"
+def _not_found(search: Found) -> str:
+    tried = f"none found in {search.runs} short runs"
+    return f"{tried}, all that there are to try" if search.exhausted else f"{tried}; not decided"
 
 
 def _names_read(compiled: CompiledRequirement) -> frozenset[str]:

@@ -36,18 +36,19 @@ def scene_updates(scene: Scene) -> Iterator[tuple[int, dict[str, Any]]]:
     places = {name: place for place, name in enumerate(scene.bodies)}
     for t, flat in scene.frames:
         poses = {name: flat[3 * place : 3 * place + 3] for name, place in places.items()}
-        found: dict[str, list[dict[str, Any]]] = {"lines": [], "spheres": []}
+        drawings: dict[str, list[dict[str, Any]]] = {"lines": [], "spheres": []}
         for outline in scene.outlines:
             pose = _pose(*poses.get(outline.body, (0.0, 0.0, 0.0)))
             kind, drawn = _drawn(outline)
-            found[kind].append({"pose": pose, "color": _colour(outline.role), **drawn})
+            drawings[kind].append({"pose": pose, "color": _colour(outline.role), **drawn})
         entity = {
             "timestamp": seconds_and_rest(t),
             "frame_id": "world",
             "id": "scene",
+            # 0: until the next message with this id.
             "lifetime": seconds_and_rest(0),
             "frame_locked": False,
-            **found,
+            **drawings,
         }
         yield t, {"deletions": [], "entities": [entity]}
 
@@ -174,10 +175,10 @@ def _numbers(
         if name in names and signal.type.kind in _NUMBERS:
             unit = f" [{signal.type.unit}]" if signal.type.unit else ""
             yield _path("signals", name, "value", f"{name}{unit}")
-            found = dict.fromkeys(
+            limits = dict.fromkeys(
                 threshold for each in judged for threshold in thresholds(each, name)
             )
-            for threshold in found:
+            for threshold in limits:
                 yield {
                     "value": str(threshold.value),
                     "label": f"{name} {threshold.op} {threshold.value:g}",
@@ -185,6 +186,7 @@ def _numbers(
                 }
 
 
+# By the time of the log, as only attempts carry a stamp of their own.
 _SHOWN = {"enabled": True, "timestampMethod": "receiveTime"}
 
 

@@ -114,6 +114,7 @@ def _environment() -> Environment:
     environment = Environment(
         loader=PackageLoader("rvmon.report"),
         autoescape=True,
+        # A misspelt name in a template fails instead of writing nothing.
         undefined=StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

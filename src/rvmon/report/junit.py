@@ -55,9 +55,10 @@ def add_suite(root: ET.Element, name: str, cases: Sequence[ET.Element]) -> None:
         kind: str(sum(case.find(tag) is not None for case in cases))
         for kind, tag in (("failures", "failure"), ("errors", "error"), ("skipped", "skipped"))
     }
-    own = {"name": shown(name), "tests": str(len(cases)), **counts}
-    suite = ET.SubElement(root, "testsuite", own)
+    attributes = {"name": shown(name), "tests": str(len(cases)), **counts}
+    suite = ET.SubElement(root, "testsuite", attributes)
     for case in cases:
+        # CI servers group cases by it.
         case.set("classname", shown(name))
         suite.append(case)
 

@@ -114,7 +114,9 @@ def values(column: Column) -> str:
     if column.shape.kind is Kind.INT and column.low != column.high:
         return f"{column.low:.0f} … {column.high:.0f}"
     if column.low == column.high:
+        # `+ 0` turns the negative zero into zero.
         return f"always {column.low + 0:.9g}"
+    # As few digits as tell the ends of the range apart.
     digits = next(
         digits
         for digits in (5, 7, 9, 12, 17)
@@ -134,13 +136,15 @@ def spark(column: Column, profile: Profile) -> str:
     drawn = ""
     for place in range(_WIDTH):
         first = place * len(stretches) // _WIDTH
-        own = stretches[first : max(first + 1, (place + 1) * len(stretches) // _WIDTH)]
+        place_stretches = stretches[first : max(first + 1, (place + 1) * len(stretches) // _WIDTH)]
         numbers = [
             (stretch.low + stretch.high) / 2
-            for stretch in own
+            for stretch in place_stretches
             if stretch.low is not None and stretch.high is not None
         ]
-        if column.is_event and any(stretch.updates and stretch.high != 0.0 for stretch in own):
+        if column.is_event and any(
+            stretch.updates and stretch.high != 0.0 for stretch in place_stretches
+        ):
             drawn += "│"
         elif numbers and not column.is_event:
             share = (sum(numbers) / len(numbers) - low) / (high - low) if high > low else 0.5
@@ -218,6 +222,7 @@ def _row(column: Column, title: str, profile: Profile) -> dict[str, object]:
 
 def _drawing(column: Column, profile: Profile) -> ET.Element:
     stretches = column.course.until(profile.end)
+    # At least one stretch wide, else a short recording or outage would not be visible.
     wide = max(1.0, (profile.end - profile.start) / column.course.length)
     svg = e("svg", {"viewBox": f"0 0 {wide:.2f} {_HEIGHT}", "preserveAspectRatio": "none"})
     for outage in profile.outages:
@@ -240,6 +245,7 @@ def _runs(stretches: Sequence[Stretch]) -> Iterator[tuple[int, list[Stretch]]]:
     """Maximal runs of stretches without a gap; short silences are bridged."""
     said = [place for place, stretch in enumerate(stretches) if stretch.low is not None]
     steps = sorted(after - before for before, after in pairwise(said))
+    # The median: silences are longer than the usual step, and would raise a mean.
     usual = steps[len(steps) // 2] if steps else 1
     first = 0
     for place in range(1, len(said) + 1):

@@ -98,6 +98,7 @@ def _bars(report: Report, name: str, view: View) -> Iterator[tuple[Attempt, str]
 def _piece(**values: object) -> str:
     """A fragment of HTML whose style is scoped to it."""
     style = "".join([verdict_colours(), asset("base.css"), asset("run.css"), _OWN])
+    # A fragment has no root and no body: their rules go to its outermost element.
     style = re.sub(r"(?<![.\w-])body\b", ":root", _DARK.sub(_THEMES, style))
     scoped = Markup(f"@scope (.rvmon){{{style.replace(':root', ':scope')}}}")  # noqa: S704 - our own
     none = {"attempt": None, "report": None, "spec": None}

@@ -73,6 +73,7 @@ def _changes(part_truth: PartTruth) -> Course:
     changes: list[tuple[int, Scalar]] = []
     after: int | None = None
     for first, last, value in stretches:
+        # Between two known stretches nothing is known; else the track would hold its last value.
         if after is not None and first > after:
             changes.append((after, None))
         changes.append((first, value))
@@ -124,6 +125,7 @@ def _lines(requirement: Requirement, blame: Blame | None) -> Iterator[tuple[int,
     for number, line in enumerate(lines, span.line):
         has_more = number > span.line or len(lines) == 1
         if has_more or not line.endswith(f'"{requirement.text}"'):
+            # Tabs are expanded after the cut, as the blame counts characters of the file.
             before, failed, after = (part.expandtabs(4) for part in _marked(line, position, blame))
             yield number, before, failed, after  # else the page has id and text already
         position += len(line) + 1

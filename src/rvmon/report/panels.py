@@ -128,21 +128,22 @@ def nearest_passing(
     best: tuple[float, Candidate, Attempt] | None = None
     looks = range(LOOKS)
     instants = [view.start + (view.end - view.start) * look // (LOOKS - 1) for look in looks]
-    own = [
+    failed_values = [
         () if track.kind is TrackKind.EVENT else track.changes.values_at(instants)
         for track in tracks
     ]
     passing = (
-        (candidate, one)
+        (candidate, other)
         for candidate in candidates
-        for one in candidate[0].report.attempts
-        if one.requirement == attempt.requirement and one.verdict is Verdict.PASS
+        for other in candidate[0].report.attempts
+        if other.requirement == attempt.requirement and other.verdict is Verdict.PASS
     )
+    # Aligned at the triggers, as requirements speak of the time since then.
     for candidate, passed in islice(passing, MOST):
         shift = attempt.triggered - passed.triggered
         moved = [instant - shift for instant in instants]
         distance = 0.0
-        for mine, values, other in zip(tracks, own, candidate[1], strict=True):
+        for mine, values, other in zip(tracks, failed_values, candidate[1], strict=True):
             if mine.kind is TrackKind.EVENT:
                 distance += abs(_first(mine, view, 0) - _first(other, view, shift))
             else:
@@ -195,8 +196,8 @@ MOST_DISSECTED = 50_000
 def panels_of(content: RunPage) -> list[Panel]:
     """The panels: one for each attempt shown, and for each requirement without an attempt."""
     shown = shown_attempts(content.run.report)
-    made = _Panels(content, shown)
-    return [panel for name, attempts in shown.items() for panel in made.of(name, attempts)]
+    panels = _Panels(content, shown)
+    return [panel for name, attempts in shown.items() for panel in panels.of(name, attempts)]
 
 
 class _Panels:
@@ -238,9 +239,12 @@ class _Panels:
         candidates: list[Candidate] = []
         if samples and any(attempt.verdict is Verdict.FAIL for attempt in attempts):
             others = (other for other in self._content.others if other.samples)
+            # The run itself first: a passing attempt nearby was made under the same conditions.
             candidates = [(run, tracks), *((other, self._tracks(other, name)) for other in others)]
         late = self._late(name, attempts)
         for attempt in attempts:
+            # Attempts in doubt are numbered apart: theirs are not the numbers of the late
+            # responses.
             came = None if attempt.in_doubt else late.get(attempt.number)
             view = view_of(attempt, report, came)
             reference = None
@@ -262,6 +266,7 @@ class _Panels:
         if not run.samples:
             return ()
         spec = self._content.spec
+        # By identity, as a run holds lists and has no hash; the content keeps every run alive.
         if id(run) not in self._changes:
             self._changes[id(run)] = changes_of(spec, run.samples)
         return tracks_of(spec, spec.requirements[name], self._changes[id(run)], run.report.absent)
@@ -279,9 +284,9 @@ class _Panels:
 
     def _miss(self, name: str) -> str:
         """The near miss of a trigger, from the report or computed now."""
-        found = self._content.run.report.misses.get(name)
-        if found is not None or self._truths is None:
-            return found or ""
+        miss = self._content.run.report.misses.get(name)
+        if miss is not None or self._truths is None:
+            return miss or ""
         spec = self._content.spec
         return TriggerParts(spec, spec.requirements[name]).miss_in(self._truths)
 
@@ -312,12 +317,12 @@ def shown_attempts(report: Report) -> dict[str, list[Attempt]]:
     """By requirement, the attempts that are shown, by number."""
     shown = {}
     for name in report.verdicts:
-        some = [
+        first_of_each = [
             attempt
             for verdict, most in SHOWN.items()
             for attempt in islice(report.of(name, verdict), most)
         ]
-        shown[name] = sorted(some, key=lambda attempt: attempt.number)
+        shown[name] = sorted(first_of_each, key=lambda attempt: attempt.number)
     return shown
 
 

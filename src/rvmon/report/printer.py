@@ -74,6 +74,7 @@ class Printer:
         others = sum(widths[:-1]) + len(_GAP) * (len(widths) - 1)
         widths[-1] = min(widths[-1], max(self.width - others - 2, _NARROWEST))
         is_right = [place in right for place in range(len(widths))]
+        # The head is one line: the last column, which alone is wrapped, has room for its word.
         head, *body = (
             f" {_GAP.join(map(self._cell, line, widths, is_right))}".rstrip()
             for row in cells

@@ -38,6 +38,7 @@ MILLISECOND = 1_000_000
 def scene_svg(scene: Scene, instant: int) -> ET.Element:
     """Draw a scene at an instant (ticks)."""
     left, bottom, right, top = (round(edge * UNITS) for edge in scene.view)
+    # In SVG y grows downwards: every z is negated, and every angle with it.
     drawing = e(
         "svg",
         {"viewBox": f"{left} {-top} {right - left} {top - bottom}", "role": "img"},
@@ -169,13 +170,14 @@ def _rows(
 
 def _siblings(panels: Sequence[Panel], report: Report, panel: Panel) -> tuple[list[Panel], int]:
     """The panels of the same requirement, and the number of its attempts that are not shown."""
-    own = [one for one in panels if one.requirement == panel.requirement and one.attempt]
-    return own, max(sum(report.counts[panel.requirement].values()) - len(own), 0)
+    siblings = [one for one in panels if one.requirement == panel.requirement and one.attempt]
+    return siblings, max(sum(report.counts[panel.requirement].values()) - len(siblings), 0)
 
 
 def _bars(report: Report, name: str, view: View) -> Iterator[tuple[float, float, Verdict]]:
     """Left edge, width and verdict of bars over the run; where attempts overlap, the worst."""
     places: list[Verdict | None] = [None] * PLACES
+    # The worst last, as a later one is drawn over an earlier one.
     for verdict in (Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.FAIL):
         for attempt in islice(report.of(name, verdict), MOST_DRAWN):
             until = view.end if attempt.decided is None else attempt.decided
@@ -227,6 +229,7 @@ def _panel_data(panel: Panel, origin: int) -> dict[str, object]:
 
 def _track_data(track: Track, view: View, origin: int) -> dict[str, object]:
     inside = track.between(view.start + 1, view.end)
+    # Only for the cursor's numbers: the drawing keeps extremes, which are lost here.
     inside = inside[:: len(inside) // READ_OUT + 1]
     changes = [(view.start, track.value_at(view.start)), *inside]
     return {

@@ -120,7 +120,7 @@ def _group(listed: Listed, known: KnownFailures) -> str:
 
 def _row(listed: Listed, spec: CheckedSpec, known: KnownFailures) -> _Row:
     failed = _failed(listed)
-    asked = [listed.name, *failed, *dict.fromkeys(spec.requirements[n].severity for n in failed)]
+    searched = [listed.name, *failed, *dict.fromkeys(spec.requirements[n].severity for n in failed)]
     why, cells = "", []
     if listed.report is None:
         why = f"{_BROKEN}: {in_short(listed.error.removeprefix(f'{listed.name}: '))}"
@@ -130,7 +130,7 @@ def _row(listed: Listed, spec: CheckedSpec, known: KnownFailures) -> _Row:
             _cell(listed.report, name, "" if name in failures else expected.get(name, ""))
             for name in listed.report.verdicts
         ]
-    return _Row(listed, _group(listed, known), " ".join(asked).strip().lower(), why, cells)
+    return _Row(listed, _group(listed, known), " ".join(searched).strip().lower(), why, cells)
 
 
 def _cell(report: Report, requirement: str, known: str) -> tuple[str, Verdict, str | None, bool]:
@@ -178,6 +178,7 @@ def write_run_pages(
     """
     output_folder(folder)
     passing = [report for report in reports if Verdict.PASS in report.verdicts.values()]
+    # Only these are held together with their samples; every other recording is read for its page.
     others = [_judged(report, read) for report in passing[:COMPARED]]
     several = len(reports) + len(broken) > 1
     names = _file_names([report.trace for report in reports])
@@ -225,6 +226,7 @@ def _file_names(traces: Sequence[str]) -> list[str]:
     for trace in traces:
         stem = re.sub(r"[^\w.-]+", "-", Path(trace).stem).strip("-.") or "recording"
         name, count = f"{stem}.html", 1
+        # On some file systems `A.html` and `a.html` are one file.
         while name.lower() in taken:
             count += 1
             name = f"{stem}-{count}.html"

@@ -111,16 +111,16 @@ def print_report(report: Report, spec: CheckedSpec, printer: Printer) -> None:
     printer.line((report.trace or spec.name, "bold"), f"{end}  by {spec.name}")
     if spec.requirements:
         _print_verdicts(report, spec, printer)
-    for name, found in report.verdicts.items():
+    for name, verdict in report.verdicts.items():
         if name in report.misses:
-            why = wrapped(without_attempts(found, report.misses[name]), printer.width)
-            printer.line((f"{name} ", "bold"), verdict_text(found), f"\n{why}\n")
-        for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE):
-            for attempt in islice(report.of(name, verdict), SHOWN_PER_REQUIREMENT):
+            why = wrapped(without_attempts(verdict, report.misses[name]), printer.width)
+            printer.line((f"{name} ", "bold"), verdict_text(verdict), f"\n{why}\n")
+        for shown in (Verdict.FAIL, Verdict.INCONCLUSIVE):
+            for attempt in islice(report.of(name, shown), SHOWN_PER_REQUIREMENT):
                 _print_attempt(attempt, spec.requirements[name], report, printer)
-            rest = report.counts.get(name, {}).get(verdict, 0) - SHOWN_PER_REQUIREMENT
+            rest = report.counts.get(name, {}).get(shown, 0) - SHOWN_PER_REQUIREMENT
             if rest > 0:
-                printer.line((f"… and {rest} more {verdict} of {name}", "dim"))
+                printer.line((f"… and {rest} more {shown} of {name}", "dim"))
     _print_goals(report.goals, printer)
     _print_coverage(report.coverage, printer)
     for hit in report.illegal:
@@ -150,9 +150,10 @@ def _print_verdicts(report: Report, spec: CheckedSpec, printer: Printer) -> None
         listed = "  ".join(f"{count} {kind}" for kind, count in counts.items() if count)
         row: list[Piece] = [name, verdict_text(verdict), listed or "–"]
         row += [least.get(name, "–")] if least else []
-        one = spec.requirements[name]
-        row += [one.severity or "–"] if levels else []
-        text = f"{one.text}  [{', '.join(one.tags)}]".lstrip() if one.tags else one.text
+        requirement = spec.requirements[name]
+        row += [requirement.severity or "–"] if levels else []
+        tags = f"  [{', '.join(requirement.tags)}]" if requirement.tags else ""
+        text = f"{requirement.text}{tags}".lstrip()
         rows.append([*row, (text, "dim")])
     printer.table([*heads, "requirement"], rows)
 

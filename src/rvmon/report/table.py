@@ -163,6 +163,7 @@ def _grid(
     }
     grid = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 2, 0, 0))
     grid.add_column("", no_wrap=True)
+    # Only beside the first groups, as it does not depend on the group.
     has_checked = with_checked and any(
         verdict_table.checked for verdict_table in (table, *others.values())
     )

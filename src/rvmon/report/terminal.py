@@ -27,6 +27,7 @@ class Terminal(Console):
     ) -> Iterable[Segment]:
         """Rich's segments, with unsafe characters of their text escaped."""
         for segment in super().render(renderable, options):
+            # Control segments are cursor moves of rich; foreign text never becomes one.
             text = segment.text if segment.control else shown(segment.text)
             yield segment if text is segment.text else Segment(text, segment.style)
 

@@ -55,6 +55,8 @@ def view_of(attempt: Attempt, report: Report, late: int | None = None) -> View:
     if attempt.deadline is not None:
         instants.append(attempt.deadline)
     first, last = min(instants), max(instants)
+    # A response later than that would squeeze the attempt into less than half of the view: the
+    # label points to it instead.
     if late is not None and late - last <= last - first:
         last = max(last, late)
     margin = max(round((last - first) * MARGIN), min(SMALLEST_MARGIN, _length(report) // 4), 2)
@@ -110,7 +112,7 @@ def with_moments(sentence: str, view: View) -> str:
     >>> with_moments("never since 25.682548547 s", View(0, 10_000_000_000))
     'never since 25.683 s'
     """
-    return _SECONDS.sub(lambda found: moment(ticks_of_text(found[1]), 0, view), sentence)
+    return _SECONDS.sub(lambda seconds: moment(ticks_of_text(seconds[1]), 0, view), sentence)
 
 
 def _length(report: Report) -> int:

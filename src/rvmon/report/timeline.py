@@ -79,6 +79,7 @@ def track_row(
 def truth_row(label: ET.Element, track: Track, view: View, end: int) -> ET.Element:
     """Draw when a formula was true."""
     plot = e("div", {"class": "plot switch truth"})
+    # A truth holds over whole ticks, so that of the last one ends a tick later.
     _add_stretches(plot, stretches(track, view, end + 1))
     return e("div", {"class": "row"}, e("div", {"class": "name"}, label), plot)
 
@@ -89,11 +90,11 @@ def _add_event(
     if reference is not None:
         for place, _ in occurrences(reference, view):
             plot.append(e("span", {"class": "mark reference", "style": f"left:{place:.2%}"}, "◇"))
-    offending = {round(view.fraction(t), 9) for t in blamed}
+    offending = {view.fraction(t) for t in blamed}
     for place, value in occurrences(track, view):
         sign = "?" if value is None else "◆"
         plot.append(e("span", {"class": "mark", "style": f"left:{place:.2%}"}, sign))
-        if round(place, 9) in offending:
+        if place in offending:
             plot.append(_ring(place))
 
 
@@ -104,6 +105,7 @@ def _add_stretches(plot: ET.Element, pieces: Sequence[Stretch], extra: str = "")
         if piece.busy:
             plot.append(e("div", {"class": f"busy{extra}", "title": "changes too fast", **place}))
         elif piece.value is None:
+            # Where the reference is unknown, hatching would hide what is known of this run.
             if not extra:
                 plot.append(_unknown(piece.left, width))
         elif piece.value is True:
@@ -130,12 +132,13 @@ def _add_number(
         "svg",
         {"viewBox": f"0 0 {WIDTH} {HEIGHT}", "preserveAspectRatio": "none", "aria-hidden": "true"},
     )
-    for kind, some in (("reference", others), ("line", pieces)):
-        for points in polylines(some, lowest, highest):
+    for kind, stretches_of_run in (("reference", others), ("line", pieces)):
+        for points in polylines(stretches_of_run, lowest, highest):
             places = " ".join(f"{x * WIDTH:.4g},{y * HEIGHT:.3g}" for x, y in points)
             drawing.append(e("polyline", {"class": kind, "points": places}))
     plot.append(drawing)
     constants = {threshold.value for threshold in track.thresholds}
+    # A threshold has a label of its own, at the same height.
     for bound in sorted({low, high} - constants):
         top = (highest - bound) / (highest - lowest)
         plot.append(e("span", {"class": "scale", "style": f"top:{top:.2%}"}, f"{bound:.3g}"))
@@ -145,6 +148,7 @@ def _add_number(
     for threshold in track.thresholds:
         top = (highest - threshold.value) / (highest - lowest)
         text = f"{SIGNS.get(threshold.op, threshold.op)} {threshold.value:g} {track.unit}".rstrip()
+        # Where the line runs above the threshold, a label above it would cover the line.
         side = " under" if top < LOWEST_UNDER and _is_above(pieces, threshold.value) else ""
         line = {"class": f"threshold{side}", "style": f"top:{top:.2%}"}
         plot.append(e("div", line, e("span", None, text)))
@@ -157,8 +161,8 @@ def _add_number(
 
 def _is_above(pieces: Sequence[Stretch], value: float) -> bool:
     """Whether the line is above a threshold where the threshold's label is placed."""
-    there = [piece.value for piece in pieces if piece.right > 1 - LABELLED]
-    return any(isinstance(one, int | float) and one > value for one in there)
+    values = [piece.value for piece in pieces if piece.right > 1 - LABELLED]
+    return any(isinstance(one, int | float) and one > value for one in values)
 
 
 def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:

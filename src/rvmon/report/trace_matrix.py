@@ -56,10 +56,10 @@ def rows_by_item(verdicts: bytes) -> dict[str, list[Row]]:
     rows = csv.reader(io.StringIO(verdicts.decode("utf-8"), newline=""), strict=True)
     if tuple(next(rows, ())) != VerdictRow._fields:
         raise ValueError("the columns of the verdicts are others")
-    found: dict[str, list[Row]] = {}
+    by_item: dict[str, list[Row]] = {}
     for row in rows:
-        found.setdefault(row[0], []).append(dict(zip(VerdictRow._fields, row, strict=True)))
-    return found
+        by_item.setdefault(row[0], []).append(dict(zip(VerdictRow._fields, row, strict=True)))
+    return by_item
 
 
 def trace_matrix(
@@ -79,9 +79,9 @@ def trace_matrix(
     """
     matrix: list[Traced] = []
     for robot, spec in specs.items():
-        own = [item for item in items if not robot or item.partition("/")[0] == robot]
+        items_of_robot = [item for item in items if not robot or item.partition("/")[0] == robot]
         by_requirement: dict[str, dict[str, list[Row]]] = {}
-        for item in own:
+        for item in items_of_robot:
             for row in items[item]:
                 by_requirement.setdefault(row["requirement"], {}).setdefault(item, []).append(row)
         # Without a requirement a row says that there are no verdicts, or what was hit and must not.
@@ -94,7 +94,7 @@ def trace_matrix(
                 Traced(
                     *heading, item, *_folded(shown.get(item, ()), item in broken, items[item][0])
                 )
-                for item in own
+                for item in items_of_robot
                 if item in broken or item in shown
             ]
             matrix += traced or [Traced(*heading)]
@@ -108,6 +108,7 @@ def _folded(rows: Sequence[Row], is_broken: bool, first: Row) -> tuple[str, str]
     """The folded verdict of rows, and the reason of a failure or the error."""
     verdict = "" if is_broken else fold(Verdict(row["verdict"]) for row in rows).value
     failed = next((row["reason"] for row in rows if row["verdict"] == "F"), "")
+    # A broken recording has one row, which carries its error.
     return verdict, failed or first["error"]
 
 
@@ -153,20 +154,24 @@ class _Row(NamedTuple):
 
 
 def _row(rows: Sequence[Traced]) -> _Row:
-    own = [traced for traced in rows if traced.by and not traced.planted_fault]
-    found = {verdict: [one for one in own if one.verdict == verdict] for verdict in MARKS}
+    unfaulted = [traced for traced in rows if traced.by and not traced.planted_fault]
+    by_verdict = {
+        verdict: [listed for listed in unfaulted if listed.verdict == verdict] for verdict in MARKS
+    }
     lists = [
-        _list(f"{mark.sign} {mark.word}", found[verdict], is_open=verdict is Verdict.FAIL)
+        _list(f"{mark.sign} {mark.word}", by_verdict[verdict], is_open=verdict is Verdict.FAIL)
         for verdict, mark in MARKS.items()
     ]
-    lists.append(_list("not evaluated", [one for one in own if not one.verdict], is_open=True))
+    lists.append(
+        _list("not evaluated", [listed for listed in unfaulted if not listed.verdict], is_open=True)
+    )
     lists.append(_list("with a planted fault", [traced for traced in rows if traced.planted_fault]))
-    counts = [(verdict, len(some)) for verdict, some in found.items()]
-    return _Row(rows[0], counts, [one for one in lists if one.size])
+    counts = [(verdict, len(judged)) for verdict, judged in by_verdict.items()]
+    return _Row(rows[0], counts, [listed for listed in lists if listed.size])
 
 
-def _list(heading: str, found: Sequence[Traced], *, is_open: bool = False) -> _Lines:
-    return _Lines(heading, len(found), [_line(traced) for traced in found[:LISTED]], is_open)
+def _list(heading: str, rows: Sequence[Traced], *, is_open: bool = False) -> _Lines:
+    return _Lines(heading, len(rows), [_line(traced) for traced in rows[:LISTED]], is_open)
 
 
 def _line(traced: Traced) -> str:

@@ -32,6 +32,7 @@ def concerned_names(requirement: Requirement) -> tuple[str, ...]:
 def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
     """The names that the blamed subformula reads; if it has no place, those of the consequent."""
     parts = subformulas(requirement.consequent)
+    # Only atoms read names; the blame may name an operator, then all atoms below it count.
     required = [part for part in parts if not isinstance(part, Unary | Binary | Amount)]
     failed = [
         atom
@@ -43,14 +44,14 @@ def blamed_names(requirement: Requirement, blame: Blame) -> frozenset[str]:
 
 def thresholds(requirement: Requirement, name: str) -> tuple[Threshold, ...]:
     """The constants that a requirement compares a signal with, each once."""
-    found = [
+    each = [
         threshold
         for formula in (requirement.trigger, requirement.consequent)
         for atom in subformulas(formula)
         if isinstance(atom, Compare)
         for threshold in _thresholds(atom, name)
     ]
-    return tuple(dict.fromkeys(found))
+    return tuple(dict.fromkeys(each))
 
 
 def _thresholds(atom: Compare, name: str) -> Iterator[Threshold]:
@@ -179,11 +180,11 @@ def readable(pieces: Sequence[Stretch]) -> list[Stretch]:
     for narrow, group in groupby(
         pieces, key=lambda stretch: stretch.right - stretch.left < 1 / PLACES
     ):
-        some = list(group)
-        if narrow and len(some) > 1:
-            joined.append(Stretch(some[0].left, some[-1].right, None, busy=True))
+        neighbours = list(group)
+        if narrow and len(neighbours) > 1:
+            joined.append(Stretch(neighbours[0].left, neighbours[-1].right, None, busy=True))
         else:
-            joined.extend(some)
+            joined.extend(neighbours)
     return joined
 
 
@@ -213,8 +214,14 @@ def _outlined(points: Sequence[Point]) -> list[Point]:
     """Per place the first, last, lowest and highest point, so that no peak is lost."""
     kept: list[Point] = []
     for _, group in groupby(points, key=lambda point: int(point[0] * PLACES)):
-        some = list(group)
-        extremes = (some[0], min(some, key=_height), max(some, key=_height), some[-1])
+        same_place = list(group)
+        # The first and the last keep the joints with the neighbours.
+        extremes = (
+            same_place[0],
+            min(same_place, key=_height),
+            max(same_place, key=_height),
+            same_place[-1],
+        )
         kept.extend(sorted(dict.fromkeys(extremes)))
     return kept
 
@@ -234,14 +241,14 @@ _KINDS = {
 def tracks_of(
     spec: CheckedSpec,
     requirement: Requirement,
-    found: Mapping[str, Changes],
+    changes: Mapping[str, Changes],
     absent: Collection[str] = (),
 ) -> tuple[Track, ...]:
     """The tracks of the signals and events that a requirement reads, in its order."""
     return tuple(
-        _signal_track(spec.signals[name], requirement, found[name])
+        _signal_track(spec.signals[name], requirement, changes[name])
         if name in spec.signals
-        else Track(name, TrackKind.EVENT, found[name].ended(), absent=name in absent)
+        else Track(name, TrackKind.EVENT, changes[name].ended(), absent=name in absent)
         for name in concerned_names(requirement)
     )
 

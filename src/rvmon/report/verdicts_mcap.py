@@ -126,24 +126,30 @@ def write_verdicts(
 
 def _state_schemas(report: Report) -> dict[str, tuple[str, Mapping[str, str]]]:
     """By topic the name of its schema, and the types of its fields."""
-    found: dict[str, tuple[str, Mapping[str, str]]] = {ATTEMPTS: ("foxglove.Log", _ATTEMPT)}
+    schemas: dict[str, tuple[str, Mapping[str, str]]] = {ATTEMPTS: ("foxglove.Log", _ATTEMPT)}
     for name in report.verdicts:
-        found[topic_of("requirements", name)] = "rvmon.Requirement", _STATE
-    return found
+        schemas[topic_of("requirements", name)] = "rvmon.Requirement", _STATE
+    return schemas
 
 
 def _value_schemas(
     spec: CheckedSpec, names: Iterable[str]
 ) -> dict[str, tuple[str, Mapping[str, str]]]:
-    found: dict[str, tuple[str, Mapping[str, str]]] = {}
+    schemas: dict[str, tuple[str, Mapping[str, str]]] = {}
     for name in sorted(names):
         if name in spec.signals:
             kind = _TYPES[spec.signals[name].type.kind]
-            found[topic_of("signals", name)] = f"rvmon.{kind}", {"known": "boolean", "value": kind}
+            schemas[topic_of("signals", name)] = (
+                f"rvmon.{kind}",
+                {"known": "boolean", "value": kind},
+            )
         else:
             fields = {field: _TYPES[one.kind] for field, one in spec.events[name].fields.items()}
-            found[topic_of("events", name)] = f"rvmon.event.{name}", {"occurs": "boolean", **fields}
-    return found
+            schemas[topic_of("events", name)] = (
+                f"rvmon.event.{name}",
+                {"occurs": "boolean", **fields},
+            )
+    return schemas
 
 
 def _states(report: Report, begin: int) -> Iterator[_Message]:
@@ -151,9 +157,9 @@ def _states(report: Report, begin: int) -> Iterator[_Message]:
     changes: dict[str, dict[int, list[tuple[int, Verdict | None]]]] = {}
     end = report.end or 0
     for attempt in report.attempts:
-        own = changes.setdefault(attempt.requirement, {})
-        own.setdefault(attempt.triggered, []).append((1, None))
-        own.setdefault(_settled(attempt, end), []).append((-1, attempt.verdict))
+        of_requirement = changes.setdefault(attempt.requirement, {})
+        of_requirement.setdefault(attempt.triggered, []).append((1, None))
+        of_requirement.setdefault(_settled(attempt, end), []).append((-1, attempt.verdict))
     for name in report.verdicts:
         still_open, last, counts = 0, Verdict.NOT_TRIGGERED, Counter[Verdict]()
         for t, steps in sorted({begin: [], **changes.get(name, {})}.items()):
@@ -179,7 +185,7 @@ def _settled(attempt: Attempt, end: int) -> int:
 
 def _attempts(spec: CheckedSpec, report: Report) -> list[_Message]:
     """An entry of the log for each attempt, when it was decided."""
-    found: list[_Message] = []
+    messages: list[_Message] = []
     for attempt in report.attempts:
         span = spec.requirements[attempt.requirement].span
         t = _settled(attempt, report.end or 0)
@@ -196,8 +202,8 @@ def _attempts(spec: CheckedSpec, report: Report) -> list[_Message]:
         }
         if attempt.decided is not None:
             content["decided"] = attempt.decided
-        found.append((t, ATTEMPTS, content))
-    return sorted(found, key=itemgetter(0))
+        messages.append((t, ATTEMPTS, content))
+    return sorted(messages, key=itemgetter(0))
 
 
 def _values(
@@ -220,6 +226,7 @@ def _value_message(value: object) -> dict[str, object]:
     """A value of a signal; JSON has no NaN, and no infinity."""
     if value is None or value != value:
         return {"known": False}
+    # An infinity is known, but nothing can be plotted for it.
     finite = not isinstance(value, float) or math.isfinite(value)
     return {"known": True, "value": value} if finite else {"known": True}
 
@@ -244,9 +251,9 @@ def _write(
 
 def _json_schema(fields: Mapping[str, str], title: str) -> bytes:
     properties: dict[str, Any] = {name: {"type": kind} for name, kind in fields.items()}
-    for own in properties.values():
-        if own["type"] == "array":
-            own["items"] = {"type": "object", "properties": {}}
+    for described in properties.values():
+        if described["type"] == "array":
+            described["items"] = {"type": "object", "properties": {}}
     if title == "foxglove.Log":
         parts = {part: {"type": "integer"} for part in ("sec", "nsec")}
         properties["timestamp"] = {"type": "object", "title": "time", "properties": parts}

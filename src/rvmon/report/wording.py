@@ -229,6 +229,7 @@ def wrapped(sentence: str, width: int) -> str:
       `released` occurred at 4.75 s,
         0.75 s after the trigger
     """
+    # `fill` would not change it; most sentences are such, and `fill` is slow.
     if len(sentence) + 2 <= width and sentence.isprintable() and not sentence.endswith(" "):
         return f"  {sentence}"
     whole = _WITHIN_VALUE.sub(_TOGETHER, sentence)
