@@ -117,7 +117,7 @@ class Judged(
         self._decided.clear()
         for t, values in samples:
             self._monitor.step_ns(t, values)
-        # All samples may lie before this step: deadlines up to it are decided, too.
+        # All samples may be earlier than this step: deadlines up to now are decided, too.
         self._monitor.advance_ns(self._t)
         verdicts = self._monitor.finish_ns(self._t).verdicts if over else self._monitor.verdicts
         judged: dict[str, Any] = {"verdicts": dict(verdicts), "decided": [*self._decided]}

@@ -88,7 +88,7 @@ class JsonObjects:
                 self._clock.set_ns(t_ns)
         if self._is_any_lost and robot not in self._last:
             self.driver.miss(robot=robot, why=_UNREADABLE)
-        # An object without a stamp is stamped when it is offered: to wait would change its time.
+        # An object without a stamp gets one when it is offered: waiting would change its time.
         waits = wait and t_ns is not None
         is_queued = self.driver.offer(values, robot=robot, t_ns=t_ns, wait=waits)
         if self.driver.spec is not spec:  # replaced meanwhile, perhaps by one with other names
@@ -185,7 +185,7 @@ def _read(
     try:
         if not isinstance(fields, dict) or any(name in fields for name in stamps):
             return read_object(fields, schema, ignored)
-        # The reader of recordings asks for a stamp: it gets one that nobody uses.
+        # The reader of recordings requires a stamp; this one is not used.
         return None, read_object({**fields, stamps[0]: 0}, schema, ignored)[1]
     except RecursionError:
         raise TraceError(TOO_DEEP) from None
@@ -210,7 +210,7 @@ def feed_lines(objects: JsonObjects, lines: Iterable[bytes], robot: str | None =
         for number, line in enumerate(lines, 1):
             if not line.strip():
                 continue
-            # Until its robot's name is read, a line that cannot be read may be of any robot.
+            # If the robot's name cannot be read, the line may be of any robot.
             name = "" if robot is None else None
             try:
                 fields = decoded_object(line)

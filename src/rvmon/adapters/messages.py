@@ -142,7 +142,7 @@ class MessageFeed:
         self._driver.lose(
             self._names_of(topic),
             robot=self._robot,
-            # With stamps of its own the lost message may be older than its arrival.
+            # With stamps of its own, a message may be older than its arrival.
             since_ns=since if before or topic in self._stamped else None,
             is_over=not for_good,
             why=f"{topic} cannot be read" if for_good else f"a message of {topic} was not taken",

@@ -113,7 +113,7 @@ class Ros1Source:
         now = {header["callerid"]: header for header in headers if header and "callerid" in header}
         for name, node in [link for link in self._links if link[0] == topic]:
             link, header = (name, node), now.get(node)
-            # By identity: a connection that was made anew has another header of the same content.
+            # By identity: after a reconnection the header is another object of equal content.
             if header is self._links[link]:
                 continue
             if link in self._down:

@@ -98,8 +98,8 @@ class ConflictSearch:
 
     def run(self) -> None:
         """Examine pairs triggered at once, groups, triples, pairs apart in time, larger sets."""
-        # Cheap questions first: pairs that never start together, conflicts and groups that can hold
-        # spare the later ones most of theirs.
+        # Cheap questions first: pairs that never start together, conflicts, and satisfiable groups
+        # answer most of the later questions.
         decided = set()
         for pair in self._pairs:
             if not self._is_late() and self._pair_at_once(*pair) is not None:
@@ -168,8 +168,8 @@ class ConflictSearch:
         ]
         members = [Member(first), Member(second, offset), *always[:MOST_ALWAYS]]
         holds = self._can_hold(members)
-        # The product was too large; what conflicts without the `always` ones conflicts with them,
-        # too.
+        # The product was too large; requirements that conflict without the `always` ones conflict
+        # with them, too.
         if holds is None:
             members = members[:2]
             holds = self._can_hold(members)
@@ -313,7 +313,8 @@ def implications_among(
         other, the later ones are reported as implied.
     """
     implications: list[Implication] = []
-    # What is implied implies nothing itself: of two that say the same, each would drop the other.
+    # An implied requirement is not used as a premise: of two equivalent ones, each would drop the
+    # other.
     dropped: set[str] = set()
     bad = [frozenset(conflict.ids) for conflict in conflicts]
     for implied in reversed(falling):

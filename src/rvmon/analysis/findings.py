@@ -66,7 +66,7 @@ def examine(spec: CheckedSpec, subjects: Sequence[Subject], seconds: float) -> E
         if (one := results.get(subject.id)) is None
         or (one.trigger is not False and None in (one.trigger, one.fail, one.pass_))
     )
-    # One that cannot pass would conflict with all others, and imply them.
+    # A requirement that cannot pass would conflict with all others, and imply them.
     sound = [subject for subject in subjects if _is_sound(subject, results)]
     together = Together(spec)
     search = ConflictSearch(together, sound, deadline)

@@ -115,7 +115,7 @@ class _Machine:
             for index, word in ahead.items():
                 self.words[index] = word
         for index, word in enumerate(self.words):
-            # What is said stays said: the letters behind it lead nowhere else.
+            # A verdict is final: all later letters lead back to the same state.
             if word != "?":
                 self.edges[index] = dict.fromkeys(can_be, index)
 

@@ -197,7 +197,7 @@ class _Search:
         first = cell if width > 1 else cell + 1
         if self.dense:
             return range(first, min(cell + 1, last) + 1)
-        # Samples may pass over any cell but one in which a requirement is triggered.
+        # A run may have no sample in a cell, unless a requirement is triggered in it.
         ends = [i for i, at in enumerate(self.starts) if at in self.offsets and i > cell]
         return range(first, min([*ends, last]) + 1)
 

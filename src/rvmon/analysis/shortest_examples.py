@@ -178,7 +178,7 @@ def shortest_examples(
         add(iter((first,)), next(number))
     while heap and missing and runs < budget.runs:
         *_, order, node, nodes = heappop(heap)
-        # The next of these runs is queued only now: most are never looked at.
+        # The next of these runs is queued only now, as most are never examined.
         add(nodes, order)
         played = player.play(node.samples, node.end)
         runs += 1
@@ -189,7 +189,7 @@ def shortest_examples(
         if (played.situation, node.at_cut) in seen:
             continue
         seen.add((played.situation, node.at_cut))
-        # No later sample changes a verdict of these.
+        # Their verdicts are final: no later sample changes one.
         if all(verdict is Verdict.FAIL for verdict in played.example.verdicts.values()):
             continue
         for further in search.after(node, played.cut):
@@ -241,8 +241,8 @@ class _Search:
         end = node.end
         if len(node.samples) < self.most:
             yield self._sampled(node, end + (self.gap if node.at_cut else self.step))
-        # Waiting leads to both sides of the instant at which a window opens or closes; if that is
-        # the next position, a wait of a step passes it.
+        # Wait to just before and just after the instant at which a window opens or closes; if that
+        # is the next position, a step passes it.
         soon = cut - end <= self.gap and not node.at_cut
         for t in {end + self.step} if soon else {cut - 1, cut}:
             if end < t < TIME_LIMIT:

@@ -99,7 +99,7 @@ class WindowValues:
             str(place): _captured_at(str(place), t - origin, window)
             for place, (t, window) in enumerate(asked)
         }
-        # Its samples come in order: a delay would only hold them back.
+        # The samples of a recording are in order: `max delay` would only hold them back.
         captured = replace(
             spec, requirements=requirements, properties={}, covers={}, max_delay=None
         )

@@ -24,7 +24,7 @@ def run(arguments: argparse.Namespace) -> int:
     from rvmon.report.coverage_summary import Summary
 
     with busy("reading databases"):
-        # Read before anything is merged: models that contradict each other change no file.
+        # All are read before merging, so that contradicting models change no file.
         coverage = read(arguments.databases)
         if arguments.merge is not None:
             merge(arguments.databases, arguments.merge)

@@ -107,7 +107,7 @@ def _verify(
             say(f"{campaign.name} has changed since: its tests are played as it is now")
     size = len(intact) if arguments.sample is None else min(arguments.sample, len(intact))
     chosen = random.Random(arguments.seed).sample(sorted(intact), size)  # noqa: S311 - no secret
-    # By way of CSV, as the kept rows came: both have lost the same in it.
+    # Converted to CSV and back, as the stored rows were, so that both lose the same digits.
     now = rows_by_item(csv_bytes(again(kept, chosen, arguments.jobs)))
     columns = [field for field in VerdictRow._fields if is_same or field not in ("reason", "error")]
     for item in chosen:

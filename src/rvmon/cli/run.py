@@ -188,7 +188,7 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
     if arguments.coverage is not None:
         from rvmon.coverage.database import Database
 
-        # Opened once, so that one that cannot be written is refused before the work.
+        # Opened first, so that a file that cannot be written is refused before the work.
         Database.open(arguments.coverage).close()
     if arguments.report and Path(arguments.report).is_file():
         raise RvmonError(f"cannot write to {arguments.report}: it is a file: name a folder")

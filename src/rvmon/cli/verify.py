@@ -288,7 +288,7 @@ def _timeline(observation: Observation, shown: Run, spec: Spec) -> list[str]:
             if name in names and (name not in signals or last.get(name) != value)
         }
         last.update(values)
-        # The first sample is the start of the run, also if nothing happens in it.
+        # The first sample marks the start of the run, even if it updates nothing.
         if values or not samples:
             samples.append(Sample(record.t, values))
     monitor = spec.monitor(only=[observation.requirement])

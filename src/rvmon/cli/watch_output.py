@@ -61,8 +61,8 @@ class Output(logging.Handler):
 
     def __enter__(self) -> Output:
         self._log.addHandler(self)
-        # The root's handlers would print each line once more; the parent, of verdicts, has none:
-        # without a handler Python prints warnings itself.
+        # Without this, the root's handlers would print each line again; and the parent, the logger
+        # of verdicts, has no handler, so Python would print warnings itself.
         self._log.propagate = False
         logging.getLogger("rvmon.live").addHandler(logging.NullHandler())
         return self
@@ -328,7 +328,7 @@ def watch_kept(
     except KeyboardInterrupt:
         warn("ended; the same command continues the run")
     # Also what earlier processes of the run lost; what it goes on to is not known yet.
-    # A copy is ended: the run itself may go on.
+    # A copy is finished, so that the run can be continued.
     at_end = spec.restore(monitor.monitor.snapshot()).finish_ns()
     lost = [health for health in at_end.health if health.kind in _LOSSES and health.requirements]
     for names, fact in health_facts(lost, at_end.origin):

@@ -238,7 +238,7 @@ def weighted(scores: Iterable[tuple[Group, Score]]) -> float:
         if one.items and group.weight:
             subjects.setdefault(group.subject, []).append((group.weight, one))
     means = [
-        # As fractions: thirds as floats add up to 1 with a goal open, or to more than 1.
+        # Fractions, as thirds in floats may add up to 1 with a goal open, or to more than 1.
         sum(Fraction(weight * one.covered, one.items) for weight, one in scored)
         / sum(weight for weight, _ in scored)
         for scored in subjects.values()

@@ -121,7 +121,7 @@ class Database:
         """
         groups, coverage = other._snapshot()
         with transaction(self._tables, self._path):
-            # The error of a contradiction names the file that brought it.
+            # A contradiction is reported with the file that caused it.
             source = other._path or self._path
             write_groups(self._tables, source, self._stored(), groups)
             stored = _Items(self._stored())

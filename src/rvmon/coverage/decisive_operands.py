@@ -68,7 +68,7 @@ def variants_of(requirement: Requirement) -> list[Variant]:
         text = format_formula(part)
         counts[text] += 1
         name = text if counts[text] == 1 else f"{text} ({counts[text]})"
-        # A property is of the requirement as a whole.
+        # A CTL property belongs to the whole requirement, not to a variant.
         variants.append(Variant(name, replace(other, ctl=None), by_failure))
     return variants
 

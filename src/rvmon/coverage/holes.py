@@ -96,7 +96,7 @@ def _near_code(goal: Goal, hits: Hits) -> float:
     line = int(goal[1].partition(_ARROW)[0])
     if line in lines:
         return 1.0
-    # Below 1 however near: the line itself did not run.
+    # Always below 1, as the line itself did not run.
     before = [one for one in lines if one < line]
     return 0.9 / (1 + line - max(before)) if before else 0.0
 

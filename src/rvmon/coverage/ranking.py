@@ -96,7 +96,7 @@ def _undominated(
                 seen.add(key)
     if len(kept) > MOST_COMPARED:
         return kept
-    # Two equal tests would remove each other here: of those, one alone was kept above.
+    # Equal tests would remove each other here, so only one of them was kept above.
     enough = {
         place: frozenset(item for item, count in row.items() if count == needed[item])
         for place, row in kept.items()
@@ -114,7 +114,7 @@ def _scarce(rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]) -> di
     kept: dict[int, int] = {}
     for item in sorted(needed, key=lambda one: (hitters[one].bit_count(), one)):
         item_hitters = hitters[item]
-        # A goal of several hits is not reached with a scarcer item that is hit once.
+        # Reaching a scarcer item once does not reach a goal of several hits.
         if needed[item] > 1 or not any(hitters[one] & item_hitters == hitters[one] for one in kept):
             kept[item] = needed[item]
     return kept
@@ -183,7 +183,8 @@ class _Search:
         places = [place for place in self._rows if free >> place & 1]
         places.sort(key=lambda place: (-_gain(self._rows[place], needed), place))
         for place in places:
-            # All sets with this test are searched in the next line: what follows goes without it.
+            # The next line searches all sets with this test; the rest of the loop searches those
+            # without.
             refused |= 1 << place
             self.branch(_without(needed, self._rows[place]), [*chosen, place], refused)
 

@@ -172,7 +172,7 @@ class WatchedRequirement:
         if self.graph is not None:
             edges: dict[str, list[str]] = {}
             for edge in self.graph.edges:
-                # An attempt that waits takes a loop with each letter: that shows nothing.
+                # A waiting attempt takes a loop at each letter, which is no progress to cover.
                 if edge.source != edge.target:
                     upon = " at ".join(part for part in (edge.condition, edge.when) if part)
                     edges.setdefault(edge_name((edge.source, edge.target)), []).append(upon)

@@ -94,7 +94,7 @@ def compilation(
         files = overridden(files, constants, findings)
         resolved = resolve(files, findings)
         checked = check(resolved, findings)
-        # What uses a name may be what could not be read.
+        # The item that uses a name may be the one with a syntax error.
         if not _errors(findings.diagnostics):
             findings.extend(unused_names(resolved, checked))
         if not files[0].items and not findings.diagnostics:

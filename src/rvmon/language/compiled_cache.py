@@ -84,12 +84,12 @@ def _read(path: Path, directory: Path) -> Compiled | None:
         if imported:
             tree = tree_of(directory)
             for file, text in imported.items():
-                # What may be imported depends on where the project and RVMON_ALLOW_IMPORTS are
-                # today.
+                # Which files may be imported depends on the present project and
+                # RVMON_ALLOW_IMPORTS.
                 if not tree.holds(Path(file)) or text_of_file(file) != text:
                     return None
         spec, warnings = from_plain(data)
-    # A file of a cache may be cut off, or anybody's: it is compiled anew then, never trusted.
+    # A cached file may be truncated or forged: then the specification is compiled again.
     except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
         return None
     return (spec, warnings) if isinstance(spec, CheckedSpec) else None

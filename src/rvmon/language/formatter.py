@@ -132,7 +132,7 @@ def _starts_line(pieces: Sequence[Piece], number: int) -> bool:
         return piece.kind != "THEN" or not _within_choice(pieces[:number])
     if pieces[0].kind != "REQUIREMENT":
         return False
-    # A bare formula has no word that starts its line: it comes behind the name and the text.
+    # A bare formula has no keyword of its own: it follows the name and the text.
     return number == (3 if pieces[2].kind == "STRING" else 2)
 
 
@@ -172,7 +172,7 @@ def _align(blocks: Sequence[Block]) -> None:
             runs[-1].append(block)
     for run in runs:
         lines = aligned([block.pieces for block in run])
-        # One long declaration would push the columns of all others away.
+        # One long declaration must not widen the columns of all others.
         if all(len(line) <= WIDTH for line in lines):
             for block, line in zip(run, lines, strict=True):
                 block.lines = [line]
@@ -243,7 +243,7 @@ def pieces_of(text: str) -> tuple[list[Piece], str]:
         above = [comment.rstrip() for comment in _COMMENT.findall(gap)]
         if pieces and above and "\n" not in gap[: gap.index("#")]:
             pieces[-1] = replace(pieces[-1], behind=above.pop(0))
-        # The grammar takes `at end pass` and `at end: pass`; the second is printed.
+        # The grammar accepts `at end pass` and `at end: pass`; the second form is printed.
         if pieces and pieces[-1].kind == "AT_END" and token.type != "COLON":
             colon = Piece("COLON", ":", behind=pieces[-1].behind)
             pieces[-1:] = replace(pieces[-1], behind=""), colon

@@ -97,7 +97,7 @@ def resolve(parsed: Sequence[items.ParsedSpec], findings: Findings) -> ResolvedS
     resolver = _Resolver(findings)
     for number, file in enumerate(parsed):
         for item in file.items:
-            # The `spec` line of an imported file names that file alone; its `time` holds for all.
+            # The `spec` line of an imported file names only that file; its `time` applies to all.
             if number == 0 or not isinstance(item, items.Header):
                 resolver.add(item)
     once = resolver.once
@@ -110,7 +110,7 @@ def resolve(parsed: Sequence[items.ParsedSpec], findings: Findings) -> ResolvedS
         resolver.of(items.CoverItem),
         resolver.of(items.CoverpointItem),
         resolver.of(items.CrossItem),
-        # Which of two declarations a use means is unknown: only the declaration is reported.
+        # It is unknown which of two declarations a use refers to: only the second is reported.
         frozenset(resolver.doubled).union(*(file.doubtful for file in parsed)),
     )
 
@@ -152,8 +152,8 @@ class _Resolver:
                 self._declare(item)
             case items.ImportItem():
                 pass  # its file is among those given
-            # Requirements, properties, goals and coverpoints share their names: reports name all by
-            # id.
+            # Requirements, properties, goals and coverpoints share one namespace, as reports list
+            # them by id.
             case _ if self._is_new("requirement", item.name):
                 self._stated.append(item)
 
@@ -211,7 +211,7 @@ def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozens
     caught: set[str] = set()
     finished: set[str] = set()
     for root in uses:
-        # A search in depth without recursion: chains of macros may be as long as the file.
+        # Depth-first without recursion: a chain of macros may be as long as the file.
         path: list[str] = []
         waiting = [(root, iter(uses[root]))] if root not in finished else []
         while waiting:
@@ -223,8 +223,8 @@ def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozens
                 finished.add(name)
                 waiting.pop()
                 path.pop()
-                # What leads into a circle cannot be evaluated either; it is refused without a
-                # finding.
+                # A macro that leads into a circle cannot be evaluated either; it has no finding of
+                # its own.
                 if caught & set(uses[name]):
                     caught.add(name)
             elif following in path:
@@ -282,7 +282,7 @@ def _never_read(spec: CheckedSpec) -> Iterator[Diagnostic]:
 def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
     """Macros and constants, and the values that requirements capture."""
     main = spec.sources[0]
-    # Counted in the texts: a use in a macro that nothing uses counts, as does the declaration.
+    # Counted in the text, so that uses in unused macros and the declaration itself count, too.
     uses = Counter(name for source in spec.sources for name in _names(source.text))
     for item in spec.declared.values():
         if isinstance(item, items.DefineItem | items.ConstItem) and item.name.span.source is main:

@@ -132,8 +132,8 @@ def _age(formula: Formula, *, denied: bool) -> str | None:
             ),
             interval=Interval(low=0, high=int() as high),
         ):
-            # `age(x) < 200 ms` was rewritten as at most 199999999 ns: the shorter text is what was
-            # meant.
+            # `age(x) < 200 ms` was rewritten as at most 199999999 ns: print the shorter, original
+            # form.
             most = (CompareOp.LE, format_duration(high))
             below = (CompareOp.LT, format_duration(high + 1))
             op, limit = min(most, below, key=lambda one: len(one[1]))
@@ -229,7 +229,7 @@ def _binary(formula: Binary) -> str:
         operands = chain(formula, op)
         texts = [_left(operand, level + 1) for operand in operands[:-1]]
         texts.append(_formula(operands[-1], level + 1))
-        # The parser asks for these brackets (RV002); `<->` binds loosest, and nobody misreads it.
+        # The parser requires these brackets (RV002), but not around `<->`, which binds loosest.
         if op is not BinaryOp.IFF:
             pairs = zip(operands, texts, strict=True)
             texts = [f"({text})" if _is_kin_of_until(one) else text for one, text in pairs]

@@ -89,7 +89,7 @@ class SimulatedClock:
         """
         with self._lock:
             before, self._now = self._now, whole_ticks(t_ns)
-        # Outside of the lock: a callback may set the clock again.
+        # Called without the lock: a callback may set the clock again.
         for callback in tuple(self._callbacks):
             callback(before, self._now)
 

@@ -182,7 +182,8 @@ class DurableMonitor:
         try:
             self._judge(t, values)
         finally:
-            # Also where it was refused: the file has it, and would be read again with all others.
+            # Also after a refusal: the sample is in the file, and would be read again with all
+            # others.
             if self._kept >= self._every:
                 self.save()
 

@@ -210,7 +210,7 @@ class Robot:
             self._lost += 1
             names = self._declared(values)
             if isinstance(error, TimeOrderError):
-                # Without `_come_to`: time is later already.
+                # Without `_come_to`, as time is already later.
                 self._monitor.late_ns(names, t)
             else:
                 self._monitor.lose_ns(names, t, t, why="refused")

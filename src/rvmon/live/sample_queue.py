@@ -129,7 +129,7 @@ class Waiting:
     def put_gap(self, gap: Gap) -> None:
         """Queue a report on an outage, regardless of `room`."""
         self.robots.add(gap.robot)
-        # What is lost behind this report is another outage than what was lost before it.
+        # Samples lost after this report are a new outage.
         self._losing.pop(gap.robot, None)
         self._entries.append(gap)
 
@@ -142,7 +142,7 @@ class Waiting:
         """Remove the oldest entries, at most `most`."""
         taken = [self._entries.popleft() for _ in range(min(most, len(self._entries)))]
         for dropped in taken:
-            # It is judged now: further losses need an entry of their own.
+            # The entry is taken now, so further losses need a new one.
             if isinstance(dropped, Dropped) and self._losing.get(dropped.robot) is dropped:
                 del self._losing[dropped.robot]
         return taken

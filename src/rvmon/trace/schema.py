@@ -188,7 +188,7 @@ class Gaps:
             return self.nan
         if self.no_update is None or not isinstance(value, bool | int | float | str):
             return False
-        # In Python `True == 1`: a truth value is no number here.
+        # In Python `True == 1`, but here a truth value is no number.
         same_kind = isinstance(value, bool) == isinstance(self.no_update, bool)
         return same_kind and value == self.no_update
 

@@ -179,7 +179,7 @@ def _other_unit(stamp: object, stamps: Stamps) -> str:
     """A hint at the unit that was probably meant, if the user did not name one."""
     if stamps.is_stated:
         return ""
-    # `20240501` may be a date, and is a number.
+    # `20240501` could be a date, but is read as a number.
     if _ISO.fullmatch(str(stamp).strip()) and not str(stamp).isdigit():
         return f": is this ISO 8601? `--time {stamps.column}:iso`"
     with suppress(ValueError):

@@ -159,7 +159,7 @@ def ticks_of_text(text: str, unit: str = "s") -> int:
         raise TraceError(f"time `{shown}` is not finite")
     # An exponent is bounded before it becomes digits: 1e999999999 must not fill the memory.
     if number.adjusted() <= 18:
-        # So small a number is no tick in any unit; as a fraction its digits would fill the memory.
+        # Such a small number is below a tick in any unit; its fraction would fill the memory.
         exact = Fraction(0) if number.adjusted() < -30 else Fraction(number)
         ticks = round(exact * TICKS_PER_UNIT[unit])
         if abs(ticks) < TIME_LIMIT:

@@ -109,7 +109,7 @@ def arrow_table(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> pyarrow
         {name: types[kind] for name, kind in column_types().items()},
         metadata={f"rvmon.{key}": text for key, text in about.items()},
     )
-    # Of no rows `zip` makes no columns.
+    # Without rows, `zip` gives no columns.
     columns = list(zip(*rows, strict=True)) or [() for _ in schema]
     return pyarrow.table(dict(zip(schema.names, columns, strict=True)), schema=schema)
 

@@ -93,7 +93,7 @@ def _parquet(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> bytes:
 def _sqlite(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> bytes:
     columns = ", ".join(f"{name} {_SQL_TYPES[kind]}" for name, kind in column_types().items())
     holes = ", ".join("?" * len(VerdictRow._fields))
-    # In memory, so that the file is placed whole, as those of the other formats are.
+    # Built in memory, so that the file is written as a whole, as in the other formats.
     database = sqlite3.connect(":memory:")
     try:
         database.execute(f"CREATE TABLE {TABLE} ({columns})")
@@ -198,7 +198,7 @@ _SELECT = f"SELECT {', '.join(_KEPT)} FROM {TABLE}"  # noqa: S608 - our words
 def _read_sqlite(path: str) -> Iterable[Iterable[Any]]:
     database = sqlite3.connect(f"{Path(path).absolute().as_uri()}?mode=ro", uri=True)
     try:
-        # The file may be anybody's: functions in its views and indexes are not called.
+        # The file is not trusted: functions in its views and indexes are not called.
         database.execute("PRAGMA trusted_schema = OFF")
         return database.execute(_SELECT).fetchall()
     finally:

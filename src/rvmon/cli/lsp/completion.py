@@ -58,7 +58,7 @@ def _found(names: Names, item: str, *, alone: bool) -> Iterator[tuple[str, str]]
         yield from ((label.span.text, "label") for label in type_.labels)
         return
     yield from _units(item)
-    # The item is wrong before this place: nobody knows what may follow.
+    # The item has an error before this place, so it is unknown what may follow.
     if not read:
         accepted = {terminal.name for terminal in grammar().terminals}
     if {"NAME", "NUMBER"} <= accepted:

@@ -88,7 +88,7 @@ class Server(LanguageServer):
         for other, document in [*self._documents.items()]:
             if other not in self.texts or (other != uri and "import" in document.source.text):
                 del self._documents[other]
-        # Only typing comes in quick succession.
+        # Only edits come in quick succession.
         delay = 0 if uri not in self._sent or text is None else QUIET
         asyncio.get_running_loop().call_later(delay, self._publish_unless_changed, uri, text)
 

@@ -62,7 +62,7 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
         requirement = checker.collected(checked_requirement, checker, item)
         if requirement is not None:
             requirements[name] = requirement
-    # What requirements use was evaluated with them; macros that nothing uses may be wrong, too.
+    # Macros used by requirements were checked with these; unused ones may have errors, too.
     check_unused(checker, spec)
     stated: list[Requirement | Cover] = [*requirements.values(), *goals.values()]
     properties = {part.id: part.ctl for part in stated if part.ctl is not None}
@@ -124,8 +124,8 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
             case DeclaredEvent():
                 fields = {}
                 for field in declared.event.fields:
-                    # A signal may have a dotted name, and `pick.id` would be both it and a field of
-                    # `pick`.
+                    # A signal may have a dotted name: `pick.id` would be ambiguous, signal or field
+                    # of `pick`.
                     taken = spec.declared.get(f"{name}.{field.name.text}")
                     first = declared if field.name.text in fields else taken
                     if first is not None:

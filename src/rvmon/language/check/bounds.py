@@ -52,8 +52,8 @@ def bound_of(
     Raises:
         Reported: it is wrong.
     """
-    # Below another operator of time the instant at which data would be read is not the trigger's,
-    # at which alone values are captured.
+    # Values are captured at the trigger only; below another temporal operator the data would have
+    # to be read at other instants.
     if op not in _BOUNDED or window is None or not window.high or not scope.at_once:
         return None
     if window.high_open or window.low_open:
@@ -76,8 +76,8 @@ def bounded(
     What must come has to come before it is too late; what must hold has to hold until it is.
     """
     make = Formulas(span)
-    # Bounds of automata are constants: the end of the window becomes a proposition, true once the
-    # captured duration has passed, and the window unbounded.
+    # Automata have constant bounds, so the window becomes unbounded, and its end a proposition that
+    # is true once the captured duration has passed.
     if op in (UnaryOp.ALWAYS, BinaryOp.WEAK_UNTIL):
         lasting, *end = operands
         ended: Formula = bound.late("for", span)

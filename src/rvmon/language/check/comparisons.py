@@ -84,7 +84,7 @@ def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
 
 def _compared(time: TimeModel, node: Comparison, left: Value, right: Value) -> Formula:
     op, places = node.op, (node.left.span, node.right.span)
-    # Ages and `now` come to the left, so that each has one reading below.
+    # Ages and `now` are moved to the left side, which halves the cases below.
     if isinstance(right, Beside) and not isinstance(left, Beside):
         left, right, op, places = right, left, op.mirrored, places[::-1]
     if isinstance(left, Moment) and isinstance(right, Now):
@@ -97,8 +97,8 @@ def _compared(time: TimeModel, node: Comparison, left: Value, right: Value) -> F
     first = _comparable(left, places[0])
     if limit[0].lone and not first[0].lone:
         first, limit, op = limit, first, op.mirrored
-    # A window that stands alone is compared exactly, in ticks or whole numbers; inside of an
-    # expression it is a rounded number like any other (SEMANTICS 5).
+    # A window compared alone is compared exactly, in ticks or whole numbers; within an expression
+    # it is a rounded number (SEMANTICS 5).
     windows = [_windows_of(side) for side in (first, limit)]
     if first[0].lone and not windows[1]:
         lone = first[0].lone
@@ -161,7 +161,7 @@ def _counted(lone: Lone, limit: Placed, strict: bool, span: Span) -> Formula:
         exact *= lone.of.window or 1 if lone.share else 1
     else:
         exact = Fraction(ticks_of(value, place))
-    # More than 2.5 is at least 3: what is counted is whole.
+    # A count is whole: more than 2.5 is at least 3.
     if exact.denominator > 1:
         exact, strict = Fraction(ceil(exact)), False
     always = exact < 0 if strict else exact <= 0
@@ -198,8 +198,8 @@ def _extreme(lone: Lone, op: CompareOp, limit: Placed, span: Span) -> Formula | 
     occurs = added.node is not None and any(fields_in(added.node))
 
     def over(how: CompareOp) -> Formula:
-        # Where no member is, all members are below any limit; but a comparison of a field is false
-        # where its event does not occur. So "all" is said as "none that is not".
+        # Without members, `all` is true of any limit, but a comparison of a field is false where
+        # its event does not occur. So "all are" is written as "none is not".
         if how in every and (lone.begun or of.most or occurs):
             return Unary(UnaryOp.NOT, over(how.denied), None, span)
         one: Formula = compare(how, (added, span), limit, span)

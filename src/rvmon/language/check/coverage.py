@@ -108,7 +108,7 @@ def checked_cross(
     combinations = prod(map(len, bins))
     if combinations > rules.MOST_COMBINATIONS:
         raise Refusal(rules.too_many_combinations(item.span, combinations))
-    # Each clause is tried on each combination; macros in it make that long.
+    # Each clause is evaluated for each combination, which is slow with large macros.
     checker.effort.spend(combinations * len(item.clauses), item.span)
     unwanted = {
         kind: _combinations(checker, item, dict(zip(names, bins, strict=True)), kind)

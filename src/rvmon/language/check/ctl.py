@@ -122,7 +122,7 @@ class _Linear:
         parts = self.of(*left), self.of(*right)
         if conjunction:
             return Binary(BinaryOp.AND, *parts, None, state.span)
-        # `AG p or AG q` means that all runs fulfil the same one; a run alone may fulfil either.
+        # `AG p or AG q` requires that all runs satisfy the same operand; a single run cannot tell.
         apart = self.excludes(left, right)
         if not (apart or isinstance(left[0], StateAtom) or isinstance(right[0], StateAtom)):
             raise Refusal(rules.choice_of_paths(state.span or self.place))
@@ -138,7 +138,7 @@ class _Linear:
         op = state.op if positive else UnaryOp.of(state.op.entry.dual)
         if op is UnaryOp.NEXT and self.time is TimeModel.HELD:
             raise Refusal(type_rules.step_in_held_time("next", span))
-        # `AF φ` is `A[true U φ]`, and nothing excludes `true`: only a φ about one instant is left.
+        # `AF φ` is `A[true U φ]`, and no operand excludes `true`, so φ must be about one instant.
         if op is UnaryOp.EVENTUALLY and not isinstance(state.operand, StateAtom):
             raise Refusal(rules.not_on_one_path(span))
         return Unary(op, self.of(state.operand, positive), state.interval, state.span)

@@ -286,8 +286,8 @@ class Checker:
         body_value, cost = self._defined[name.text]
         if body_value is None:
             raise Reported
-        # The value is shared, but what reads formulas later walks through each use of it: a chain
-        # of macros that use the one before twice doubles with each.
+        # The value is shared, but later passes visit it once per use: in a chain of macros that
+        # each use the previous one twice, the work doubles with every macro.
         self.effort.add(cost, name.span)
         return body_value
 
@@ -330,8 +330,7 @@ class Checker:
 
     def _prefix(self, prefix: Prefix, scope: Scope) -> Formula:
         present = prefix.op.entry.tense is Tense.PRESENT
-        # Operand and window are both looked at before either is refused: one run shows all
-        # findings.
+        # Both operand and window are checked before either is refused, to show all findings.
         operand = self.value(prefix.operand, scope if present else scope.later())
         bound = bound_of(self, prefix.op, prefix.window, scope)
         if bound is None:

@@ -110,7 +110,7 @@ def _alone(op: CompareOp, moving: Numeric, other: Numeric, span: Span) -> Formul
 
 
 def _negative(number: Numeric) -> Numeric:
-    # `-0.0` equals 0, and prints as another number.
+    # `-0.0` equals 0 but would be printed differently.
     if isinstance(number, Literal) and not isinstance(number.value, str) and number.value != 0:
         return replace(number, value=-number.value)
     return Arithmetic(NumericOp.NEG, (number,))
@@ -128,7 +128,7 @@ def _may_go(how: NumericOp, beside: Numeric) -> bool:
     """Whether an operand may stand beside a moving one: any fixed term, or a constant factor."""
     if how in (NumericOp.ADD, NumericOp.SUB):
         return not _moves(beside)
-    # The sign of a factor says whether the comparison turns round, so it has to be known here.
+    # The sign of a factor decides whether the comparison is reversed, so it must be known here.
     return isinstance(beside, Literal) and beside.value != 0
 
 

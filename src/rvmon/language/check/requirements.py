@@ -114,7 +114,7 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement:
         item.text,
         at_end=policy,
         pulse=is_pulse(when),
-        # Those of the trigger were gathered while the consequent was checked, in `_parts`.
+        # The findings of the trigger were collected in `_parts`, while checking the consequent.
         captures=(*captures, *trigger.captures),
         for_each=for_each,
         source=texts.get("source", ""),
@@ -176,7 +176,7 @@ def _parts(
 ) -> Parts:
     match item.body:
         case Bare(formula=expression):
-            # Which part of a bare formula is its trigger is known only once it is normalised.
+            # The trigger of a bare formula is known only after normalisation.
             formula = checker.top(expression, replace(inner, trigger=None))
             if formula is None:
                 raise Reported
@@ -279,7 +279,7 @@ def _instances(checker: Checker, item: RequirementItem) -> tuple[ForEach | None,
     for clause in _clauses(item, ForEachClause):
         field = checker.table.field(clause.field.text)
         if field is None:
-            # If there is no such name, this finds it, and the name that is alike.
+            # An undeclared name is refused here, with a suggestion.
             checker.values((clause.field,), EVERYWHERE)
             raise Refusal(type_rules.argument_kind(clause.field.span, "for each", "an event.field"))
         local = Quantity(

@@ -137,7 +137,7 @@ class AtTrigger:
         for capture in self.captures:
             if capture.value == value and capture.name.startswith(word):
                 return capture.name
-        # A word of the language, or with a space: no `let` can have taken it.
+        # A keyword, or a name with a space: no `let` can declare it.
         taken = sum(capture.name.startswith(word) for capture in self.captures)
         self.captures.append(Capture(f"{word} {taken + 1}" if taken else word, value))
         return self.captures[-1].name

@@ -48,7 +48,7 @@ def traps_at_trigger(
     """
     facts = {about: truth for about, truth in facts_of(trigger).items() if about is not Bound.START}
     for part in _required_at_once(consequent):
-        # What is constant anyway, the analysis reports.
+        # Constant formulas are reported by the analysis.
         if truth_at(part, {}) is None:
             yield from _at_trigger(part, facts, time, part.span or span)
 

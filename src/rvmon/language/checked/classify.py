@@ -43,7 +43,7 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
     seen: set[int] = set()
     while waiting:
         node = waiting.pop()
-        # By identity: to hash a formula is to walk through it, and shared parts are one object.
+        # By identity: hashing a formula visits all of it, and shared parts are the same object.
         if id(node) in seen:
             continue
         seen.add(id(node))

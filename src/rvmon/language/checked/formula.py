@@ -318,7 +318,7 @@ class Amount:
     @property
     def operands(self) -> tuple[Formula, ...]:
         """The operands of the window, then the condition that the limit is known."""
-        # Chosen comparisons come last: the core counts them from the end (`core/nodes.py`).
+        # Chosen comparisons come last: `core/nodes.py` counts them from the end.
         operands = self.of.operands
         chosen = len(operands) - len(self.of.chosen)
         known = () if self.known is None else (self.known,)

@@ -114,7 +114,7 @@ class Findings:
         """
         place = finding.spans[0].span if finding.spans else None
         key = (finding.code, place and (place.source.name, place.start, place.end))
-        # A macro that is used twice is wrong once.
+        # A macro used twice is reported once.
         if place is not None and key in self._seen:
             return
         if self._counts[finding.severity] >= MOST:

@@ -47,7 +47,7 @@ def _read(path: Path) -> lark.Lark | None:
         return None
     try:
         known: lark.Lark = lark.Lark.load(_thawed(json.loads(body)))
-        # Lark's `load` leaves it out, and tests that go through all terminals read it.
+        # Lark's `load` does not set it; tests read all terminals.
         known.ignore_tokens = list(known.lexer_conf.ignore)
     except Exception:  # noqa: BLE001 - whatever is wrong with a cache, it can be done without
         return None

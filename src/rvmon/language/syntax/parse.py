@@ -63,8 +63,7 @@ def parse_spec(source: Source, findings: Findings) -> ParsedSpec:
             items.append(item)
             findings.extend(wrong)
             continue
-        # Cut in two, the item before is read after all, and the error stands at the misspelled
-        # word.
+        # Split there, the previous item parses, and the error is at the misspelled keyword.
         cut = _misspelled_item(source.text, start, wrong)
         if cut is not None:
             waiting += ((cut, end), (start, cut))
@@ -89,7 +88,7 @@ def parse_expression(source: Source) -> tuple[Expression | None, list[Diagnostic
 
 
 def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
-    # Before parsing: the parser takes memory and time for each operator, the refusal does not.
+    # Checked before parsing, which takes memory and time for each operator.
     if _operators(source.text[start:end]) > LARGEST:
         place = Span(source, start, start + len(source.text[start:end].rstrip()))
         return None, [rules.too_large(place, LARGEST)]
@@ -148,7 +147,7 @@ def grammar_text() -> str:
     for terminal, spellings in OPERATOR_TERMINALS.items():
         fillings[terminal] = "|".join(
             re.escape(spelling).replace(r"\ ", r"\s+") + (end if spelling[-1].isalpha() else "")
-            # `&&` before `&`: an alternation takes the first that matches.
+            # `&&` before `&`: an alternation takes the first match.
             for spelling in sorted(spellings, key=len, reverse=True)
         )
     for key, pattern in fillings.items():

@@ -101,7 +101,7 @@ def fix_of(unexpected: str, accepted: set[str], parser: lark.Lark, before: Span)
         before: the part of the item before it.
     """
     return (
-        # From what is certainly meant to what is guessed: the first that knows a fix says it.
+        # Ordered from certain to guessed: the first that knows a fix is used.
         if_fix(before.text)
         or _FIX.get(unexpected, "")
         or _unit_fix(unexpected, before.text)

@@ -151,7 +151,7 @@ class Builder(Transformer_NonRecursive[Token, Any]):
         text = str(children[0])
         digits = text[: _NUMBER.match(text).end()]  # type: ignore[union-attr]  # terminal NUMBER
         decimal = Decimal(digits)
-        # As a fraction, `1e999999999` would be a number of a gigabyte.
+        # As a fraction, `1e999999999` would take half a gigabyte.
         small = abs(decimal.adjusted()) <= _LARGEST and len(digits) <= 2 * _LARGEST
         value = Fraction(decimal) if small or not decimal else None
         return expressions.Number(value, text[len(digits) :].strip(), span)
