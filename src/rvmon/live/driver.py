@@ -168,7 +168,7 @@ class Driver:
                 self._stamped = t_ns + self._runs_by_itself  # by a wall clock all stamps differ
             was_empty = not len(self._waiting)
             is_queued = self._waiting.put(Offered(robot, t_ns, kept))
-        if was_empty:  # else somebody was woken, and takes this, too
+        if was_empty:  # otherwise a woken worker takes this sample, too
             self.wake()
         return is_queued
 
@@ -251,7 +251,7 @@ class Driver:
                 entries = self._waiting.take(len(self._waiting))
                 self._watch, self._lag = watching
                 self._has_room.notify_all()
-            for entry in entries:  # offered before, and judged by the former one
+            for entry in entries:  # offered before: the previous specification judges them
                 self._take(entry, former)
             for robot in self._robots.values():
                 robot.end()
@@ -352,7 +352,7 @@ class Driver:
                 self._timers.set(name, quiet)
                 continue
             robot.pass_to(now - self._lag)
-            if (due := robot.due) is not None:  # set later than now, lest it be due for ever
+            if (due := robot.due) is not None:  # later than now, or it would be due for ever
                 self._timers.set(name, max(due + self._lag, now + 1))
         first = self._timers.first
         return None if first is None else self._clock.seconds_until(first)

@@ -241,7 +241,7 @@ class _Point:
                 raise Refusal(rules.same_value(end.span))
             rise = Unary(UnaryOp.RISE, now, None, span)
             came = Binary(BinaryOp.AND, rise, was, None, span)
-            # The value that is left now was last entered by the step before: no `entered` since
+            # The value that is left now was entered by the previous step: no `entered` since
             # `taken`.
             if taken is not None and entered is not None:
                 stayed = Unary(UnaryOp.NOT, entered, None, span)
