@@ -94,7 +94,7 @@ static inline uint64_t stops_in(uint64_t digits)
     return ((digits + 0x7676767676767676u) | digits) & 0x8080808080808080u;
 }
 
-/* Digits of which too many are no number: nobody looks at it then. */
+/* Digits, of which too many make no number; the result is unused then. */
 static inline const char *digits_at_once(const char *at, const char *to, uint64_t *mantissa)
 {
     uint64_t found = *mantissa;

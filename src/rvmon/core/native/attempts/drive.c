@@ -26,7 +26,7 @@ void set_rule_due(run *r, int32_t index, int64_t due)
     timers_set(&r->rules, index, due);
 }
 
-/* Have a judge look at the next position, whatever changes there. */
+/* Have a judge visit the next position, even if nothing changes there. */
 void set_restless(run *r, int32_t index)
 {
     judge *j = &r->judges[index];

@@ -117,7 +117,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         j->current = at;
     }
     if (!judged_here) {
-        x->cannot_pass = true; /* the letter here is lost: what it owes here will never be known */
+        x->cannot_pass = true; /* the letter here is lost, so its obligation stays unknown */
         x->parted = true;
         x->location = FAILED;
         x->better = PASSED;

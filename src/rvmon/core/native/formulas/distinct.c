@@ -2,7 +2,7 @@
  *
  * Open addressing with linear probing; a slot holds a place in the ring s[1], -1: free. Expired entries
  * are not removed: a slot whose place is not in the ring any more, or is marked MEMBER_OLDER, counts as
- * deleted and is reused. The table is made anew when it is half full or the ring has moved. Expected
+ * deleted and is reused. The table is rebuilt when it is half full or the ring has moved. Expected
  * O(1) a member. */
 #include "formulas/formulas.h"
 #include "formulas/members.h"
@@ -48,7 +48,7 @@ static void put_place(stretches *s, const rv_number *number, int32_t place)
     s->known_slots++;
 }
 
-/* Fill the table anew from the ring, with at least four slots for each place of the ring. False: memory
+/* Rebuild the table from the ring, with at least four slots for each place of the ring. False: memory
  * is short. */
 static bool make_table(window *w)
 {

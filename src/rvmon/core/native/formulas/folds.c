@@ -28,7 +28,7 @@ static int64_t least_whole(const rv_number *limit, bool strict)
 }
 
 /* The next instant at which a count can pass `enough`, or an earlier one at which an entry begins or
- * ends to expire, from where it is worked out anew. */
+ * ends to expire, from where it is computed again. */
 static int64_t count_flips_at(const window *w, int64_t value, int64_t enough, bool better)
 {
     const stretches *s = w->s;

@@ -284,7 +284,7 @@ void work_out(run *r, int64_t t)
     }
 }
 
-/* Evaluate anew, at `t`, what reads captured values, which a fork has just taken. Operators of the past
+/* Evaluate again, at `t`, what reads captured values, which a fork has just taken. Operators of the past
  * keep their state, but for windows that begin with the attempt. `pending`: the events of this sample
  * belong to the next position. */
 void reevaluate_varying(run *r, int64_t t, bool pending)

@@ -284,7 +284,7 @@ void expire_members(window *w)
 }
 
 /* Drop all members. Of a window of the last N, where one more may have come, the fold is unknown until
- * N members have come anew. */
+ * N new members have come. */
 void forget_members(window *w)
 {
     stretches *s = w->s;

@@ -1,7 +1,7 @@
 /* Timers: a binary heap of ids, least `due` first, with the place of each id in it.
  *
  * Ids are fixed (nodes, judges, runs), one timer each; NEVER: not in the heap. The next one is read in
- * O(1), a change costs O(log n). Nothing is popped: who handles a timer sets it anew. */
+ * O(1), a change costs O(log n). Nothing is popped: the handler of a timer sets it again. */
 #include "formulas/formulas.h"
 
 /* Store an id at a place of the heap. */

@@ -174,9 +174,9 @@ void put_unknowns(const run *r, int64_t doubt, int64_t *to)
  * If something was lost before the first sample the trace may have begun there: the positions from the
  * outage to the first sample may be there or not. Every formula is unknown at them, constants too.
  *
- * Operators of the past take one step with unknown operands for the whole stretch. Attempts that begin
- * there are in doubt, and what they owe there will never be known: they stay open for good, but for an
- * episode, which can still fail by what it owes later (resume_episode).
+ * Past operators take one step with unknown operands for the whole stretch. Attempts that begin there
+ * are in doubt, and their obligations there stay unknown: they are never decided, except for an
+ * episode, which can still fail at a later position (resume_episode).
  *
  * Source: docs/reference/semantics.md, section 1 (Outage). */
 
@@ -232,8 +232,8 @@ void end_blank(run *r, int64_t t)
     recheck_all(r);
 }
 
-/* Judge the running episode from `t` on: it was parked among the undecidable attempts, as what it owes
- * at blank positions is unknown, but it fails if it does so from here on. */
+/* Judge the running episode from `t` on: it was parked among the undecidable attempts, as its
+ * obligations at blank positions are unknown, but it can fail at the positions from here on. */
 static void resume_episode(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];

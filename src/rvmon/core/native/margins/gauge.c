@@ -163,7 +163,7 @@ void gauge_run(gauging *w)
 
 /* ---- shapes */
 
-/* Which leaves never change and are read by sweeps beside others alone: nobody has to hear of these. */
+/* Mark leaves that never change and are read only as operands of sweeps: their steps are not needed. */
 static void find_fixed(const plan *p, const margin_shape *s, bool *fixed)
 {
     int32_t i;

@@ -153,8 +153,8 @@ static margin_range distance_of(const run *r, const measure_plan *m)
     } else {
         /* The signal is unknown. */
     }
-    /* What is not born is what it is taken for. Once all is, nobody follows the truth of what has a
-     * distance. */
+    /* An unborn leaf has the range of the truth that it is read as. Once all signals are born, the
+     * truths of leaves with a distance are no longer updated. */
     if (is_anything(&found) && ((r->at.phase == 0) || (a->op == ATOM_PAYLOAD) || (n->op == NODE_COMPARED))) {
         found = of_truth(r->truth[m->node]);
     }

@@ -1,7 +1,7 @@
-/* Figures that were found, until somebody takes them; and attempts that wait for theirs.
+/* Figures until they are taken, and attempts that wait for theirs.
  *
- * An attempt in doubt has its figure reported once it is sure that there was a trigger, or the run is over:
- * before it may be met, and leave none. */
+ * The figure of an attempt in doubt is reported once its trigger is certain, or the run is over: until
+ * then its obligation may be met, which leaves no record. */
 #include "margins/margins.h"
 #include "runs/runs.h"
 
@@ -59,7 +59,7 @@ void margin_vanished(rv_monitor *m, int32_t record)
     }
 }
 
-/* A figure with whose it is; where nothing triggered it, nothing is owed. */
+/* A figure with its attempt; without a trigger there is no obligation. */
 rv_margin as_reported(const rv_monitor *m, const rv_margin *figure, int32_t record)
 {
     rv_margin made = *figure;
@@ -212,7 +212,7 @@ static bool try_end(run *r, int32_t index, const margin_end *end, int64_t reache
 
 typedef bool (*take_figure)(void *user, const rv_margin *figure, int32_t record);
 
-/* The figures of a judge if the trace has ended; false if whoever takes them wants no more. */
+/* The figures of a judge if the trace has ended; false if the receiver wants no more. */
 static bool each_at_end(run *r, int32_t index, int64_t instant, int64_t reached, take_figure take,
                         void *user)
 {

@@ -36,7 +36,7 @@ bool room_for_steps(gauging *w, margin_steps *s, int64_t count, int64_t oldest)
     return true;
 }
 
-/* The first step of a node that one of those that read it has not taken, or nobody wants. */
+/* The first step of a node that a reader has not taken, or that no reader needs. */
 int64_t oldest_unread(const gauging *w, int32_t place)
 {
     const margin_shape *shape = w->shape;
@@ -82,7 +82,7 @@ bool is_asked(const gauging *w, int64_t left, int64_t right)
 }
 
 /* Whether a node has room for a step that it is to tell. Where its value matters at positions alone that
- * are asked for, the one before takes the value over if nobody asks for it. */
+ * are needed, the step before takes the value over if it is not needed itself. */
 bool takes_step(gauging *w, int32_t place, int64_t at, double value)
 {
     margin_steps *s = &w->g->nodes[place].out;
@@ -233,7 +233,7 @@ void parts_leave(margin_parts *s)
     s->begin++;
 }
 
-/* Whether the first of them has its value, whatever follows. */
+/* Whether the value of the first of them is final. */
 bool parts_settled(const margin_parts *s, double *value)
 {
     const margin_part *front;

@@ -60,7 +60,7 @@ void give_behind(gauging *w, int64_t last)
 }
 
 /* What is known of an attempt by what its formula is at least and at most, and by the rule for the end.
- * What it owes with values that nobody knows may be anything. */
+ * An obligation with unknown values may be anything. */
 void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, margin_range found,
                  double kept)
 {
@@ -107,7 +107,7 @@ static void tell_known(run *r, int32_t index)
     r->asked -= (int32_t)(done.ask - q->asks.first);
     q->asks.first = done.ask;
     q->reported = done.position;
-    (void)gauge_value(least_one, root, known); /* nobody asks for what is before */
+    (void)gauge_value(least_one, root, known); /* values before are not needed */
     if (most != NULL) {
         (void)gauge_value(most, root, known);
     }

@@ -6,8 +6,7 @@
 
 #include <math.h>
 
-/* ---- margins.c, margin_results.c: by how much what attempts owe holds; nothing where that is not asked
- * for */
+/* ---- margins.c, margin_results.c: the robustness of attempts, if it is measured */
 bool margins_prepare(rv_monitor *m);
 void margins_reset(rv_monitor *m);
 bool margins_make(run *r);

@@ -43,7 +43,7 @@ typedef struct {
 } margin_edge;
 
 typedef struct {
-    margin_steps out;          /* what it is, as far as somebody has not read it */
+    margin_steps out;          /* its steps, as far as they are unread */
     margin_steps wedge;        /* of a window: values that may be its extreme, the best one first, and
                                 * where the last window is that holds each */
     margin_parts parts;        /* of an `until`: what is not settled */
@@ -92,7 +92,7 @@ typedef struct {
     double *fixed;             /* by edge, what it is then */
     int32_t count;
     int32_t edges;
-    int32_t *leaves;           /* by measure, the place of its leaf; -1: nobody reads its steps */
+    int32_t *leaves;           /* by measure, the place of its leaf; -1: its steps are not read */
     margin_real *reals;        /* by measure */
     int64_t lag;               /* no position is settled less than so many ticks behind it */
     bool passes;               /* whether time alone can make something known */

@@ -104,7 +104,7 @@ static void want(operator_state *o, int64_t position)
     o->wanted = least(o->wanted, position);
 }
 
-/* Drop what nobody can ask for any more, given that open attempts are at `position` or behind. From the
+/* Drop positions that are not needed, given that open attempts are at `position` or behind. From the
  * root down each node says from which position on it needs its operands: its `base`, the first that it
  * does not know itself, moved by its window. */
 void prune(const form *f, network *w, int64_t position)

@@ -160,7 +160,7 @@ static int64_t judged_alone(const monitor *c, const int64_t *times, int64_t rows
     return found;
 }
 
-/* Judge rows while other threads of Python run; nobody else can get at the monitor. */
+/* Judge rows without the GIL: no other thread can use the monitor meanwhile. */
 static int judge_rows(monitor *c, const buffers *all, const rv_column *columns, int64_t count,
                       int64_t *done)
 {

@@ -61,7 +61,7 @@ bool may_pass_measured(const rv_monitor *m)
                && (r->measured_at != -LIMIT) && (r->truth_log == NULL) && !r->part->is_watched);
 }
 
-/* Whether somebody looks at the truth of a node but for what attempts owe. */
+/* Whether the truth of a node is read for anything but obligations of attempts. */
 static bool is_looked_at(const run *r, int32_t place)
 {
     const plan *p = PLAN(r);
@@ -86,8 +86,8 @@ static bool is_looked_at(const run *r, int32_t place)
 /* Formulas of more levels are looked at row by row. */
 #define LEVELS_MOST 4
 
-/* Whether a node, and all that is made of it, remembers nothing and tells nobody but judges what they
- * owe; if `now`, none of them has attempts. */
+/* Whether a node and all nodes above it have no memory, and only obligations of judges read them; if
+ * `now`, of judges without open attempts. */
 static bool is_unheard(const run *r, int32_t place, bool now, int32_t level)
 {
     const node_plan *n = &r->part->nodes[place];
@@ -126,7 +126,7 @@ static int32_t next_shown(const run *r, int32_t local, int32_t *atom, int32_t *a
     return -1;
 }
 
-/* Whether nobody but attempts hears what a signal compares as, now that all is born. */
+/* Whether only attempts read the comparisons of a signal, now that all signals are born. */
 bool is_plain_column(const batch *s, const column_watch *w)
 {
     const bool whole = (w->column->says == NULL) && (w->column->values != NULL) && !w->is_event;
@@ -157,7 +157,7 @@ bool is_plain_column(const batch *s, const column_watch *w)
     return true;
 }
 
-/* Whether nobody at all hears it. */
+/* Whether nothing reads them. */
 bool is_idle_now(const batch *s, const column_watch *w)
 {
     const run *r;

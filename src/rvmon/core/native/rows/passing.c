@@ -1,5 +1,5 @@
 /* Passing over rows that change nothing: only time is moved. What they said reaches the core later:
- * values when rows are examined anew (turn_from), staleness before its timer could fire (refresh). */
+ * values when rows are examined again (turn_from), staleness before its timer could fire (refresh). */
 #include "input/input.h"
 #include "rows/rows.h"
 
@@ -64,8 +64,7 @@ static void refresh(batch *s, int64_t row)
     s->fresh = row;
 }
 
-/* Store what the rows before `row` said, and forget what was examined: examination starts anew at
- * `row`. */
+/* Store the updates of the rows before `row`, and restart the examination at `row`. */
 static void turn_from(batch *s, int64_t row)
 {
     int32_t i;
@@ -168,7 +167,7 @@ void make_ready(batch *s, int64_t row, int64_t end)
  * unknown, or attempts that matter to margins began or ended. */
 void note_judged(batch *s, int64_t end)
 {
-    bool other = false;        /* whether examined rows have to be examined anew */
+    bool other = false;        /* whether rows have to be examined again */
     int32_t i;
     s->fresh = end;
     for (i = 0; (s->m->shapes != NULL) && (i < s->columns); i++) {

@@ -17,7 +17,7 @@
 
 /* Which updates of a name can change something, from all to few; smaller is stricter. */
 enum {
-    NO_UPDATES,                /* nobody reads it */
+    NO_UPDATES,                /* it is not read */
     EACH_UPDATE,
     EACH_VALUE,                /* those that change its value */
     BY_CONSTANTS,              /* those that change the outcome of a comparison with a constant */

@@ -1,9 +1,9 @@
 /* Outages in sampled time. Where only samples are positions, each tick of an outage may be a position,
  * or may not; every formula is unknown there.
  *
- * Past operators are told so once, at its first tick. Attempts step at every tick with a letter that is
- * wholly unknown: those of automata are driven in bulk up to the next timer; a network goes tick by
- * tick, up to TICKS_MOST, and is then given up: its open attempts stay undecided.
+ * Past operators take one step for the whole outage, at its first tick. Attempts step at every tick
+ * with a letter that is wholly unknown: automata in bulk up to the next timer, a network tick by tick
+ * for TICKS_MOST ticks; after these it is given up, and its open attempts stay undecided.
  *
  * Source: SEMANTICS 1 (Outage). */
 #include "formulas/formulas.h"

@@ -1,7 +1,7 @@
 /* Instances of `for each`: a key is a value that occurred, an instance the run that judges requirements
  * for it. Keys are found by a hash table with chains. An instance is created when its key first occurs,
  * by forking the root, or by replay. If it later equals the root it is closed (PART_FORGETS), and
- * created anew when its key occurs again, so memory follows the keys that are active.
+ * created again when its key recurs, so memory follows the keys that are active.
  *
  * An occurrence with an unknown key may be of any key: it reopens every closed instance, and the root
  * stands for the keys that never occurred. */

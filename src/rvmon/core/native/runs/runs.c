@@ -259,8 +259,8 @@ void clear_run(run *r)
     }
 }
 
-/* Reset the judges of a run: no attempts. Letters are sums over the truths of nodes, so they are
- * added up anew. What judges own (networks, queues, notes) is kept for reuse. */
+/* Reset the judges of a run, which have no attempts then. Letters are sums over the truths of nodes and
+ * are summed again. The memory of judges (networks, queues, notes) is kept for reuse. */
 void clear_judges(run *r)
 {
     const part_plan *p = r->part->plan;

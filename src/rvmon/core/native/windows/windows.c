@@ -184,7 +184,7 @@ static void begin_chain(const chaining *g, int64_t position, const uint8_t *lett
 }
 
 /* Visit the position at `t`, whose truths the nodes have. Without open attempts letters are not
- * followed: the chain begins anew. */
+ * followed: the chain is reset. */
 void chain_visit(run *r, int32_t index, int64_t t)
 {
     chaining g = chaining_of(r, index);
