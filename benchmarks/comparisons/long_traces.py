@@ -68,7 +68,7 @@ class Progression:
     Source: AUTOMATA 1.
 
     Args:
-        required: what an attempt requires, as `X` of it: it starts before its trigger's position.
+        required: the consequent under `X`, as an attempt starts before its trigger's position.
         alphabet: of that formula.
 
     Raises:

@@ -91,10 +91,10 @@ def compare(
     """Compare ours on the workload's first formula with each peer that can be asked.
 
     Args:
-        workload: that was measured.
-        timed: what was found: who is asked by stepping gets as many rows as fit into the time.
-        peers: who is asked, by label.
-        size: how many traces, and how long a peer may step.
+        workload: the measured workload.
+        timed: the figures: a peer asked by stepping gets as many rows as fit into the time.
+        peers: the other monitors, by label.
+        size: the number of traces, and the time for which a peer may step.
     """
     name, form = workload.name, workload.form
     try:

@@ -231,7 +231,7 @@ def written(path: Path, rows: int, seed: int) -> Path:
 
     Args:
         path: to write to.
-        rows: how many.
+        rows: their number.
         seed: of the values.
     """
     rng = random.Random(seed)

@@ -214,9 +214,9 @@ def measure(
 
     Args:
         workload: given to all.
-        contenders: who passes.
+        contenders: the monitors that pass over it.
         repeats: passes of each.
-        seconds: what one may take; slow ones get fewer rows.
+        seconds: the limit of each; slow ones get fewer rows.
     """
     seconds *= LONGER.get(workload.section, 1)
     refusals: dict[str, str] = {}

@@ -58,7 +58,7 @@ def trace(family: Family, high: int, rows: int, seed: int = 1) -> dict[str, list
     """A trace that fulfils the past form at every row but the last.
 
     Args:
-        family: which property.
+        family: the property.
         high: the upper bound, rows; the lower one is three tenths of it.
         rows: the least length; the last episode is made whole.
         seed: of the random choices.

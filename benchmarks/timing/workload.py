@@ -85,7 +85,7 @@ def specification(requirements: Sequence[str], columns: Mapping[str, Column]) ->
     row is what discrete-time tools see at each row.
 
     Args:
-        requirements: what stands below `requirement R1`, `R2`, …
+        requirements: the lines below `requirement R1`, `R2`, …
         columns: the signals, Boolean or numbers.
     """
     lines = ["spec benchmark", "time held", ""]

@@ -60,9 +60,9 @@ class Lamp:
 
     Attributes:
         name: its id.
-        lines: what it asks for, as it stands in the file.
-        opened: when its attempt began, seconds; `None` if it was not triggered.
-        decided: when it was decided, seconds; the end of the picture if it never was.
+        lines: its lines in the file.
+        opened: the start of its attempt, seconds; `None` if it was not triggered.
+        decided: the instant of its decision, seconds; the end of the picture if it never was.
         verdict: of the whole run.
     """
 

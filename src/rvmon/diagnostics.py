@@ -89,7 +89,7 @@ class Diagnostic:
         severity: error or warning.
         message: one sentence: what is wrong.
         spans: the places, the offending one first; empty if the whole file is meant.
-        help: what fixes it; empty if nothing is known to.
+        help: a remedy; empty if none is known.
     """
 
     code: str

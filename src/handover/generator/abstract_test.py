@@ -82,7 +82,7 @@ class AbstractTest(Test, frozen=True, kw_only=True):
     """A test of a handover.
 
     Attributes:
-        strategy: which generator made it.
+        strategy: the generator that made it.
         actions: in order; each begins when the one before is over.
         robot: the robot it is written for; `None`: any.
         mutation: a name of `handover.robot.mutants.MUTATIONS`, or `None` for the robot as it is.

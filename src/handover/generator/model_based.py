@@ -63,7 +63,7 @@ def model_based(_count: int, seed: int, policy: PolicyName = "likely") -> tuple[
     Args:
         _count: ignored, as there is one witness for each requirement.
         seed: chooses the times within the witness's windows, and all that the world draws.
-        policy: which witness becomes the template, if there are several.
+        policy: the choice of the template among several witnesses.
 
     Source: Araiza-Illan et al. 2015, "Coverage-Driven Verification", section 3.3; Nielsen and
     Skou, Automated Test Generation from Timed Automata, 2003.

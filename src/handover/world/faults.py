@@ -37,8 +37,8 @@ class SceneFaults(msgspec.Struct, frozen=True, forbid_unknown_fields=True, omit_
         raised_m: height of a block that the piece stands on, metres.
         hand_in_plane: whether the hand is beside the gripper, so that they collide, and not in
             front of it.
-        beside_m: where along x a person stands who is beside the robot's way and not at its end,
-            metres: the whole arm and the other hand are then in the plane.
+        beside_m: the place along x of a person beside the robot's way, not at its end, metres: the
+            whole arm and the other hand are then in the plane.
         far_hand: whether that person takes the piece with the hand away from the robot.
     """
 

@@ -115,7 +115,7 @@ class _Node:
     Attributes:
         samples: the samples so far.
         end: the end of the run, ticks.
-        held: which of `_Search.held` the current values are.
+        held: the place of the current values in `_Search.held`.
         stir: the number of occurrences and of values other than false; quieter runs go first.
         at_cut: whether it waits at its end, after the last sample.
         waits: the number of waits since the last sample.

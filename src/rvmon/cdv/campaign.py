@@ -59,9 +59,9 @@ class ClosingModel:
         automata: names of those that tests stand for, such as people and sensors.
         actions: of a test, for their edges; those left out need no action.
         make: makes a test from a template, with a seed.
-        query: what is asked of the model about an item, by its group and name; empty: nothing. A
-            run that shows it (of `A`, that contradicts it) becomes a test; if there is none, the
-            item is proved to be unreachable.
+        query: from an item's group and name the query whose answer shows or excludes it; empty:
+            none. A run that shows it (of `A`, that contradicts it) becomes a test; if there is
+            none, the item is proved to be unreachable.
         automaton: of the system under test.
         states: the states of the system by the locations of that automaton; those left out are
             passed over. A test shows the edges of a run of the model if the system enters the
@@ -284,8 +284,8 @@ def unreachable_items(
     """The items of a model that a campaign calls unreachable, each with the reason.
 
     Args:
-        campaign: what says so.
-        robot: of its robots the one whose tests are meant.
+        campaign: the campaign.
+        robot: its robot in question.
         model: the coverage model.
         closing: the model has all that is ever measured: what it lacks there is not. Of any other,
             such as one without the edges that closing measures, that is passed over. What is to be

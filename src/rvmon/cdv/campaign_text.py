@@ -262,7 +262,7 @@ def typed(program: str, words: Iterable[object]) -> str:
     """A command as one line for a shell.
 
     Args:
-        program: that is installed; one of an environment that is not activated is named by its
+        program: an installed one; one of an environment that is not activated is named by its
             path. Empty: the Python script that was started.
         words: behind it.
 

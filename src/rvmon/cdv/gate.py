@@ -45,8 +45,7 @@ class CampaignJudgement:
 
     Attributes:
         tests: each by itself, in the order of the plan.
-        checks: what is asked of the tests together, in words, with what is wrong about it; empty if
-            nothing is.
+        checks: by demand on all tests together, in words, the fault of it; "" if there is none.
         cut_short: why not all tests were played; empty if they were.
     """
 
@@ -89,9 +88,9 @@ def judge_campaign(
     Args:
         results: of the played tests; of a campaign that was cut short only the tests are judged.
         requirements: by robot, the ids of those that were judged; none: only endings count.
-        shares: what the tests of each strategy say of those that are to hold in a share of runs: a
-            single test that fails them is not wrong, a strategy that rejects the share is. With
-            `strict` it is wrong as well that none decides it.
+        shares: for requirements that must hold in a share of runs, the decision by the tests of
+            each strategy: a single test that fails them is not wrong, a strategy that rejects the
+            share is. With `strict` it is wrong as well that none decides it.
         strict: verdicts that are inconclusive are wrong as well, unless the test knows them, and so
             is what the gates of strategies want and their tests did not bring.
     """

@@ -41,7 +41,7 @@ class TemplateStep(
     Attributes:
         does: the edge of these automata that is taken.
         wait: since the step before, or since the start.
-        action: what the test does; `None` if the instant only bounds others.
+        action: the action of the test; `None` if the instant only bounds others.
     """
 
     does: str

@@ -23,7 +23,7 @@ class Test(
 
     Attributes:
         name: unique within a campaign; also the file's name.
-        strategy: which generator made it.
+        strategy: the generator that made it.
         seed: of everything that a run draws at random.
         text: the purpose of the test.
         robot: the only one of a campaign's robots that it is written for; `None`: any.

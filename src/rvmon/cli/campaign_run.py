@@ -64,7 +64,7 @@ class Conducted:
         """Compare the campaign with what was expected of it.
 
         Args:
-            strict: what is inconclusive, or never triggered, is wrong as well.
+            strict: verdicts that are inconclusive or not triggered are wrong as well.
         """
         robots = self.summary.robots.items()
         requirements = {name: tuple(robot.requirements) for name, robot in robots}

@@ -84,7 +84,7 @@ class Conformance:
     Attributes:
         explained: actions that some run of the network does at these instants.
         divergence: the first that none does; `None` if the recording conforms.
-        undecided: which budget ended the search; empty if it was done.
+        undecided: the budget that ended the search; empty if it was done.
     """
 
     explained: int

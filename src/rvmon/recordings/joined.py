@@ -200,7 +200,7 @@ def schemas_of(paths: Sequence[str], of_messages: Sequence[bool], schema: Schema
 
     Args:
         paths: of the files.
-        of_messages: which of them hold messages, where topics lead to names.
+        of_messages: for each, whether it holds messages, where topics lead to names.
         schema: the declared names, and how the files give them.
     """
     return [

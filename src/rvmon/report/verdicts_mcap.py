@@ -95,7 +95,7 @@ def write_verdicts(
         spec: the specification that judged.
         report: of the recording.
         samples: of the recording, up to its end, in order; none: the values are left out.
-        scene: what happened, if it is known.
+        scene: the motion of the robot, if it is known.
 
     Raises:
         RvmonError: a file cannot be written, or an instant is before 1970.

@@ -264,7 +264,7 @@ class Schema:
         gaps: values that mean "no update", for all names.
         binding: the topics and fields of messages by name.
         units: the unit of each declared name (`event.field` for a field) that has one.
-        layouts: what a reader made of it and of the last header: many recordings have the same.
+        layouts: a reader's plan for it and the last header: many recordings have the same header.
     """
 
     signals: Mapping[str, Kind]

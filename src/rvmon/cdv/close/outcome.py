@@ -87,7 +87,7 @@ class Closed:
         groups: measured besides those of the campaign.
         seconds: its duration.
         ended: why it ended with open goals; empty if there is none.
-        trade: what the suite sees of mutants, if it was chosen by them as well.
+        trade: the mutants that the suite finds, if it was chosen by them as well.
     """
 
     tests: Sequence[Added]

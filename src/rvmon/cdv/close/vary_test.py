@@ -158,7 +158,7 @@ class Mutator:
             value: as plain data.
             kind: its type.
             donor: the value at the same place of another test.
-            path: that place, the same for all elements of a sequence.
+            path: the address of that place, the same for all elements of a sequence.
             rng: draws.
             drawn: gets the choices.
         """

@@ -45,7 +45,7 @@ class Mutant:
         after: as it is.
         source: the whole file as it is.
         function: the qualified name of the function, or the name of the constant, that is changed.
-        ordinal: which it is of the changes of this kind to this function, from 1.
+        ordinal: its number among the changes of this kind to this function, from 1.
     """
 
     path: Path
@@ -97,7 +97,7 @@ def mutants(
 
     Args:
         path: the file, which is read and not run.
-        lines: that may be changed; a change in a line that no test runs could not be seen.
+        lines: the lines to change; a change in a line that no test runs could not be seen.
         operators: names of those that are applied; default: all.
         constants: names at the file's top whose values are changed as well.
 

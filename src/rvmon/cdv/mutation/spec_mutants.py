@@ -205,7 +205,7 @@ class SpecMutant:
     Attributes:
         requirement: as it was.
         kind: of change: the name of an operator.
-        ordinal: which it is of the changes of this kind to this requirement, from 1.
+        ordinal: its number among the changes of this kind to this requirement, from 1.
         changed: the requirement as it is.
     """
 

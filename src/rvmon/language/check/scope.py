@@ -31,7 +31,7 @@ class Quantity:
     """A number or label with its unit.
 
     Attributes:
-        node: what yields it at run time; `None` if it is a constant.
+        node: the expression that yields it at run time; `None` if it is a constant.
         constant: the exact value in `unit` if it is a constant.
         unit: of the value.
         integral: whether all values are whole numbers by type.

@@ -30,7 +30,7 @@ class Literal:
 
     Attributes:
         value: the number or label.
-        unit: that unit's symbol, for people; "" if it has none.
+        unit: the symbol of that unit, for people; "" if it has none.
     """
 
     value: float | int | str

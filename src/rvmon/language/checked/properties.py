@@ -164,7 +164,7 @@ class Cross:
         points: names of its coverpoints.
         ignored: combinations (one bin name per point) that count for nothing.
         illegal: combinations that are an error.
-        upon: where it is looked at: where its coverpoints are, unless it says so itself; `None`: at
+        upon: the formula at which it is sampled: its own, else that of its coverpoints; `None`:
             every position.
         goal: hits that each combination needs.
         weight: as of a coverpoint.

@@ -67,7 +67,7 @@ class Resolver:
         open_ints: whether `int` without a range is allowed.
         diagonals: replaces differences of clocks; `None` where they may not be compared.
         unrolled: conditions that quantifiers stood for so far.
-        fraction: where a number with a fraction stands, if one was met.
+        fraction: the place of a number with a fraction, if one was met.
     """
 
     functions: Calls

@@ -75,8 +75,8 @@ class Location:
 
     Attributes:
         rates: of clocks, while the automaton is there; others run at 1.
-        leaving: how often a random run leaves it in a unit of time if it may stay for ever, as a
-            share; `None`: as `statistics` says.
+        leaving: the rate, per unit of time, at which a random run leaves it if it may stay for
+            ever, as a fraction; `None`: as `statistics` says.
     """
 
     name: str
@@ -251,11 +251,11 @@ class Network:
         unit: ticks of one unit of time; `None` if the model names none.
         signals: the names for specifications, with their expressions over locations and variables.
         warnings: about it.
-        names: that queries may use.
+        names: the names that queries may use.
         priorities: of steps; `None` if all are equal.
         has_split_edges: whether some edges were taken apart, for differences of clocks or clocks
             under `or`.
-        fraction: where it has a number with a fraction, of which nothing is proved, if it has one.
+        fraction: the place of a number with a fraction, of which nothing is proved, if it has one.
         original: the network of which this one says more: its runs are shown without the automata,
             clocks and variables that stand behind those of that; `None`: it is none such.
         is_watched: whether the last automaton watches the others: it takes part in each of their

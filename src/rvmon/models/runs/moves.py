@@ -108,7 +108,7 @@ class Move:
         resets: clocks that are set and their values; clocks count from 1.
         target: the state behind.
         rank: its priority; those of higher rank come first.
-        failure: what is wrong with its updates; raised only if the step can be taken.
+        failure: the fault of its updates; raised only if the step can be taken.
     """
 
     edges: tuple[ReadyEdge, ...]

@@ -143,7 +143,7 @@ class PathStep:
 
     Attributes:
         timed: the constraints on its time.
-        move: what is done; `None` if the instant matters for the query only.
+        move: the move; `None` if the instant matters for the query only.
         state: the state after it.
     """
 

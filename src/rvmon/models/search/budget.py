@@ -100,7 +100,7 @@ class Meter:
     Attributes:
         visited: states so far.
         stored: the states that a search still held when it ended.
-        stopped: which limit was met; empty while none was.
+        stopped: the limit that was met; empty while none was.
     """
 
     def __init__(self, budget: Budget, watch: Watch | None) -> None:

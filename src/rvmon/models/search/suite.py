@@ -60,7 +60,7 @@ class Suite:
         runs: each with the items that it adds to those before.
         missing: items that no run goes through.
         statistics: the cost of the search.
-        stopped: which budget ended the search, so that `missing` may say too much; empty if none.
+        stopped: the budget that ended the search early, so that `missing` may say too much, or "".
     """
 
     criterion: Criterion

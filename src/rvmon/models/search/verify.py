@@ -70,7 +70,7 @@ def verify(
         query: as resolved, or as text.
         budget: the limits at which it gives up undecided.
         watch: called now and then.
-        policy: which run to show for `E<>` and `A[]`, if several do.
+        policy: the choice among several runs that show `E<>` or contradict `A[]`.
 
     Raises:
         ModelError: the query is none that can be decided, or the network cannot start, or a run

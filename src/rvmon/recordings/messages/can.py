@@ -69,7 +69,7 @@ class FrameMessages(Messages):
             where a message comes on several, and the identifier where another has its name.
         end: the last stamp.
         count: of the frames of these topics.
-        outages: where lines cannot be read, and that it was cut off.
+        outages: the stretches of lines that cannot be read, and its end if it was cut off.
 
     Raises:
         RvmonError: what reads it is not installed.

@@ -30,7 +30,7 @@ class _Field:
     Attributes:
         name: of it.
         base: its type.
-        element: that of its elements, if it has such.
+        element: the type of its elements, if it has such.
         index: of the table that it, or an element, is.
         count: of the elements of an array in a struct.
         offset: its place in a struct, or in the table of offsets.

@@ -317,7 +317,7 @@ class Profile:
         start: the first instant, ticks.
         end: the last instant, ticks.
         samples: their number.
-        lateness: how far its time goes backwards at most, ticks; 0 if it is in order.
+        lateness: the greatest step of its time backwards, ticks; 0 if it is in order.
         outages: its outages, as far as it states them.
     """
 
