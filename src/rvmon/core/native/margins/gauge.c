@@ -1,6 +1,6 @@
-/* One bound of the robustness of a formula while a trace goes by: what is new of each operator goes from
- * operands to operators, and a value is handed on as soon as nothing that may come can change it. What is
- * kept is what is not settled.
+/* One bound of the robustness of a formula, evaluated incrementally: the values of operands flow to
+ * operators as steps, and an operator passes a value on as soon as no later input can change it. Only
+ * values that are not final are kept.
  *
  * Source: SEMANTICS 5; Deshmukh et al. 2017 (figures of a part of a trace). */
 #include "margins/margins.h"
@@ -30,7 +30,7 @@ static void empty_steps(margin_steps *s)
     s->end = 0;
 }
 
-/* Begin at a position, of which no letter is known. */
+/* Begin at a position, before its letter is read. */
 void gauge_begin(const margin_shape *s, gauge *g, int64_t first)
 {
     int32_t i;
@@ -55,21 +55,21 @@ void gauge_begin(const margin_shape *s, gauge *g, int64_t first)
     g->read = 0;
     g->reported = -INFINITE;
     g->begun = false;
-    g->amid = false;
+    g->after_gap = false;
 }
 
-/* The bound at work of what may be anything. */
+/* The bound of a value that may be anything. */
 double bound_of_anything(const gauging *w)
 {
     return (w->side == 0) ? -INFINITE : INFINITE;
 }
 
-/* Have what lies before the first position of a gauge be anything; `last` is the last position there. */
-void gauge_begin_amid(gauging *w, int64_t last)
+/* Begin after a gap in the input, which may have been anything up to the position `last`. */
+void gauge_begin_after_gap(gauging *w, int64_t last)
 {
     const margin_shape *s = w->shape;
     int32_t i;
-    w->g->amid = true;
+    w->g->after_gap = true;
     for (i = 0; i < s->count; i++) {
         const operator_plan *n = &s->nodes[i];
         margin_node *o = &w->g->nodes[i];
@@ -82,7 +82,7 @@ void gauge_begin_amid(gauging *w, int64_t last)
     }
 }
 
-/* The same as another one, independent from now on. */
+/* Copy a gauge; false if memory is short. */
 bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *g)
 {
     bool done = gauge_make(m, s, made) && steps_copy(m, &made->stamps, &g->stamps);
@@ -106,12 +106,12 @@ bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *
         made->read = g->read;
         made->reported = g->reported;
         made->begun = g->begun;
-        made->amid = g->amid;
+        made->after_gap = g->after_gap;
     }
     return done;
 }
 
-/* Tell what a leaf is from some positions on: where all are asked for at each, else what is another. */
+/* Take the values of a leaf: where operators are aligned a step for each position, else for changes. */
 static inline void take_leaf(gauging *w, int32_t place, const int64_t *times, int64_t count,
                              const double *values, double *last)
 {
@@ -122,14 +122,13 @@ static inline void take_leaf(gauging *w, int32_t place, const int64_t *times, in
     }
     for (k = 0; !w->aligned && (k < count); k++) {
         if (w->sparse || (values[k] != *last) || (!w->g->begun && (k == 0))) {
-            tell_step(w, place, times[k], values[k]);
+            emit_step(w, place, times[k], values[k]);
         }
         *last = values[k];
     }
 }
 
-/* Take what the leaves are from some positions on: those of each lie so far apart from those of the next
- * one. */
+/* Take the values of all leaves at some positions; `apart` is the stride from leaf to leaf. */
 void gauge_take(gauging *w, const int64_t *times, int64_t count, const double *values, int32_t apart)
 {
     const margin_shape *s = w->shape;
@@ -139,14 +138,14 @@ void gauge_take(gauging *w, const int64_t *times, int64_t count, const double *v
         note_positions(w, times, count);
     }
     for (i = 0; i < measures; i++) {
-        if (s->leaves[i] >= 0) { /* else it never changes */
+        if (s->leaves[i] >= 0) { /* else it is constant */
             take_leaf(w, s->leaves[i], times, count, &values[(int64_t)i * apart], &w->g->letter[i]);
         }
     }
     w->g->begun = true;
 }
 
-/* Let the leaves be known up to a position, and find what is settled. */
+/* Evaluate all operators, operands first, as far as the leaves are known. */
 void gauge_run(gauging *w)
 {
     const margin_shape *s = w->shape;
@@ -188,7 +187,8 @@ static void find_fixed(const plan *p, const margin_shape *s, bool *fixed)
     fixed[s->count - 1] = false;
 }
 
-/* Which operators matter where the formula is asked for alone: it, and what junctions join to it. */
+/* Find operators of which only the values at asked positions matter: the formula and the operands of
+ * junctions at its top. */
 static void find_alone(const margin_shape *s)
 {
     int32_t i;
@@ -241,7 +241,7 @@ static void lay_out(const plan *p, margin_shape *s, const bool *fixed)
     }
 }
 
-/* So much after a position what is known of an operator comes to it, or later. */
+/* The ticks that must pass after a position before the value of an operator can be final. */
 static int64_t lag_of(const margin_shape *s, int32_t place, const int64_t *lags, int64_t step)
 {
     const operator_plan *n = &s->nodes[place];
@@ -262,7 +262,7 @@ static int64_t lag_of(const margin_shape *s, int32_t place, const int64_t *lags,
     return ((n->kind == OP_WINDOW) && (n->over > found)) ? n->over : found;
 }
 
-/* Work out the shape of what is measured; false if memory is short. */
+/* Compute the shape of a formula; false if memory is short. */
 bool make_shape(rv_monitor *m, const part *of, const margin_plan *g, margin_shape *s)
 {
     const plan *p = &m->plan;

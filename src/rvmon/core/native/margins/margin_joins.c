@@ -1,12 +1,12 @@
-/* Operators that join values: `and`, `or`, `since`, `until`.
+/* Operators that combine values of their operands: `and`, `or`, `since`, `until`.
  *
- * What a node has is a function of the positions in steps, known up to one of them. Where only samples
- * are positions a step belongs to the position at which it begins, and each has one of its own.
+ * A node holds a step function of positions, known up to one of them. Where only samples are positions,
+ * each sample has a step of its own.
  *
  * Source: SEMANTICS 5; Fainekos and Pappas 2009; Donze, Ferrere and Maler 2013. */
 #include "margins/margins.h"
 
-/* Between which values a sweep keeps that of its neighbour. */
+/* The bounds to which a sweep (`since`, `until`) clamps the value of its neighbour. */
 static margin_range bounds_of(const operator_plan *n, const margin_edge *edges)
 {
     const double stays = edges[0].value;
@@ -17,14 +17,14 @@ static margin_range bounds_of(const operator_plan *n, const margin_edge *edges)
     return made;
 }
 
-/* Tell another value, unless it is none. */
-static inline void tell_other(gauging *w, int32_t place, int64_t at, double value)
+/* Emit a value if it changed. */
+static inline void emit_change(gauging *w, int32_t place, int64_t at, double value)
 {
     margin_node *o = &w->g->nodes[place];
     if (w->sparse || !o->begun || (value != o->carried)) {
         o->begun = true;
         o->carried = value;
-        tell_step(w, place, at, value);
+        emit_step(w, place, at, value);
     }
 }
 
@@ -33,7 +33,7 @@ static inline double joined(bool every, double a, double b)
     return (every ? (b < a) : (b > a)) ? b : a;
 }
 
-static inline void tell_junction(gauging *w, int32_t place, int64_t at)
+static inline void emit_junction(gauging *w, int32_t place, int64_t at)
 {
     const margin_place *shape = &w->shape->places[place];
     const margin_edge *edges = &w->g->edges[shape->edge];
@@ -43,25 +43,25 @@ static inline void tell_junction(gauging *w, int32_t place, int64_t at)
     for (i = 1; i < shape->edge_count; i++) {
         value = joined(every, value, edges[i].value);
     }
-    tell_other(w, place, at, value);
+    emit_change(w, place, at, value);
 }
 
 /* S(i) = max(meets(i), min(stays(i), S(i - 1))), or its dual. */
-static inline void tell_since(gauging *w, int32_t place, int64_t at)
+static inline void emit_since(gauging *w, int32_t place, int64_t at)
 {
     const margin_edge *edges = &w->g->edges[w->shape->places[place].edge];
     const margin_range bounds = bounds_of(node_plan_of(w, place), edges);
     margin_node *o = &w->g->nodes[place];
-    tell_other(w, place, at, within(o->carried, bounds.low, bounds.high));
+    emit_change(w, place, at, within(o->carried, bounds.low, bounds.high));
 }
 
-/* Where an operand has its next step that was not taken; NEVER: there is none. */
+/* The position of the next unread step of an operand; NEVER: there is none. */
 static inline int64_t next_of(const margin_steps *from, const margin_edge *own)
 {
     return (own->read < from->end) ? step_at(from, own->read)->at : NEVER;
 }
 
-/* Take what operands are at the positions at which one of them changes, up to where all are known. */
+/* Read the operands at all positions at which one of them changes, as far as all are known. */
 static inline void join_operands(gauging *w, int32_t place,
                                  void (*tell)(gauging *w, int32_t place, int64_t at))
 {
@@ -99,7 +99,7 @@ static inline void join_operands(gauging *w, int32_t place,
     w->g->nodes[place].joined = (known > w->g->nodes[place].joined) ? known : w->g->nodes[place].joined;
 }
 
-/* Join what operands are at each position, up to where all are known: where each has a step there. */
+/* Combine the operands position by position, as far as all are known; all have a step at each. */
 static void join_aligned(gauging *w, int32_t place)
 {
     const margin_place *own = &w->shape->places[place];
@@ -147,22 +147,22 @@ static void follow_until(gauging *w, int32_t place, int64_t at)
                  is_thin(w, place));
 }
 
-/* Tell the value of a stretch up to a position. */
-static void tell_stretch(gauging *w, int32_t place, int64_t first, int64_t last, double value)
+/* Emit the value of a stretch up to a position. */
+static void emit_stretch(gauging *w, int32_t place, int64_t first, int64_t last, double value)
 {
     margin_node *o = &w->g->nodes[place];
     if (!w->sparse || is_thin(w, place)) {
-        tell_step(w, place, first, value);
+        emit_step(w, place, first, value);
         return;
     }
     while ((o->positions < w->g->stamps.end)
            && (step_at(&w->g->stamps, o->positions)->at <= last)) {
-        tell_step(w, place, step_at(&w->g->stamps, o->positions)->at, value);
+        emit_step(w, place, step_at(&w->g->stamps, o->positions)->at, value);
         o->positions++;
     }
 }
 
-/* The trace has ended: from behind its end back, each stretch has the value of what follows it. */
+/* The trace has ended: compute the stretches backwards from the value assumed after the end. */
 static void end_until(gauging *w, int32_t place)
 {
     margin_parts *s = &w->g->nodes[place].parts;
@@ -173,7 +173,7 @@ static void end_until(gauging *w, int32_t place)
         s->at[i].low = value;
     }
     for (i = s->begin; i < s->end; i++) {
-        tell_stretch(w, place, s->at[i].first,
+        emit_stretch(w, place, s->at[i].first,
                      (i + 1 < s->end) ? s->at[i + 1].first - 1 : w->end->last, s->at[i].low);
     }
     s->begin = s->middle = s->end = 0;
@@ -188,7 +188,7 @@ static void gauge_until(gauging *w, int32_t place)
     while (parts_settled(s, &value)) {
         const int64_t first = s->at[s->begin].first;
         parts_leave(s);
-        tell_stretch(w, place, first, (s->end > s->begin) ? s->at[s->begin].first - 1 : o->joined,
+        emit_stretch(w, place, first, (s->end > s->begin) ? s->at[s->begin].first - 1 : o->joined,
                      value);
     }
     if (w->end != NULL) {
@@ -204,10 +204,10 @@ void gauge_join(gauging *w, int32_t place)
         if (w->aligned) {
             join_aligned(w, place);
         } else {
-            join_operands(w, place, tell_junction);
+            join_operands(w, place, emit_junction);
         }
         break;
-    case OP_SINCE: join_operands(w, place, tell_since); break;
+    case OP_SINCE: join_operands(w, place, emit_since); break;
     default: gauge_until(w, place); return;
     }
     w->g->nodes[place].known = w->g->nodes[place].joined;

@@ -1,7 +1,7 @@
-/* By how much a leaf holds or fails to at the position at hand, in base units.
+/* The robustness of leaves at the present position, in base units.
  *
- * A comparison of numbers counts by how far its sides are apart, anything else as infinite; what is not
- * known may be anything. */
+ * A comparison of numbers has the distance of its sides; all other leaves are plus or minus infinity, and
+ * unknown ones may be anything. */
 #include "input/input.h"
 #include "margins/margins.h"
 
@@ -30,7 +30,7 @@ static double double_of(const rv_number *x)
     return (x->kind == RV_WHOLE) ? (double)x->as.whole : x->as.real;
 }
 
-/* One number less another: of whole numbers rounded once. */
+/* The difference of two numbers; that of whole numbers is rounded once. */
 static double apart(const rv_number *a, const rv_number *b)
 {
     if (compare_numbers(CMP_EQ, a, b) == IS_TRUE) {
@@ -45,7 +45,7 @@ static double apart(const rv_number *a, const rv_number *b)
     return double_of(a) - double_of(b);
 }
 
-/* By how much a comparison holds, given how far its left side is above the right one. Nothing is -0. */
+/* The robustness of a comparison whose left side exceeds the right one by `distance`; never -0.0. */
 static double signed_by(int32_t compare, double distance)
 {
     switch (compare) {
@@ -76,7 +76,7 @@ static margin_range of_programs(const run *r, const atom_plan *a, double factor,
     return exactly(signed_by(a->compare, apart(&left, &right) * factor));
 }
 
-/* Take the occurrences that are looked at to the next combination; false behind the last. */
+/* Go to the next combination of occurrences; false after the last. */
 static bool next_choice(const run *r, const int32_t *events, int32_t count)
 {
     int32_t i;
@@ -90,7 +90,7 @@ static bool next_choice(const run *r, const int32_t *events, int32_t count)
     return false;
 }
 
-/* The best of all combinations of occurrences; of none it is infinitely far from true. */
+/* The maximum over all combinations of occurrences; minus infinity if there are none. */
 static margin_range of_occurrences(const run *r, const atom_plan *a, double factor)
 {
     const int32_t *events = LIST(PLAN(r), a->events);
@@ -125,7 +125,7 @@ static margin_range of_occurrences(const run *r, const atom_plan *a, double fact
     return found;
 }
 
-/* How a leaf that compares a signal with a real constant is measured. */
+/* Recognise a comparison of a signal with a real constant. */
 margin_real learn_real(const part *of, const measure_plan *m)
 {
     margin_real made = {0.0, 0.0, -1, false};
@@ -140,7 +140,7 @@ margin_real learn_real(const part *of, const measure_plan *m)
     return made;
 }
 
-/* The distance of the comparison that a leaf shows. */
+/* The range of a leaf that is a comparison. */
 static margin_range distance_of(const run *r, const measure_plan *m)
 {
     const node_plan *n = &r->part->nodes[m->node];
@@ -161,7 +161,7 @@ static margin_range distance_of(const run *r, const measure_plan *m)
     return found;
 }
 
-/* What a leaf is at least and at most, in base units. */
+/* The range of a leaf, in base units. */
 margin_range measured_leaf(const run *r, const margin_shape *s, int32_t number)
 {
     const measure_plan *m = &s->measures[number];
@@ -180,8 +180,7 @@ margin_range measured_leaf(const run *r, const margin_shape *s, int32_t number)
     return found;
 }
 
-/* Whether a leaf is another behind the position at hand though none comes: it speaks of what occurs
- * there, by however much it is false. */
+/* Whether a leaf changes right after the present position, as it reads an event that occurs there. */
 bool passes_on(const run *r, const measure_plan *m, margin_range *then)
 {
     const node_plan *n;

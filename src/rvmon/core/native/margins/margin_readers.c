@@ -1,15 +1,15 @@
-/* What is worked out and made once: which judges measure what, so that a sample costs what it changes;
- * what a run has where it is measured, and is asked for there. */
+/* Setup of robustness: the judges that read each input, so that the cost of a sample is in what it
+ * changes; the state of a run; and the asked positions of attempts. */
 #include "formulas/formulas.h"
 #include "margins/margins.h"
 
-/* Readers while they are found: counted, then listed. */
+/* The search for readers: a first pass counts, a second lists them. */
 typedef struct {
     const plan *plan;
     const part *of;
     int32_t phase;
-    int32_t *counts;           /* by what is read */
-    int32_t *judges;           /* NULL: they are counted */
+    int32_t *counts;           /* by input */
+    int32_t *judges;           /* NULL: first pass */
     const int32_t *first;
 } finding;
 
@@ -21,7 +21,7 @@ static void found_reader(finding *f, int32_t what, int32_t judge_number)
     f->counts[what]++;
 }
 
-/* The signals whose values a program reads, or their updates. */
+/* The signals that a program reads. */
 static void find_in_program(finding *f, int32_t place, int32_t judge_number)
 {
     const int32_t *word = &f->plan->code[place];
@@ -37,7 +37,7 @@ static void find_in_program(finding *f, int32_t place, int32_t judge_number)
     }
 }
 
-/* What a distance is read off: signals and events. */
+/* The signals and events that a comparison reads. */
 static void find_in_atom(finding *f, const atom_plan *a, int32_t judge_number)
 {
     const int32_t *events = LIST(f->plan, a->events);
@@ -67,7 +67,7 @@ static void find_readers(finding *f)
                 const node_plan *n = &f->of->nodes[m->node];
                 const atom_plan *a = &f->of->atoms[n->a];
                 find_in_atom(f, a, judge_number);
-                /* Until all is born; what windows come to, whenever it is another. */
+                /* Until all signals are born; and the values of windows, which are nodes. */
                 by_truth = (f->phase == 0) || (a->op == ATOM_PAYLOAD) || (n->op == NODE_COMPARED);
             }
             if (by_truth) {
@@ -77,7 +77,7 @@ static void find_readers(finding *f)
     }
 }
 
-/* Work out who measures what a part reads in a phase; false if memory is short. */
+/* Find the readers of all inputs of a part in a phase; false if memory is short. */
 static bool prepare_readers(rv_monitor *m, part *of, int32_t phase)
 {
     const part_plan *p = of->plan;
@@ -106,7 +106,7 @@ static bool prepare_readers(rv_monitor *m, part *of, int32_t phase)
     return true;
 }
 
-/* Work out once what is measured has which shape, and who measures what. */
+/* Compute all shapes and readers; false if memory is short. */
 bool margins_prepare(rv_monitor *m)
 {
     const int64_t count = m->plan.counts[SEC_MARGINS];
@@ -130,7 +130,7 @@ bool margins_prepare(rv_monitor *m)
     return m->shapes != NULL;
 }
 
-/* Have a run that is new be measured. */
+/* Make the state of robustness of a new run; false if memory is short. */
 bool margins_make(run *r)
 {
     rv_monitor *m = r->home->monitor;
@@ -172,7 +172,7 @@ bool margins_make(run *r)
     return r->margins != NULL;
 }
 
-/* Have nothing be asked for, and nothing be known. */
+/* Reset it: no position is asked. */
 void margins_clear(run *r)
 {
     int32_t i;
@@ -196,7 +196,7 @@ void margins_clear(run *r)
     }
 }
 
-/* Ask for the position at which an attempt begins, up to which nothing was asked. */
+/* Ask the position at which an attempt begins; positions must not decrease. */
 void ask_for(run *r, int32_t index, int64_t position, int32_t record)
 {
     measuring *q = &r->margins[index];

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Take it that an attempt begins that is measured; the place of its record, 0 if there is none. */
+/* Make a record for an attempt that begins; returns its number, 0 if attempts are not measured. */
 int32_t measured_attempt(run *r, int64_t triggered, uint32_t number)
 {
     rv_monitor *m = r->home->monitor;
@@ -37,7 +37,7 @@ int32_t measured_attempt(run *r, int64_t triggered, uint32_t number)
     return at;
 }
 
-/* Take it that an attempt has its number, or one among those in doubt; it may have both. */
+/* Note the number of an attempt, or its number among those in doubt; it may have both. */
 void margin_numbered(rv_monitor *m, int32_t record, bool sure, uint32_t number)
 {
     if (record != 0) {
@@ -51,7 +51,7 @@ void margin_numbered(rv_monitor *m, int32_t record, bool sure, uint32_t number)
     }
 }
 
-/* Take it that an attempt in doubt was met: it leaves no figure. */
+/* Note that the obligation of an attempt in doubt was met: it has no figure. */
 void margin_vanished(rv_monitor *m, int32_t record)
 {
     if (record != 0) {
@@ -73,7 +73,7 @@ rv_margin as_reported(const rv_monitor *m, const rv_margin *figure, int32_t reco
     return made;
 }
 
-/* Make room for another figure; false: there is none. */
+/* Make room for another figure; false if memory is short. */
 bool room_for_figure(rv_monitor *m)
 {
     margin_results *s = &m->margins;
@@ -117,7 +117,7 @@ static bool is_reportable(const rv_monitor *m, int32_t record)
     return (own == NULL) || own->sure || m->finished;
 }
 
-/* Bring what can be reported to the front; what vanished is dropped. */
+/* Move the figures that can be reported to the front, sorted; drop those of vanished attempts. */
 int64_t rv_margins(rv_monitor *m, const rv_margin **margins)
 {
     margin_results *s = &m->margins;
@@ -129,7 +129,7 @@ int64_t rv_margins(rv_monitor *m, const rv_margin **margins)
         const int32_t record = s->owners[i];
         rv_margin figure;
         if ((record == 0) && (i == s->ready)) {
-            s->ready++; /* as mostly */
+            s->ready++; /* the usual case */
             continue;
         }
         figure = s->found[i];
@@ -186,10 +186,10 @@ void margins_reset(rv_monitor *m)
     m->margins.free_record = 0;
 }
 
-/* Figures at the end of a trace, or as if it had ended: what lies behind it is taken for the least, for
- * the greatest, and for what the rule for the end says. */
+/* Figures at the end of a trace, or as if it had ended now: evaluated with each of the three assumptions
+ * about the rest (REST_LEAST, REST_GREATEST, REST_END). */
 
-/* Let a gauge end the trace by one assumption about what lies behind it; false if memory is short. */
+/* End the trace in a copy of a gauge, under one assumption; false if memory is short. */
 static bool try_end(run *r, int32_t index, const margin_end *end, int64_t reached)
 {
     measuring *q = &r->margins[index];
@@ -275,13 +275,13 @@ static bool found_where_cut(void *user, const rv_margin *figure, int32_t record)
     return found_at_end(user, &made, record);
 }
 
-/* Tell all figures of a judge that are left, as nothing is known of what is there from `t` on. */
+/* Report all remaining figures of a judge: nothing is known from `t` on. */
 void margins_cut(run *r, int32_t index, int64_t t)
 {
     (void)each_at_end(r, index, t - 1, t, found_where_cut, r->home->monitor);
 }
 
-/* Tell all figures that are left, when time has come to the end. */
+/* Report all remaining figures at the end of the trace. */
 void margins_close(home *h, int64_t end, int64_t reached)
 {
     run *r;
@@ -294,16 +294,16 @@ void margins_close(home *h, int64_t end, int64_t reached)
     }
 }
 
-/* Figures as an embedding program takes them. */
+/* The callback of an embedding program that takes figures. */
 typedef struct {
     rv_monitor *monitor;
     rv_take_margin take;
     void *user;
-} margin_telling;
+} margin_receiver;
 
-static bool tell_open_margin(void *user, const rv_margin *figure, int32_t record)
+static bool report_open_margin(void *user, const rv_margin *figure, int32_t record)
 {
-    const margin_telling *to = user;
+    const margin_receiver *to = user;
     rv_margin reported;
     if ((record == 0) || to->monitor->margins.records[record - 1].vanished) {
         return true;
@@ -314,7 +314,7 @@ static bool tell_open_margin(void *user, const rv_margin *figure, int32_t record
 
 void rv_each_margin(rv_monitor *m, rv_take_margin take, void *user)
 {
-    margin_telling to = {m, take, user};
+    margin_receiver to = {m, take, user};
     const margin_results *s = &m->margins;
     const int64_t end = (m->last == m->reached) ? m->reached : m->reached - 1;
     int32_t i;
@@ -323,7 +323,7 @@ void rv_each_margin(rv_monitor *m, rv_take_margin take, void *user)
         return;
     }
     for (i = s->ready; i < s->found_count; i++) {
-        if ((s->owners[i] != 0) && !tell_open_margin(&to, &s->found[i], s->owners[i])) {
+        if ((s->owners[i] != 0) && !report_open_margin(&to, &s->found[i], s->owners[i])) {
             return;
         }
     }
@@ -332,7 +332,7 @@ void rv_each_margin(rv_monitor *m, rv_take_margin take, void *user)
         run *r;
         for (r = h->root; r != NULL; r = following(h, r)) {
             for (k = 0; k < h->part->plan->judges.count; k++) {
-                if (!each_at_end(r, k, end, m->reached, tell_open_margin, &to)) {
+                if (!each_at_end(r, k, end, m->reached, report_open_margin, &to)) {
                     return;
                 }
             }

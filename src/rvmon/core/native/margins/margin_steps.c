@@ -1,10 +1,10 @@
-/* Functions of positions as steps in rings, and stretches of an `until` of which each one is kept
- * between two bounds. */
+/* Functions of positions as steps in rings, and the stretches of an `until`, each of which clamps the
+ * value of the next. */
 #include "margins/margins.h"
 
 #include <string.h>
 
-/* Make room for so many more steps, those from the number `oldest` on being kept; false: there is none. */
+/* Make room for more steps, keeping those from the number `oldest` on; false if memory is short. */
 bool room_for_steps(gauging *w, margin_steps *s, int64_t count, int64_t oldest)
 {
     rv_monitor *m = w->monitor;
@@ -16,7 +16,7 @@ bool room_for_steps(gauging *w, margin_steps *s, int64_t count, int64_t oldest)
     }
     s->first = oldest;
     while (room / 2 < s->end - s->first + count - 1) {
-        room *= 2; /* few of them are moved often */
+        room *= 2; /* doubling, so that a step is moved a constant number of times */
     }
     if (room <= s->room) {
         return true;
@@ -50,7 +50,7 @@ int64_t oldest_unread(const gauging *w, int32_t place)
     return (place == shape->count - 1) ? least(found, w->g->read) : found;
 }
 
-/* Whether none of those that read a node has taken its last step. */
+/* Whether no reader of a node has read its last step. */
 static bool is_last_unread(const gauging *w, int32_t place)
 {
     const margin_shape *shape = w->shape;
@@ -64,7 +64,7 @@ static bool is_last_unread(const gauging *w, int32_t place)
     return true;
 }
 
-/* Whether a position from one to another is asked for. */
+/* Whether any position from `left` to `right` is asked. */
 bool is_asked(const gauging *w, int64_t left, int64_t right)
 {
     const measuring *q = w->q;
@@ -81,8 +81,8 @@ bool is_asked(const gauging *w, int64_t left, int64_t right)
     return (low < q->asks.end) && (step_at(&q->asks, low)->at <= right);
 }
 
-/* Whether a node has room for a step that it is to tell. Where its value matters at positions alone that
- * are needed, the step before takes the value over if it is not needed itself. */
+/* Whether a step has to be added to a node, and there is room for it. If only the values at asked
+ * positions matter and the last step covers none, that step takes the new value instead. */
 bool takes_step(gauging *w, int32_t place, int64_t at, double value)
 {
     margin_steps *s = &w->g->nodes[place].out;
@@ -94,7 +94,7 @@ bool takes_step(gauging *w, int32_t place, int64_t at, double value)
     return has_room(s, 1) || room_for_steps(w, s, 1, oldest_unread(w, place));
 }
 
-/* The number of the first position that some operator has no value of, or that was not reported. */
+/* The number of the first position without a value of some operator, or that was not reported. */
 static int64_t oldest_position(const gauging *w)
 {
     int64_t found = w->g->stamps.end;
@@ -111,7 +111,7 @@ static int64_t oldest_position(const gauging *w)
     return found;
 }
 
-/* Take it that there are some positions, where only samples are; or that they are asked for. */
+/* Add positions: all samples where only these are positions, else asked ones. */
 void note_positions(gauging *w, const int64_t *times, int64_t count)
 {
     margin_steps *s = &w->g->stamps;
@@ -149,7 +149,8 @@ static void join_bounds(margin_part *made, const margin_part *before, const marg
     made->high = within(behind->high, before->least, before->most);
 }
 
-/* Work out the bounds of several together, of which those before `middle` are known with all behind. */
+/* Compute the clamps of several stretches together: before `middle` from each to the middle, after it
+ * from the middle to each. */
 static void halve(margin_parts *s, int32_t middle)
 {
     int32_t i;
@@ -215,7 +216,7 @@ static void parts_push(rv_monitor *m, margin_parts *s, int64_t first, double low
     s->end++;
 }
 
-/* Drop the last one. What is halved so often is as much as was put in. */
+/* Drop the last stretch; amortised O(1), as in a queue of two stacks. */
 static void parts_pop(margin_parts *s)
 {
     if (s->end == s->middle) {
@@ -224,7 +225,7 @@ static void parts_pop(margin_parts *s)
     s->end--;
 }
 
-/* Drop the first one. */
+/* Drop the first stretch; likewise. */
 void parts_leave(margin_parts *s)
 {
     if (s->begin == s->middle) {
@@ -233,7 +234,7 @@ void parts_leave(margin_parts *s)
     s->begin++;
 }
 
-/* Whether the value of the first of them is final. */
+/* Whether the value of the first stretch is final: whatever follows is clamped to one value. */
 bool parts_settled(const margin_parts *s, double *value)
 {
     const margin_part *front;
@@ -255,9 +256,9 @@ bool parts_settled(const margin_parts *s, double *value)
     return low == high;
 }
 
-/* Append a stretch. One whose bounds leave open all that what follows may be has the value of that and
- * is joined to it: of `always` and `eventually` those remain that no later one betters. If `alone` its
- * value matters where it is asked for alone; then others are one with what is before them. */
+/* Append a stretch. A stretch whose clamp does not narrow the next one is joined to it, so that of
+ * `always` and `eventually` only the extremes remain. If `alone`, only values at asked positions matter,
+ * and a stretch without any is joined to the one before. */
 void parts_follow(gauging *w, margin_parts *s, int64_t start, double low, double high, bool alone)
 {
     int64_t first = start;

@@ -1,12 +1,12 @@
-/* Operators that look along the trace: windows, and what is moved.
+/* Sliding windows, and shifts by a constant number of positions.
  *
- * Of a window the values that may be its extreme are kept in a wedge, the best one first, each with the
- * last position whose window holds it: a change costs what it drops, however long the window is.
+ * A window keeps the values that can be its extreme in a wedge, the best one first, each with the last
+ * position whose window contains it: amortised O(1) per change, whatever the length of the window.
  *
  * Source: Lemire 2006. */
 #include "margins/margins.h"
 
-/* A window at work. */
+/* A step of a window. */
 typedef struct {
     gauging *w;
     margin_node *o;
@@ -14,8 +14,8 @@ typedef struct {
     const margin_steps *from;
     int32_t place;
     bool every;
-    bool closes;               /* whether what lies behind the end is still to be taken */
-    double nothing;            /* where there is nothing in the window */
+    bool closes;               /* whether the value after the end is still to be read */
+    double nothing;            /* the value of an empty window */
     int64_t low;
     int64_t high;
 } windowing;
@@ -32,8 +32,8 @@ static inline void drop_exits(margin_steps *wedge, int64_t position)
     }
 }
 
-/* Tell what windows are up to a position. */
-static void tell_windows(const windowing *x, int64_t stop)
+/* Emit the values of windows up to a position. */
+static void emit_windows(const windowing *x, int64_t stop)
 {
     margin_node *o = x->o;
     margin_steps *wedge = &o->wedge;
@@ -49,14 +49,14 @@ static void tell_windows(const windowing *x, int64_t stop)
         if (!o->begun || (best != o->carried)) {
             o->begun = true;
             o->carried = best;
-            tell_step(x->w, x->place, at, best);
+            emit_step(x->w, x->place, at, best);
         }
         at = right + 1;
     }
     o->next = at;
 }
 
-/* Take a value into a wedge at hand, of which the last window that holds it is that of `leaves`. */
+/* Add a value to a wedge; `leaves` is the position of the last window that contains it. */
 static inline void enter_wedge(const windowing *x, margin_steps *wedge, int64_t leaves, double value)
 {
     while (wedge->first < wedge->end) {
@@ -76,7 +76,7 @@ static inline void enter_wedge(const windowing *x, margin_steps *wedge, int64_t 
     }
 }
 
-/* The next step of the operand that some window up to a position holds; behind the end, nothing. */
+/* The next step of the operand up to a position; after the end of the trace, an empty value. */
 static bool next_entry(windowing *x, int64_t most, margin_step *found)
 {
     if (x->edge->read < x->from->end) {
@@ -95,23 +95,22 @@ static bool next_entry(windowing *x, int64_t most, margin_step *found)
     return false;
 }
 
-/* Take in what the operand is and tell all values, up to where windows are known: where every integer
- * is a position. */
+/* Slide up to a position, where every integer is a position. */
 static void slide_along(windowing *x, int64_t until)
 {
     margin_steps *wedge = &x->o->wedge;
     margin_step entry = {0, 0.0};
     while (next_entry(x, until + x->high + 1, &entry)) {
-        tell_windows(x, entry.at - x->high - 1);
+        emit_windows(x, entry.at - x->high - 1);
         if (wedge->first < wedge->end) {
             step_at(wedge, wedge->end - 1)->at = entry.at - x->low - 1;
         }
         enter_wedge(x, wedge, NEVER, entry.value);
     }
-    tell_windows(x, until);
+    emit_windows(x, until);
 }
 
-/* Take in the values of the operand up to a position. */
+/* Read the values of the operand up to a position. */
 static inline void enter_samples(const windowing *x, margin_steps *wedge, margin_steps *from, int64_t last)
 {
     for (; (from->first < from->end) && (step_at(from, from->first)->at <= last); from->first++) {
@@ -120,7 +119,8 @@ static inline void enter_samples(const windowing *x, margin_steps *wedge, margin
     }
 }
 
-/* The same where only samples are positions, of rings at hand: what is written may be anything else. */
+/* Slide up to a position, where only samples are positions; works on local copies of the rings, which
+ * the compiler knows not to overlap. */
 static void slide_over_samples(const windowing *x, int64_t until)
 {
     margin_steps stamps = x->w->g->stamps;
@@ -132,10 +132,10 @@ static void slide_over_samples(const windowing *x, int64_t until)
         const int64_t position = step_at(&stamps, stamps.first)->at;
         enter_samples(x, &wedge, &from, position + x->high);
         drop_exits(&wedge, position);
-        tell_step(x->w, x->place, position,
+        emit_step(x->w, x->place, position,
                   (wedge.first < wedge.end) ? step_at(&wedge, wedge.first)->value : x->nothing);
     }
-    enter_samples(x, &wedge, &from, until + x->high + 1); /* few of them are kept */
+    enter_samples(x, &wedge, &from, until + x->high + 1); /* so that the operand can drop them */
     x->o->wedge = wedge;
     x->o->positions = stamps.first;
     x->edge->read = from.first;
@@ -151,7 +151,7 @@ static inline void slide_window(windowing *x, int64_t until)
     }
 }
 
-/* What windows are that lie behind the end in part is not known. */
+/* Windows that extend beyond the end of the trace have the value assumed for the rest. */
 static void give_up(windowing *x)
 {
     x->nothing = margin_behind(x->w->end, false);
@@ -160,7 +160,7 @@ static void give_up(windowing *x)
     x->edge->read = x->from->end;
 }
 
-/* Tell what windows are when the trace has ended, those that lie behind it in part. */
+/* Emit the remaining values of windows at the end of the trace. */
 static void end_windows(windowing *x, int64_t limit, bool ahead)
 {
     slide_window(x, least(limit, x->w->end->last));
@@ -175,7 +175,7 @@ void gauge_window(gauging *w, int32_t place)
     const operator_plan *n = node_plan_of(w, place);
     margin_node *nodes = w->g->nodes;
     const int64_t limit = (n->over < 0) ? w->now : floored(w->reached - n->over, w->step);
-    const bool holds = n->low <= n->high; /* else no window holds anything */
+    const bool holds = n->low <= n->high; /* else all windows are empty */
     const bool every = n->turned != 0;
     windowing x = {w, &nodes[place], &w->g->edges[w->shape->places[place].edge], &nodes[n->left].out, place,
                    every, w->end != NULL, every ? INFINITE : -INFINITE, n->low, n->high};
@@ -190,7 +190,7 @@ void gauge_window(gauging *w, int32_t place)
     x.o->known = x.o->next - 1;
 }
 
-/* What is moved, at work: steps of the operand, then what lies behind the end. */
+/* A step of a shift: the steps of the operand, then those after the end of the trace. */
 typedef struct {
     const margin_steps *from;
     margin_edge *edge;
@@ -223,7 +223,7 @@ static void take_moved(shifting *x)
     }
 }
 
-/* What is assumed of the operand behind the end, up to where its windows opened. */
+/* The assumed steps of the operand after the end: `kept` up to where its windows have opened. */
 static void add_ends(const gauging *w, shifting *x, const operator_plan *n)
 {
     const bool kept = n->kept != 0;
@@ -245,7 +245,7 @@ static void add_ends(const gauging *w, shifting *x, const operator_plan *n)
     x->ends_count = by_rule ? 2 : 1;
 }
 
-/* Where every integer is a position. */
+/* Shift where every integer is a position. */
 static void move_all(gauging *w, int32_t place, shifting *x, int64_t until, double before)
 {
     margin_node *o = &w->g->nodes[place];
@@ -266,7 +266,7 @@ static void move_all(gauging *w, int32_t place, shifting *x, int64_t until, doub
         const int64_t right = follows ? next.at - 1 : until;
         const int64_t at = (one.at < first) ? first : one.at;
         if (at <= right) {
-            tell_step(w, place, at, one.value);
+            emit_step(w, place, at, one.value);
         }
         if (follows) {
             take_moved(x);
@@ -277,7 +277,8 @@ static void move_all(gauging *w, int32_t place, shifting *x, int64_t until, doub
     o->joined = until;
 }
 
-/* Where only samples are: an `until` has the value of the next position, a `since` that of the last. */
+/* Shift where only samples are positions: an `until` takes the value of the next one, a `since` that of
+ * the last. */
 static void move_samples(gauging *w, int32_t place, shifting *x, int64_t known, double before)
 {
     margin_node *o = &w->g->nodes[place];
@@ -294,7 +295,7 @@ static void move_samples(gauging *w, int32_t place, shifting *x, int64_t known, 
     } else if (ahead && (x->from->end > x->edge->read)) {
         until = step_at(x->from, x->from->end - 1)->at - x->offset;
     } else {
-        /* It is known as far as its operand. */
+        /* It is known as far as its operand is. */
     }
     until = least(until, w->now);
     while ((o->positions < stamps->end) && (step_at(stamps, o->positions)->at <= until)) {
@@ -304,17 +305,17 @@ static void move_samples(gauging *w, int32_t place, shifting *x, int64_t known, 
             o->carried = one.value;
             take_moved(x);
         }
-        tell_step(w, place, position, ahead ? one.value : o->carried);
+        emit_step(w, place, position, ahead ? one.value : o->carried);
     }
     o->joined = until;
 }
 
-/* An `until` or `since` so many integers further on. */
+/* Shift an `until` or `since` by the lower bound of its window. */
 void gauge_shift(gauging *w, int32_t place)
 {
     const operator_plan *n = node_plan_of(w, place);
     const double nothing = (node_plan_of(w, n->left)->turned != 0) ? INFINITE : -INFINITE;
-    const double before = w->g->amid ? bound_of_anything(w) : nothing;
+    const double before = w->g->after_gap ? bound_of_anything(w) : nothing;
     const int64_t known = (w->end != NULL) ? LIMIT : w->g->nodes[n->left].known - n->low;
     shifting x = {&w->g->nodes[n->left].out, &w->g->edges[w->shape->places[place].edge], n->low,
                 {{0, 0.0}, {0, 0.0}}, 0, 0};

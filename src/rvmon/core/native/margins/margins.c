@@ -1,19 +1,19 @@
-/* What is measured of the attempts of a run: the leaves are read at each position, and given to gauges;
- * what these answer is the figure of an attempt that begins at that position. */
+/* The robustness of the attempts of a run: the leaves are read at each position and given to two gauges,
+ * which evaluate the bounds. The value at a position is the figure of the attempt that begins there. */
 #include "formulas/formulas.h"
 #include "margins/margins.h"
 #include "runs/runs.h"
 
 #include <string.h>
 
-/* Take it that what judges measure may be another: what a name says, signals first, then events, or the
- * truth of a node, behind them. */
+/* Mark the judges whose robustness reads a signal, an event or a node (in this order of numbers) that
+ * may have changed. */
 void margins_mark_changed(run *r, int32_t what)
 {
     const margin_readers *readers = &r->part->readers[r->at.phase];
     int32_t i;
     if ((r->margins == NULL) || (GAP(r) == 0)) {
-        return; /* where samples are positions all are read at each */
+        return; /* where samples are positions, all are read at each */
     }
     for (i = readers->first[what]; i < readers->first[what + 1]; i++) {
         const int32_t index = readers->judges[i];
@@ -36,7 +36,7 @@ static void mark_all_changed(run *r)
     r->changed_count = r->part->plan->judges.count;
 }
 
-/* Give what the leaves are from some positions on to the gauges, at least and at most. */
+/* Give the bounds of the leaves at some positions to the gauges. */
 void give_letters(gauging *w, const int64_t *times, int64_t count, double *const *values, int32_t apart)
 {
     measuring *q = w->q;
@@ -48,7 +48,7 @@ void give_letters(gauging *w, const int64_t *times, int64_t count, double *const
     }
 }
 
-/* The same behind what occurs at a position alone, unless that lies behind another one. */
+/* Give the leaves once the events of the last position are over, unless a later position was read. */
 void give_behind(gauging *w, int64_t last)
 {
     measuring *q = w->q;
@@ -59,8 +59,8 @@ void give_behind(gauging *w, int64_t last)
     }
 }
 
-/* What is known of an attempt by what its formula is at least and at most, and by the rule for the end.
- * An obligation with unknown values may be anything. */
+/* Fill in a figure: lower and upper bound, and lower bound by the rule for the end. Where captured values
+ * are unknown it may be anything. */
 void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask *one, margin_range found,
                  double kept)
 {
@@ -75,8 +75,8 @@ void fill_figure(rv_margin *made, const run *r, int32_t index, const margin_ask 
     made->of_position = (one->record == 0) ? 1 : 0;
 }
 
-/* Tell a figure that nothing can change any more. */
-static inline void tell_figure(const run *r, int32_t index, const margin_ask *one, margin_range found)
+/* Report a final figure. */
+static inline void report_figure(const run *r, int32_t index, const margin_ask *one, margin_range found)
 {
     rv_margin *made = figure_found(r->home->monitor, one->record);
     if (made != NULL) {
@@ -84,8 +84,8 @@ static inline void tell_figure(const run *r, int32_t index, const margin_ask *on
     }
 }
 
-/* Tell the figures that are known in both readings. */
-static void tell_known(run *r, int32_t index)
+/* Report the figures of which both bounds are final. */
+static void report_known(run *r, int32_t index)
 {
     measuring *q = &r->margins[index];
     const bool streamed = is_streamed(r, index);
@@ -101,7 +101,7 @@ static void tell_known(run *r, int32_t index)
         margin_range found;
         found.low = gauge_value(least_one, root, one.position);
         found.high = (most == NULL) ? found.low : gauge_value(most, root, one.position);
-        tell_figure(r, index, &one, found);
+        report_figure(r, index, &one, found);
         done = next;
     }
     r->asked -= (int32_t)(done.ask - q->asks.first);
@@ -117,8 +117,8 @@ static void tell_known(run *r, int32_t index)
     }
 }
 
-/* Set when time alone may settle the first position that is asked for, the leaves being known up to a
- * position; NEVER: it cannot. */
+/* Set the timer of a judge to the next instant at which time alone can make its first asked position
+ * final; NEVER: there is none. */
 static void set_margin_due(run *r, int32_t index, int64_t now, int64_t reached)
 {
     const margin_shape *s = shape_of(r, index);
@@ -128,13 +128,13 @@ static void set_margin_due(run *r, int32_t index, int64_t now, int64_t reached)
         due = sum(step_at(&q->asks, q->asks.first)->at * step_of(r), s->lag);
         if (due <= reached) {
             const bool all = !s->passes && !q->passes && (now >= floored(reached, step_of(r)));
-            due = all ? NEVER : reached + 1; /* NEVER: all that is known was looked at */
+            due = all ? NEVER : reached + 1; /* NEVER: nothing is left to evaluate */
         }
     }
     timers_set(&r->margins_due, index, due);
 }
 
-/* Let the leaves be known up to a position. */
+/* Evaluate the gauges of a judge, with leaves known up to a position. */
 static void come_to_margin(run *r, int32_t index, int64_t now, int64_t reached)
 {
     measuring *q = &r->margins[index];
@@ -147,28 +147,28 @@ static void come_to_margin(run *r, int32_t index, int64_t now, int64_t reached)
         w->side = 1;
         gauge_run(w);
     }
-    tell_known(r, index);
+    report_known(r, index);
     if (!is_streamed(r, index)) {
         set_margin_due(r, index, now, reached);
     }
 }
 
-/* What is at most is another from the first letter on in which something is unknown. */
+/* From the first unknown letter on the upper bound has a gauge of its own. */
 void part_margins(run *r, int32_t index)
 {
     measuring *q = &r->margins[index];
     q->parted = gauge_copy(r->home->monitor, shape_of(r, index), &q->readings[1], &q->readings[0]);
 }
 
-/* Begin behind positions that were missed, which may have been anything. */
-static void begin_amid(run *r, int32_t index, int64_t position)
+/* Begin after positions that were missed in an outage. */
+static void begin_after_gap(run *r, int32_t index, int64_t position)
 {
     measuring *q = &r->margins[index];
     gauging *w = begin_gauging(r, index, position, position);
     part_margins(r, index);
     for (; q->parted && (w->side < 2); w->side++) {
         w->g = &q->readings[w->side];
-        gauge_begin_amid(w, floored(r->at.before, w->step));
+        gauge_begin_after_gap(w, floored(r->at.before, w->step));
     }
 }
 
@@ -198,7 +198,7 @@ static void read_measures(run *r, int32_t index, int64_t position)
     give_letters(begin_gauging(r, index, position, position), &position, 1, q->letter, 1);
 }
 
-/* Come to a position: up to the one before it, all that occurred is known. */
+/* Read a position; all positions before it are complete. */
 void enter_position(run *r, int32_t index, int64_t t)
 {
     const margin_shape *s = shape_of(r, index);
@@ -206,7 +206,7 @@ void enter_position(run *r, int32_t index, int64_t t)
     const int64_t position = floored(t, step_of(r));
     const bool asked = q->asks.first < q->asks.end;
     if (q->active && !asked && !is_kept_up(r, index)) {
-        q->active = false; /* it awaits the end */
+        q->active = false; /* it was active only for the end of the trace */
     }
     if (!q->active) {
         q->active = true;
@@ -216,14 +216,14 @@ void enter_position(run *r, int32_t index, int64_t t)
         q->work.aligned = q->work.sparse && !q->work.thin;
         gauge_begin(s, &q->readings[0], position);
         if (q->missed && (s->plan->looks_back != 0)) {
-            begin_amid(r, index, position);
+            begin_after_gap(r, index, position);
         }
     } else if (awaits_the_end(r, index)) {
         come_to_margin(r, index, position - 1, t);
     } else if (q->passes) {
         give_behind(begin_gauging(r, index, position - 1, t), position - 1);
     } else {
-        /* The leaves are what they were. */
+        /* The leaves are unchanged. */
     }
     read_measures(r, index, position);
     q->position = t;
@@ -244,10 +244,10 @@ void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
     if ((r->at.presence != ARE_THERE) || r->at.dense) {
         const margin_ask none = {position, record};
         const margin_range anything = {-INFINITE, INFINITE};
-            tell_figure(r, index, &none, anything);
+        report_figure(r, index, &none, anything);
         return;
     }
-    /* At the end, the letter of the last position stands; a later sample may have been taken. */
+    /* At the end the letter of the last position counts, even if a later sample was taken. */
     if (!q->active
         || ((q->position < t) && (q->changed_inputs || (GAP(r) == 0)) && !awaits_the_end(r, index))) {
         enter_position(r, index, t);
@@ -255,7 +255,7 @@ void margins_begin(run *r, int32_t index, int64_t t, int32_t record)
     ask_for(r, index, position, record);
 }
 
-/* Read what a judge measures at the position at `t`, if it is asked for. */
+/* Read the leaves of a judge at the position at `t`, if they are needed. */
 static inline void visit_measured(run *r, int32_t index, int64_t t)
 {
     measuring *q = &r->margins[index];
@@ -266,13 +266,13 @@ static inline void visit_measured(run *r, int32_t index, int64_t t)
     }
 }
 
-/* Of so many judges, the first ones, each position is asked for. */
+/* The number of judges, from the first, of which all positions are asked. */
 static int32_t streamed_count(const run *r)
 {
     return is_streamed(r, 0) ? r->part->plan->requirements : 0;
 }
 
-/* Have each of some positions be asked for: where samples are positions all are, that are known. */
+/* Ask some positions; where samples are positions all are asked anyway. */
 void ask_for_positions(run *r, int32_t index, const int64_t *positions, int64_t count)
 {
     if ((GAP(r) > 0) && (count > 0)) {
@@ -281,8 +281,8 @@ void ask_for_positions(run *r, int32_t index, const int64_t *positions, int64_t 
     }
 }
 
-/* Read what is measured at the position at `t`, when attempts have begun there: where samples are
- * positions of all, else of those whose leaves may be others. */
+/* Read the leaves at the position at `t`, after attempts have begun there: of all judges where samples
+ * are positions, else of those whose leaves may have changed. */
 void margins_visit(run *r, int64_t t)
 {
     const int32_t streamed = streamed_count(r);
@@ -304,8 +304,8 @@ void margins_visit(run *r, int64_t t)
     }
 }
 
-/* Tell what has become known in a run now that time has come to an instant: where leaves were read, or
- * time alone may do. */
+/* Report the figures of a run that are final now that time has reached an instant: of judges whose leaves
+ * were read, or whose timer is due. */
 static void settle_run(run *r, int64_t reached)
 {
     const int64_t seen = floored((r->measured_at == reached) ? reached : reached - 1, step_of(r));
@@ -332,7 +332,7 @@ void margins_settle(home *h, int64_t reached)
         const int32_t asked = r->asked;
         settle_run(r, reached);
         if ((asked > 0) && (r->asked == 0) && (h->part->plan->captured > 0)) {
-            touch_run(r); /* it may be let go of */
+            touch_run(r); /* it may be freed */
             over = true;
         }
     }
@@ -341,7 +341,7 @@ void margins_settle(home *h, int64_t reached)
     }
 }
 
-/* Positions from `t` on are missed in an outage: what is asked for is what the trace gives before them. */
+/* Positions from `t` on are missed in an outage: report the figures of all asked positions. */
 void margins_miss(run *r, int64_t t)
 {
     int32_t i;

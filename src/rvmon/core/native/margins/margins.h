@@ -1,4 +1,4 @@
-/* What the files of margins call of each other. */
+/* Robustness of attempts: functions shared by the files of this folder. */
 #ifndef RVMON_MARGINS_H
 #define RVMON_MARGINS_H
 
@@ -22,7 +22,7 @@ void margin_vanished(rv_monitor *m, int32_t record);
 
 #define INFINITE ((double)INFINITY)
 
-/* Least and greatest value. */
+/* Lower and upper bound. */
 typedef struct {
     double low;
     double high;
@@ -48,14 +48,14 @@ static inline double within(double value, double least_one, double most)
     return (value < least_one) ? least_one : ((value > most) ? most : value);
 }
 
-/* What lies behind the end; `kept`: the end counts as true for it. */
+/* The value assumed after the end; `kept`: for an unbounded `R`. */
 static inline double margin_behind(const margin_end *end, bool kept)
 {
     const bool good = (end->rest == REST_GREATEST) || ((end->rest == REST_END) && kept);
     return good ? INFINITE : -INFINITE;
 }
 
-/* What a formula is at a position at which it is known, behind those that this was asked for before. */
+/* The value of a formula at a position where it is final; positions must not decrease. */
 static inline double gauge_value(gauge *g, int32_t root, int64_t position)
 {
     const margin_steps *from = &g->nodes[root].out;
@@ -66,7 +66,7 @@ static inline double gauge_value(gauge *g, int32_t root, int64_t position)
     return g->reported;
 }
 
-/* Whether the value of an operator matters at positions alone that are asked for, and these are few. */
+/* Whether only the values of an operator at the positions of attempts matter. */
 static inline bool is_thin(const gauging *w, int32_t place)
 {
     return w->thin && w->shape->places[place].alone;
@@ -77,13 +77,13 @@ static inline const margin_shape *shape_of(const run *r, int32_t index)
     return &r->home->monitor->shapes[r->part->plan->judges.first + index];
 }
 
-/* How far what is asked for was looked through: attempts, and positions where each is asked for. */
+/* A place in the asked positions: those of attempts, and all samples where each is asked. */
 typedef struct {
     int64_t ask;
     int64_t position;
 } margin_cursor;
 
-/* What is asked for next, in order; false: nothing. */
+/* The next asked position, in order; false: there is none. */
 static inline bool next_asked(const measuring *q, bool streamed, margin_cursor *at, margin_ask *found)
 {
     const margin_steps *stamps = &q->readings[0].stamps;
@@ -103,10 +103,10 @@ static inline bool next_asked(const measuring *q, bool streamed, margin_cursor *
     return begins;
 }
 
-/* What a leaf is that compares a signal with a real constant. Nothing is not -0. */
+/* The robustness of a comparison of a signal with a real constant; never -0.0. */
 static inline double measured_real(const margin_real *x, double value)
 {
-    const double distance = (value == x->constant) ? 0.0 : value - x->constant; /* of infinite ones, too */
+    const double distance = (value == x->constant) ? 0.0 : value - x->constant; /* infinite values, too */
     return (x->absolute ? fabs(distance) : distance) * x->slope + 0.0;
 }
 
@@ -131,10 +131,10 @@ static inline void add_step(margin_steps *s, int64_t at, double value)
     s->end++;
 }
 
-/* Add some, for which there is room. */
+/* Add steps, for which there is room. */
 static inline void add_steps(margin_steps *s, const int64_t *times, int64_t count, const double *values)
 {
-    margin_steps now = *s; /* at hand, as what is written may be anything */
+    margin_steps now = *s; /* a local copy: the compiler cannot know that the ring does not overlap it */
     int64_t k;
     for (k = 0; k < count; k++) {
         add_step(&now, times[k], (values != NULL) ? values[k] : 0.0);
@@ -142,8 +142,8 @@ static inline void add_steps(margin_steps *s, const int64_t *times, int64_t coun
     s->end = now.end;
 }
 
-/* Tell those that read a node that it has another value from a position on. */
-static inline void tell_step(gauging *w, int32_t place, int64_t at, double value)
+/* Give a node another value from a position on. */
+static inline void emit_step(gauging *w, int32_t place, int64_t at, double value)
 {
     margin_steps *s = &w->g->nodes[place].out;
     if ((!w->thin && has_room(s, 1)) || takes_step(w, place, at, value)) {
@@ -161,7 +161,7 @@ void gauge_shift(gauging *w, int32_t place);
 /* ---- gauge.c */
 bool gauge_make(rv_monitor *m, const margin_shape *s, gauge *g);
 void gauge_begin(const margin_shape *s, gauge *g, int64_t first);
-void gauge_begin_amid(gauging *w, int64_t last);
+void gauge_begin_after_gap(gauging *w, int64_t last);
 bool gauge_copy(rv_monitor *m, const margin_shape *s, gauge *made, const gauge *g);
 void gauge_take(gauging *w, const int64_t *times, int64_t count, const double *values, int32_t apart);
 void gauge_run(gauging *w);
@@ -177,7 +177,7 @@ margin_real learn_real(const part *of, const measure_plan *m);
 margin_range measured_leaf(const run *r, const margin_shape *s, int32_t number);
 bool passes_on(const run *r, const measure_plan *m, margin_range *then);
 
-/* The same, most often of a comparison with a constant. */
+/* The range of a leaf; fast for the most frequent kind, comparisons with a constant. */
 static inline margin_range leaf_range(const run *r, const margin_shape *s, int32_t number)
 {
     const margin_real *real = &s->reals[number];
@@ -190,26 +190,26 @@ static inline margin_range leaf_range(const run *r, const margin_shape *s, int32
     return measured_leaf(r, s, number);
 }
 
-/* Whether each position of a sample is asked for. */
+/* Whether the positions of all samples are asked. */
 static inline bool is_streamed(const run *r, int32_t index)
 {
     return r->home->monitor->measures_positions && (r->part->plan->captured == 0)
            && (index < r->part->plan->requirements);
 }
 
-/* Whether what is measured has to be followed though nothing is asked for. */
+/* Whether leaves have to be read even while no position is asked. */
 static inline bool is_kept_up(const run *r, int32_t index)
 {
     return (shape_of(r, index)->plan->looks_back != 0) || is_streamed(r, index);
 }
 
-/* Whether its attempts begin at the end: the last position may be asked for when all is over. */
+/* Whether attempts begin at the end: then the last position may be asked after the trace. */
 static inline bool awaits_the_end(const run *r, int32_t index)
 {
     return r->part->judges[index].trigger < 0;
 }
 
-/* Put a gauge to work: the leaves are known up to a position, and time has come to an instant. */
+/* Begin a step: leaves are known up to a position, and time has reached an instant. */
 static inline gauging *begin_gauging(const run *r, int32_t index, int64_t now, int64_t reached)
 {
     measuring *q = &r->margins[index];
@@ -235,7 +235,7 @@ bool room_for_figure(rv_monitor *m);
 void margins_cut(run *r, int32_t index, int64_t t);
 rv_margin as_reported(const rv_monitor *m, const rv_margin *figure, int32_t record);
 
-/* The place of another figure, where it stays until it is taken; NULL: there is none. */
+/* A place for another figure; NULL: memory is short. */
 static inline rv_margin *figure_found(rv_monitor *m, int32_t record)
 {
     margin_results *s = &m->margins;
