@@ -161,13 +161,18 @@ class _Pool:
             return
         for future, (number, task) in [*self._tasks.items()]:
             since, worker = self._begun.get(number, (time.monotonic(), ""))
-            if time.monotonic() - since > self._work.timeout_s and not future.done():
-                del self._tasks[future]
-                future.cancel(force=True)
+            if time.monotonic() - since <= self._work.timeout_s or future.done():
+                continue
+            if worker not in self._client.nthreads():  # lost: the task waits for another
+                del self._begun[number]
+                continue
+            del self._tasks[future]
+            future.cancel(force=True)
+            with suppress(KeyError):  # Dask's, of a worker that was lost just now
                 self._client.restart_workers([worker], raise_for_error=False)
-                self._lose(
-                    number, task, f"it took more than {self._work.timeout_s:g} s", timed_out=True
-                )
+            self._lose(
+                number, task, f"it took more than {self._work.timeout_s:g} s", timed_out=True
+            )
 
     def _lose(self, number: int, task: bytes, why: str, *, timed_out: bool) -> None:
         if self._work.instead is None:
