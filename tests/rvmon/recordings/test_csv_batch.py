@@ -98,6 +98,15 @@ def of_pieces(path: Path):
             yield piece
 
 
+@pytest.mark.parametrize("stamp", ["5", "+5", "-5", "05", "5.", "+5.", "5.0", "5e0", "5.e0", "5E3"])
+def test_nanoseconds_are_whole_in_columns_as_in_rows(tmp_path, stamp):
+    """Digits behind a sign: neither a point nor an exponent, whatever number they make."""
+    (tmp_path / "a.csv").write_text(f"t_ns,p\n-9,1\n{stamp},1\n900,0\n")
+    found = read(of_pieces(tmp_path / "a.csv"))
+    assert found == read(samples_of_csv(SPEC, tmp_path / "a.csv"))
+    assert (len(found) == 3) == stamp.lstrip("+-").isdigit()
+
+
 @pytest.mark.law
 def test_columns_say_what_rows_say(tmp_path, monkeypatch):
     for seed in range(100):

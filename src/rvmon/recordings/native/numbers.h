@@ -63,7 +63,8 @@ typedef struct {
     int32_t behind;   /* digits behind the point */
     int32_t exponent; /* as written */
     bool is_negative;
-    bool is_long; /* it has more digits than `mantissa` holds */
+    bool is_long;  /* it has more digits than `mantissa` holds */
+    bool is_whole; /* nothing but digits behind its sign, so no point either */
 } decimal;
 
 static inline bool is_digit(char c)
@@ -140,6 +141,7 @@ static inline const char *decimal_at(const char *from, const char *to, decimal *
     d->exponent = 0;
     at = digits_at_once(first, to, &d->mantissa);
     digits = at - first;
+    d->is_whole = (at == to) || ((*at != '.') && ((*at | 32) != 'e'));
     if ((at < to) && (*at == '.')) {
         const char *point = at;
         at = digits_at_once(at + 1, to, &d->mantissa);
@@ -206,7 +208,7 @@ static inline int whole_of(const decimal *d, uint64_t most, csv_number *made)
 static inline int stamp_of(const decimal *d, int32_t places, csv_number *made)
 {
     uint64_t ticks = d->mantissa;
-    if (d->is_long || (d->exponent != 0) || ((places == 0) && (d->behind > 0))) {
+    if (d->is_long || (d->exponent != 0) || ((places == 0) && !d->is_whole)) {
         return CSV_ODD;
     }
     if (d->behind < places) {

@@ -165,6 +165,7 @@ static void read_wholes(const csv_reader *r, const column *c, int32_t places, st
         const csv_cell found = cell_at(s, ends);
         short_decimal d;
         if (short_of(found.from, found.to, &d) && (d.behind <= places)
+            && (found.to[-1] != '.') /* digits alone are nanoseconds */
             && (d.mantissa <= MOST_TICKS[places - d.behind])) {
             const int64_t whole = (int64_t)(d.mantissa * WHOLE_POWERS[places - d.behind]);
             c->numbers[row].whole = d.is_negative ? -whole : whole;
