@@ -13,7 +13,6 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
 from pathlib import Path
-from typing import Any
 
 from fuzz.timed_damage import survives
 from tests.rvmon.recordings.shop import SHOP
@@ -23,7 +22,7 @@ from rvmon.diagnostics import render_full
 from rvmon.errors import ModelError, RvmonError, SnapshotError, SpecError
 from rvmon.language.formatter import format_text
 from rvmon.recordings.source import Source
-from rvmon.trace.sample import Sample
+from rvmon.trace.sample import Trace
 
 CORPUS = Path(__file__).with_name("corpus")
 
@@ -201,19 +200,17 @@ def recording(data: bytes) -> str:
         return "nothing"
     ending, time = ENDS[data[0] % 2], TIMES[data[0] // 2 % 3]
     path = _file(f"r{ending}", data[1:])
-    found = [_told(time, path, read) for read in (iter, _sample_by_sample)]
+    found = [_told(time, path, held=held) for held in (False, True)]
     assert found[0] == found[1], f"columns say\n{found[0]}\nand samples\n{found[1]}"
     return "judged" if found[0] is not None else "refused"
 
 
-def _sample_by_sample(recording: Any) -> Iterator[Sample]:
-    return iter(recording)
-
-
-def _told(time: str, path: Path, read: Callable[[Any], Iterator[Sample]]) -> object:
+def _told(time: str, path: Path, *, held: bool) -> object:
+    """The verdicts on a file, which is judged by columns, or by samples if it is held as such."""
     try:
         spec = _recorded(time)
-        report = spec.judge(Source(spec.recording(path), read=read))
+        read = spec.recording(path)
+        report = spec.judge(Source(Trace(tuple(read), read.names, read.end) if held else read))
     except RvmonError:
         return None
     attempts: dict[str, list[object]] = {name: [] for name in report.verdicts}

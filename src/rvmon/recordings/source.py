@@ -33,14 +33,12 @@ class Source:
             `rvmon.recordings.recording.FileRecording`.
         until: the end of the trace in ticks, if it is not its last sample.
         is_cut: whether what comes after that end is left out.
-        read: gives the samples of the recording.
         shown: passes samples and batches on as they are read, with a progress bar.
     """
 
     recording: Recording
     until: int | None = None
     is_cut: bool = False
-    read: Callable[[Any], Iterable[Sample]] = iter
     shown: Callable[[Iterator[Any]], Iterator[Any]] = iter
 
     @property
@@ -60,7 +58,7 @@ class Source:
 
     def samples(self) -> Iterator[Sample]:
         """The samples; what lies behind the end is not read, and may be broken."""
-        until, samples = self.until, self.shown(iter(self.read(self.recording)))
+        until, samples = self.until, self.shown(iter(self.recording))
         if until is None or not self.is_cut:
             return samples
         return takewhile(lambda sample: sample.t <= until, samples)
@@ -68,7 +66,7 @@ class Source:
     def pieces(self) -> Iterator[Batch | Sample]:
         """The recording in order: rows as columns where it has such, else samples."""
         read = getattr(self.recording, "pieces", None)
-        if read is None or self.read is not iter:
+        if read is None:
             yield from self.samples()
             return
         pieces, is_cut = self.shown(read()), self.is_cut and self.until is not None

@@ -17,7 +17,7 @@ from rvmon.recordings.source import Source
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
-from rvmon.trace.sample import HealthKind
+from rvmon.trace.sample import HealthKind, Trace
 
 NAN = float("nan")
 BASE = """
@@ -84,10 +84,10 @@ def test_every_door_is_judged_as_its_samples_are(seed, tmp_path):
             found[door] = told(spec, trace, **arguments)
             if seed % 4 == 0:
                 recording = spec.recording(trace, allow_missing=True, **arguments)
-                one_by_one = Source(recording, read=lambda samples: (one for one in samples))
+                one_by_one = Trace(tuple(recording), recording.names, recording.end)
                 with in_pieces(200):
                     report = judged(spec, trace, **arguments)
-                assert bare(report) == bare(spec.judge(one_by_one)), door
+                assert bare(report) == bare(spec.judge(Source(one_by_one))), door
         assert len({*found.values()}) == (1 if content.rows else 0)
         assert all(text.startswith("{") for text in found.values())
 
