@@ -176,9 +176,10 @@ def judge_robustness(seed: int, profile: Profile, traces: TraceProfile, numbers:
             for way, measured in WAYS.items():
                 differs = partial(_robustness_differs, measured)
                 counts[f"measured by {way}"] += bool(case.samples)
-                if differs(case):
-                    lines = [f"{way}, number {number}", *shrunk_case(drawn, trace, place, differs)]
-                    texts.append("\n".join(lines))
+                if wrong := differs(case):
+                    # The first of a part is shrunk, the others are shown as they are.
+                    shown = wrong if texts else shrunk_case(drawn, trace, place, differs)
+                    texts.append("\n".join([f"{way}, number {number}", *shown]))
     return counts, texts
 
 

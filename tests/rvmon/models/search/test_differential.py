@@ -3,7 +3,7 @@
 import pytest
 from tests.tools.timed_ctl import holds_at_start
 from tests.tools.timed_generate import random_model
-from tests.tools.timed_regions import TooManyRegionsError, shows
+from tests.tools.timed_regions import Steps, TooManyRegionsError, shows
 
 from rvmon.models.language.load import loads_network
 from rvmon.models.search.budget import Policy
@@ -15,12 +15,12 @@ pytestmark = pytest.mark.law
 @pytest.mark.parametrize("first", range(0, 30, 6))
 def test_answers_agree_and_runs_are_runs(first):
     for seed in range(first, first + 6):
-        network = loads_network(random_model(seed))
+        network, steps = loads_network(random_model(seed)), Steps()
         for query in network.queries:
             outcome = verify(network, query, policy=tuple(Policy)[seed % 3])
             assert outcome.run is None or shows(network, outcome), (seed, query.text)
             try:
-                expected = holds_at_start(network, query, limit=400)
+                expected = holds_at_start(network, query, 400, steps)
             except TooManyRegionsError:
                 continue
             assert outcome.holds == expected, (seed, query.text)

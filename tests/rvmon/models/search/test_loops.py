@@ -48,7 +48,7 @@ def random_loop(random):
 @pytest.mark.slow
 def test_it_is_what_the_rounds_written_out_say():
     random, seen = Random(1), []
-    for _ in range(1500):
+    for _ in range(700):
         loop = random_loop(random)
         fewer, more = longest(loop, 4), longest(loop, 16)
         if more is None or fewer == inf:
