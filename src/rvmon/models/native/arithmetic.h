@@ -1,4 +1,4 @@
-/* Numbers of programs: 64 bits, and false where there is no result. */
+/* Arithmetic of programs in 64 bits; false where there is no result. */
 #ifndef RVMON_ZONES_ARITHMETIC_H
 #define RVMON_ZONES_ARITHMETIC_H
 
@@ -42,7 +42,7 @@ static inline bool within(int64_t x, int64_t first, int64_t count)
     return (x >= first) && (x - first < count);
 }
 
-/* Two operands to one. */
+/* A binary operation. */
 static bool combine(int32_t op, int64_t a, int64_t b, int64_t *to)
 {
     switch (op) {

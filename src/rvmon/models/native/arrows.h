@@ -1,15 +1,15 @@
-/* The moves between all discrete states, whatever the clocks say, to be gone back through. */
+/* The moves between all discrete states, without regard to clocks, for backward search. */
 #ifndef RVMON_ZONES_ARROWS_H
 #define RVMON_ZONES_ARROWS_H
 
 #include "unions.h"
 
-/* Note a move, whatever the clocks say, with its target: its guard with the source's invariant. */
+/* Store a move with its target, and its guard intersected with the invariant of its source. */
 static bool note_move(engine *h, walk *w, const int32_t *edges, int n)
 {
     const uint32_t had = h->into_room;
     uint32_t target;
-    labour(h);
+    count_work(h);
     universe(w->zone, h->dim);
     if (!cut_guards(h, w, w->zone, edges, n)
         || !cut_invariant(h, w->zone, &w->here)) {
@@ -17,7 +17,7 @@ static bool note_move(engine *h, walk *w, const int32_t *edges, int n)
     }
     if (!apply(h, w, edges, n)) {
         const bool numbers_fit = h->failed;
-        h->failed = false; /* the search forwards tells it, if it can happen */
+        h->failed = false; /* reported by the forward search, if it can happen */
         return numbers_fit && runs(h);
     }
     if (!invariant_data_holds(h, &w->there)) {
@@ -42,7 +42,7 @@ static bool note_move(engine *h, walk *w, const int32_t *edges, int n)
     return runs(h);
 }
 
-/* All discrete states that moves lead to, whatever the clocks say. */
+/* All discrete states reachable without regard to clocks. */
 static void find_moves(engine *h)
 {
     walk *w = &h->out;
@@ -64,7 +64,7 @@ static void find_moves(engine *h)
     h->from_node = NONE;
 }
 
-/* The valuations from which a move leads into a zone of its target, in place; false if there are none. */
+/* The valuations from which a move leads into a zone of its target, in place; false if empty. */
 static bool back(engine *h, uint32_t m, bound *z)
 {
     const int32_t *resets = h->pool + h->arrows[m].resets;

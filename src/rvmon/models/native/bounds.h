@@ -12,7 +12,7 @@ static inline bound sum(bound a, bound b)
     return (s > FAR) ? UNBOUNDED : s;
 }
 
-/* The bound the other way round that holds where one does not. */
+/* The negation of a bound, as a bound on the opposite difference. */
 static inline bound negated(bound b)
 {
     return 1 - b;
@@ -23,7 +23,7 @@ static inline cut opposite(cut c)
     return (cut){c.y, c.x, negated(c.b)};
 }
 
-/* As answers have it. */
+/* A bound as answers encode it. */
 static inline int64_t number_of_bound(bound b)
 {
     return (b < UNBOUNDED) ? (int64_t)b : INT64_MAX;
@@ -34,7 +34,7 @@ static void copy_zone(const engine *h, bound *to, const bound *from)
     (void)memcpy(to, from, h->zone_bytes);
 }
 
-/* Row by row: the least of a row and another behind a bound. */
+/* row = min(row, bound + other), entry by entry. */
 static inline void tighten(bound *restrict row, const bound *restrict other, bound b, int d)
 {
     int j;
@@ -45,7 +45,7 @@ static inline void tighten(bound *restrict row, const bound *restrict other, bou
     }
 }
 
-/* Cut a zone by clock y - clock x; false if nothing is left. */
+/* Constrain clock y - clock x; false if the zone becomes empty. */
 static bool constrain(bound *z, int d, int x, int y, bound b)
 {
     const bound *row = z + y * d;
@@ -100,8 +100,8 @@ static void delay(bound *z, int d)
     }
 }
 
-/* Let time pass while all n upper bounds hold. One pass closes the zone: nothing else bounds the
- * clocks from above then, so that a tightest path takes one of the new bounds. */
+/* Let time pass while all n upper bounds hold. One pass closes the zone: the new bounds are the only
+ * upper bounds of clocks, so that each tightest path uses one of them. */
 static bool delay_within(bound *z, int d, bound *top, const int32_t *clocks, const bound *bounds,
                          int n)
 {
@@ -177,7 +177,7 @@ static void close_zone(bound *z, int d)
     }
 }
 
-/* Cut a zone by another; false if they do not meet. */
+/* Intersect a zone with another; false if they are disjoint. */
 static bool cut_zone(const engine *h, bound *z, const bound *other)
 {
     int e;
@@ -200,7 +200,7 @@ static bool is_within(const bound *z, const bound *other, int entries)
     return true;
 }
 
-/* Whether all entries are small enough to go on with; if not the search ends. */
+/* Whether all entries are below `safe`; if not, the search ends. */
 static bool fits(engine *h, const bound *z)
 {
     int e;
@@ -215,8 +215,8 @@ static bool fits(engine *h, const bound *z)
     return true;
 }
 
-/* Extra_M: what lies above the largest numbers is blurred, up to bisimulation; a clock without any is
- * free. Source: Behrmann, Bouyer, Larsen, Pelanek, Lower and Upper Bounds in Zone-Based Abstractions
+/* Extra_M: bounds above the greatest constants are dropped, up to bisimulation; a clock without constants
+ * is free. Source: Behrmann, Bouyer, Larsen, Pelanek, Lower and Upper Bounds in Zone-Based Abstractions
  * of Timed Automata, 2006, section 3. */
 static void blur(engine *h, bound *z)
 {

@@ -1,10 +1,10 @@
-/* Checks the programs of a plan: jumps and calls lead to where they may, and the stack suffices. */
+/* Validates the programs of a plan: targets of jumps and calls, and the depth of the stack. */
 #ifndef RVMON_ZONES_CODE_CHECK_H
 #define RVMON_ZONES_CODE_CHECK_H
 
 #include "plan.h"
 
-/* Operands of each op, and how it changes the depth of the stack where it goes on behind itself. */
+/* By op: its operands, and its effect on the depth of the stack at the next instruction. */
 static const struct {
     int8_t operands;
     int8_t needs;
@@ -31,9 +31,9 @@ enum { UNSEEN = -1, NO_WAY = -2 };
 
 typedef struct {
     const int32_t *plan;
-    int16_t *depth;   /* of the stack, where jumps lead */
-    uint8_t *starts;  /* where programs begin: one more than how deep they call others */
-    int32_t begin;    /* of the program at hand */
+    int16_t *depth;   /* of the stack, at targets of jumps */
+    uint8_t *starts;  /* at starts of programs: one more than their depth of calls */
+    int32_t begin;    /* of the present program */
 } checker;
 
 static bool within(int64_t first, int64_t count, int64_t all)
@@ -81,7 +81,7 @@ static bool operands_fit(const checker *c, int32_t op, const int32_t *operand)
     }
 }
 
-/* A jump leads forwards, to one depth of the stack. */
+/* A jump goes forwards; all jumps to a target have the same depth of the stack. */
 static bool jumps(checker *c, int32_t from, int32_t to, int depth)
 {
     if ((to <= from) || (to >= rows(c, AT_CODE))) {
@@ -93,8 +93,8 @@ static bool jumps(checker *c, int32_t from, int32_t to, int depth)
     return c->depth[to] == depth;
 }
 
-/* A call goes to a program before this one, so that none calls itself; a loop goes back to where it
- * begins, with nothing on the stack. */
+/* A call goes to an earlier program, so that none is recursive; a loop goes back to its head, with an
+ * empty stack. */
 static bool flows(checker *c, int32_t op, int32_t at, int32_t to, int depth)
 {
     if (op == OP_HEAD) {
@@ -116,7 +116,7 @@ static bool flows(checker *c, int32_t op, int32_t at, int32_t to, int depth)
     return true;
 }
 
-/* All programs, one behind the other. */
+/* All programs, one after the other. */
 static bool programs_fit(checker *c)
 {
     const int32_t *code = plan_rows(c->plan, AT_CODE);

@@ -1,4 +1,4 @@
-/* A search: what it holds, and its memory. Compiled once for bounds of 32 bits, once for 64. */
+/* The state of a search, and its memory. Compiled twice: for bounds of 32 bits and of 64. */
 #ifndef RVMON_ZONES_ENGINE_H
 #define RVMON_ZONES_ENGINE_H
 
@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A bound: 2c + 1 for `<= c`, 2c for `< c`, so that sums need no care for strictness. Entries of
- * zones that are kept stay below `safe`, so that no path through the entries of some zones and
- * guards, each clock once, gets near UNBOUNDED. */
+/* A bound: 2c + 1 for `<= c`, 2c for `< c`, so that strictness needs no case of its own in sums.
+ * Entries of stored zones stay below `safe`, so that no path through entries of zones and guards that
+ * visits each clock once comes near UNBOUNDED. */
 #ifdef WIDE
 typedef int64_t bound;
 #define UNBOUNDED (((bound)1 << 60) | 1)
@@ -24,8 +24,8 @@ typedef int32_t bound;
 #define NONE UINT32_MAX
 #define ZONES_IN_CHUNK 256
 
-/* A symbolic state: the one before, its discrete state, the next of that, its zone, and which step led
- * here: the number of a move, or of what else a search does, with the kind in the upper bits. */
+/* A symbolic state: its parent, its discrete state, the next node of that state, its zone, and the step
+ * that led here: the number of a move, a crossing or a mark, with the kind in the upper bits. */
 typedef struct {
     uint32_t parent, state, next, zone, link;
 } node;
@@ -50,14 +50,14 @@ typedef struct {
     int32_t low;
 } field;
 
-/* A move between states: the next one into the same, its resets in a pool; its guard stands in a
- * federation at the same place. The moves out of a state stand together. */
+/* A move between discrete states: the next move into the same target, its resets in a pool; its guard is
+ * in a federation, at the same index. The moves out of a state are adjacent. */
 typedef struct {
     uint32_t from, to, next, resets;
 } arrow;
 
-/* A frame of a search in depth: a node, the link by which it was entered, its next successor, the end
- * of them. */
+/* A frame of the depth-first search: a node, the link by which it was entered, its next successor, the
+ * end of its successors. */
 typedef struct {
     uint32_t node, link, next, end;
 } frame;
@@ -66,8 +66,7 @@ typedef struct {
     uint32_t node, link, flags;
 } successor;
 
-/* A component that is not closed: the number of its first node, what is met in it, and by the edge
- * into it. */
+/* An open component: the number of its first node, the flags met in it, and those of the edge into it. */
 typedef struct {
     uint32_t number, flags, in;
 } root;
@@ -76,13 +75,13 @@ typedef struct {
     uint32_t node, parent, link, flags;
 } step;
 
-/* Clock y less clock x is at most b. */
+/* A constraint: clock y - clock x is at most b. */
 typedef struct {
     int32_t x, y;
     bound b;
 } cut;
 
-/* What must not hold: one of several bounds has to fail. */
+/* A conjunction of bounds that must not hold: one of them has to fail. */
 typedef struct {
     uint32_t first, count;
     int32_t rank;
@@ -99,28 +98,28 @@ typedef struct {
     int32_t *places, *values;
 } spot;
 
-/* Where moves start and where the one at hand leads. */
+/* The source of moves, and the target of the present one. */
 typedef struct walk {
     spot here, there;
     bound *source, *zone;
     int32_t *resets; /* clock, value */
     int32_t reset_count;
     int32_t *chosen, *group, *first, *pick;
-    int32_t *together, *watching; /* a move with an edge of the watcher; those that can go along */
-    denials skipped, blockers; /* guards of receivers left out; what moves of some priority need */
+    int32_t *together, *watching; /* a move with an edge of the watcher; the edges that can join it */
+    denials skipped, blockers; /* guards of receivers left out; conditions of moves by priority */
     uint32_t blocker_count, *against, against_room, against_count, *skip, skip_room;
-    bound *limits; /* what the invariant says */
+    bound *limits; /* the bounds of the invariant */
     uint8_t *committed;
     bool delays;
     uint32_t ordinal;
 } walk;
 
-/* Numbers by their hashes, NONE where there is none. */
+/* A hash table of numbers; NONE: an empty slot. */
 typedef struct {
     uint32_t *at, size;
 } table;
 
-/* Before each block of memory that a search has, by which all are given back at the end. */
+/* The header of each memory block of a search: a list, by which all are freed at the end. */
 typedef struct held {
     struct held *next, **back;
 } held;
@@ -137,8 +136,8 @@ typedef struct {
     uint32_t words;
     search_state state;
     bool failed;
-    struct walk *sets; /* what a program may change */
-    int32_t rounds;    /* of its loops */
+    struct walk *sets; /* where a program writes */
+    int32_t rounds;    /* of loops of programs */
     uint64_t bytes, peak, work, visited, stored;
     field *fields;
     /* discrete states */
@@ -155,25 +154,25 @@ typedef struct {
     entry *heap;
     uint32_t heap_count, heap_room, order;
     double price;
-    /* limits in the locations at hand */
+    /* limits in the present locations */
     bound *lower, *upper;
     int32_t *lowers, *uppers, lower_count, upper_count;
     int32_t *test_entries, *tightest;
     bound *test_least, *tightest_bound, *top, *spare, *inside, *copy;
-    walk out, look; /* the second looks for deadlocks while the first goes over moves */
+    walk out, look; /* `look` looks for deadlocks while `out` enumerates moves */
     federation alive, dead, rest;
     uint32_t from_node, link, found;
-    int32_t *step_edges, step_edge_count, *failed_edges; /* of a move that failed, or is found again */
-    numbers step_bounds;                                 /* of what keeps the latter back, what fails */
+    int32_t *step_edges, step_edge_count, *failed_edges; /* of a move that failed, or that is reconstructed */
+    numbers step_bounds;                                 /* the bounds by which nothing blocks the latter */
     uint32_t wanted;
-    numbers crossings, last_crossings; /* at hand; of the end that was found */
+    numbers crossings, last_crossings; /* present ones; those of the end that was found */
     numbers path;
-    int64_t *spans; /* by place of the watcher: least and largest value of the last clock */
+    int64_t *spans; /* by location of the watcher: least and greatest value of the last clock */
     federation parts;
     int32_t ending, loop;
     uint32_t *triggers, trigger_count, trigger_room;
     /* staying inside */
-    int32_t phase; /* 0: before; 1: inside */
+    int32_t phase; /* 0: on the way to the goal; 1: inside */
     uint8_t *colours, *been;
     bound *between;
     table exact;
@@ -198,7 +197,7 @@ typedef struct {
     int32_t *pool;
     uint32_t pool_count, pool_room;
     federation guards;
-    federation **tables; /* by row and state, and two more */
+    federation **tables; /* by row and state, and two auxiliary ones */
     uint32_t *table_rooms;
     federation pending;
     uint32_t *whose, whose_count, whose_room;
@@ -206,8 +205,8 @@ typedef struct {
 
 /* --- memory ------------------------------------------------------------------------------------ */
 
-/* More room for rows, at least so many; if there is none the old ones stay, and the search ends.
- * The first ones are zeros. */
+/* Room for at least so many rows; new arrays are zeros. Without memory the old rows stay, and the search
+ * ends. */
 static void *enlarge(engine *h, void *old, uint32_t *room, uint64_t wanted, size_t each)
 {
     uint64_t more = (uint64_t)*room + *room / 2 + 16;
@@ -238,7 +237,7 @@ static void *enlarge(engine *h, void *old, uint32_t *room, uint64_t wanted, size
     return made + 1;
 }
 
-/* Give rows back before the end. */
+/* Free rows before the end of the search. */
 static void give_back(engine *h, void *rows, uint32_t room, size_t each)
 {
     if (rows != NULL) {
@@ -273,8 +272,8 @@ static bool put(engine *h, numbers *to, int32_t number)
     return true;
 }
 
-/* Count work, and ask now and then whether to go on. */
-static void labour(engine *h)
+/* Count work, and ask the caller from time to time whether to go on. */
+static void count_work(engine *h)
 {
     h->work += (uint64_t)h->entries + 16;
     if (h->work >= (UINT64_C(1) << 18)) {
@@ -294,7 +293,7 @@ static void visit(engine *h)
     if ((h->visited > h->from->most_states) && (h->state == SEARCH_RUNS)) {
         h->state = SEARCH_STOPPED;
     }
-    labour(h);
+    count_work(h);
 }
 
 static bool runs(const engine *h)

@@ -1,7 +1,7 @@
-/* The network as runs see it that never leave a formula.
+/* The network restricted to a formula that runs never leave.
  *
- * A formula with clocks holds on a union of convex pieces in each discrete state; a run stays inside
- * one piece while it waits there, and may cross to another while time passes. */
+ * A formula with clocks holds on a union of convex pieces in each discrete state; while time passes a run
+ * stays in one piece, or crosses to another. */
 #ifndef RVMON_ZONES_INSIDE_H
 #define RVMON_ZONES_INSIDE_H
 
@@ -17,7 +17,7 @@ static int piece_of(const engine *h, uint32_t n)
     return (int)mark_of(h, h->nodes[n].state) - 1;
 }
 
-/* Whether a discrete state has a piece: those whose condition holds, or one that is everything. */
+/* Whether a discrete state has a piece: its condition holds, or it is the only piece, of all valuations. */
 static bool has_piece(engine *h, int k, const spot *here)
 {
     int i;
@@ -30,7 +30,7 @@ static bool has_piece(engine *h, int k, const spot *here)
     return holds(h, piece_at(h, k)[ROW_CONDITION], here) && !h->failed;
 }
 
-/* A piece as it is, or with the instants at which time leaves it, or behind which it enters it. */
+/* A piece as it is, or closed by the instants at which time leaves it, or after which time enters it. */
 enum { AS_IS, UNTIL, SINCE };
 
 static bool cut_piece(engine *h, bound *z, int k, int how, const spot *here)
@@ -52,8 +52,8 @@ static bool cut_piece(engine *h, bound *z, int k, int how, const spot *here)
     return true;
 }
 
-/* What time makes of a zone that leaves piece k for piece m: with the last instant of the one, or
- * with the first of the other, either of which may be missing. */
+/* Let a zone cross from piece k to piece m as time passes: at the last instant of the one, or at the
+ * first of the other, whichever exists. */
 static bool cross(engine *h, bound *to, const bound *z, int k, int m, bool since,
                   const spot *here)
 {
@@ -68,9 +68,9 @@ static bool cross(engine *h, bound *to, const bound *z, int k, int m, bool since
     return cut_invariant(h, to, here) && cut_piece(h, to, m, AS_IS, here);
 }
 
-/* --- the search for late answers keeps what no other stands for ----------------------------------- */
+/* --- the search for late responses, with subsumption --------------------------------------------- */
 
-/* Keep a state whose time counts; found if the bound is over there, or just met while time goes on. */
+/* Store a state whose time counts; found if the bound is exceeded there, or reached while time goes on. */
 static void keep_late(engine *h, uint32_t state, const bound *z, int k, bool delays,
                       const spot *here)
 {
@@ -105,8 +105,8 @@ static void keep_late(engine *h, uint32_t state, const bound *z, int k, bool del
     (void)wait_for(h, n);
 }
 
-/* --- the search for ways to stay distinguishes exactly, since a loop of larger zones need not be a
- * loop of runs ------------------------------------------------------------------------------------- */
+/* --- the search for runs that stay, without subsumption: a loop of larger zones need not be a loop of
+ * runs ---------------------------------------------------------------------------------------------- */
 
 static uint32_t hash_inside(const engine *h, uint32_t state, const bound *z)
 {
@@ -118,7 +118,7 @@ static uint32_t hash_node(const engine *h, uint32_t n)
     return hash_inside(h, h->nodes[n].state, zone_of(h, n));
 }
 
-/* This symbolic state, new or met before, as a successor of the one at hand. */
+/* Add a symbolic state, new or known, as a successor of the present one. */
 static void succeed(engine *h, uint32_t state, const bound *z)
 {
     const size_t bytes = h->zone_bytes;
@@ -159,11 +159,11 @@ static bool settle_in_piece(engine *h, bound *z, int k, bool delays, const spot 
     if (!delays) {
         return true;
     }
-    delay(z, h->dim); /* a piece is convex: who starts and ends a wait in it never left it */
+    delay(z, h->dim); /* a piece is convex: a delay that starts and ends in it never leaves it */
     return cut_invariant(h, z, here) && cut_piece(h, z, k, AS_IS, here);
 }
 
-/* A zone just reached, in each piece with the delays that stay in it. */
+/* Split a reached zone into pieces, each with the delays that stay in it. */
 static void enter(engine *h, const bound *z, const spot *here)
 {
     const bool delays = may_delay(h, here);

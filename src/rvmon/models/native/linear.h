@@ -1,11 +1,11 @@
 /* Runs that a generalised Buechi automaton accepts: those of a formula of LTL, without next.
  *
- * The pieces are the automaton's states, each with what holds there; a run takes an arc of it with
- * each move, and while time passes. That a piece lasts while what it does not speak of changes is
- * right for the automata of such formulas. Strongly connected components are found depth first; one
- * counts if it meets all sets of acceptance and makes moves, for else nothing ever happens there:
- * runs that end, idle or stuck, are looked for by themselves. Where the plan has a timer, time passes
- * on for ever where infinitely many moves find that a unit of time has passed.
+ * The pieces are the states of the automaton, each with the condition that holds there; a run takes an
+ * arc with each move, and while time passes. A piece lasts through moves that do not change its
+ * condition, which is right for automata of formulas without next. Strongly connected components are
+ * found depth first; one is accepting if it meets all acceptance sets and has moves. Runs with finitely
+ * many moves, idle or stuck, are searched separately (rest.h). If the plan has a timer, time diverges
+ * where infinitely many moves find that a unit of time has passed.
  *
  * Source: Couvreur, On-the-Fly Verification of Linear Temporal Logic, FM 1999; Alur, Courcoubetis,
  * Dill, Model-Checking in Dense Real-Time, 1993; Tripakis, Yovine, Bouajjani, Checking Timed Buechi
@@ -22,7 +22,7 @@ static uint32_t flags_of(const engine *h, uint32_t n)
 
 /* --- successors ------------------------------------------------------------------------------------- */
 
-/* A zone inside a piece, as a successor of the node at hand. */
+/* Add a zone inside a piece as a successor of the present node. */
 static void succeed_in(engine *h, bound *z, int k, uint32_t flags, const spot *here)
 {
     const uint32_t before = h->successor_count;
@@ -38,7 +38,7 @@ static void succeed_in(engine *h, bound *z, int k, uint32_t flags, const spot *h
     }
 }
 
-/* A zone behind a move, or at the start, in all pieces that the automaton goes on to. */
+/* Add a zone after a move, or at the start, in all pieces to which the automaton can go. */
 static void enter_way(engine *h, const bound *z, const spot *here)
 {
     const bool delays = may_delay(h, here);
@@ -69,7 +69,7 @@ static void enter_way(engine *h, const bound *z, const spot *here)
     }
 }
 
-/* The successors of a node: behind moves, and as time passes. */
+/* The successors of a node: after moves, and as time passes. */
 static void expand_way(engine *h, uint32_t n)
 {
     walk *w = &h->out;
@@ -100,8 +100,8 @@ static bool in_component(const engine *h, uint32_t n, uint32_t rank)
     return (n < h->rank_room) && (h->rank[n] >= rank) && (h->rank[n] != CLOSED);
 }
 
-/* Tell a shortest way inside a component, from a node to where a flag is given that is wanted, or if
- * none is to the root. What is wanted of it is taken off; where it leads, or NONE. */
+/* Append a shortest path inside a component, from a node to an edge with a wanted flag, or to the root if
+ * no flag is left. Its flags are removed from the wanted ones; returns its last node, or NONE. */
 static uint32_t tell_part(engine *h, uint32_t from, uint32_t root_node, uint32_t *wanted)
 {
     const uint32_t rank = h->rank[root_node];
@@ -136,7 +136,7 @@ static uint32_t tell_part(engine *h, uint32_t from, uint32_t root_node, uint32_t
     if (last == NONE) {
         return NONE;
     }
-    /* turn the chain round, then tell it */
+    /* reverse the chain, then append it */
     for (at = last, i = NONE; at != NONE;) {
         const uint32_t parent = h->trail[at].parent;
         h->trail[at].parent = i;
@@ -151,7 +151,7 @@ static uint32_t tell_part(engine *h, uint32_t from, uint32_t root_node, uint32_t
     return h->trail[last].node;
 }
 
-/* A component counts: the way to it, and one round in it that meets all that is wanted. */
+/* An accepting component: append the path to it, and a loop in it with all wanted flags. */
 static void tell_round(engine *h, uint32_t rank)
 {
     uint32_t wanted = wanted_flags(h);
@@ -177,7 +177,7 @@ static void tell_round(engine *h, uint32_t rank)
     }
 }
 
-/* Go on from a node that is met for the first time. */
+/* Enter a node for the first time. */
 static void open_node(engine *h, successor s)
 {
     const uint32_t had = h->rank_room;
@@ -207,7 +207,7 @@ static void open_node(engine *h, successor s)
     h->frames[h->frame_count - 1].end = h->successor_count;
 }
 
-/* Close the component of a node that is left, if it is the root of one. */
+/* Leave a node; if it is the root of a component, close that. */
 static void leave_way(engine *h, uint32_t n)
 {
     const uint32_t rank = h->rank[n];
@@ -219,7 +219,7 @@ static void leave_way(engine *h, uint32_t n)
     }
 }
 
-/* An edge into the way: what lies between is one component; found, if that counts. */
+/* An edge to a node on the stack merges the components between; found, if the result is accepting. */
 static void merge(engine *h, successor s)
 {
     const uint32_t wanted = wanted_flags(h);
@@ -246,7 +246,7 @@ static void meet_way(engine *h, successor s)
     }
 }
 
-/* Search for a run that the automaton accepts, from the zone in `out`. */
+/* Search for an accepted run from the zone in `out`. */
 static void look_for_run(engine *h)
 {
     int32_t k;

@@ -1,4 +1,4 @@
-/* rvmon.native._zones for CPython: one function, which keeps nothing. */
+/* rvmon.native._zones for CPython: one function, without state. */
 #include "zones.h"
 
 #include "../../core/native/python/python_abi.h"
@@ -13,7 +13,7 @@ typedef struct {
     PyThreadState *thread;
 } callbacks;
 
-/* What a function of Python gives for some arguments, which are given away; -1 if it raised. */
+/* Call a Python function; steals the arguments; returns its integer result, -1 if it raised. */
 static long ask(PyObject *function, PyObject *arguments)
 {
     PyObject *given;
@@ -71,7 +71,7 @@ static PyObject *answered(const answer *found)
         (Py_ssize_t)(2 * found->span_count * sizeof *found->spans));
 }
 
-/* A plan and its costs as their own blocks, aligned, once they are checked; else an exception. */
+/* Copy plan and costs to aligned blocks and validate them; else an exception. */
 static bool taken(const Py_buffer *plan, const Py_buffer *costs, int32_t **numbers_of,
                   double **costs_of)
 {

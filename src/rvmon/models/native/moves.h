@@ -1,8 +1,8 @@
-/* The moves from a discrete state, whatever the clocks say: edges that are taken together.
+/* The moves from a discrete state, without regard to clocks: sets of edges that are taken together.
  *
- * All guards are read before a move; the sender's updates come first, then those of receivers in the
- * order of the automata; while some location is committed, a committed one is left; a broadcast takes
- * along every automaton that can receive; a move waits for those of higher priority. */
+ * All guards are evaluated before a move; the sender's updates come first, then those of receivers in the
+ * order of the automata; while some location is committed, a move has to leave a committed one; a
+ * broadcast includes every automaton that can receive; a move is blocked by those of higher priority. */
 #ifndef RVMON_ZONES_MOVES_H
 #define RVMON_ZONES_MOVES_H
 
@@ -82,7 +82,7 @@ static bool may_delay(engine *h, const spot *here)
     return true;
 }
 
-/* The number of a discrete state with a mark, new or met before; NONE without memory. */
+/* The number of a discrete state with a mark, new or known; NONE without memory. */
 static uint32_t state_of(engine *h, const spot *here, uint32_t mark)
 {
     uint32_t *at;
@@ -94,7 +94,7 @@ static uint32_t state_of(engine *h, const spot *here, uint32_t mark)
     return *at;
 }
 
-/* The edges that may receive, as groups of one automaton each; how many groups. */
+/* Collect the edges that may receive, in groups by automaton; returns the number of groups. */
 static int receivers(engine *h, walk *w, int32_t sender)
 {
     const int32_t *s = edge_at(h, sender);
@@ -121,8 +121,7 @@ static int receivers(engine *h, walk *w, int32_t sender)
     return groups;
 }
 
-/* How many ways a group has to take part: each of its edges, and none if all can be kept back by
- * clocks. */
+/* The number of choices of a group: each of its edges, and none if clocks can disable all of them. */
 static int ways(const engine *h, const walk *w, int g)
 {
     int k;
@@ -134,7 +133,7 @@ static int ways(const engine *h, const walk *w, int g)
     return w->first[g + 1] - w->first[g] + 1;
 }
 
-/* A sender and one edge of each automaton that can receive, in all ways. */
+/* Enumerate a broadcast: the sender with each choice of edges of all automata that can receive. */
 static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink take)
 {
     const int groups = receivers(h, w, sender);
@@ -200,7 +199,7 @@ static bool pairs(engine *h, walk *w, int32_t sender, bool committed, sink take)
     return true;
 }
 
-/* Give all moves from where a walk is to `take`, until that says no; broadcasts come last. */
+/* Call `take` with all moves from the source of a walk, broadcasts last, until it returns false. */
 static bool each_way(engine *h, walk *w, sink take)
 {
     bool committed = false;
@@ -241,7 +240,7 @@ static bool each_way(engine *h, walk *w, sink take)
     return true;
 }
 
-/* The same, without moves for which one of higher priority can be taken. */
+/* The same without moves that one of higher priority blocks. */
 static bool each_move(engine *h, walk *w, sink take)
 {
     drop_denials(&w->blockers);

@@ -1,7 +1,6 @@
-/* Formulas that speak of runs from a state: the valuations of each discrete state that satisfy them,
- * worked out backwards through delays and moves until nothing changes. A row of the tree is worked out
- * after those that it refers to; what has a bound counts the time in the timer, set to 0 and then
- * free.
+/* Nested path formulas: the valuations of each discrete state that satisfy them, computed backwards
+ * through delays and moves to a fixed point. A row of the tree is computed after the rows it refers to; a
+ * row with a bound measures time by the timer, which is set to 0 first and projected away afterwards.
  *
  * Source: Henzinger, Nicollin, Sifakis, Yovine, Symbolic Model Checking for Real-Time Systems, 1994;
  * Bouyer et al., Model Checking Real-Time Systems, 2018, section 3 (backward analysis ends). */
@@ -17,7 +16,7 @@ static const int32_t *tree_row(const engine *h, int32_t row)
     return plan_rows(h->plan, AT_TREE) + (ptrdiff_t)TREE_SIZE * row;
 }
 
-/* A union for each state, all empty; those that were there are given back. */
+/* Empty unions for all states; earlier ones are freed. */
 static federation *clear_table(engine *h, int32_t t)
 {
     uint32_t s;
@@ -70,7 +69,7 @@ static void satisfy(engine *h, int32_t row, uint32_t s, federation *out)
     empty(h, &b);
 }
 
-/* Note from where a delay leads into a zone, as what reaches is to be gone back from. */
+/* Add the valuations from which a delay leads into a zone, and mark the state for the next round. */
 static void note_reaching(engine *h, uint32_t s, const bound *z, const federation *bad,
                           federation *found)
 {
@@ -87,10 +86,10 @@ static void note_reaching(engine *h, uint32_t s, const bound *z, const federatio
     empty(h, &more);
 }
 
-/* From where some run has `left` or `right` all the way to where it has `right`, within the bound. */
+/* The valuations from which some run satisfies `left until right`, within the bound. */
 static void solve_until(engine *h, const int32_t *r, federation *found, federation *bad)
 {
-    bound *z = h->between; /* used by nothing else in this kind of search */
+    bound *z = h->between; /* unused in this kind of search */
     federation good = {0, 0, NULL};
     federation left = {0, 0, NULL};
     uint32_t s;
@@ -130,7 +129,8 @@ static void solve_until(engine *h, const int32_t *r, federation *found, federati
     }
 }
 
-/* From where a move can be taken that leads to where a row holds, or to anywhere: now, or later. */
+/* The valuations from which the next move, now or after a delay, can lead to where a row holds, or
+ * anywhere. */
 static void solve_next(engine *h, int32_t row, uint32_t s, federation *out)
 {
     federation there = {0, 0, NULL};
@@ -157,7 +157,7 @@ static void solve_next(engine *h, int32_t row, uint32_t s, federation *out)
     empty(h, &there);
 }
 
-/* From where a run can stay without a further move: nothing stops time, or it stops by itself. */
+/* The valuations from which a run can stay without a move: time is unbounded, or gets stuck. */
 static void add_ends(engine *h, uint32_t s, const federation *outside, federation *out)
 {
     walk *w = &h->look;
@@ -184,7 +184,8 @@ static void add_ends(engine *h, uint32_t s, const federation *outside, federatio
     empty(h, &alive);
 }
 
-/* What of a state's valuations still stays: ends there, or goes on to where it stays; whether less. */
+/* Reduce a state's valuations to those from which a run ends there or leads to valuations that are left;
+ * whether any were removed. */
 static bool shrink(engine *h, uint32_t s, const federation *outside, const federation *ends,
                    federation *stays)
 {
@@ -212,7 +213,7 @@ static bool shrink(engine *h, uint32_t s, const federation *outside, const feder
     return less;
 }
 
-/* From where some run stays where a row holds for ever, or until the bound is over. */
+/* The valuations from which some run stays where a row holds, for ever or until the bound is over. */
 static void solve_stay(engine *h, const int32_t *r, federation *stays, federation *outside,
                        federation *ends)
 {
@@ -234,7 +235,7 @@ static void solve_stay(engine *h, const int32_t *r, federation *stays, federatio
     if (!ROOM(h, h->whose, h->whose_room, h->state_count)) {
         return;
     }
-    (void)memset(h->whose, 1, h->state_count * sizeof *h->whose); /* which are to be looked at */
+    (void)memset(h->whose, 1, h->state_count * sizeof *h->whose); /* the states to visit in the next round */
     while (changed && runs(h) && !h->failed) {
         changed = false;
         for (s = h->state_count; (s-- > 0) && runs(h);) {
@@ -253,7 +254,7 @@ static void solve_stay(engine *h, const int32_t *r, federation *stays, federatio
     }
 }
 
-/* What holds with the timer at 0, whatever the timer is. */
+/* Project away the timer, from where it is 0. */
 static void forget_timer(engine *h, federation *f)
 {
     uint32_t k;
@@ -266,7 +267,7 @@ static void forget_timer(engine *h, federation *f)
     }
 }
 
-/* Work out all rows that speak of runs, in turn. */
+/* Compute all rows with path formulas, in order. */
 static void solve(engine *h)
 {
     const int32_t rows = plan_count(h->plan, AT_TREE);
@@ -299,7 +300,7 @@ static void solve(engine *h)
     }
 }
 
-static bool in_nested(engine *h, const bound *z, const spot *here)
+static bool meets_nested(engine *h, const bound *z, const spot *here)
 {
     federation sought = {0, 0, NULL};
     uint32_t *at;

@@ -1,12 +1,12 @@
-/* How a search came to what it found: steps found again by their numbers. */
+/* Reconstructs the path of a search: steps are found again by their numbers. */
 #ifndef RVMON_ZONES_PATHS_H
 #define RVMON_ZONES_PATHS_H
 
 #include "search.h"
 
-/* Do something in a symbolic state inside, and in all that crossings make of it; while it says so. A
- * run is in a convex piece for one stretch of time, so that it never comes back to it. The crossings
- * are in `crossings`, as pairs of a piece and a number. */
+/* Visit a symbolic state inside, and all that crossings lead to, as long as the visitor returns true. A
+ * run is in a convex piece for one stretch of time, so crossings never return to a piece. They are in
+ * `crossings`, as pairs of a piece and a number. */
 typedef bool (*visitor)(engine *h, const bound *z, int k, bool delays);
 
 static bool each_stand(engine *h, const bound *z, int k, bool delays, int level, visitor seen)
@@ -20,7 +20,7 @@ static bool each_stand(engine *h, const bound *z, int k, bool delays, int level,
     h->been[k] = 1;
     for (m = 0; on && (m < 2 * h->inside_count); m++) {
         bound *to = h->between + (size_t)level * (size_t)h->entries;
-        labour(h);
+        count_work(h);
         if (!runs(h)) {
             break;
         }
@@ -32,7 +32,7 @@ static bool each_stand(engine *h, const bound *z, int k, bool delays, int level,
             on = false;
         } else {
             on = each_stand(h, to, m / 2, delays, level + 1, seen);
-            if (on) { /* else what was found is behind them */
+            if (on) { /* else the result lies beyond them */
                 h->crossings.count -= 2;
             }
         }
@@ -71,8 +71,8 @@ static int tell_crossings(engine *h, const numbers *crossings)
     return (int)(crossings->count / 2);
 }
 
-/* The steps from one node to another by a link; how many. The search must run, to be able to find
- * them. */
+/* Append the steps from one node to another by a link; returns their number. The search must not have
+ * ended, to reconstruct them. */
 static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
 {
     walk *w = &h->out;
@@ -101,7 +101,7 @@ static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
     return steps;
 }
 
-/* The steps from the start to a node, by its parents; how many. */
+/* Append the steps from the start to a node, along its parents; returns their number. */
 static int tell_path(engine *h, uint32_t n)
 {
     numbers way = {NULL, 0, 0};

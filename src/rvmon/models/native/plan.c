@@ -1,4 +1,4 @@
-/* Checks a plan before anything runs: what it refers to is there, and programs keep their stack. */
+/* Validates a plan before anything runs: all references, and the stacks of programs. */
 #include "code_check.h"
 
 #include <stdlib.h>
@@ -165,7 +165,7 @@ static bool tree_fits(const checker *c)
     return true;
 }
 
-/* An automaton whose states are what is inside. */
+/* An automaton whose states are the pieces inside. */
 static bool ways_fit(const checker *c)
 {
     const int32_t *row = plan_rows(c->plan, AT_WAYS);

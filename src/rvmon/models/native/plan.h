@@ -1,4 +1,4 @@
-/* The plan of a search: one array of int32, made by `lowered.py`, checked by plan.c.
+/* The plan of a search: one array of int32, made by `search_plan.py`, checked by plan.c.
  *
  * A head of numbers, then for each section where it begins and how many rows it has, then the rows.
  * Programs are bytecode for a stack of int64 and end with OP_END; a reference to one is its place in
@@ -19,18 +19,18 @@ enum {
     HEAD_POLICY,
     HEAD_CLOCKS,
     HEAD_TIMER,   /* whether one more clock, the last, belongs to the query */
-    HEAD_LEVELLED, /* whether lower and upper bounds count alike */
+    HEAD_LEVELLED, /* whether lower and upper limits are the same */
     HEAD_BOUND,   /* of a late response; 1 where a run has to let time pass on */
     HEAD_SETS,    /* of acceptance */
-    HEAD_LOCALS,  /* how many of the variables, the last, belong to functions */
-    HEAD_WATCHED, /* whether the last automaton watches the others */
+    HEAD_LOCALS,  /* the number of variables of functions, which come last */
+    HEAD_WATCHED, /* whether the last automaton is a watcher */
     HEAD_SECTIONS
 };
 
-/* What is sought: a run to a goal; to a goal that speaks of deadlock; one that stays inside for ever
- * from the start, or from a goal; one that stays inside longer than the bound, from the start or from
- * a goal; a run to a goal that speaks of runs; whether that holds at the start; a run that an
- * automaton accepts whose states are what is inside. */
+/* The kinds of search: for a run to a goal; to a goal with deadlocks; for one that stays inside for ever,
+ * from the start or from a goal; for one that stays inside longer than the bound, from the start or from
+ * a goal; for a run to a goal with nested path formulas; whether such a goal holds at the start; for a
+ * run that an automaton accepts whose states are the pieces inside. */
 enum { SEEK_GOAL, SEEK_DEADLOCK, SEEK_STAY, SEEK_STAY_AFTER, SEEK_LATE, SEEK_LATE_AFTER, SEEK_NESTED,
        SEEK_START, SEEK_RUN,       SEEK_KINDS };
 enum { POLICY_SHORTEST, POLICY_FASTEST, POLICY_LIKELY, POLICIES };
@@ -63,8 +63,8 @@ enum { EDGE_AUTOMATON, EDGE_TARGET, EDGE_GUARD, EDGE_ATOM, EDGE_ATOMS,
        EDGE_CHANNEL, /* program or -1 */
        EDGE_FIRST, EDGE_STOP, /* the channels that it may be */
        EDGE_FLAGS, EDGE_SIZE };
-/* An edge of a watcher that watches goes along with a move of the others: its guard reads what the
- * move made of places and variables. Its other edges are moves of its own, which nothing keeps back. */
+/* An edge of the watcher with FLAG_WATCHES joins a move of the others: its guard reads locations and
+ * variables after that move. Its other edges are moves of their own, which nothing blocks. */
 enum { FLAG_SENDS = 1, FLAG_BROADCAST = 2, FLAG_URGENT = 4, FLAG_WATCHES = 8 };
 enum { ROW_CONDITION, ROW_ATOM, ROW_ATOMS, ROW_SIZE };
 enum { ATOM_CLOCK, ATOM_OP, ATOM_CODE, ATOM_NUMBER, ATOM_SIZE };
@@ -114,7 +114,7 @@ extern const uint8_t plan_widths[SECTIONS];
 
 typedef enum { PLAN_GOOD, PLAN_DAMAGED, PLAN_NO_MEMORY } plan_state;
 
-/* Whether a search may run a plan: nothing in it leads outside it. */
+/* Whether a plan is valid: nothing in it refers outside it. */
 plan_state plan_check(const int32_t *plan, size_t count);
 
 static inline const int32_t *plan_rows(const int32_t *plan, int section)

@@ -8,7 +8,7 @@
 
 static bool is_time(engine *h, int64_t number);
 
-/* Give a variable a value, if its range has it. */
+/* Set a variable, if the value is in its range. */
 static bool set_variable(const engine *h, int32_t *values, int64_t at, int64_t x)
 {
     const int32_t *variable = h->variables + (ptrdiff_t)at * 4;
@@ -20,7 +20,7 @@ static bool set_variable(const engine *h, int32_t *values, int64_t at, int64_t x
     return true;
 }
 
-/* Which of the resets is that of a clock; how many there are if none is. */
+/* The index of the reset of a clock; their number if there is none. */
 static int reset_of(const walk *w, int32_t clock)
 {
     int j = 0;
@@ -30,7 +30,7 @@ static int reset_of(const walk *w, int32_t clock)
     return j;
 }
 
-/* Note that a clock is set. */
+/* Add a reset of a clock. */
 static bool set_clock(engine *h, int32_t clock, int64_t x)
 {
     walk *w = h->sets;
@@ -170,7 +170,7 @@ static bool holds(engine *h, int32_t program, const spot *here)
     return (program < 0) || (evaluate(h, program, here) != 0);
 }
 
-/* A number of units of time; if it is none the search fails, if it is large another has to do it. */
+/* Check a number of time units: a negative one fails, a large one needs the search in 64 bits. */
 static bool is_time(engine *h, int64_t number)
 {
     if ((number < 0) || (number >= INT32_MAX)) {
@@ -184,7 +184,7 @@ static bool is_time(engine *h, int64_t number)
     return true;
 }
 
-/* An atom by its number; false if what it compares with is no time. */
+/* Evaluate an atom to a bound; false if it compares with no time. */
 static bool atom_at(engine *h, int32_t k, const spot *here, cut *to)
 {
     const int32_t *atom = h->atoms + (ptrdiff_t)ATOM_SIZE * k;
@@ -213,7 +213,7 @@ static bool cut_atoms(engine *h, bound *z, int32_t first, int32_t count, const s
     return true;
 }
 
-/* Cut a zone by an alternative of a formula; false if they do not meet in this discrete state. */
+/* Intersect a zone with an alternative of a formula; false if nothing is left in this discrete state. */
 static bool cut_row(engine *h, bound *z, const int32_t *row, const spot *here)
 {
     return holds(h, row[ROW_CONDITION], here) && !h->failed
@@ -241,7 +241,7 @@ static bool invariant_data_holds(engine *h, const spot *here)
     return !h->failed;
 }
 
-/* The tightest upper bound of each clock that an invariant bounds; how many, -1 if it failed. */
+/* The tightest upper bound of each clock in an invariant; returns their number, -1 if it failed. */
 static int invariant_of(engine *h, const spot *here)
 {
     int n = 0;
@@ -280,7 +280,7 @@ static bool cut_invariant(engine *h, bound *z, const spot *here)
     return n >= 0;
 }
 
-/* The invariant and, if time may pass, all delays; false if nothing is left. */
+/* Intersect with the invariant and add all delays, if time may pass; false if nothing is left. */
 static bool settle(engine *h, bound *z, const spot *here, bool delays)
 {
     if (delays) {
@@ -291,7 +291,7 @@ static bool settle(engine *h, bound *z, const spot *here, bool delays)
     return cut_invariant(h, z, here);
 }
 
-/* The limits that matter in some locations, and the clocks that have any. */
+/* The clock limits of the present locations, and the clocks that have any. */
 static void find_limits(engine *h, const spot *here)
 {
     int a;
@@ -313,7 +313,7 @@ static void find_limits(engine *h, const spot *here)
             *to = (row[LIMIT_NUMBER] > *to) ? row[LIMIT_NUMBER] : *to;
         }
     }
-    if (h->policy == POLICY_FASTEST) { /* who comes later never stands for who came earlier */
+    if (h->policy == POLICY_FASTEST) { /* a later zone never subsumes an earlier one */
         h->upper[h->timer] = h->safe / 2;
     }
     if (h->phase != 0 && (h->timer != 0)) {

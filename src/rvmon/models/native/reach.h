@@ -1,13 +1,13 @@
-/* Keeping symbolic states that no other one stands for, and knowing what is sought. */
+/* The passed list with its subsumption, and the goals of a search. */
 #ifndef RVMON_ZONES_REACH_H
 #define RVMON_ZONES_REACH_H
 
 #include "moves.h"
 
-/* --- which zones stand for others ---------------------------------------------------------------
+/* --- subsumption of zones up to aLU -------------------------------------------------------------
  * Source: Herbreteau, Srivathsan, Walukiewicz, Better Abstractions for Timed Automata, LICS 2012. */
 
-/* What a zone must have at least to stand for z; how many entries. */
+/* The entries that a zone must have at least to subsume z; returns their number. */
 static int make_test(engine *h, const bound *z)
 {
     const int d = h->dim;
@@ -33,7 +33,7 @@ static int make_test(engine *h, const bound *z)
     return n;
 }
 
-static bool stands_for(const engine *h, const bound *large, const bound *z)
+static bool subsumes(const engine *h, const bound *large, const bound *z)
 {
     const int d = h->dim;
     int i;
@@ -56,7 +56,7 @@ static bool stands_for(const engine *h, const bound *large, const bound *z)
     return true;
 }
 
-/* Keep z in a state unless another stands for it; its node, that given or a new one, or NONE. */
+/* Store z unless a zone of its state subsumes it; returns its node, the given or a new one, or NONE. */
 static uint32_t keep(engine *h, uint32_t state, uint32_t n, const bound *z, const spot *here)
 {
     const bool best = h->policy != POLICY_SHORTEST;
@@ -73,7 +73,7 @@ static uint32_t keep(engine *h, uint32_t state, uint32_t n, const bound *z, cons
         while ((i < tests) && (old[h->test_entries[i]] >= h->test_least[i])) {
             i++;
         }
-        if (i == tests) { /* what stood for one will for the next */
+        if (i == tests) { /* moved to the front: it is likely to subsume the next one, too */
             *at = h->nodes[k].next;
             h->nodes[k].next = h->heads[state];
             h->heads[state] = k;
@@ -84,7 +84,7 @@ static uint32_t keep(engine *h, uint32_t state, uint32_t n, const bound *z, cons
     at = h->heads + state;
     while (!best && (*at != NONE)) {
         const uint32_t k = *at;
-        if (stands_for(h, z, zone_of(h, k))) {
+        if (subsumes(h, z, zone_of(h, k))) {
             *at = h->nodes[k].next;
             drop_zone(h, k);
             h->stored--;
@@ -112,12 +112,12 @@ static bool note_alive(engine *h, walk *w, const int32_t *edges, int n)
     bool fit;
     int bounds;
     int i;
-    labour(h);
+    count_work(h);
     universe(z, h->dim);
     if (!cut_guards(h, w, z, edges, n) || !cut_invariant(h, z, &w->here)) {
         return runs(h) && !h->failed;
     }
-    if (!apply(h, w, edges, n)) { /* what can be taken, and fails then, is no deadlock */
+    if (!apply(h, w, edges, n)) { /* a move whose update fails can be taken: no deadlock */
         if (!h->failed) {
             return false;
         }
@@ -142,7 +142,7 @@ static bool note_alive(engine *h, walk *w, const int32_t *edges, int n)
     return fits(h, z) && push_zone(h, &h->alive, z) && runs(h);
 }
 
-/* The part of a zone from which no edge can ever be taken, as `dead`; false if that failed. */
+/* Compute the part of a zone from which no edge can ever be taken, as `dead`; false if that failed. */
 static bool find_dead(engine *h, const bound *z, const spot *here)
 {
     walk *w = &h->look;
@@ -154,7 +154,7 @@ static bool find_dead(engine *h, const bound *z, const spot *here)
            && subtract_all(h, &h->dead, &h->alive);
 }
 
-/* --- what is sought ------------------------------------------------------------------------------ */
+/* --- goals --------------------------------------------------------------------------------------- */
 
 static double price_of(const engine *h, const bound *z)
 {
@@ -162,7 +162,7 @@ static double price_of(const engine *h, const bound *z)
     return (double)(-(low >> 1)) + (((low & 1) != 0) ? 0.0 : 0x1p-20);
 }
 
-/* The least price of what is sought, whose part comes first. */
+/* The least price of the parts at the goal; that part is moved to the front. */
 static double cheapest(engine *h)
 {
     bound *first = h->parts.zones;
@@ -175,8 +175,8 @@ static double cheapest(engine *h)
     return price_of(h, first);
 }
 
-/* The parts of a zone in some alternatives, as `parts`; true if there are any, even all of it. */
-static bool in_rows(engine *h, const bound *z, int section, const spot *here)
+/* Intersect a zone with the alternatives of a section, as `parts`; false if nothing is left. */
+static bool meets_rows(engine *h, const bound *z, int section, const spot *here)
 {
     const int32_t *row = plan_rows(h->plan, section);
     int32_t k;
@@ -202,8 +202,8 @@ static bool in_rows(engine *h, const bound *z, int section, const spot *here)
     return h->parts.count > 0;
 }
 
-/* The same of the dead parts, else of those that are not. */
-static bool in_dead(engine *h, const bound *z, const spot *here)
+/* The same for goals that hold at deadlocks (AT_INSIDE), and for those that hold elsewhere (AT_GOAL). */
+static bool meets_at_deadlock(engine *h, const bound *z, const spot *here)
 {
     const int sections[2] = {AT_INSIDE, AT_GOAL};
     bool some[2] = {false, false};
@@ -220,19 +220,19 @@ static bool in_dead(engine *h, const bound *z, const spot *here)
         return false;
     }
     for (k = 0; some[0] && (k < h->dead.count); k++) {
-        if (in_rows(h, nth(h, &h->dead, k), AT_INSIDE, here)) {
+        if (meets_rows(h, nth(h, &h->dead, k), AT_INSIDE, here)) {
             h->ending = END_DEAD;
             return true;
         }
     }
     if (some[1]) {
-        swap(&h->dead, &h->alive); /* now the second is what is dead */
+        swap(&h->dead, &h->alive); /* now `alive` has the dead part */
         h->dead.count = 0;
         if (!push_zone(h, &h->dead, z) || !subtract_all(h, &h->dead, &h->alive)) {
             return false;
         }
         for (k = 0; k < h->dead.count; k++) {
-            if (in_rows(h, nth(h, &h->dead, k), AT_GOAL, here)) {
+            if (meets_rows(h, nth(h, &h->dead, k), AT_GOAL, here)) {
                 return true;
             }
         }
@@ -240,22 +240,22 @@ static bool in_dead(engine *h, const bound *z, const spot *here)
     return false;
 }
 
-static bool in_nested(engine *h, const bound *z, const spot *here);
+static bool meets_nested(engine *h, const bound *z, const spot *here);
 
-/* Whether some of a zone is sought; which, as `parts`. */
+/* Whether a zone meets the goal; where, as `parts`. */
 static bool is_goal(engine *h, const bound *z, const spot *here)
 {
     h->parts.count = 0;
     if (h->kind == SEEK_DEADLOCK) {
-        return in_dead(h, z, here);
+        return meets_at_deadlock(h, z, here);
     }
     if (h->kind == SEEK_NESTED) {
-        return in_nested(h, z, here);
+        return meets_nested(h, z, here);
     }
-    return in_rows(h, z, AT_GOAL, here);
+    return meets_rows(h, z, AT_GOAL, here);
 }
 
-/* --- by increasing cost -------------------------------------------------------------------------- */
+/* --- the queue of a best-first search ------------------------------------------------------------ */
 
 static bool comes_first(const entry *a, const entry *b)
 {

@@ -1,4 +1,4 @@
-/* Runs that end and are accepted: idle for ever, or stuck, while what holds then changes no more. */
+/* Accepted runs with finitely many moves: they idle for ever, or get stuck. */
 #ifndef RVMON_ZONES_REST_H
 #define RVMON_ZONES_REST_H
 
@@ -18,13 +18,13 @@ static int32_t arc_at(const engine *h, int32_t a)
     return plan_rows(h->plan, AT_ARCS)[a];
 }
 
-/* What makes a component count. */
+/* The flags that an accepting component needs. */
 static uint32_t wanted_flags(const engine *h)
 {
     return (((uint32_t)1 << h->plan[HEAD_SETS]) - 1) | MOVES | ((h->timer != 0) ? TICKS : 0);
 }
 
-/* From which pieces the automaton accepts while only those that are allowed hold, for ever: `rest`. */
+/* Find the pieces from which the automaton accepts if only the allowed pieces hold for ever. */
 static void find_rest(engine *h)
 {
     const int32_t n = h->inside_count;
@@ -35,14 +35,14 @@ static void find_rest(engine *h)
         uint32_t met = 0;
         int side;
         int32_t k;
-        /* reached from r, and reaching r: both in rounds until nothing is new */
+        /* forward and backward reachability from r, to a fixed point */
         for (side = 0; side < 2; side++) {
             uint8_t *found = side ? h->rest_back : h->rest_on;
             bool changed = true;
             (void)memset(found, 0, (size_t)n);
             while (changed && (h->allowed[r] != 0)) {
                 changed = false;
-                labour(h);
+                count_work(h);
                 for (k = 0; k < n; k++) {
                     const int32_t *way = way_of(h, k);
                     int32_t a;
@@ -73,7 +73,7 @@ static void find_rest(engine *h)
     }
 }
 
-/* Whether the automaton accepts from a piece on while only the pieces that are allowed hold. */
+/* Whether the automaton accepts from a piece on if only the allowed pieces hold for ever. */
 static bool rests(engine *h, int k)
 {
     const size_t n = (size_t)h->inside_count;
@@ -85,7 +85,7 @@ static bool rests(engine *h, int k)
     return (h->allowed[k] != 0) && (h->rest_good[k] != 0);
 }
 
-/* Whether a piece holds when time stops, for a zone that no atom divides. */
+/* Whether a piece holds when time stops; no atom may divide the zone. */
 static bool holds_last(engine *h, const bound *z, int k, bool delays)
 {
     const int32_t *piece = piece_at(h, k);
@@ -101,8 +101,8 @@ static bool holds_last(engine *h, const bound *z, int k, bool delays)
     return true;
 }
 
-/* Whether a run is accepted that gets stuck in piece k: then with `parts`. Time ends in each part of
- * the zone in one and the same way. */
+/* Whether an accepted run gets stuck in piece k; where, as `parts`. The zone is split by all atoms, so
+ * that in each part time stops in the same way. */
 static bool look_for_stuck(engine *h, const bound *z, int k, bool delays)
 {
     walk *w = &h->out;

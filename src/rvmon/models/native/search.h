@@ -1,4 +1,4 @@
-/* Successors: where a move leads, and what a search makes of it. */
+/* Successors: the target zone of a move, and how each kind of search stores it. */
 #ifndef RVMON_ZONES_SEARCH_H
 #define RVMON_ZONES_SEARCH_H
 
@@ -17,7 +17,7 @@ static double cost_of(const engine *h, const bound *z, const int32_t *edges, int
     return cost;
 }
 
-/* Note between which values the last clock of the network is, by place of the watcher. */
+/* Widen the range of the last clock of the network at the present location of the watcher. */
 static void note_span(engine *h, const bound *z, const spot *here)
 {
     const int32_t clock = h->plan[HEAD_CLOCKS];
@@ -30,7 +30,7 @@ static void note_span(engine *h, const bound *z, const spot *here)
 
 static void enter_way(engine *h, const bound *z, const spot *here);
 
-/* A zone just reached in a state whose data the invariants allow. */
+/* Store a zone reached in a discrete state whose data satisfy the invariants. */
 static void arrive(engine *h, bound *z, const spot *here,
                    const int32_t *edges, int count)
 {
@@ -100,7 +100,7 @@ static void note_step(engine *h, const int32_t *edges, int n)
 static bool take(engine *h, walk *w, const int32_t *edges, int n)
 {
     const uint32_t ordinal = w->ordinal++;
-    labour(h);
+    count_work(h);
     copy_zone(h, w->zone, w->source);
     if (cut_guards(h, w, w->zone, edges, n)) {
         if (!apply(h, w, edges, n)) {
@@ -119,7 +119,7 @@ static bool take(engine *h, walk *w, const int32_t *edges, int n)
     return runs(h) && !h->failed;
 }
 
-/* Find the move again whose number is wanted. */
+/* Reconstruct the move with the wanted number. */
 static bool match(engine *h, walk *w, const int32_t *edges, int n)
 {
     uint32_t k;
@@ -136,7 +136,7 @@ static bool match(engine *h, walk *w, const int32_t *edges, int n)
     return false;
 }
 
-/* All moves from a node that is not inside. */
+/* Expand a node on the way to the goal. */
 static void expand(engine *h, uint32_t n)
 {
     walk *w = &h->out;
@@ -147,7 +147,7 @@ static void expand(engine *h, uint32_t n)
     (void)each_move(h, w, take);
 }
 
-/* The successors in a search for a late answer: crossings and moves, or moves and where it starts. */
+/* The successors in a search for a late response: inside crossings and moves, before moves and triggers. */
 static void expand_late(engine *h, uint32_t n)
 {
     walk *w = &h->out;
@@ -195,7 +195,7 @@ static void expand_late(engine *h, uint32_t n)
     h->phase = 0;
 }
 
-/* One step of a search by increasing cost. */
+/* A step of a best-first search. */
 static void step_best(engine *h)
 {
     walk *w = &h->out;

@@ -1,10 +1,10 @@
-/* Discrete states, packed and met once; symbolic states, and their zones in chunks. */
+/* Storage of discrete states, packed and unique, and of symbolic states with their zones in chunks. */
 #ifndef RVMON_ZONES_STATES_H
 #define RVMON_ZONES_STATES_H
 
 #include "programs.h"
 
-/* The bits of a discrete state; `mark` distinguishes what else a search distinguishes. */
+/* Pack a discrete state; `mark` is what a search distinguishes besides, e.g. the piece. */
 static void pack(const engine *h, const spot *here, uint32_t mark,
                  uint32_t *to)
 {
@@ -50,7 +50,7 @@ static uint32_t hash_of(const void *data, size_t words)
     return (uint32_t)(x ^ x >> 29);
 }
 
-/* Room in a table of so many for one more; false without memory. */
+/* Make room in a table of so many entries for one more; false without memory. */
 static bool widen(engine *h, table *t, uint32_t count, uint32_t (*hash)(const engine *, uint32_t))
 {
     table wide = {NULL, 0};
@@ -83,7 +83,7 @@ static uint32_t hash_state(const engine *h, uint32_t state)
     return hash_of(h->bits + (size_t)state * h->words, h->words);
 }
 
-/* Where the table has the packed state, or would have it; NULL without memory. */
+/* The slot of the packed state in the table, or the empty one for it; NULL without memory. */
 static uint32_t *find_state(engine *h, const uint32_t *packed)
 {
     const size_t bytes = h->words * sizeof *packed;
@@ -126,7 +126,7 @@ static bound *zone_of(const engine *h, uint32_t n)
     return zone_at(h, h->nodes[n].zone);
 }
 
-/* A slot for a zone; free ones hold the number of the next. NONE without memory. */
+/* A slot for a zone; free slots hold the number of the next free one. NONE without memory. */
 static uint32_t new_slot(engine *h)
 {
     uint32_t slot = h->freed;
@@ -158,7 +158,8 @@ static void drop_zone(engine *h, uint32_t n)
     h->nodes[n].zone = NONE;
 }
 
-/* A symbolic state behind the one that is gone on from; NONE if there is no room or it is too large. */
+/* A new symbolic state, child of the one being expanded; NONE without memory or if its numbers are too
+ * large. */
 static uint32_t new_node(engine *h, uint32_t state, const bound *z)
 {
     uint32_t slot;
@@ -212,7 +213,7 @@ static void swap(federation *a, federation *b)
     *b = was;
 }
 
-/* What is in a union without a zone, by way of `rest`. */
+/* Subtract a zone from a union, using `rest`. */
 static bool subtract(engine *h, federation *from, const bound *other)
 {
     const int d = h->dim;
@@ -221,7 +222,7 @@ static bool subtract(engine *h, federation *from, const bound *other)
     for (k = 0; k < from->count; k++) {
         bound *left = nth(h, from, k);
         int e;
-        labour(h);
+        count_work(h);
         for (e = 0; e < h->entries; e++) {
             bound *out;
             if (other[e] >= left[e]) {

@@ -1,4 +1,4 @@
-/* Ways to stay inside for ever: by idling, by a deadlock, by going round; depth first.
+/* Depth-first search for runs that stay inside for ever: by idling, in a deadlock, or in a loop.
  *
  * Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993 (runs and loops). */
 #ifndef RVMON_ZONES_STAY_H
@@ -8,7 +8,7 @@
 
 enum { NEW, ON_THE_WAY, DONE };
 
-/* The valuations from which an atom, or for an upper bound its opposite, holds when time stops. */
+/* The valuations from which an atom (an upper bound: its negation) holds when time stops. */
 static bool reaches_atom(engine *h, bound *to, int32_t k, bool delays, bool *upper)
 {
     walk *w = &h->out;
@@ -88,7 +88,7 @@ static bool moves_here(engine *h, const bound *z, int k, bool delays)
     return each_move(h, &h->out, take);
 }
 
-/* The steps to the last frame, and where in them a loop starts that goes back to a node. */
+/* The steps to the last frame, and the index at which a loop back to a node starts. */
 static void tell_way(engine *h, uint32_t back)
 {
     const uint32_t first = h->frames[0].node;
@@ -137,7 +137,7 @@ static int ask_counts(engine *h, uint32_t n)
     return counts;
 }
 
-/* A loop back to a node on the way: found, if it counts. */
+/* A loop back to a node on the stack: found, if time may pass on it as asked. */
 static void close_loop(engine *h, successor to)
 {
     int counts;
@@ -157,7 +157,7 @@ static void close_loop(engine *h, successor to)
     }
 }
 
-/* Go on from a node that is met for the first time; found if a run can end there. */
+/* Enter a node for the first time; found if a run can end there. */
 static void stay_at(engine *h, successor at)
 {
     const uint32_t state = h->nodes[at.node].state;
@@ -196,7 +196,7 @@ static void stay_at(engine *h, successor at)
     h->frames[h->frame_count - 1].end = h->successor_count;
 }
 
-/* Go through successors in depth: what to do with each that is met, and with a node that is left. */
+/* The depth-first search, with callbacks for each successor met and for each node left. */
 static void go_deep(engine *h, void (*seen)(engine *, successor), void (*left)(engine *, uint32_t))
 {
     frame stem = {NONE, 0, 0, h->successor_count};
@@ -228,7 +228,7 @@ static void leave_stay(engine *h, uint32_t n)
     h->colours[n] = DONE;
 }
 
-/* From the zone in `out`, with the discrete state in its target. */
+/* Search from the zone in `out`, with the discrete state in its target. */
 static void stay_from(engine *h, uint32_t stem, uint32_t link)
 {
     h->phase = 1;
@@ -241,7 +241,7 @@ static void stay_from(engine *h, uint32_t stem, uint32_t link)
     go_deep(h, meet_stay, leave_stay);
 }
 
-/* From all triggers that are pending, where the goal holds. */
+/* Search from all pending triggers, where the goal holds. */
 static void stay_after(engine *h)
 {
     walk *w = &h->out;
@@ -251,7 +251,7 @@ static void stay_after(engine *h)
         int32_t k;
         for (k = 0; (k < h->goal_count) && runs(h) && !h->failed; k++) {
             if (h->nodes[from].zone == NONE) {
-                break; /* a larger one triggers too */
+                break; /* a larger zone triggers, too */
             }
             unpack(h, h->nodes[from].state, &w->there);
             copy_zone(h, w->zone, zone_of(h, from));

@@ -1,4 +1,4 @@
-/* Unions of zones, as sets of valuations of one discrete state: where time leads from and to.
+/* Unions of zones, as sets of valuations of a discrete state; their time predecessors.
  *
  * Source: Cassez, David, Fleury, Larsen, Lime, Efficient On-the-Fly Algorithms for the Analysis of
  * Timed Games, 2005 (delays that avoid a zone). */
@@ -7,11 +7,12 @@
 
 #include "search.h"
 
-/* Add a zone to a union unless one there holds all of it; those that it holds go. False: not added. */
+/* Add a zone to a union unless one there includes it, and remove those that it includes; whether it was
+ * added. */
 static bool join(engine *h, federation *f, const bound *z)
 {
     uint32_t i;
-    labour(h);
+    count_work(h);
     for (i = 0; i < f->count; i++) {
         if (is_within(z, nth(h, f, i), h->entries)) {
             return false;
@@ -38,7 +39,7 @@ static void join_all(engine *h, federation *f, const federation *others)
     }
 }
 
-/* Add what two unions have in common. */
+/* Add the intersection of two unions. */
 static void meet(engine *h, federation *out, const federation *a, const federation *b)
 {
     uint32_t i;
@@ -64,7 +65,7 @@ static void everywhere(engine *h, uint32_t s, federation *out)
     }
 }
 
-/* Add the valuations from which a delay leads into a zone, with nothing bad on the way nor there. */
+/* Add the valuations from which a delay leads into a zone without passing through the bad ones. */
 static void add_earlier(engine *h, uint32_t s, const bound *z, const federation *bad,
                         federation *out)
 {
@@ -85,7 +86,7 @@ static void add_earlier(engine *h, uint32_t s, const bound *z, const federation 
             copy_zone(h, h->copy, z);
             before(h->copy, h->dim);
             if (!cut_zone(h, h->copy, nth(h, bad, k))) {
-                continue; /* no way leads through it */
+                continue; /* it is not on the way */
             }
             copy_zone(h, past, nth(h, bad, k));
             before(past, h->dim);
@@ -111,8 +112,7 @@ static void add_earlier(engine *h, uint32_t s, const bound *z, const federation 
     empty(h, &both);
 }
 
-/* The valuations in which a clock may have any value that are in a zone once it is set to a number;
- * false if there are none. */
+/* The weakest precondition of a zone for setting a clock to a number; false if it is empty. */
 static bool undo(bound *z, int d, int c, bound n)
 {
     int j;

@@ -1,5 +1,5 @@
-/* What a move makes of its source, and what keeps it back: receivers that it leaves out, and moves of
- * higher priority. Of each of these some bound must fail: one variant of the move for each choice. */
+/* The effect of a move, and its blockers: receivers that it leaves out, and moves of higher priority. Of
+ * each blocker some bound must fail, so a move has one variant for each choice of these bounds. */
 #ifndef RVMON_ZONES_VARIANTS_H
 #define RVMON_ZONES_VARIANTS_H
 
@@ -12,7 +12,7 @@ static bool is_watcher(const engine *h, int automaton)
     return (h->plan[HEAD_WATCHED] != 0) && (automaton == h->automaton_count - 1);
 }
 
-/* What the updates of a move make of its source, in `target`, `changed` and `resets`. */
+/* Apply the updates of a move to its source: `target`, `changed` and `resets`. */
 static bool apply(engine *h, walk *w, const int32_t *edges, int n)
 {
     const spot changing = {w->here.places, w->there.values};
@@ -34,7 +34,7 @@ static bool apply(engine *h, walk *w, const int32_t *edges, int n)
     return true;
 }
 
-/* --- what keeps moves back ----------------------------------------------------------------------- */
+/* --- blockers ------------------------------------------------------------------------------------ */
 
 static bool begin_denial(engine *h, denials *to, int32_t rank)
 {
@@ -78,7 +78,7 @@ static void drop_denials(denials *from)
     from->atom_count = 0;
 }
 
-/* What keeps the move at hand back, by its place in `against`; those left out come first. */
+/* A blocker of the present move, by its index in `against`; receivers left out come first. */
 static const denial *denied_by(const walk *w, uint32_t k, const cut **atoms)
 {
     const uint32_t skipped = w->skipped.count;
@@ -88,7 +88,7 @@ static const denial *denied_by(const walk *w, uint32_t k, const cut **atoms)
     return row;
 }
 
-/* Of what keeps the move at hand back, the bound that fails in the variant at hand. */
+/* The bound of a blocker that fails in the present variant. */
 static cut failing(const walk *w, uint32_t k)
 {
     const cut *atoms;
@@ -96,7 +96,7 @@ static cut failing(const walk *w, uint32_t k)
     return opposite(atoms[w->skip[k]]);
 }
 
-/* The guards of edges that move together, and for what keeps them back a bound that fails. */
+/* Intersect a zone with the guards of a move, and with a failing bound of each blocker. */
 static bool cut_guards(engine *h, const walk *w, bound *z, const int32_t *edges, int n)
 {
     uint32_t k;
@@ -117,7 +117,7 @@ static bool cut_guards(engine *h, const walk *w, bound *z, const int32_t *edges,
 
 /* --- priorities ---------------------------------------------------------------------------------- */
 
-/* That of a move: by its channel, then by the highest of its automata. */
+/* The priority of a move: by its channel, then by the highest of its automata. */
 static int32_t rank_of(engine *h, const walk *w, const int32_t *edges, int n)
 {
     const int32_t *ranks = plan_rows(h->plan, AT_RANKS);
@@ -142,8 +142,8 @@ static int32_t rank_of(engine *h, const walk *w, const int32_t *edges, int n)
     return ranks[h->automaton_count + 1 + channel] + own;
 }
 
-/* The bounds before a move under which the invariant behind it holds, as of an invariant; how many,
- * -1 if it does not hold or failed. */
+/* The weakest precondition of a move for the invariant of its target, as upper bounds; returns their
+ * number, -1 if it cannot hold or failed. */
 static int invariant_behind(engine *h, const walk *w)
 {
     const int bounds = invariant_of(h, &w->there);
@@ -161,7 +161,7 @@ static int invariant_behind(engine *h, const walk *w)
     return (bounds < 0) ? -1 : n;
 }
 
-/* Those of them that did not hold before; false if the invariant does not hold, or failed. */
+/* Add those bounds that the source does not imply; false if the invariant cannot hold, or failed. */
 static bool deny_invariant(engine *h, walk *w)
 {
     const int bounds = invariant_behind(h, w);
@@ -178,12 +178,12 @@ static bool deny_invariant(engine *h, walk *w)
     return bounds >= 0;
 }
 
-/* Note when a move can be taken, as what keeps back those of lower priority. */
+/* Add the condition of a move to the blockers of moves of lower priority. */
 static bool note_blocker(engine *h, walk *w, const int32_t *edges, int n)
 {
     uint32_t k;
     int i;
-    labour(h);
+    count_work(h);
     if (!begin_denial(h, &w->blockers, rank_of(h, w, edges, n))) {
         return false;
     }
@@ -216,7 +216,7 @@ static bool is_same(const walk *w, const denial *one, const denial *other)
                == 0);
 }
 
-/* What keeps a move back: the blockers of higher rank, each once; false if one always does. */
+/* Collect the blockers of higher priority of a move, each once; false if one blocks it always. */
 static bool find_blockers(engine *h, walk *w, const int32_t *edges, int n)
 {
     const bool waits = (w->blocker_count > 0) && !is_watcher(h, edge_at(h, edges[0])[EDGE_AUTOMATON]);
@@ -247,7 +247,7 @@ static bool find_blockers(engine *h, walk *w, const int32_t *edges, int n)
 
 /* --- the watcher --------------------------------------------------------------------------------- */
 
-/* A move with each edge of the watcher that can go along with it; those of its own go alone. */
+/* Join a move with each edge of the watcher that can watch it; moves of the watcher itself stay alone. */
 static bool each_watched(engine *h, walk *w, const int32_t *edges, int n, sink take)
 {
     const search_state before = h->state;
@@ -281,7 +281,7 @@ static bool each_watched(engine *h, walk *w, const int32_t *edges, int n, sink t
     return !h->failed;
 }
 
-/* A move in all its variants. */
+/* Take a move in all its variants. */
 static bool each_variant(engine *h, walk *w, const int32_t *edges, int n, sink take)
 {
     int64_t i = 0;

@@ -1,11 +1,11 @@
-/* The search as a whole. */
+/* A search from start to answer. */
 #ifndef RVMON_ZONES_WHOLE_H
 #define RVMON_ZONES_WHOLE_H
 
 #include "nested.h"
 #include "linear.h"
 
-/* The bits that locations and variables take in a packed state. */
+/* Lay out locations and variables in packed states. */
 static bool lay_out(engine *h)
 {
     const int n = h->automaton_count + h->variable_count;
@@ -59,7 +59,7 @@ static void make_walk(engine *h, walk *w)
     w->watching = block(h, (size_t)h->edge_count, sizeof *w->watching);
 }
 
-/* No place of the watcher was met: bounds that no clock has. */
+/* No location of the watcher was met: empty ranges. */
 static void make_spans(engine *h)
 {
     const int32_t places = h->automata[3 * (h->automaton_count - 1) + 1];
@@ -70,7 +70,7 @@ static void make_spans(engine *h)
     }
 }
 
-/* All that a search needs from the start; false without memory. */
+/* Allocate what a search needs from the start; false without memory. */
 static bool make_engine(engine *h, const int32_t *plan, const double *costs, const caller *from)
 {
     size_t d;
@@ -138,7 +138,7 @@ static bool make_engine(engine *h, const int32_t *plan, const double *costs, con
     return runs(h);
 }
 
-/* The start: initial locations and values, all clocks 0. */
+/* The initial state: initial locations and values, all clocks 0. */
 static void begin(engine *h)
 {
     walk *w = &h->out;
@@ -200,7 +200,7 @@ static void run(engine *h)
         begin(h);
     }
     if (h->kind == SEEK_START) {
-        if (in_nested(h, w->zone, &w->there)) {
+        if (meets_nested(h, w->zone, &w->there)) {
             h->state = SEARCH_FOUND;
         }
         return;
@@ -241,10 +241,10 @@ static void run(engine *h)
     }
 }
 
-/* The path to what was found, or to what failed with the move that did. */
+/* The path to the result, or to the failure including the move that failed. */
 static void tell_end(engine *h)
 {
-    /* What fails behind the end of memory may fail for want of it. */
+    /* Once memory is out, a failure may be due to that. */
     const bool fails = h->failed && (runs(h) || (h->state == SEARCH_FOUND));
     const search_state ended = fails ? SEARCH_FAILED : h->state;
     const int32_t failed = h->step_edge_count;

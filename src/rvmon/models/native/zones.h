@@ -1,19 +1,19 @@
-/* Searches a network of timed automata, symbolically: what module.c and the fuzzer call. */
+/* Symbolic search in a network of timed automata: the interface for module.c and the fuzzer. */
 #ifndef RVMON_ZONES_H
 #define RVMON_ZONES_H
 
 #include "plan.h"
 
-/* How a search ended: nothing was found; something was; it was stopped; a variable left its range
- * or a number was none that can be used; memory ran out; numbers are too large. */
+/* The state of a search: it runs; it ended without a result; with one; the caller stopped it; an
+ * evaluation failed (a variable out of range, a bad number); memory is out; numbers are too large. */
 typedef enum { SEARCH_RUNS, SEARCH_ENDED, SEARCH_FOUND, SEARCH_STOPPED, SEARCH_FAILED,
                SEARCH_NO_MEMORY, SEARCH_TOO_LARGE } search_state;
 
-/* How a run ends that was found. */
+/* The ending of a run that was found. */
 enum { END_REACHED, END_DEAD, END_IDLE, END_STUCK, END_LOOP, END_ZENO };
 
-/* Steps of a path, each given as: kind, piece behind (-1: none), a number, edges, their indices. Of a
- * move the number is of further bounds under which it can be taken, given as: x, y, c, 1 for `<= c`. */
+/* Steps of a path, each as: kind, piece after it (-1: none), a count, edges, their indices. For a move
+ * the count is of further bounds under which it can be taken, each as: x, y, c, 1 for `<= c`. */
 enum { STEP_MOVE, STEP_CROSSING, STEP_MARK };
 
 typedef struct {
@@ -22,19 +22,18 @@ typedef struct {
     uint32_t room;
 } numbers;
 
-/* What was found.
- *   path: first the piece in which it starts (-1: none), then its steps
- *   parts: of the last valuations, what is sought: rows of DBMs, 2c + 1 for `<= c`, 2c for `< c`,
+/* The result of a search.
+ *   path: the piece in which it starts (-1: none), then its steps
+ *   parts: the last valuations that meet the goal: rows of DBMs, 2c + 1 for `<= c`, 2c for `< c`,
  *          INT64_MAX for none
- *   spans: of a search for a goal with a watcher, for each of its places between which bounds the last
- *          clock of the network was: `-clock` at most the first, `clock` at most the second;
- *          INT64_MIN where it never came
+ *   spans: with a watcher, for each of its locations the bounds of the last clock of the network:
+ *          `-clock` at most the first, `clock` at most the second; INT64_MIN if it was never reached
  *   loop: steps before the loop, -1 without one */
 typedef struct {
     search_state state;
     int32_t ending;
     int32_t loop;
-    bool improper; /* whether a way was passed by on which time stops */
+    bool improper; /* whether a run was skipped on which time stops */
     uint64_t visited;
     uint64_t stored;
     uint64_t states;
@@ -45,27 +44,27 @@ typedef struct {
     int64_t *spans;
     uint32_t span_count;
     uint32_t dim;
-    struct held *memory; /* all of the search */
+    struct held *memory; /* owns all memory of the search */
 } answer;
 
-/* What a search asks for. `goes_on` is called now and then; false stops it. `counts` is called with a
- * loop that was found: 1 if time passes on it without bound, 0 if not, -1 stops. */
+/* The caller of a search. `goes_on` is called from time to time; false stops the search. `counts` is
+ * called with a loop: it returns 1 if time diverges on it, 0 if not, -1 to stop. */
 typedef struct {
     void *context;
     bool (*goes_on)(void *context, uint64_t visited, uint64_t waiting);
     int (*counts)(void *context, const numbers *path, int32_t loop, const int64_t *head,
                   uint32_t dim);
     uint64_t most_states;
-    uint64_t most_bytes; /* of memory that it takes */
-    bool proper_only;    /* only ways on which time passes without bound */
+    uint64_t most_bytes; /* of memory in use */
+    bool proper_only;    /* only runs on which time diverges */
 } caller;
 
-/* Search a plan that was checked, with the cost of each edge, in bounds of 32 or 64 bits. What it
- * gives is to be released, however it ended. */
+/* Search a validated plan, with the cost of each edge, in bounds of 32 or 64 bits. The answer has to be
+ * released in any case. */
 answer search_narrow(const int32_t *plan, const double *costs, const caller *from);
 answer search_wide(const int32_t *plan, const double *costs, const caller *from);
 
-/* The first, and if numbers get too large for it, the second. */
+/* Search in 32 bits, and again in 64 bits if numbers become too large. */
 answer search(const int32_t *plan, const double *costs, const caller *from);
 
 void release_answer(answer *found);
