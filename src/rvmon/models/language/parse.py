@@ -164,7 +164,7 @@ def _word(terminal: str) -> str:
             return 'a text in "quotes"'
         case "PATH":
             return "`E<>`, `A[]`, `A<>`, `E[]`"
-        case "$END":
+        case "$END" | "<END-OF-FILE>":  # Lark's names, of the parser's end and of the lexer's
             return "the end"
         case _:
             pattern = _parser(whole=True).get_terminal(terminal).pattern

@@ -126,6 +126,7 @@ def test_unit_weight_and_label_come_from_comments():
         ("<nta><declaration></nta>", ("TA018", "")),
         ("<html></html>", ("TA018", "<html")),
         (wrap(ONE + edge(guard="y &lt; 3")), ("TA002", "y")),
+        (wrap(ONE + edge(synchronisation="go?:"), declaration="chan go;"), ("TA001", ":")),
         (wrap(ONE + edge(guard="x&lt;3&amp;&amp;y&gt;1"), declaration="clock x;"),
          ("TA002", "y")),
         (wrap(ONE + edge(guard="x -")), ("TA001", "")),
