@@ -118,6 +118,8 @@ def test_a_course_is_bounded_and_loses_no_peak():
         ["init", "gone.mcap"],
         ["init", "gone.bag", "--for", "a.rv"],
         ["run", "a.rv", "gone/"],
+        ["run", "a.rv", "gone"],
+        ["run", "a.rv", "gone.odd"],
         ["run", "a.rv", "gone/", "--join"],
         ["run", "a.rv", "gone.csv", "gone2.csv", "--join"],
         ["why", "a.rv", "gone.ulg", "R1"],

@@ -50,12 +50,3 @@ def test_dates_of_polars_arrow_and_parquet(tmp_path):
 def test_a_date_that_is_none_is_told():
     with pytest.raises(rvmon.TraceError, match="row 1: time `NaT`"):
         decided({"t": np.array(["2024-05-01", "NaT"], "datetime64[ns]"), "x": [1.0, 2.0]})
-
-
-@pytest.mark.parametrize("name", ["none", "none.odd", "none/", "none.csv"])
-def test_a_path_that_is_not_there_is_said_not_to_be(tmp_path, name):
-    with pytest.raises(rvmon.TraceError, match="No such file or directory"):
-        rvmon.loads(SPEC).evaluate(f"{tmp_path}/{name}")
-    (tmp_path / "there.odd").write_text("")
-    with pytest.raises(rvmon.TraceError, match="no known format"):
-        rvmon.loads(SPEC).evaluate(tmp_path / "there.odd")

@@ -199,6 +199,16 @@ def test_a_value_may_stand_for_no_update(tmp_path):
             judged(base(), MERGED, **wrong)
 
 
+def test_the_command_line_reads_nan_as_it_is_told(tmp_path, says):
+    """`--nan no-update` holds the value before; without it the finding names the option."""
+    spec, trace = tmp_path / "a.rv", tmp_path / "a.csv"
+    spec.write_text("spec s\nsignal x : real\nrequirement R1\n  always x < 3\n")
+    trace.write_text("t,x\n" + "".join(f"{t},{('1', 'nan')[t % 2]}\n" for t in range(8)))
+    told = says(1, "run", spec, trace, "--strict").out
+    assert "rvmon run --nan no-update" in " ".join(told.split())
+    says(0, "run", spec, trace, "--strict", "--nan", "no-update")
+
+
 def test_sources_of_a_stream_can_be_named():
     spec = rvmon.loads("spec s\nsignal p : bool\nevent e\nrequirement R1\n  always not e\n")
     pairs = [(0, {"p": True}), (1, {"p": True})]

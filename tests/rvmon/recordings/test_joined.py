@@ -88,7 +88,7 @@ def test_late_rows_of_a_file_are_put_in_order_under_max_delay(tmp_path):
         rvmon.loads(text).evaluate(files)
 
 
-def test_a_file_says_where_its_error_is(tmp_path, capsys):
+def test_a_file_says_where_its_error_is(tmp_path, capsys, says):
     (tmp_path / "a.csv").write_text("t,speed\n0,1\n1,x\n")
     (tmp_path / "b.csv").write_text("t,mode\n0,idle\n")
     (tmp_path / "s.rv").write_text("signal speed : real\nrequirement R\n  always speed < 9\n")
@@ -96,8 +96,7 @@ def test_a_file_says_where_its_error_is(tmp_path, capsys):
     assert f"{tmp_path / 'a.csv'}: line 3: column `speed`: `x` is not" in capsys.readouterr().err
     (tmp_path / "a.csv").write_text("t,speed\n0,1\n")
     words = ["run", str(tmp_path / "s.rv"), str(tmp_path), "--join", "--report"]
-    assert main([*words, str(tmp_path / "pages")]) == 0
-    assert capsys.readouterr().out.startswith(f"{tmp_path} + ")  # by its own name
+    assert says(0, *words, tmp_path / "pages").out.startswith(f"{tmp_path} + ")
     (tmp_path / "a.csv").write_text("t,speed\n1,1\n0,1\n")
     with pytest.raises(rvmon.TraceError, match=r"a\.csv: line 3: time goes backwards"):
         rvmon.load(tmp_path / "s.rv").evaluate([tmp_path / "a.csv", tmp_path / "b.csv"])
@@ -154,29 +153,27 @@ def test_tables_in_memory_are_joined():
     assert spec.evaluate(merged, nan="no update").verdicts["R"].value == "P"
 
 
-def test_no_piece_is_cut_out_of_several_files(tmp_path, capsys):
+def test_no_piece_is_cut_out_of_several_files(tmp_path, capsys, says):
     for name in "ab":
         (tmp_path / f"{name}.csv").write_text(f"t,{name}\n0,1\n")
     (tmp_path / "s.rv").write_text("signal a : real\nrequirement R\n  always a < 9\n")
     both = f"{tmp_path / 'a.csv'} + {tmp_path / 'b.csv'}"
     spec, piece = str(tmp_path / "s.rv"), str(tmp_path / "c.csv")
     words = ["clip", spec, both, "--from", "0", "--to", "1", "-o", piece]
-    assert main(words) == 2
-    assert "clip each of them, by --from" in capsys.readouterr().err
+    assert "clip each of them, by --from" in says(2, *words).err
     assert main(["clip", spec, both, "R#1", "--reproducer", str(tmp_path / "c.rvcase")]) == 2
     assert "clip each of them, by --from" in capsys.readouterr().err
     assert main(["init", both, "--for", spec]) == 2
     assert "of several files bindings are proposed one by one" in capsys.readouterr().err
 
 
-def test_evidence_of_several_files_is_of_all_of_them(tmp_path, capsys, monkeypatch):
+def test_evidence_of_several_files_is_of_all_of_them(tmp_path, capsys, monkeypatch, says):
     monkeypatch.chdir(tmp_path)
     for name in "ab":
         (tmp_path / f"{name}.csv").write_text(f"t,{name}\n0,1\n")
     (tmp_path / "s.rv").write_text("signal a, b : real\nrequirement R\n  always a <= b\n")
     assert main(["run", "s.rv", "a.csv", "b.csv", "--join", "--evidence", "e.zip"]) == 0
-    assert main(["evidence", "e.zip"]) == 0
-    assert "evaluated again: 1 of 1" in capsys.readouterr().out
+    assert "evaluated again: 1 of 1" in says(0, "evidence", "e.zip").out
     (tmp_path / "b.csv").write_text("t,b\n0,2\n")
     assert main(["evidence", "e.zip"]) == 1
     assert "a.csv + b.csv is not the recording that was evaluated" in capsys.readouterr().out

@@ -51,13 +51,12 @@ def test_a_packed_recording_gives_the_records_of_the_plain_one(tmp_path, spec, n
 
 
 @pytest.mark.parametrize("ending", PACKERS)
-def test_a_packed_file_that_was_cut_off_is_told(tmp_path, capsys, ending):
+def test_a_packed_file_that_was_cut_off_is_told(tmp_path, ending, says):
     good, bad = tmp_path / "good.csv", tmp_path / f"bad.csv{ending}"
     good.write_text(CSV)
     bad.write_bytes(PACKERS[ending](CSV.encode())[:-200])
     (tmp_path / "door.rv").write_text(SPEC)
-    assert main(["run", str(tmp_path / "door.rv"), str(bad), str(good)]) == 2
-    told = capsys.readouterr()
+    told = says(2, "run", tmp_path / "door.rv", bad, good)
     assert "bad.csv" + ending in told.err
     assert "was it cut off?" in told.err
     assert "good.csv" in told.out.replace("\n", "")
@@ -86,11 +85,10 @@ def test_only_text_is_read_packed(tmp_path, spec):
         spec.evaluate(tmp_path / "a.parquet.gz")
 
 
-def test_a_starter_is_written_from_a_packed_recording(tmp_path, capsys):
+def test_a_starter_is_written_from_a_packed_recording(tmp_path, says):
     path = tmp_path / "a.csv.gz"
     path.write_bytes(gzip.compress(CSV.encode()))
-    assert main(["init", str(path), "-o", "-"]) == 0
-    assert "signal width : real" in capsys.readouterr().out
+    assert "signal width : real" in says(0, "init", path, "-o", "-").out
 
 
 def test_a_folder_stands_for_the_recordings_in_it(tmp_path):
@@ -173,13 +171,12 @@ def test_what_is_put_at_an_address_anew_is_read_anew(tmp_path, spec, server):
 
 
 @pytest.mark.slow
-def test_an_address_without_a_recording_does_not_stop_the_others(tmp_path, server, capsys):
+def test_an_address_without_a_recording_does_not_stop_the_others(tmp_path, server, says):
     """It is a bad recording, as a file that is missing."""
     (tmp_path / "door.rv").write_text(SPEC)
     (tmp_path / "a.csv").write_text(CSV)
     words = ["run", str(tmp_path / "door.rv"), f"{server}/none.csv", f"{server}/a.csv"]
-    assert main(words) == 2
-    told = capsys.readouterr()
+    told = says(2, *words)
     assert f"error: {server}/none.csv: there is nothing at this address" in told.err
     assert "a.csv" in told.out
 
@@ -191,7 +188,7 @@ def test_a_kind_of_address_that_is_not_known_is_told(spec):
 
 
 @pytest.mark.slow
-def test_a_bucket_is_read_by_names_and_by_patterns(tmp_path, monkeypatch, capsys):
+def test_a_bucket_is_read_by_names_and_by_patterns(tmp_path, monkeypatch, capsys, says):
     pytest.importorskip("s3fs")
     server = pytest.importorskip("moto.server").ThreadedMotoServer(port=0)
     server.start()
@@ -209,8 +206,7 @@ def test_a_bucket_is_read_by_names_and_by_patterns(tmp_path, monkeypatch, capsys
         for name in ("monday.csv", "tuesday.csv"):
             bucket.pipe(f"runs/{name}", CSV.encode())
         (tmp_path / "door.rv").write_text(SPEC)
-        assert main(["run", str(tmp_path / "door.rv"), "s3://runs/*.csv"]) == 1
-        told = capsys.readouterr().out
+        told = says(1, "run", tmp_path / "door.rv", "s3://runs/*.csv").out
         assert "s3://runs/monday.csv" in told
         assert "s3://runs/tuesday.csv" in told
         assert main(["run", str(tmp_path / "door.rv"), "s3://runs/none.csv"]) == 2

@@ -3,7 +3,6 @@
 import pytest
 
 from rvmon import loads
-from rvmon.cli import main
 from rvmon.errors import SpecError
 from rvmon.language.print import format_formula
 
@@ -43,14 +42,13 @@ def test_what_no_run_shows_is_refused(text, message):
         loads(f"{HEAD}  {text}")
 
 
-def test_a_run_shows_it_or_not(capsys, tmp_path):
+def test_a_run_shows_it_or_not(tmp_path, says):
     """A run that shows the goal passes it, none fails it; a property alone is told as unjudged."""
     spec = tmp_path / "s.rv"
     spec.write_text(f"{HEAD}  property E<> (a and b)\nproperty ALONE: E<> c", "utf-8")
     for last, answer in (("1,1", "R1  P"), ("1,0", "R1  I")):
         trace = tmp_path / "t.csv"
         trace.write_text(f"t,a,b,c\n0,0,0,0\n1,{last},0\n", "utf-8")
-        assert main(["run", str(spec), str(trace)]) == 0
-        told = capsys.readouterr()
+        told = says(0, "run", spec, trace)
         assert answer in told.out
         assert "`ALONE`" in told.err

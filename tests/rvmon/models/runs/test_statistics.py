@@ -177,17 +177,15 @@ def test_statistics_are_no_decision():
 
 
 @pytest.mark.slow
-def test_the_command_says_figures(tmp_path, capsys):
+def test_the_command_says_figures(tmp_path, capsys, says):
     model = tmp_path / "coin.ta"
     model.write_text(COIN, "utf-8")
     assert main(["verify", str(model), "--query", "Pr[<=2](<> A.heads)"]) == 0
     assert "simulated: Pr" in (told := capsys.readouterr().out)
     assert "95 % confidence" in told
     failing = ["verify", str(model), "--query", "Pr[<=2](<> A.heads) >= 0.5"]
-    assert main(failing) == 1
-    assert "does not hold, by a test" in capsys.readouterr().out
-    assert main([*failing, "--format", "json"]) == 1
-    (one,) = json.loads(capsys.readouterr().out)["simulated"]
+    assert "does not hold, by a test" in says(1, *failing).out
+    (one,) = json.loads(says(1, *failing, "--format", "json").out)["simulated"]
     assert one["holds"] is False
     assert one["error"] == 0.05
 
@@ -204,7 +202,7 @@ query: simulate [<=5; 2] {n, x, cost, n > 1}
 """
 
 
-def test_runs_are_shown_as_they_go_on(tmp_path, capsys):
+def test_runs_are_shown_as_they_go_on(tmp_path, says):
     network = loads_network(TICKING)
     found = trajectories(network, network.queries[0])
     assert len(found) == 2
@@ -213,12 +211,10 @@ def test_runs_are_shown_as_they_go_on(tmp_path, capsys):
     assert [(one.times, one.values) for one in found] == [(times, rows)] * 2
     model = tmp_path / "ticking.ta"
     model.write_text(TICKING, "utf-8")
-    assert main(["verify", str(model)]) == 0
-    told = capsys.readouterr().out
+    told = says(0, "verify", model).out
     assert "simulated: simulate [<=5; 2]" in told
     assert "        4  x = 2, cost = 12\n" in told
-    assert main(["verify", str(model), "--format", "json"]) == 0
-    (one,) = json.loads(capsys.readouterr().out)["simulated"]
+    (one,) = json.loads(says(0, "verify", model, "--format", "json").out)["simulated"]
     assert one["runs"][1]["cost"] == [0, 6, 6, 12, 12, 15]
 
 

@@ -118,11 +118,10 @@ def test_a_value_is_no_decision():
         verify(loads_network(LAMP), "sup: n")
 
 
-def test_the_command_answers(tmp_path, capsys):
+def test_the_command_answers(tmp_path, capsys, says):
     model = tmp_path / "lamp.ta"
     model.write_text(LAMP + 'query most "the count ends": sup: n\n', "utf-8")
-    assert main(["verify", str(model)]) == 0
-    told = capsys.readouterr().out
+    told = says(0, "verify", model).out
     assert "most: answered: sup: n" in told
     assert "n is at most 18" in told
     assert main(["verify", str(model), "--query", "inf{A.b}: x", "--format", "json"]) == 0

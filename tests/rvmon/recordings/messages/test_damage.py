@@ -59,14 +59,13 @@ def spec():
         ("b.mcap", "mcap recover"),
     ],
 )
-def test_what_was_cut_off_is_told_and_the_others_are_judged(tmp_path, capsys, name, fix, kept):
+def test_what_was_cut_off_is_told_and_the_others_are_judged(tmp_path, name, fix, kept, says):
     whole = write_ros1(tmp_path / "whole.bag", SENT)
     path, file = written(tmp_path, name)
     data = file.read_bytes()
     file.write_bytes(data[: int(len(data) * kept)])
     (tmp_path / "base.rv").write_text(SPEC)
-    assert main(["run", str(tmp_path / "base.rv"), str(path), str(whole)]) == 2
-    told = capsys.readouterr()
+    told = says(2, "run", tmp_path / "base.rv", path, whole)
     assert f"error: {path}: cannot be read as" in told.err
     assert fix in told.err
     assert "whole.bag" in told.out.replace("\n", "")
@@ -137,12 +136,11 @@ def test_an_encrypted_bag_is_told(tmp_path, spec):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap", "b.mcap"])
-def test_a_topic_that_is_missing_is_told_with_the_nearest(tmp_path, capsys, name):
+def test_a_topic_that_is_missing_is_told_with_the_nearest(tmp_path, name, says):
     path, _ = written(tmp_path, name)
     (tmp_path / "base.rv").write_text(SPEC.replace("speed", "sped"))
     words = ["run", str(tmp_path / "base.rv"), str(path)]
-    assert main(words) == 2
-    told = capsys.readouterr().err
+    told = says(2, *words).err
     assert "there is no topic for what requirements read:" in told
     assert "`sped`, read by R1, R2: did you mean `/speed`?" in told
     assert main([*words, "--map", "sped=/speed"]) == 0
@@ -224,7 +222,7 @@ def test_a_value_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):
 
 
 @pytest.mark.slow
-def test_a_bag_that_lists_fewer_files_or_ends_later_than_it_says_is_told(tmp_path, capsys):
+def test_a_bag_that_lists_fewer_files_or_ends_later_than_it_says_is_told(tmp_path, capsys, says):
     """As of a recorder that was killed in its second file, or ended as one that was."""
     fast = ("/speed", START + 9 * 10**9, {"data": 9.0})
     path, file = written(tmp_path, "sqlite3")
@@ -234,11 +232,9 @@ def test_a_bag_that_lists_fewer_files_or_ends_later_than_it_says_is_told(tmp_pat
     assert main(command) == 0
     file.write_bytes((other / "other.db3").read_bytes())
     capsys.readouterr()
-    assert main(command) == 1
-    assert "`speed < 3` became false at 9 s" in capsys.readouterr().out
+    assert "`speed < 3` became false at 9 s" in says(1, *command).out
     (path / "sqlite3_1.db3").write_bytes(file.read_bytes())
-    assert main(command) == 2
-    assert "metadata.yaml does not list sqlite3_1.db3" in capsys.readouterr().err
+    assert "metadata.yaml does not list sqlite3_1.db3" in says(2, *command).err
 
 
 def test_a_summary_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):

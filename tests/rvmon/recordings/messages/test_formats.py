@@ -209,7 +209,7 @@ def test_a_bag_without_definitions_is_read_by_those_of_its_distribution(tmp_path
     ],
     ids=["lacks a part", "no name"],
 )
-def test_a_faulty_definition_is_a_fault_of_its_topic(tmp_path, capsys, type_name, definition, why):
+def test_a_faulty_definition_is_a_fault_of_its_topic(tmp_path, type_name, definition, why, says):
     from mcap.writer import Writer
 
     path = tmp_path / "a.mcap"
@@ -220,5 +220,4 @@ def test_a_faulty_definition_is_a_fault_of_its_topic(tmp_path, capsys, type_name
         channel = writer.register_channel("/tool", "cdr", kind)
         writer.add_message(channel, START, b"\0\1\0\0\1", START)
         writer.finish()
-    assert main(["init", str(path)]) == 2
-    assert f"`tool`: the definition of its messages{why}" in capsys.readouterr().err
+    assert f"`tool`: the definition of its messages{why}" in says(2, "init", path).err

@@ -372,7 +372,7 @@ def test_first_specifications_are_made_of_it_and_pass(tmp_path, monkeypatch, nam
     assert main(["run", "mine.rv", str(path)]) == 0
 
 
-def test_what_points_down_is_no_height_and_no_climbing(tmp_path, capsys):
+def test_what_points_down_is_no_height_and_no_climbing(tmp_path, says):
     """In flight z is downwards: a climb rate of its velocity would have the wrong sign."""
     mavlink = pytest.importorskip("pymavlink.dialects.v20.ardupilotmega")
     link = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
@@ -383,7 +383,6 @@ def test_what_points_down_is_no_height_and_no_climbing(tmp_path, capsys):
     text = "spec s\nsignal climb_rate : real [m/s]\nsignal speed_z : real [m/s]\n"
     text += "requirement R\n always (climb_rate < 2 m/s and speed_z < 2 m/s)\n"
     (tmp_path / "a.rv").write_text(text)
-    assert main(["init", str(tmp_path / "a.tlog"), "--for", str(tmp_path / "a.rv")]) == 1
-    told = capsys.readouterr()
+    told = says(1, "init", tmp_path / "a.tlog", "--for", tmp_path / "a.rv")
     assert 'value = "vz"' in told.out.partition("[bind.speed_z]")[2]
     assert "`climb_rate` is left open" in told.err

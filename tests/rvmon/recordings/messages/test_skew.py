@@ -4,7 +4,6 @@ import pytest
 from tests.tools.bags import START, write_ros1, write_ros2
 
 import rvmon
-from rvmon.cli import main
 from rvmon.trace.sample import HealthKind
 
 pytest.importorskip("rosbags")
@@ -87,13 +86,11 @@ def test_headers_that_nobody_filled_in_say_nothing(tmp_path):
     assert doubts(path, tmp_path) == {}
 
 
-def test_the_command_says_it(tmp_path, capsys):
+def test_the_command_says_it(tmp_path, says):
     path = recording(tmp_path / "a.bag", lambda _: 1500, lambda _: 1)
     (tmp_path / "s.rv").write_text(SPEC)
     (tmp_path / "b.toml").write_text(BINDING)
     words = ["run", str(tmp_path / "s.rv"), str(path), "--binding", str(tmp_path / "b.toml")]
-    assert main(words) == 0
-    told = " ".join(capsys.readouterr().out.split())
+    told = " ".join(says(0, *words).out.split())
     assert "/odom warning: headers are at least 1.5 s earlier than the log" in told
-    assert main([*words, "--format", "json"]) == 0
-    assert "`/odom`: headers are at least 1.5 s earlier" in capsys.readouterr().err
+    assert "`/odom`: headers are at least 1.5 s earlier" in says(0, *words, "--format", "json").err

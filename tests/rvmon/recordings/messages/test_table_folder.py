@@ -110,7 +110,7 @@ def test_the_same_report_as_of_one_file_of_all(tmp_path):
         assert spec.evaluate(place, **allowed).attempts == spec.evaluate(path, **allowed).attempts
 
 
-def test_a_file_says_which_is_which(tmp_path, capsys):
+def test_a_file_says_which_is_which(tmp_path, says):
     toml = (
         'time = "stamp:us"\n[topics]\nspeed = "log_speed_0.csv"\n'
         'mode = {file = "mode.csv.gz", time = "t"}\n'
@@ -130,11 +130,9 @@ def test_a_file_says_which_is_which(tmp_path, capsys):
     ]
     spec = tmp_path / "a.rv"
     spec.write_text("spec s\nsignal pose.x : real [m/s]\nrequirement R\n  always pose.x < 2 m/s\n")
-    assert main(["run", str(spec), str(place)]) == 2
-    assert "`pose.x` is declared [m/s], and `x` of topic /pose" in capsys.readouterr().err
+    assert "`pose.x` is declared [m/s], and `x` of topic /pose" in says(2, "run", spec, place).err
     spec.write_text(ONE + "signal height : real [m]\n")
-    assert main(["init", str(place), "--for", str(spec)]) == 1
-    assert '[bind.speed]  # real\ntopic = "/speed"' in capsys.readouterr().out
+    assert '[bind.speed]  # real\ntopic = "/speed"' in says(1, "init", place, "--for", spec).out
 
 
 @pytest.mark.parametrize(
@@ -158,14 +156,13 @@ def test_what_is_wrong_is_told_with_its_place(tmp_path, files, toml, message):
         rvmon.loads(SPEC).evaluate(place, allow_missing=True)
 
 
-def test_commands_take_such_a_folder_for_one_recording(tmp_path, monkeypatch, capsys):
+def test_commands_take_such_a_folder_for_one_recording(tmp_path, monkeypatch, capsys, says):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "s.rv").write_text(ONE)
     (tmp_path / "runs").mkdir()
     for name, speed in (("one", 0.5), ("two", 2)):
         folder(tmp_path / "runs" / name, {"speed.csv": f"t,speed\n0,{speed}\n1,0\n"})
-    assert main(["run", "s.rv", "runs"]) == 1
-    shown = capsys.readouterr().out
+    shown = says(1, "run", "s.rv", "runs").out
     assert "runs/one  to 1 s" in shown
     assert "runs/two  to 1 s" in shown
     assert main(["why", "s.rv", "runs/two", "R1"]) == 0
@@ -174,8 +171,7 @@ def test_commands_take_such_a_folder_for_one_recording(tmp_path, monkeypatch, ca
     assert main(["run", "one.rv", "runs/one", "--strict"]) == 0
     capsys.readouterr()
     clip = ["clip", "s.rv", "runs/two", "R1#1", "--before", "1s", "-o", "x"]
-    assert main(clip) == 2
-    assert "clip each of them" in capsys.readouterr().err
+    assert "clip each of them" in says(2, *clip).err
 
 
 def test_a_file_of_a_topic_whose_last_line_has_no_end_is_refused(tmp_path):
