@@ -87,7 +87,7 @@ class Closed:
         groups: measured besides those of the campaign.
         seconds: its duration.
         ended: why it ended with open goals; empty if there is none.
-        trade: the mutants that the suite finds, if it was chosen by them as well.
+        trade: the faults that smaller choices miss, if mutants had a part in its choice.
     """
 
     tests: Sequence[Added]
