@@ -1,5 +1,5 @@
-/* Rows that change no verdict where values are measured: what the leaves are in many of them is laid out
- * together, and given to the gauges. */
+/* Robustness of rows that change no verdict: the leaves of many rows are computed together, column by
+ * column, and given to the gauges. */
 #include "attempts/attempts.h"
 #include "input/input.h"
 #include "margins/margins.h"
@@ -7,7 +7,7 @@
 
 #include <math.h>
 
-/* Make room for what the leaves of a judge are in rows that are looked at together. */
+/* Make room for the leaves of a judge in rows that are examined together. */
 bool begin_measured(batch *s)
 {
     rv_monitor *m = s->m;
@@ -37,7 +37,7 @@ void end_measured(batch *s)
     settle_rows(s, TOGETHER);
 }
 
-/* Find the figures that rows have settled which were taken together, when they are many. */
+/* Settle figures once enough rows were taken together. */
 void settle_rows(batch *s, int64_t rows)
 {
     rv_monitor *m = s->m;
@@ -50,8 +50,8 @@ void settle_rows(batch *s, int64_t rows)
     }
 }
 
-/* Whether rows can be measured that are passed over, if any are measured: all is known of what is born,
- * and there is one run. */
+/* Whether rows that are passed over can be measured: all signals that are born are known, and the part
+ * has a single run. */
 bool may_pass_measured(const rv_monitor *m)
 {
     const run *r = m->homes[0].root;
@@ -83,7 +83,7 @@ static bool is_looked_at(const run *r, int32_t place)
     return false;
 }
 
-/* Formulas of more levels are looked at row by row. */
+/* Formulas with more levels are examined row by row. */
 #define LEVELS_MOST 4
 
 /* Whether a node and all nodes above it have no memory, and only obligations of judges read them; if
@@ -112,7 +112,7 @@ static bool is_unheard(const run *r, int32_t place, bool now, int32_t level)
     return true;
 }
 
-/* The nodes that the comparisons of a signal are shown by, one after the other; -1 behind the last. */
+/* Iterate over the nodes that show the comparisons of a signal; -1 after the last. */
 static int32_t next_shown(const run *r, int32_t local, int32_t *atom, int32_t *at)
 {
     const list atoms = r->part->signals[local].on_change[r->at.phase];
@@ -177,7 +177,7 @@ bool is_idle_now(const batch *s, const column_watch *w)
     return true;
 }
 
-/* Have a run hold what a row says. */
+/* Hold the values of a row in a run. */
 static void hold_row(const batch *s, int64_t row)
 {
     int32_t i;
@@ -202,7 +202,7 @@ static const double *reals_of(const batch *s, const atom_plan *a)
     return NULL;
 }
 
-/* What a leaf is in some rows; whether it is somewhere another at most than at least. */
+/* Compute the bounds of a leaf in some rows; whether they differ anywhere. */
 static bool lay_leaf(const batch *s, const run *r, const margin_shape *shape, int32_t number, int64_t row,
                      int64_t end)
 {
@@ -233,7 +233,7 @@ static bool lay_leaf(const batch *s, const run *r, const margin_shape *shape, in
     return differs;
 }
 
-/* Give what a judge measures in some rows to its gauges. */
+/* Give the leaves of a judge in some rows to its gauges. */
 static void give_rows(const batch *s, run *r, int32_t index, int64_t row, int64_t end)
 {
     const margin_shape *shape = shape_of(r, index);
@@ -252,7 +252,7 @@ static void give_rows(const batch *s, run *r, int32_t index, int64_t row, int64_
     give_letters(w, &s->times[row], end - row, s->leaves, TOGETHER);
 }
 
-/* Measure rows for a judge: the last one is that at which it stands. */
+/* Measure rows for a judge; its position is then that of the last row. */
 static void measure_for(const batch *s, run *r, int32_t index, int64_t row, int64_t end)
 {
     measuring *q = &r->margins[index];
@@ -268,7 +268,7 @@ static void measure_for(const batch *s, run *r, int32_t index, int64_t row, int6
     if ((i < end - 1) && ((q->asks.first < q->asks.end) || is_kept_up(r, index))) {
         give_rows(s, r, index, i, end - 1);
     }
-    if (is_streamed(r, index)) { /* before anything is found out about these */
+    if (is_streamed(r, index)) { /* before any of them is settled */
         ask_for_positions(r, index, &s->times[row], end - 1 - row);
     }
     hold_row(s, end - 1);
@@ -278,7 +278,7 @@ static void measure_for(const batch *s, run *r, int32_t index, int64_t row, int6
     }
 }
 
-/* Measure some rows that are passed over, and hold what the last one says. */
+/* Measure some rows that are passed over, and hold the values of the last one. */
 void measure_rows(batch *s, int64_t row, int64_t end)
 {
     run *r = s->m->homes[0].root;
