@@ -7,6 +7,7 @@ import pytest
 
 import rvmon
 from rvmon.recordings.source import Source
+from rvmon.trace.sample import Trace
 
 PAIRS = 40
 COMPARED = ("<", "<=", "==", "!=", ">=", ">")
@@ -125,11 +126,11 @@ def test_a_recording_is_judged_and_measured_alike_by_columns_and_by_rows(time, u
     path.write_text("\n".join(["t,x,p", *rows, ""]))
     end = None if until is None else int(until * 1e9)
 
-    def judged(**how):
-        source = Source(spec.recording(path), end, is_cut=True, **how)
-        return spec.judge(source, robustness=True)
+    def judged(recording):
+        return spec.judge(Source(recording, end, is_cut=True), robustness=True)
 
-    found, expected = judged(), judged(read=lambda recording: iter(recording))
+    read = spec.recording(path)
+    found, expected = judged(spec.recording(path)), judged(Trace((*read,), read.names, read.end))
     assert found == expected
     assert found.to_json() == expected.to_json()
     assert all(one.robustness is not None for one in found.attempts if one.decided is not None)
