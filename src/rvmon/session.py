@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from rvmon.errors import SpecError
 from rvmon.language.checked.names_read import requirements_asked, sources_asked
+from rvmon.recordings.formats import FORMATS
 from rvmon.texts import cannot_read, text_of_file
 from rvmon.trace.time import ticks_of_seconds
 from rvmon.verdicts.attempt import Attempt
@@ -202,9 +203,11 @@ class Spec:
                 at once or in parts.
             robustness: whether to compute the robustness of each attempt.
         """
-        from rvmon.monitor.evaluate import judge_and_measure, judge_source
+        if robustness:
+            from rvmon.monitor.measure import judge_and_measure as judge
+        else:
+            from rvmon.monitor.evaluate import judge_source as judge
 
-        judge = judge_and_measure if robustness else judge_source
         return judge(self._compiled, source, requirements_asked(self.checked, only), decided)
 
     def _reading(
@@ -284,7 +287,7 @@ class Spec:
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
-        from rvmon.monitor.evaluate import margins_of
+        from rvmon.monitor.measure import margins_of
 
         given, asked = self._reading(**reading), requirements_asked(self.checked, only)
         end = None if until is None else ticks_of_seconds(until)
@@ -347,12 +350,9 @@ def load(
         SpecError: the file cannot be read or has errors; carries all diagnostics, rendered.
     """
     path = Path(path)
-    if path.suffix != ".rv":
-        from rvmon.recordings.formats import FORMATS
-
-        if path.suffix.lower() in FORMATS:
-            expected = "a recording by its name; a specification (.rv) is expected here"
-            raise SpecError((), f"error: {path}: {expected}")
+    if path.suffix != ".rv" and path.suffix.lower() in FORMATS:
+        expected = "a recording by its name; a specification (.rv) is expected here"
+        raise SpecError((), f"error: {path}: {expected}")
     try:
         text = text_of_file(path)
     except OSError as error:
@@ -379,8 +379,7 @@ def loads(text: str, *, name: str = "<string>", const: Mapping[str, str] | None 
 def _compile(text: str, name: str, const: Mapping[str, str] | None, directory: Path | None) -> Spec:
     from rvmon.language.compiled_cache import compile_cached
 
-    checked, warnings = compile_cached(text, name=name, constants=const, directory=directory)
-    return Spec(checked, warnings)
+    return Spec(*compile_cached(text, name=name, constants=const, directory=directory))
 
 
 def _report_html(report: Report) -> str:

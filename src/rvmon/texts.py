@@ -5,7 +5,6 @@ Files are regular and of a bounded size; nothing that is shown steers a terminal
 
 from __future__ import annotations
 
-import difflib
 import errno
 import os
 import re
@@ -35,6 +34,8 @@ def nearest(name: str, known: Iterable[str], likeness: float = 2 / 3) -> str:
     >>> nearest("gaze_okay", ["gaze_ok", "pressure_ok"]), nearest("nope.csv", ["base.csv"])
     ('gaze_ok', '')
     """
+    import difflib  # most runs misspell nothing
+
     candidates = difflib.get_close_matches(name, list(islice(known, MOST_NAMES)), 3, likeness)
     for candidate in candidates:
         parts = _where_they_differ(name, candidate)

@@ -71,7 +71,7 @@ def test_help_loads_nothing_that_reads_or_judges():
 def test_a_run_loads_what_it_needs(tmp_path):
     """From the second run on no grammar; nothing that it was not asked for."""
     spec, trace = (ROOT / "examples" / name for name in ("base.rv", "base.csv"))
-    heavy = ("lark", "numpy.ma", "rich", "rvmon.recordings.binding")
+    heavy = ("lark", "numpy.ma", "rich", "rvmon.monitor.robustness", "rvmon.recordings.binding")
     code = (
         "import sys; from rvmon.cli import main; main(sys.argv[1:]); "
         f"print([one for one in {heavy!r} if one in sys.modules])"

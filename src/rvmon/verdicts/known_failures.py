@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import datetime
-import tomllib
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
@@ -117,6 +116,8 @@ def read_known(path: str | Path, requirements: Collection[str]) -> list[KnownFai
     Raises:
         RvmonError: the file cannot be read, is malformed, or has an unknown requirement.
     """
+    import tomllib  # most runs have no such file
+
     try:
         failures = msgspec.convert(tomllib.loads(Path(path).read_text("utf-8")), _File).known
     except OSError as error:

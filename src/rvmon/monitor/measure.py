@@ -1,0 +1,193 @@
+"""Measures the robustness of finished traces from any source."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.monitor.evaluate import Decided, judge_source, open_trace
+from rvmon.monitor.packed_plan import planned_core
+from rvmon.monitor.recording_run import RecordingRun
+from rvmon.monitor.robustness import FIGURES, Key, Margins, Robustness, Stream
+from rvmon.recordings.source import Reading, Source
+from rvmon.trace.sample import Sample
+from rvmon.verdicts.report import Report
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rvmon.recordings.batch import Batch
+
+_ROWS = 4096
+"""Rows measured before their figures are collected, so that these fit the processor's cache."""
+
+
+def margins_of(
+    compiled: CompiledSpec,
+    trace: Any,
+    reading: Reading,
+    *,
+    only: Sequence[str] | None = None,
+    until: int | None = None,
+    streams: bool = True,
+) -> Margins:
+    """The robustness of all attempts on a trace.
+
+    Args:
+        compiled: the specification.
+        trace: as `Spec.evaluate` takes it; so are the errors.
+        reading: the options for reading it.
+        only: ids of the requirements; default all.
+        until: the end of the trace in ticks, if after its last sample.
+        streams: whether to measure every position besides the attempts.
+    """
+    recording = open_trace(compiled.checked, trace, reading, only=only)
+    source = Source(recording, until)
+    run = _Run(compiled, source, only, streams=streams)
+    for piece in source.pieces():
+        run.take(piece)
+    return run.margins()
+
+
+def judge_and_measure(
+    compiled: CompiledSpec, source: Source, only: Sequence[str] | None, decided: Decided = len
+) -> Report:
+    """Judge a recording, with the robustness of each attempt; otherwise as `judge_source`.
+
+    The recording is read once: each piece is measured, then judged.
+    """
+    run = _Run(compiled, source, only, streams=False)
+
+    def shown(pieces: Iterator[Any]) -> Iterator[Any]:
+        for piece in source.shown(pieces):
+            _take_to_end(run, source, piece)  # before the yield: the last one may not be resumed
+            yield piece
+
+    report = judge_source(compiled, replace(source, shown=shown), only, decided)
+    margins = run.margins()
+    return replace(report, attempts=tuple(map(margins.of, report.attempts)))
+
+
+def _take_to_end(run: _Run, source: Source, piece: Batch | Sample) -> None:
+    """Measure a piece up to the end of the trace."""
+    until = source.until if source.is_cut else None
+    if isinstance(piece, Sample):
+        if until is None or piece.t <= until:
+            run.take(piece)
+    else:
+        run.take(piece if until is None else piece.up_to(until))
+
+
+class _Run:
+    """A run that measures a recording."""
+
+    def __init__(
+        self, compiled: CompiledSpec, source: Source, only: Sequence[str] | None, *, streams: bool
+    ) -> None:
+        planned = planned_core(compiled, only, measured=True)
+        self._run = RecordingRun(compiled.checked, planned, source, finds=False)
+        self._run.core.measure(FIGURES, streams)
+        self._found = RecordedMargins(planned.packed.ids)
+
+    def take(self, piece: Batch | Sample) -> None:
+        if isinstance(piece, Sample):
+            self._run.take(piece)
+        else:
+            self._found.expect(len(piece.times))
+            for first in range(0, len(piece.times), _ROWS):
+                self._run.take(piece.cut(first, min(first + _ROWS, len(piece.times))))
+                self._found.add(self._run.core.margins())
+
+    def margins(self) -> Margins:
+        self._run.finish()
+        self._found.add(self._run.core.margins())
+        return self._found.margins()
+
+
+_COLUMNS = ("t", "low", "high", "kept")
+
+MARGIN = np.dtype(
+    [
+        ("t", np.int64),
+        *((name, np.float64) for name in _COLUMNS[1:]),
+        *(("requirement", np.int32), ("number", np.uint32)),
+        *((name, np.uint8) for name in ("in_doubt", "of_position")),
+    ],
+    align=True,
+)
+"""`rv_margin` of `core.h`."""
+
+
+class _Positions:
+    """The figures of positions of a requirement, in arrays with room for more."""
+
+    def __init__(self) -> None:
+        self._arrays = [np.empty(0, MARGIN[name]) for name in _COLUMNS]
+        self._count = 0
+
+    def add(self, margins: NDArray[Any], expected: int) -> None:
+        """Add some; about so many are to be expected in all."""
+        count = self._count + len(margins)
+        if count > len(self._arrays[0]):
+            self._enlarge(max(expected, count + count // 8))
+        for array, name in zip(self._arrays, _COLUMNS, strict=True):
+            array[self._count : count] = margins[name]
+        self._count = count
+
+    def _enlarge(self, room: int) -> None:
+        for place, array in enumerate(self._arrays):
+            # Pages that nobody fills cost nothing.
+            self._arrays[place] = np.empty(room, array.dtype)
+            self._arrays[place][: self._count] = array[: self._count]
+
+    def stream(self) -> Stream:
+        """All of them."""
+        return Stream(*(array[: self._count] for array in self._arrays))
+
+
+class RecordedMargins:
+    """Collects the robustness figures of a run.
+
+    Args:
+        ids: of requirements, by number.
+    """
+
+    def __init__(self, ids: Sequence[str]) -> None:
+        self._ids = ids
+        self._attempts: dict[Key, Robustness] = {}
+        self._doubtful: dict[Key, Robustness] = {}
+        self._positions: dict[int, _Positions] = {}
+        self._expected = 0
+
+    def expect(self, rows: int) -> None:
+        """Make ready for the positions of so many more rows."""
+        self._expected += rows
+
+    def add(self, figures: bytes) -> None:
+        """Add figures, given as bytes of dtype `MARGIN`."""
+        margins = np.frombuffer(figures, MARGIN)
+        of_position = margins["of_position"] == 1
+        if not of_position.all():
+            self._add_attempts(margins[~of_position])
+            margins = margins[of_position]
+        several = len(self._ids) > 1
+        numbers = np.unique(margins["requirement"]).tolist() if several else [0]
+        for number in numbers if len(margins) else ():
+            of_requirement = margins[margins["requirement"] == number] if several else margins
+            self._positions.setdefault(number, _Positions()).add(of_requirement, self._expected)
+
+    def _add_attempts(self, margins: NDArray[Any]) -> None:
+        for _, low, high, kept, requirement, number, in_doubt, _ in margins.tolist():
+            figures = self._doubtful if in_doubt else self._attempts
+            figures[self._ids[requirement], number] = Robustness(low, high, kept)
+
+    def margins(self) -> Margins:
+        """All figures collected."""
+        streams = {
+            self._ids[number]: position.stream() for number, position in self._positions.items()
+        }
+        return Margins(self._attempts, self._doubtful, streams)
