@@ -9,7 +9,7 @@ from enum import IntEnum
 from functools import cached_property
 from itertools import product
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from rvmon.models.network.guards import together
 from rvmon.models.network.network import Guard, Network
@@ -151,6 +151,26 @@ def _zone(numbers: Sequence[int]) -> Zone:
     ]
 
 
+class _Walked(NamedTuple):
+    """A step of a path, the piece behind it, and the index in the path at which it ends."""
+
+    end: int
+    piece: int
+    step: PathStep
+
+
+def _common_length(first: bytes, second: bytes) -> int:
+    """The number of bytes with which two texts begin alike, by bisection."""
+    low, high = 0, min(len(first), len(second))
+    while low < high:
+        middle = (low + high + 1) // 2
+        if first[low:middle] == second[low:middle]:
+            low = middle
+        else:
+            high = middle - 1
+    return low
+
+
 class _Paths:
     """Takes paths that the native search tells through the network once more."""
 
@@ -160,6 +180,8 @@ class _Paths:
         self.dim = 1 + len(network.clocks) + sought.has_timer
         late = sought.kind in (Seek.LATE, Seek.LATE_AFTER)
         self._timers = [self.dim - 1] if late else []
+        self._path = b""
+        self._walked: list[_Walked] = []
 
     @cached_property
     def _space(self) -> Space:
@@ -206,11 +228,21 @@ class _Paths:
     def walk(self, path: bytes) -> tuple[State, list[PathStep]]:
         """The last state of a path and its steps.
 
+        Of two paths in succession the steps that they begin with are walked once: a search in depth
+        finds many loops behind the same steps.
+
         Raises:
             ModelError: the last one leaves a variable's range.
         """
         numbers = array("i", path)
-        state, piece, steps, at = self._start, numbers[0], list[PathStep](), 1
+        common = _common_length(self._path, path) // numbers.itemsize
+        while self._walked and self._walked[-1].end > common:
+            self._walked.pop()
+        self._path = path
+        state, piece, at = self._start, numbers[0], 1
+        if self._walked:
+            at, piece, step = self._walked[-1]
+            state = step.state
         while at < len(numbers):
             kind, behind, number, count = numbers[at : at + 4]
             at += 4 + count
@@ -229,9 +261,9 @@ class _Paths:
                     holds = self._constraint(self._plan.goal, number, state)
                     there = self._constraint(self._plan.inside, behind, state)
                     step = mark_step(state, (*holds, *there), self._timers)
-            steps.append(step)
             state, piece = step.state, behind
-        return state, steps
+            self._walked.append(_Walked(at, piece, step))
+        return state, [walked.step for walked in self._walked]
 
     def _move(
         self, state: State, edges: Sequence[tuple[int, int]], leave: Piece, behind: int
