@@ -73,10 +73,13 @@ class RecordedAttempts(LazyAttempts):
         self._numbers = numbers
         self._explained: dict[tuple[str, int, bool], Mapping[str, Any]] = {}
 
-    def __reduce__(self) -> tuple[type[RecordedAttempts], tuple[Any, ...]]:
-        """Without explanations: who takes it makes them anew."""
-        given = self._given, self._records, self._numbers, self._notes, self._origin
-        return RecordedAttempts, given
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Without explanations: who takes it makes them anew.
+
+        As bytes, or each would bring the description of its records along.
+        """
+        records, numbers = self._records.tobytes(), self._numbers.tobytes()
+        return _unpickled, (self._given, records, numbers, self._notes, self._origin)
 
     @property
     def _planned(self) -> PlannedCore:
@@ -183,12 +186,24 @@ def recorded(
         origin: the first instant of the run, ticks.
     """
     records, numbers, words, letters = raw
-    attempts = np.frombuffer(records, RECORD)
-    captured = np.frombuffer(numbers, NUMBER).reshape(len(attempts), -1 if len(attempts) else 0)
+    attempts, captured = _arrays(records, numbers)
     settled = attempts["decision"] != _OPEN
     if not settled.all():
         attempts, captured = attempts[settled], captured[settled]
     return RecordedAttempts(planned, attempts, captured, (words, letters), origin)
+
+
+def _unpickled(
+    planned: PlannedCore | None, records: bytes, numbers: bytes, notes: Any, origin: int
+) -> RecordedAttempts:
+    return RecordedAttempts(planned, *_arrays(records, numbers), notes, origin)
+
+
+def _arrays(records: bytes, numbers: bytes) -> tuple[NDArray[Any], NDArray[Any]]:
+    """`RECORD[n]` and `NUMBER[n, most]` of their bytes."""
+    found = np.frombuffer(records, RECORD)
+    captured = np.frombuffer(numbers, NUMBER).reshape(len(found), -1 if len(found) else 0)
+    return found, captured
 
 
 def with_plan(report: Report, planned: PlannedCore | None) -> Report:
@@ -231,8 +246,7 @@ def report_of_run(
         complete[name] = bool(is_complete)
         counts[name] = {verdict: of_requirement[VERDICTS.index(verdict)] for verdict in _COUNTED}
     records, numbers, words, letters = run.records()
-    attempts = np.frombuffer(records, RECORD)
-    captured = np.frombuffer(numbers, NUMBER).reshape(len(attempts), -1 if len(attempts) else 0)
+    attempts, captured = _arrays(records, numbers)
     order = _order(attempts)
     return Report(
         verdicts={

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from rvmon.language.checked.properties import BinKind
 from rvmon.trace.time import format_stamped
@@ -26,6 +27,10 @@ class CoveredBin:
     hits: int
     first: int | None = None
 
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """Processes hand over thousands; a dataclass would look up its fields for each."""
+        return CoveredBin, (self.name, self.kind, self.goal, self.hits, self.first)
+
     @property
     def is_hole(self) -> bool:
         """Whether it has fewer hits than its goal."""
@@ -45,6 +50,10 @@ class CoveredGroup:
     name: str
     subject: str
     bins: tuple[CoveredBin, ...]
+
+    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
+        """As that of a bin."""
+        return CoveredGroup, (self.name, self.subject, self.bins)
 
 
 @dataclass(frozen=True, slots=True)
