@@ -68,23 +68,22 @@ class Printer:
         """
         cells = [[(shown_line(head), "bold") for head in heads]]
         cells += ([(shown_line(text), style) for text, style in map(_styled, row)] for row in rows)
-        widths = [
-            max(columns_of(text) for text, _ in column) for column in zip(*cells, strict=True)
-        ]
+        sizes = [[columns_of(text) for text, _ in row] for row in cells]
+        widths = [*map(max, zip(*sizes, strict=True))]
         others = sum(widths[:-1]) + len(_GAP) * (len(widths) - 1)
         widths[-1] = min(widths[-1], max(self.width - others - 2, _NARROWEST))
         is_right = [place in right for place in range(len(widths))]
         # The head is one line: the last column, which alone is wrapped, has room for its word.
         head, *body = (
-            f" {_GAP.join(map(self._cell, line, widths, is_right))}".rstrip()
-            for row in cells
-            for line in _lines(row, widths[-1])
+            f" {_GAP.join(map(self._cell, line, taken, widths, is_right))}".rstrip()
+            for row, own in zip(cells, sizes, strict=True)
+            for line, taken in _lines(row, own, widths[-1])
         )
         rule = " " + "─" * (others + widths[-1])
         self._file.write("\n".join(["", head, rule, *body, "", ""]))
 
-    def _cell(self, cell: tuple[str, str], width: int, is_right: bool) -> str:
-        blank = " " * (width - columns_of(cell[0]))
+    def _cell(self, cell: tuple[str, str], taken: int, width: int, is_right: bool) -> str:
+        blank = " " * (width - taken)
         drawn = self._drawn(cell)
         return blank + drawn if is_right else drawn + blank
 
@@ -99,15 +98,18 @@ def _styled(piece: Piece) -> tuple[str, str]:
     return (piece, "") if isinstance(piece, str) else piece
 
 
-def _lines(row: Sequence[tuple[str, str]], width: int) -> Iterator[Sequence[tuple[str, str]]]:
-    """The lines of a row, of which only the last cell may have more than one."""
-    *others, (text, style) = row
-    if columns_of(text) <= width:
-        yield row
+def _lines(
+    row: Sequence[tuple[str, str]], sizes: Sequence[int], width: int
+) -> Iterator[tuple[Sequence[tuple[str, str]], Sequence[int]]]:
+    """The lines of a row, of which only the last cell may have more than one, and their columns."""
+    if sizes[-1] <= width:
+        yield row, sizes
         return
+    *others, (text, style) = row
+    *taken, _ = sizes
     for line in textwrap.wrap(text, width):
-        yield *others, (line, style)
-        others = [("", "")] * len(others)
+        yield (*others, (line, style)), (*taken, columns_of(line))
+        others, taken = [("", "")] * len(others), [0] * len(taken)
 
 
 def _terminal_width() -> int:
