@@ -1,10 +1,6 @@
-"""The benchmarks, one for each question: `python -m benchmarks NAME …`, or `… NAME --help`."""
+"""The benchmarks, one for each question, as `python -m benchmarks.NAME`, or `… --help`."""
 
 from __future__ import annotations
-
-import runpy
-import sys
-from collections.abc import Sequence
 
 BENCHMARKS = {
     "online": "what a sample costs, beside all peers: forms, inputs, many monitors, robustness",
@@ -21,16 +17,6 @@ BENCHMARKS = {
     "results": "the page of results: online, recordings, hard streams",
 }
 
-
-def main(argv: Sequence[str]) -> int:
-    if not argv or argv[0] not in BENCHMARKS:
-        print(f"{__doc__}\n")
-        print("\n".join(f"  {name:14}{about}" for name, about in BENCHMARKS.items()))
-        return 0 if not argv or argv[0] in ("-h", "--help") else 2
-    sys.argv = [f"python -m benchmarks.{argv[0]}", *argv[1:]]
-    runpy.run_module(f"benchmarks.{argv[0]}", run_name="__main__", alter_sys=True)
-    return 0
-
-
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    print(f"{__doc__}\n")
+    print("\n".join(f"  {name:14}{about}" for name, about in BENCHMARKS.items()))

@@ -1,13 +1,12 @@
 """Does the core's C hold a line that no test needs? Seeded mutants of it, run on recorded cases.
 
     python -m benchmarks.core_mutants --count 30 --seed 1 [FILE …]
-    python -m benchmarks.core_mutants --cases FILE
 
 Of each file so many changes are drawn, evenly over their kinds. Each is compiled alone, linked with
 the others, and judges random cases, written as bytes, of which the law and the core say the same
-(core_replay.c; `--cases` writes them alone): it is killed if it says anything else, crashes or
-hangs. What does not compile is not counted, nor what a compiler makes the same code of. Prints each
-that survives, and the counts of each file; exits 1 if any does.
+(core_replay.c): it is killed if it says anything else, crashes or hangs. What does not compile is
+not counted, nor what a compiler makes the same code of. Prints each that survives, and the counts
+of each file; exits 1 if any does.
 """
 
 from __future__ import annotations
@@ -248,20 +247,10 @@ def draw(found: Iterable[Mutant], count: int, seed: int) -> list[Mutant]:
     return [*itertools.islice(filter(None, rounds), count)]
 
 
-def main(
-    files: Sequence[str] = (),
-    *,
-    count: int = 30,
-    seed: int = 1,
-    pairs: int = 1_200,
-    cases: Path | None = None,
-) -> int:
+def main(files: Sequence[str] = (), *, count: int = 30, seed: int = 1, pairs: int = 1_200) -> int:
     """So many changes of each file that is named, or of all."""
     if unknown := {*files} - {path.name for path in sources()}:
         raise SystemExit(f"no file of the core is called {', '.join(sorted(unknown))}")
-    if cases is not None:
-        cases.write_bytes(recorded(pairs, seed))
-        return 0
     total: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as directory:
         trial = Trial(Path(directory), recorded(pairs, seed))
