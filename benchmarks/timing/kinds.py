@@ -11,6 +11,7 @@ only lines that have one of them.
 
 from __future__ import annotations
 
+import gc
 import math
 import random
 import re
@@ -18,6 +19,7 @@ import statistics
 import time
 import tomllib
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 from benchmarks.output import show
@@ -34,8 +36,33 @@ FORMS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
 _COMPARED = re.compile(r"[<>=]=? (\d+(?:\.\d+)?)(?! m?s)")
 
 Row = dict[str, Value]
-Line = tuple[str, Spec, Sequence[Row], str | None, int]
-"""Name, specification, samples, the requirement that is meant, and how many fill a window."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stream:
+    """A specification and samples."""
+
+    spec: Spec
+    rows: Sequence[Row]
+    period: int = SECOND  # ticks from one to the next
+    before: int = 0  # samples that are not measured
+    only: Sequence[str] | None = None  # the requirements that are meant; `None`: all
+    keep: int | None = None  # so many records of each verdict
+
+    def cost(self) -> float:
+        """CPU nanoseconds of a sample, `step` and what it hands out."""
+        step, period = self.spec.monitor(only=self.only, keep=self.keep).step_ns, self.period
+        for place, row in enumerate(self.rows[: self.before]):
+            step(place * period, row)
+        measured = self.rows[self.before :]
+        gc.freeze()  # what a collection costs is what the stream leaves, not what the process holds
+        began = time.process_time_ns()
+        for place, row in enumerate(measured, self.before):
+            step(place * period, row)
+        spent = time.process_time_ns() - began
+        gc.unfreeze()
+        return spent / len(measured)
+
 
 KEYED = """event ask(id : int)
 event done(id : int)
@@ -45,12 +72,18 @@ requirement R
 """
 
 
-def _rows(count: int) -> Iterator[Row]:
-    """Samples in which all values change, and now and then an event occurs."""
-    rng = random.Random("kinds")
+def drawn(count: int, unknown: float = 0, events: float = 0) -> list[Row]:
+    """Samples of which all values are new; shares of NaN and of samples with the event."""
+    rng = random.Random("drawn")
+    rows: list[Row] = []
     for _ in range(count):
         row: Row = {name: rng.uniform(0, 10) for name in "xy"}
-        yield {**row, "e": True} if rng.random() < 0.05 else row
+        if rng.random() < unknown:
+            row["xy"[rng.random() < 0.5]] = math.nan
+        if rng.random() < events:
+            row["e"] = True
+        rows.append(row)
+    return rows
 
 
 def _keyed(count: int, keys: int = 1000) -> Iterator[Row]:
@@ -78,46 +111,29 @@ def _published(spec: Spec, text: str, count: int) -> Iterator[Row]:
         yield row
 
 
-def _lines(count: int) -> Iterator[Line]:
-    rows = [*_rows(count)]
+def _streams(count: int) -> Iterator[tuple[str, Stream]]:
+    rows = drawn(count, events=0.05)
     head = "time held\nsignal x, y : real\nsignal a : bool\nevent e\nrequirement R\n  "
     for name, form in FORMS["kinds"].items():
         for when, text in (("always", f"always ({form})"), ("upon", f"upon e then ({form})")):
-            yield f"{name}, {when}", loads(f"{head}{text}\n"), rows, None, 0
-    yield "each of 1,000 keys", loads(f"time held\n{KEYED}"), [*_keyed(count)], None, 0
+            yield f"{name}, {when}", Stream(loads(f"{head}{text}\n"), rows)
+    yield "each of 1,000 keys", Stream(loads(f"time held\n{KEYED}"), [*_keyed(count)])
     for name, form in FORMS["nested"].items():
         for window in (10, 100, 1000):
             text = form.format(long=window, short=window // 5)
-            yield f"nested: {name}, {window} samples", loads(f"{head}{text}\n"), rows, None, 0
+            yield f"nested: {name}, {window} samples", Stream(loads(f"{head}{text}\n"), rows)
     for name, form in FORMS["amounts"].items():
         for window in (10, 1_000, 100_000):
             changing: list[Row] = [
                 {"a": n % 2 == 0, "x": float(n % 7), "e": n % 3 == 0} for n in range(window + count)
             ]
             spec = loads(f"{head}{form.format(d=window)}\n")
-            yield f"amount: {name} of {window:,} samples", spec, changing, None, window
+            yield f"amount: {name} of {window:,} samples", Stream(spec, changing, before=window)
     for file in sorted(PUBLISHED.glob("*.rv")):
         spec = load(file)
         own = [*_published(spec, file.read_text(), count // 2)]
         for name in spec.requirements:
-            yield f"published: {file.stem} {name}", spec, own, name, 0
-
-
-def _cost(spec: Spec, rows: Sequence[Row], only: str | None, filled: int) -> float:
-    """Nanoseconds per sample, behind so many that fill a window."""
-    best = math.inf
-    for _ in range(PASSES):
-        step = spec.monitor(only=[only] if only else None).step_ns
-        for place, row in enumerate(rows[:filled]):
-            step(place * SECOND, row)
-        began = time.process_time_ns()
-        for place, row in enumerate(rows[filled:], filled):
-            step(place * SECOND, row)
-        spent = time.process_time_ns() - began
-        best = min(best, spent / (len(rows) - filled))
-        if spent > SECOND:
-            break
-    return best
+            yield f"published: {file.stem} {name}", Stream(spec, own, only=[name])
 
 
 def measure(words: Sequence[str], rows: int) -> None:
@@ -125,10 +141,10 @@ def measure(words: Sequence[str], rows: int) -> None:
     figures: list[float] = []
 
     def measured() -> Iterator[tuple[str, str]]:
-        for line in _lines(rows):
-            if not words or any(word in line[0] for word in words):
-                figures.append(_cost(*line[1:]))
-                yield line[0], f"{figures[-1]:,.0f}"
+        for name, stream in _streams(rows):
+            if not words or any(word in name for word in words):
+                figures.append(min(stream.cost() for _ in range(PASSES)))
+                yield name, f"{figures[-1]:,.0f}"
 
     show(["requirement", "ns a sample"], measured())
     print(f"{len(figures)} lines, median {statistics.median(figures):,.0f} ns", end="")
