@@ -22,6 +22,10 @@ _Found = TypeVar("_Found")
 _MARK = b"\xef\xbb\xbf"
 """The byte order mark of UTF-8, with which some editors begin a text."""
 
+_SMALL = 1 << 15
+"""Bytes that are read first: the room for a block comes from the system and goes back to it, which
+for a small file takes as long as opening it."""
+
 _END = re.compile(rb"\r\n|\n|\r(?!\Z)")
 """The end of a line; a carriage return at the end of a block may be half of one."""
 
@@ -43,7 +47,10 @@ class CsvText(Generic[_Found]):
     """
 
     def __init__(self, file: BinaryIO) -> None:
-        first = file.read(places.BLOCK)
+        size = min(_SMALL, places.BLOCK)
+        first = file.read(size)
+        if len(first) == size:
+            first += file.read(places.BLOCK - size)
         self.is_whole = len(first) < places.BLOCK
         self._stretches = stretches(first, file)
         self._read: Generator[tuple[bytes, Callable[[], _Found] | None], None, None]
