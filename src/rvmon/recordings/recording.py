@@ -46,6 +46,8 @@ if TYPE_CHECKING:
     from rvmon.recordings.csv_batch import Found
     from rvmon.recordings.messages.file import MessageFile
 
+_SECONDS = stamps_of("t")
+
 JOINED = "joined"
 """The format of several files that are one recording: `odom.csv + status.csv`."""
 
@@ -98,7 +100,7 @@ class FileRecording:
         unit = "message" if self.is_of_messages else _UNITS.get(self._format, "line")
         self.rows = Rows(schema, unit, ordered=ordered)
         self._open_file: BinaryIO | None = None
-        self._stamps = schema.stamps or stamps_of("t")
+        self._stamps = schema.stamps or _SECONDS
         self.names: frozenset[str] | None = None
         self.end: int | None = None
         self._messages: MessageFile | None = None
