@@ -46,3 +46,15 @@ def read(
     Raises:
         ValueError: the arrays do not fit together.
     """
+
+def as_plain(text: bytes, separator: int, has_commas: int, /) -> bytes | None:
+    """Write text with another separator as plain CSV of the same size.
+
+    Args:
+        text: some lines.
+        separator: of cells, one byte.
+        has_commas: whether numbers have commas, which become points.
+
+    Returns:
+        `None` if a line needs a closer look: a quote, a comma that stays, a row without a value.
+    """

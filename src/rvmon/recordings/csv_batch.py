@@ -11,12 +11,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.errors import TraceError
-from rvmon.native import extension
-from rvmon.native.sources import CSV_FOLDER
 from rvmon.recordings.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells
 from rvmon.recordings.cells import batch_of, cells_of_labels, kept
 from rvmon.recordings.csv_rows import Column, Layout, csv_samples, split_lines, unended
-from rvmon.recordings.csv_text import CsvText
+from rvmon.recordings.csv_text import CsvText, native_csv
 from rvmon.recordings.places import bounded_lines, is_short_of_memory
 from rvmon.recordings.rows import Row
 from rvmon.recordings.values import as_declared, scalar_of_text
@@ -25,12 +23,6 @@ from rvmon.trace.stamps import ticks_of_cell
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-
-    from rvmon.native import _csv
-
-    read = _csv.read
-else:
-    read = extension("_csv", CSV_FOLDER, "the reader of CSV").read
 
 _ALL, _ROW = 0, 2
 """The ways a call ends: with the text, or at an odd row; else its room is used up."""
@@ -132,7 +124,7 @@ class _Reader:
         odd = np.empty((max(_ODD, columns), 4), np.int64)
         labels = np.empty((self._labels, 3), np.int64)
         table = np.zeros(2 * len(labels), np.int32)
-        counts = read(
+        counts = native_csv.read(
             text, start, is_ended, csv.field_size_limit(), self._slots, self._kinds, self._absent,
             numbers, says, lines, odd, labels, table,
         )  # fmt: skip

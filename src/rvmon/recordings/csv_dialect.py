@@ -17,6 +17,7 @@ from typing import Any, BinaryIO
 
 from rvmon.errors import TraceError
 from rvmon.recordings.csv_rows import split_lines
+from rvmon.recordings.csv_text import native_csv
 from rvmon.recordings.places import opened
 from rvmon.texts import shorten
 from rvmon.trace.schema import Schema, Stamps
@@ -248,21 +249,13 @@ class _Lines:
 def _as_plain(lines: Sequence[str], dialect: Dialect) -> str | None:
     """Some lines as plain CSV has them; `None`: one has to be looked at by itself."""
     separator, text = dialect.separator, "".join(lines)
-    if dialect.above and _COMMENT.search(text):
+    # The signs are sought first, as the pattern takes long.
+    if dialect.above and any(sign in text for sign in "#/%") and _COMMENT.search(text):
         return None
-    found, apart = f"\n{text}", re.escape(separator)
-    no_cells = rf"\n\s*{apart}[{apart}\s]*(?:[\r\n]|\Z)"
-    if '"' in text or re.search(no_cells, found):
-        return _rewritten(lines, dialect)
-    if dialect.has_commas:
-        end = rf"{apart}\r\n"
-        comma = rf"([{end}][+-]?\d*),(?=\d+(?:[eE][+-]?\d+)?(?![^{end}]))"
-        parts = re.split(comma, found, flags=re.ASCII)
-        parts[1::2] = [f"{whole}." for whole in parts[1::2]]
-        found = "".join(parts)
-    if separator != "," and "," in found:
-        return _rewritten(lines, dialect)
-    return found[1:].replace(separator, ",")
+    plain = None
+    if separator.isascii():
+        plain = native_csv.as_plain(text.encode(), ord(separator), dialect.has_commas)
+    return _rewritten(lines, dialect) if plain is None else plain.decode()
 
 
 def _rewritten(lines: Sequence[str], dialect: Dialect) -> str | None:

@@ -10,11 +10,19 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterator
 from typing import TYPE_CHECKING, BinaryIO, Generic, TypeVar
 
+from rvmon.native import extension
+from rvmon.native.sources import CSV_FOLDER
 from rvmon.recordings import places
 from rvmon.recordings.csv_rows import split_lines
 
 if TYPE_CHECKING:
     from concurrent.futures import Future, ThreadPoolExecutor
+
+    from rvmon.native import _csv
+
+    native_csv = _csv
+else:
+    native_csv = extension("_csv", CSV_FOLDER, "the reader of CSV")
 
 
 _Found = TypeVar("_Found")

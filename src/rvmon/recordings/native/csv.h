@@ -66,6 +66,10 @@ csv_end csv_read(csv_reader *r);
 /* A cell that is trimmed and not empty, as a value of its kind: what it says. */
 int csv_value(const csv_reader *r, int32_t kind, const char *from, const char *to, csv_number *made);
 
+/* Write text with another separator, and on request with commas for points, as plain CSV of the same
+ * size; false if a line needs a closer look: a quote, a comma that stays, or a row without a value. */
+bool csv_as_plain(const char *text, int64_t size, char separator, bool has_commas, char *made);
+
 /* From here on it is the reader's own. */
 
 typedef struct {
@@ -83,6 +87,11 @@ bool csv_take(csv_reader *r, int32_t column, csv_cell c);
 
 /* Behind the quote that ends a cell whose text begins here; NULL: there is none in this text. */
 const char *csv_quoted(const csv_reader *r, const char *at, csv_cell *c, int64_t *line);
+
+static inline bool is_digit(char c)
+{
+    return (c >= '0') && (c <= '9');
+}
 
 /* What all digits are above. */
 static inline bool csv_ends_cell(char c)

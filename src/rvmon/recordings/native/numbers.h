@@ -67,11 +67,6 @@ typedef struct {
     bool is_whole; /* nothing but digits behind its sign, so no point either */
 } decimal;
 
-static inline bool is_digit(char c)
-{
-    return (c >= '0') && (c <= '9');
-}
-
 /* What eight digits say, of which the first is in the lowest byte; a byte 0 is a zero, too. */
 static inline uint64_t eight_digits(uint64_t text)
 {
