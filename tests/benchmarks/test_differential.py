@@ -16,15 +16,15 @@ FEW = {
         24,
     ),
     "robustness": (2, [], "measured by arrays", 16),
-    "coverage": (12, [], "pairs", 120),
-    "long": (40, ["samples=1000"], "samples", 30_000),
+    "coverage": (6, [], "pairs", 60),
+    "long": (24, ["samples=1000"], "samples", 18_000),
     "forecasts": (15, ["words=5"], "formulas", 12),
     "fillings": (20, ["stretches=true", "fillings=3"], "verdict P", 1),
     "doors": (1, [], "CSV", 4),
     "lost": (8, ["doors=live,stdin"], "stdin: runs", 8),
     "networks": (2, [], "runs checked as concrete runs", 10),
     "logics": (5, [], "CTL: true", 5),
-    "damage": (60, [], "refused", 20),
+    "damage": (30, [], "refused", 10),
     "snapshots": (3, [], "taken up again", 20),
 }
 """How many, settings, and a count with what it is at least."""
