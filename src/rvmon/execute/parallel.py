@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from itertools import islice
 from math import inf
+from operator import length_hint
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from rvmon.errors import RvmonError, WorkerLostError
@@ -48,7 +49,7 @@ def execute(
     The processes are begun, by the thread that asks for them, for the first result. They end with
     the last result, with the iterator, by an interrupt, and with this process, however it ends.
     Tasks go to them in chunks: of so many as take about 0.1 s, so that a task which takes longer
-    holds up no others.
+    holds up no others; of few where few are left, so that all processes end together.
 
     Args:
         tasks: taken from as processes have time; for several processes what can be pickled.
@@ -166,7 +167,8 @@ class _Pool:
         """Give tasks to all workers that have none; if there are more, to further ones."""
         resting = [worker for worker in self._workers if not worker.tasks]
         while resting or len(self._workers) < self._jobs:
-            chunk = list(islice(self._left(), resting[-1].size if resting else 1))
+            size = min(resting[-1].size, self._share_of_rest()) if resting else 1
+            chunk = list(islice(self._left(), size))
             if not chunk:
                 return
             worker = resting.pop() if resting else self._begun()
@@ -175,6 +177,12 @@ class _Pool:
             worker.since = time.monotonic()
             with suppress(OSError):  # it was ended: no answer will say so
                 worker.connection.send([task for _, task in chunk])
+
+    def _share_of_rest(self) -> int:
+        """The most tasks of a chunk: half of what each worker would get of those that are left."""
+        unknown = 2 * self._jobs * MOST_TASKS
+        left = len(self._returned) + length_hint(self._tasks, unknown)
+        return max(1, left // (2 * self._jobs))
 
     def _begun(self) -> _Worker:
         from rvmon.execute.worker import serve

@@ -67,6 +67,23 @@ def given(results):
     return found, None
 
 
+def met(folder, last, number):
+    """The last two of some tasks are not over before both have begun."""
+    if number >= last - 1:
+        Path(folder, str(number)).touch()
+        until = time.monotonic() + 20
+        while len(os.listdir(folder)) < 2:
+            assert time.monotonic() < until, "the other task waits for this one"
+            time.sleep(0.001)
+    return number
+
+
+def test_the_last_tasks_are_done_by_all_processes(tmp_path):
+    """However many were given out together before."""
+    done = execute(range(500), doing(partial(met, tmp_path, 499)), jobs=2)
+    assert list(done) == [*range(500)]
+
+
 @JOBS
 @pytest.mark.parametrize("size", [0, 1, 2, 1000])
 def test_results_come_in_the_order_of_the_tasks(jobs, size):
