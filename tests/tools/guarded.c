@@ -1,4 +1,4 @@
-/* The memory of a monitor, each block by itself: what guarded.py puts in the place of memory.c. */
+/* The memory of a monitor, each block by itself: what sanitize.py puts in the place of memory.c. */
 #include "basics.h"
 
 #include <stdio.h>
