@@ -116,9 +116,10 @@ def print_report(report: Report, spec: CheckedSpec, printer: Printer) -> None:
             why = wrapped(without_attempts(verdict, report.misses[name]), printer.width)
             printer.line((f"{name} ", "bold"), verdict_text(verdict), f"\n{why}\n")
         for shown in (Verdict.FAIL, Verdict.INCONCLUSIVE):
-            for attempt in islice(report.of(name, shown), SHOWN_PER_REQUIREMENT):
+            count = report.counts.get(name, {}).get(shown, 0)
+            for attempt in islice(report.of(name, shown) if count else (), SHOWN_PER_REQUIREMENT):
                 _print_attempt(attempt, spec.requirements[name], report, printer)
-            rest = report.counts.get(name, {}).get(shown, 0) - SHOWN_PER_REQUIREMENT
+            rest = count - SHOWN_PER_REQUIREMENT
             if rest > 0:
                 printer.line((f"… and {rest} more {shown} of {name}", "dim"))
     _print_goals(report.goals, printer)
