@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from itertools import repeat
+from math import isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -252,9 +253,9 @@ def unknown_in(cells: Cells) -> NDArray[np.bool_] | None:
 
 def holds_nan(values: NDArray[Any]) -> bool:
     """Whether some number is NaN."""
-    if values.dtype.kind != "f":
+    if values.dtype.kind != "f" or not len(values):
         return False
-    return bool(np.isnan(np.minimum.reduce(values, initial=np.inf)))  # NaN is less than all
+    return isnan(values[values.argmax()])  # NaN is above all
 
 
 def note_batch(batch: Batch, alternations: Alternations, conflicts: Conflicts) -> None:
