@@ -31,7 +31,7 @@ static bool prepare_part(rv_monitor *m, part *p)
             p->perishable[p->signals[i].perishable] = i;
         }
     }
-    if (!find_quick(&m->memory, &m->plan, p)) {
+    if (!find_quick(&m->memory, &m->plan, p) || !find_pulses(&m->memory, &m->plan, p)) {
         return false;
     }
     p->is_watched = (p->plan->truths >= 0) || (p->plan->watches.count > 0);

@@ -27,6 +27,13 @@ bool stretches_agree(const stretches *a, const stretches *b);
 uint8_t node_since(run *r, const node_plan *n, int64_t t, uint8_t left, uint8_t right);
 uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t now);
 
+/* Whether a node is the DOUBT of a pulse in a run that is not in doubt itself: FALSE where its operand
+ * is, and while it is FALSE only an operand that is UNKNOWN changes it. */
+static inline bool is_doubt_of_pulse(const node_plan *n)
+{
+    return (n->op == NODE_DOUBT) && (n->a != 0) && (n->b == 0);
+}
+
 /* ---- window.c; `blank`: it is not known whether there is a position, and every input is unknown */
 uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool blank);
 void restart_window(run *r, const node_plan *n);

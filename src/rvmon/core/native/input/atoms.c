@@ -196,7 +196,7 @@ static uint8_t over_occurrences(const run *r, const atom_plan *a)
 }
 
 /* The truth of an atom by what has been taken of this position. */
-static uint8_t atom_now(const run *r, const atom_plan *a)
+uint8_t atom_now(const run *r, const atom_plan *a)
 {
     const int32_t signals = r->part->plan->signals.count;
     switch (a->op) {

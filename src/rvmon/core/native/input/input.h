@@ -55,6 +55,7 @@ list comparisons_between(const run *r, int32_t local, const rv_number *x, const 
 bool recheck(run *r, int32_t atom);     /* whether its truth changed */
 bool recheck_list(run *r, list l);      /* whether one of them did */
 void recheck_amid(run *r, list l);
+uint8_t atom_now(const run *r, const atom_plan *a);
 void recheck_fading(run *r);
 void reread(run *r, int32_t atom, bool pending);
 bool is_taken_for(const run *r, const node_plan *n);
@@ -126,6 +127,10 @@ void forget(run *r);
 void go_stale(run *r, int64_t t, int32_t perishable);
 void mark_absent(run *r, bool event, int32_t local);
 void declare_no_source(run *r, bool event, int32_t local);
+
+/* ---- pulses.c: events that only start attempts */
+bool find_pulses(arena *a, const plan *all, part *p);
+void end_pulses(run *r);
 
 /* ---- outages.c: stretches of time over which names are lost */
 void clear_losses(run *r);

@@ -245,6 +245,9 @@ void pass_time(run *r, int64_t limit, bool comes)
     int32_t i;
     r->at.quiet_from = r->at.position;
     r->at.quiet_until = limit;
+    if ((r->at.fading_count > 0) && (r->at.position + gap <= limit)) {
+        end_pulses(r);
+    }
     for (;;) {
         int64_t until;
         int64_t stop;

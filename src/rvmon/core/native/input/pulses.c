@@ -1,0 +1,106 @@
+/* Pulses: what holds at one position and does no more than start attempts there.
+ *
+ * In held time an event ends at the next tick, which would be a position to visit for that alone. Where
+ * all that reads a momentary atom are triggers of pulses, it need not be: a pulse starts attempts where
+ * it is TRUE, so its end changes nothing but the truths of atom and leaf. They are set as soon as time
+ * passes that tick. A DOUBT above the leaf hears of the end only if a stretch in doubt ends there.
+ *
+ * Source: SEMANTICS 3 (a pulse starts an attempt at every position where it holds). */
+#include "formulas/formulas.h"
+#include "input/input.h"
+#include "notes/notes.h"
+#include "runs/runs.h"
+
+/* Whether a node is read by triggers of pulses alone, in the second phase. */
+static bool is_read_by_pulses(const plan *all, const part *p, const node_plan *n)
+{
+    const link_plan *l = &all->links[n->links.first];
+    const int32_t *parents = LIST(all, n->parents[1]);
+    int32_t i;
+    for (i = 0; i < n->links.count; i++) {
+        if ((l[i].kind != LINK_TRIGGER)
+            || ((p->judges[l[i].judge].flags & (JUDGE_PULSE | JUDGE_EPISODIC)) != JUDGE_PULSE)) {
+            return false;
+        }
+    }
+    for (i = 0; i < n->parents[1].count; i++) {
+        if (!is_doubt_of_pulse(&p->nodes[parents[i]])) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Find the pulses of a part; false: memory is short. Runs that capture values keep what occurred, and
+ * margins and recorded truths are told of each position, so there all ends are visited. */
+bool find_pulses(arena *a, const plan *all, part *p)
+{
+    const bool are_unheard = (all->header->gap > 0) && (p->plan->captured == 0)
+                             && (p->plan->truths < 0) && (all->counts[SEC_MARGINS] == 0);
+    int32_t i;
+    p->pulses = arena_take(a, (size_t)(p->plan->atoms.count + 1) * sizeof *p->pulses);
+    for (i = 0; (p->pulses != NULL) && (i < p->plan->atoms.count); i++) {
+        const list leaves = p->atoms[i].nodes[1];
+        p->pulses[i] = -1;
+        if (are_unheard && (p->atoms[i].momentary != 0) && (leaves.count == 1)) {
+            const int32_t leaf = LIST(all, leaves)[0];
+            if ((p->nodes[leaf].op == NODE_LEAF) && is_read_by_pulses(all, p, &p->nodes[leaf])) {
+                p->pulses[i] = leaf;
+            }
+        }
+    }
+    return p->pulses != NULL;
+}
+
+/* Whether an atom of the last position is FALSE at the next, and nothing there hears of it. */
+static bool ends_unheard(const run *r, int32_t atom)
+{
+    const int32_t leaf = r->part->pulses[atom];
+    list doubts;
+    int32_t i;
+    if ((leaf < 0) || (atom_now(r, &r->part->atoms[atom]) != IS_FALSE)) {
+        return false;
+    }
+    doubts = r->part->nodes[leaf].parents[1];
+    for (i = 0; i < doubts.count; i++) {
+        if (r->truth[LIST(PLAN(r), doubts)[i]] != IS_FALSE) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Time passes the position behind the last one visited: end what held there, if nothing hears of it. */
+void end_pulses(run *r)
+{
+    int32_t kept = 0;
+    int32_t i;
+    for (i = 0; i < r->at.fading_count; i++) {
+        if ((r->at.phase == 0) || !ends_unheard(r, r->fading[i])) {
+            return; /* that position is visited */
+        }
+    }
+    r->at.starting = IS_FALSE;
+    r->at.before = r->at.position;
+    for (i = 0; i < r->at.fading_count; i++) {
+        const int32_t atom = r->fading[i];
+        const int32_t leaf = r->part->pulses[atom];
+        const uint8_t was = r->truth[leaf];
+        r->is_fading[atom] = 0;
+        r->atom[atom] = IS_FALSE;
+        r->truth[leaf] = IS_FALSE;
+        if (r->truth_log != NULL) {
+            note_node(r, leaf, was, r->at.position + GAP(r));
+        }
+    }
+    r->at.fading_count = 0;
+    for (i = 0; i < r->repeating_count; i++) {
+        const int32_t index = r->repeating[i];
+        r->judges[index].before = r->truth[r->part->judges[index].trigger];
+        if (r->judges[index].before == IS_TRUE) {
+            r->repeating[kept] = index;
+            kept++;
+        }
+    }
+    r->repeating_count = kept;
+}
