@@ -149,6 +149,15 @@ typedef struct {
  * and allows a queue (JUDGE_IN_RUNS) only below this bound. */
 #define SEGMENTS_MOST 16
 
+/* Where an attempt of a queue stands that begins by a letter. Its clock begins with it, so whenever it
+ * begins, equal letters begin it alike. */
+typedef struct {
+    int64_t due;               /* ticks until its region changes; NEVER */
+    int32_t letter;            /* -1: none began yet */
+    int32_t location;
+    bool rests;                /* the next equal letter leaves it there */
+} beginning;
+
 typedef struct {
     queued *items;             /* a ring, the oldest first */
     int32_t room;              /* a power of two, or 0 */
@@ -156,6 +165,7 @@ typedef struct {
     int32_t count;
     int32_t segment_count;
     segment segments[SEGMENTS_MOST];
+    beginning latest;          /* of the attempt that began last */
 } queue;
 
 /* Truths of a judge's leaves at some instants, ascending, in a ring. An entry is the instant, then

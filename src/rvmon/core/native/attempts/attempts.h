@@ -124,4 +124,7 @@ static inline queued *item(const queue *q, int32_t i)
 queued *queue_slot(rv_monitor *m, queue *q, int32_t i, bool append);
 void report_queued(const queueing *g, const queued *one, int32_t location, bool passed, int64_t t);
 
+/* ---- queue_steps.c */
+void count_edge(const queueing *g, int32_t location, int32_t target, int32_t count, int64_t t);
+
 #endif

@@ -40,7 +40,11 @@ bool make_queue(run *r, int32_t index)
         return true;
     }
     j->queue = arena_take(&r->home->monitor->memory, sizeof *j->queue);
-    return j->queue != NULL;
+    if (j->queue == NULL) {
+        return false;
+    }
+    j->queue->latest.letter = -1;
+    return true;
 }
 
 void clear_queue(judge *j)
@@ -114,29 +118,45 @@ queued *queue_slot(rv_monitor *m, queue *q, int32_t i, bool append)
     return item(q, i);
 }
 
+/* Where an attempt stands that begins at `t` by the letter there. */
+static const beginning *begun_at(const queueing *g, int64_t t)
+{
+    beginning *b = &g->q->latest;
+    if (b->letter != g->j->letter) {
+        int64_t clock = t;
+        int64_t due = NEVER;
+        bool slides = false;
+        token k;
+        k.location = g->a->initial;
+        k.clocks = &clock;
+        k.moves = NULL;
+        (void)step_token(g->a, &k, t, g->j->letter);
+        b->letter = g->j->letter;
+        b->location = k.location;
+        b->rests = (k.location <= PASSED) || (rests(g->a, &k, t, b->letter, &due, &slides) && !slides);
+        b->due = (due == NEVER) ? NEVER : due - t;
+    }
+    return b;
+}
+
 /* Start an attempt at `t`: step it once, report it if that decides it, else append it. The last segment
  * is where the youngest stand. False: memory is short. */
 bool queue_begin(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
+    const beginning *begun = begun_at(&g, t);
     queue *q = g.q;
     queued *made;
-    int64_t clock = 0;
     int64_t due;
-    bool slides = false;
     queued x;
-    token k;
-    k.location = g.a->initial;
-    k.clocks = &clock;
-    k.moves = moves_of(r, index);
     count_begin(r, index, t);
-    (void)step_token(g.a, &k, t, g.j->letter);
+    count_edge(&g, g.a->initial, begun->location, 1, t);
     x.triggered = t;
     g.j->count++;
     x.number = g.j->count;
     x.spare = 0;
-    if (k.location <= PASSED) {
-        report_queued(&g, &x, g.a->initial, k.location == PASSED, t);
+    if (begun->location <= PASSED) {
+        report_queued(&g, &x, g.a->initial, begun->location == PASSED, t);
         return true;
     }
     made = queue_slot(r->home->monitor, q, q->count, true);
@@ -144,17 +164,18 @@ bool queue_begin(run *r, int32_t index, int64_t t)
         return false;
     }
     *made = x;
-    if ((q->segment_count > 0) && (q->segments[q->segment_count - 1].location == k.location)) {
+    if ((q->segment_count > 0) && (q->segments[q->segment_count - 1].location == begun->location)) {
         q->segments[q->segment_count - 1].count++;
     } else if (q->segment_count < SEGMENTS_MOST) {
-        q->segments[q->segment_count].location = k.location;
+        q->segments[q->segment_count].location = begun->location;
         q->segments[q->segment_count].count = 1;
         q->segment_count++;
     } else {
         r->home->monitor->spoilt = true; /* only a forged plan gets here */
         return false;
     }
-    if (!rests(g.a, &k, t, g.j->letter, &due, &slides) || slides) {
+    due = sum(t, begun->due);
+    if (!begun->rests) {
         set_restless(r, index);
         due = t + 1;
     }

@@ -69,8 +69,8 @@ static void tell_decided(const queueing *g, int32_t location, int32_t from, int3
     }
 }
 
-/* Count an edge that `count` attempts take together. */
-static void count_segment(const queueing *g, int32_t location, int32_t target, int32_t count, int64_t t)
+/* Count an edge that `count` attempts of a queue take at `t`. */
+void count_edge(const queueing *g, int32_t location, int32_t target, int32_t count, int64_t t)
 {
     rv_hit *moves = moves_of(g->r, g->index);
     if ((moves != NULL) && (target != location)) {
@@ -191,7 +191,7 @@ static void step_queue(const queueing *g, int64_t t, bool is_position)
             const int32_t target = is_position
                 ? g->a->targets[g->a->edges[row * g->a->classes + g->j->letter]]
                 : settled_at(g->a, row, location);
-            count_segment(g, location, target, until - from, t);
+            count_edge(g, location, target, until - from, t);
             if (target <= PASSED) {
                 tell_decided(g, location, from, until, target == PASSED, t);
             } else {

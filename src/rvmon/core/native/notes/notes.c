@@ -257,21 +257,39 @@ static int64_t *add_truths(const run *r, int32_t index, truths *ring, int32_t wo
     return made;
 }
 
-/* An attempt is triggered at `t`: remember the leaves, unless they are as at the last trigger. */
+/* Whether the leaves of a judge have these truths, as pack_leaves() packs them. */
+static bool leaves_are(const run *r, int32_t index, const int64_t *words)
+{
+    const list leaves = r->part->judges[index].leaves;
+    const int32_t *node = LIST(PLAN(r), leaves);
+    const bool awaits_birth = r->at.births_left > 0;
+    uint64_t left = 0;
+    int32_t i;
+    for (i = 0; i < leaves.count; i++) {
+        const bool is_taken = awaits_birth && is_taken_for(r, &r->part->nodes[node[i]]);
+        const uint64_t truth = is_taken ? (uint64_t)IS_UNKNOWN : r->truth[node[i]];
+        left = ((uint32_t)i % TRUTHS_IN_WORD == 0U) ? (uint64_t)words[(uint32_t)i / TRUTHS_IN_WORD] : left;
+        if ((left & 3U) != truth) {
+            return false;
+        }
+        left >>= 2;
+    }
+    return true;
+}
+
+/* An attempt is triggered at `t`: remember the leaves, unless they are as at the last trigger, whose
+ * entry then stands for this one, too. */
 void note_trigger(run *r, int32_t index, int64_t t)
 {
     noting *n = r->judges[index].noting;
     const int32_t words = words_for(r->part->judges[index].leaves.count);
-    int64_t *made = add_truths(r, index, &n->triggers, words, t);
-    const int64_t *last;
+    const truths *ring = &n->triggers;
     n->began_at = t;
-    if (made == NULL) {
-        return;
-    }
-    (void)pack_leaves(r, index, false, &made[1]);
-    last = (n->triggers.count > 1) ? entry_of(&n->triggers, n->triggers.count - 2, words) : NULL;
-    if ((last != NULL) && (memcmp(&last[1], &made[1], (size_t)words * sizeof *made) == 0)) {
-        n->triggers.count--; /* the entry before stands for this one, too */
+    if ((ring->count == 0) || !leaves_are(r, index, &entry_of(ring, ring->count - 1, words)[1])) {
+        int64_t *made = add_truths(r, index, &n->triggers, words, t);
+        if (made != NULL) {
+            (void)pack_leaves(r, index, false, &made[1]);
+        }
     }
 }
 
