@@ -332,6 +332,24 @@ MANY["what is over of windows within windows is dropped from the rings, which go
     )
 ]
 
+MANY["what only starts attempts, at ticks beside each other and apart, known and unknown"] = [
+    case_of(
+        *(time, f"upon {trigger} then {required}"),
+        "0 -p e g=1 x=1; 1 e; 2 g=1 p; 5 e ?p x=1; 6 ?e; 7 e g=?; 9 -p; 10 e g=1 x=2; 13 p e; 17!; "
+        "20 e -p; 21 ?e ?g; 22 e g=1; 23 x=3; 30 e p g=1 x=1",
+        40,
+        lost=(("e", 12, 14), ("g", 31, 33)),
+    )
+    for time in ("held", "sampled every 2 ns")
+    for trigger in ("e", "g.k == 1", "changed(x)", "updated(x)", "e and p", "e or updated(x)")
+    for required in (
+        "F[1 ns, 4 ns] p",
+        "G[0 ns, 3 ns] p",
+        "F[0 ns, 6 ns] G[1 ns, 2 ns] p",
+        "F[1 ns, 3 ns] once[0 ns, 1 ns] e",
+    )
+]
+
 
 @pytest.mark.law
 @pytest.mark.parametrize("form", ["c", "c rows"])
