@@ -34,6 +34,18 @@ static inline bool is_doubt_of_pulse(const node_plan *n)
     return (n->op == NODE_DOUBT) && (n->a != 0) && (n->b == 0);
 }
 
+/* Whether a node is such a DOUBT that stays FALSE though its operand is `now` another; it remembers it,
+ * as node_doubt() would. */
+static inline bool doubt_stays(run *r, int32_t place, uint8_t now)
+{
+    const node_plan *n = &r->part->nodes[place];
+    if ((now == IS_UNKNOWN) || (r->truth[place] != IS_FALSE) || !is_doubt_of_pulse(n)) {
+        return false;
+    }
+    r->seen[n->slot] = now;
+    return true;
+}
+
 /* ---- window.c; `blank`: it is not known whether there is a position, and every input is unknown */
 uint8_t node_window(run *r, const node_plan *n, int64_t t, uint8_t operand, bool blank);
 void restart_window(run *r, const node_plan *n);

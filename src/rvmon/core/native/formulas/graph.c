@@ -245,8 +245,7 @@ static inline void change(run *r, int32_t place, uint8_t value, int64_t t)
     int32_t i;
     store(r, place, value, t);
     for (i = 0; i < parents.count; i++) {
-        if ((value == IS_UNKNOWN) || (r->truth[parent[i]] != IS_FALSE)
-            || !is_doubt_of_pulse(&r->part->nodes[parent[i]])) {
+        if (!doubt_stays(r, parent[i], value)) {
             mark_dirty(r, parent[i]);
         }
     }

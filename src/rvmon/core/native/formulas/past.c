@@ -254,6 +254,6 @@ uint8_t node_doubt(run *r, const node_plan *n, int32_t place, int64_t t, uint8_t
     const uint8_t found = hidden_by(r->seen[n->slot], now, was, pulse, every);
     const bool moves = hidden_by(now, now, found, pulse, every) != found;
     timers_set(&r->wake, n->timer, moves ? t + step_of(r) : NEVER);
-    r->seen[n->slot] = pulse ? IS_FALSE : now; /* a pulse has no edge, so the position before is not read */
+    r->seen[n->slot] = now;
     return found;
 }

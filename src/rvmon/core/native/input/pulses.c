@@ -70,6 +70,24 @@ static bool ends_unheard(const run *r, int32_t atom)
     return true;
 }
 
+/* End an atom at `t`, where nothing hears of it. */
+static void end_unheard(run *r, int32_t atom, int64_t t)
+{
+    const int32_t leaf = r->part->pulses[atom];
+    const list doubts = r->part->nodes[leaf].parents[1];
+    const uint8_t was = r->truth[leaf];
+    int32_t i;
+    r->is_fading[atom] = 0;
+    r->atom[atom] = IS_FALSE;
+    r->truth[leaf] = IS_FALSE;
+    for (i = 0; i < doubts.count; i++) {
+        (void)doubt_stays(r, LIST(PLAN(r), doubts)[i], IS_FALSE);
+    }
+    if (r->truth_log != NULL) {
+        note_node(r, leaf, was, t);
+    }
+}
+
 /* Time passes the position behind the last one visited: end what held there, if nothing hears of it. */
 void end_pulses(run *r)
 {
@@ -83,15 +101,7 @@ void end_pulses(run *r)
     r->at.starting = IS_FALSE;
     r->at.before = r->at.position;
     for (i = 0; i < r->at.fading_count; i++) {
-        const int32_t atom = r->fading[i];
-        const int32_t leaf = r->part->pulses[atom];
-        const uint8_t was = r->truth[leaf];
-        r->is_fading[atom] = 0;
-        r->atom[atom] = IS_FALSE;
-        r->truth[leaf] = IS_FALSE;
-        if (r->truth_log != NULL) {
-            note_node(r, leaf, was, r->at.position + GAP(r));
-        }
+        end_unheard(r, r->fading[i], r->at.position + GAP(r));
     }
     r->at.fading_count = 0;
     for (i = 0; i < r->repeating_count; i++) {
