@@ -1,9 +1,9 @@
-/* Pulses: what holds at one position and does no more than start attempts there.
+/* Pulses: momentary atoms that do no more than start attempts.
  *
- * In held time an event ends at the next tick, which would be a position to visit for that alone. Where
- * all that reads a momentary atom are triggers of pulses, it need not be: a pulse starts attempts where
- * it is TRUE, so its end changes nothing but the truths of atom and leaf. They are set as soon as time
- * passes that tick. A DOUBT above the leaf hears of the end only if a stretch in doubt ends there.
+ * An event ends at the next position. If only triggers of pulses read the atom, its end changes nothing
+ * but the truths of atom and leaf, since a pulse starts attempts where it is TRUE. So that position is
+ * not visited: the truths are set once time passes it. The one exception is a stretch in doubt that
+ * ends there, of which a DOUBT above the leaf has to hear.
  *
  * Source: SEMANTICS 3 (a pulse starts an attempt at every position where it holds). */
 #include "formulas/formulas.h"
