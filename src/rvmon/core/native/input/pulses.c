@@ -88,20 +88,24 @@ static void end_unheard(run *r, int32_t atom, int64_t t)
     }
 }
 
-/* Time passes the position behind the last one visited: end what held there, if nothing hears of it. */
+/* Time passes the position behind the last one visited: end what held there, unless something hears of
+ * it or an attempt is due there, so that it has to be visited. */
 void end_pulses(run *r)
 {
+    const int64_t t = r->at.position + GAP(r);
+    bool is_visited = (r->at.phase == 0) || (timers_next(&r->rules) <= t);
     int32_t kept = 0;
     int32_t i;
-    for (i = 0; i < r->at.fading_count; i++) {
-        if ((r->at.phase == 0) || !ends_unheard(r, r->fading[i])) {
-            return; /* that position is visited */
-        }
+    for (i = 0; !is_visited && (i < r->at.fading_count); i++) {
+        is_visited = !ends_unheard(r, r->fading[i]);
+    }
+    if (is_visited) {
+        return;
     }
     r->at.starting = IS_FALSE;
     r->at.before = r->at.position;
     for (i = 0; i < r->at.fading_count; i++) {
-        end_unheard(r, r->fading[i], r->at.position + GAP(r));
+        end_unheard(r, r->fading[i], t);
     }
     r->at.fading_count = 0;
     for (i = 0; i < r->repeating_count; i++) {
