@@ -1,8 +1,7 @@
-"""The truth of each subformula over time: late responses, and triggers that came near."""
+"""The truth of each subformula over time, and triggers that came near."""
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -12,6 +11,7 @@ import numpy as np
 
 from rvmon.analysis.example import small_step
 from rvmon.analysis.interval_sets import distinct, hold, outside, within
+from rvmon.analysis.late_arrival import late_in, waits_of
 from rvmon.analysis.truths import (
     Question,
     RecordedTruths,
@@ -21,7 +21,7 @@ from rvmon.analysis.truths import (
     subformulas,
     truths_of_parts,
 )
-from rvmon.language.checked.classify import has_future, is_end
+from rvmon.language.checked.classify import is_end
 from rvmon.language.checked.formula import (
     Binary,
     BinaryOp,
@@ -30,8 +30,6 @@ from rvmon.language.checked.formula import (
     EventAtom,
     Formula,
     SignalAtom,
-    Unary,
-    UnaryOp,
 )
 from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.specification import CheckedSpec, Requirement
@@ -42,79 +40,7 @@ from rvmon.trace.time import format_instant
 from rvmon.verdicts.attempt import Attempt
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from rvmon.analysis.truths import Plans, Positions
-
-
-def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
-    """The formula that a failed attempt awaited when its window closed.
-
-    Returns:
-        `None` if it did not fail by a closed window, or if the formula has a future operator.
-    """
-    blame = attempt.blame
-    if blame is None or blame.window[1] is None or attempt.decided is None:
-        return None
-    if attempt.decided <= blame.window[1]:
-        return None
-    for _, formula in subformulas(requirement.consequent, 0):
-        match formula:
-            case Unary(op=UnaryOp.EVENTUALLY, operand=part):
-                pass
-            case Binary(op=BinaryOp.UNTIL, right=part):
-                pass
-            case _:
-                continue
-        if format_formula(formula) == blame.subformula:
-            return None if has_future(part) else part
-    return None
-
-
-def waits_of(requirement: Requirement, attempts: Iterable[Attempt]) -> dict[int, Question]:
-    """By number of the attempt, the formula it awaited in vain; see `awaited`."""
-    return {
-        attempt.number: Question((formula,), requirement.for_each, attempt.captured)
-        for attempt in attempts
-        if (formula := awaited(requirement, attempt)) is not None
-    }
-
-
-def late_in(
-    attempts: Iterable[Attempt], waits: Mapping[int, Question], seen: RecordedTruths
-) -> dict[int, int]:
-    """By number of the attempt, the instant (ticks) after the deadline when the response came.
-
-    Attempts that missed no deadline, and those whose response never came, are left out.
-
-    Args:
-        attempts: the attempts of a requirement.
-        waits: from `waits_of`.
-        seen: the truths of the waits over the recording.
-    """
-    responses = {}
-    for attempt in attempts:
-        if attempt.number not in waits or attempt.blame is None or seen.begin is None:
-            continue
-        (truth,) = seen.truths(waits[attempt.number])
-        deadline = attempt.blame.window[1] or 0
-        came = _first_after(deadline, truth.sure, seen.positions)
-        if came is not None:
-            responses[attempt.number] = came
-    return responses
-
-
-def _first_after(deadline: int, spans: NDArray[np.int64], positions: Positions) -> int | None:
-    """The first position after `deadline` that lies in a span; `None` if there is none."""
-    for place in range(int(np.searchsorted(spans[:, 1], deadline, "right")), len(spans)):
-        low, high = (int(edge) for edge in spans[place])
-        first = max(low, deadline + 1)
-        if positions is None:
-            return first
-        index = bisect_left(positions, first)
-        if index < len(positions) and positions[index] <= high:
-            return int(positions[index])
-    return None
+    from rvmon.analysis.truths import Plans
 
 
 @dataclass(frozen=True, slots=True)

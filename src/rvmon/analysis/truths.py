@@ -19,6 +19,7 @@ from rvmon.language.checked.formula import (
     UnaryOp,
     WindowValue,
 )
+from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
 from rvmon.language.print import format_formula
 from rvmon.logic.formula import Core, Factory
@@ -72,6 +73,12 @@ class Question:
     def whose(self) -> tuple[object, ...]:
         """The key of questions that can be evaluated in one run."""
         return self.for_each, *self.captured.items()
+
+    @property
+    def names(self) -> frozenset[str]:
+        """The signals and events that are read."""
+        read = {name for formula in self.formulas for name in names_read(formula)}
+        return frozenset(read if self.for_each is None else {*read, self.for_each.value.event})
 
     @cached_property
     def texts(self) -> tuple[str, ...]:

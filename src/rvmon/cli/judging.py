@@ -235,7 +235,6 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         is_alone: whether this process judges nothing else.
     """
     before: list[Attempt] = []
-    remembered = Remembered()
     began = time.monotonic()
     try:
         recording = opened(spec, trace)
@@ -250,11 +249,14 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         end = recording.end if options.until is None else ticks_of_seconds(options.until)
         beside = RecordingCoverage(spec, options, recording, end)
         show = partial(shown_while_reading, recording) if is_alone else iter
+        remembered = Remembered(spec, recording, options.only)
+        is_noted = options.explains and recording.can_be_read_again
         source = Source(
             recording,
             end,
             is_cut=options.until is not None,  # what a recording says of its end may be wrong
-            shown=lambda found: beside.passing(remembered.passing(show(found))),
+            shown=lambda found: beside.passing(show(found)),
+            taken=remembered.take if is_noted else None,
         )
         report = spec.judge(
             source, only=options.only, decided=before.extend, robustness=options.robustness

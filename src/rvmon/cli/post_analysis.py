@@ -7,61 +7,73 @@ from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 from rvmon.cli.reading import opened
-from rvmon.language.checked.classify import subformulas
-from rvmon.language.checked.formula import Amount, Compare, windows_in
-from rvmon.language.checked.names_read import names_in, names_read
+from rvmon.language.checked.names_read import names_in
 from rvmon.language.checked.specification import TimeModel
 from rvmon.language.print import format_window
 from rvmon.recordings.source import Source, pieces_up_to
 from rvmon.report.wording import SHOWN_PER_REQUIREMENT, value_text
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample, Scalar, Trace
-from rvmon.trace.schema import Kind
 from rvmon.verdicts import Verdict
 
 if TYPE_CHECKING:
+    from rvmon import native
     from rvmon.analysis.truths import Question, RecordedTruths
     from rvmon.analysis.window_values import Asked
+    from rvmon.cli.failure_notes import FailureNotes
     from rvmon.recordings.batch import Batch
     from rvmon.recordings.recording import FileRecording
-    from rvmon.report.changes import RunChanges
     from rvmon.verdicts.attempt import Attempt
     from rvmon.verdicts.report import Report
 
 MOST_HELD = 65_536
-"""The most rows kept in memory; a longer recording is read a second time."""
+"""The most rows kept in memory; of a longer recording failures are noted as it is judged."""
+
+
+_AT_ONCE = 16_384
+"""Rows of a longer recording of which failures are noted together."""
 
 
 class Remembered:
-    """The pieces of a recording as they were read, if they are few."""
+    """The pieces of a recording as they were judged, if they are few; else notes on its failures.
 
-    def __init__(self) -> None:
+    Args:
+        spec: the specification.
+        recording: is judged.
+        only: ids of the requirements, or `None` for all.
+    """
+
+    def __init__(self, spec: Spec, recording: FileRecording, only: Sequence[str] | None) -> None:
+        self._judged = spec, recording, only
         self._pieces: list[Batch | Sample] = []
-        self._left = MOST_HELD
+        self._rows = 0
+        self._notes: FailureNotes | None = None
 
-    def passing(self, found: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
-        """The parts that are read, unchanged."""
-        for piece in found:
-            self._left -= 1 if isinstance(piece, Sample) else len(piece.times)
-            if self._left >= 0:
-                self._pieces.append(piece)
-            yield piece
+    def take(self, piece: Batch | Sample, core: native.Monitor) -> None:
+        """Take a piece that was judged, by a run that goes on."""
+        rows = 1 if isinstance(piece, Sample) else len(piece.times)
+        if not rows:
+            return
+        self._pieces.append(piece)
+        self._rows += rows
+        if self._rows > (MOST_HELD if self._notes is None else _AT_ONCE):
+            if self._notes is None:
+                from rvmon.cli.failure_notes import FailureNotes
+
+                self._notes = FailureNotes(*self._judged, core)
+            last = piece.t if isinstance(piece, Sample) else int(piece.times[-1])
+            self._notes.take(self._pieces, last)
+            self._pieces, self._rows = [], 0
+
+    def finish(self, end: int) -> FailureNotes | None:
+        """The notes on a recording that ends at an instant (ticks); `None`: its rows are few."""
+        if self._notes is not None:
+            self._notes.finish(self._pieces, end)
+        return self._notes
 
     def until(self, end: int) -> list[Batch | Sample] | None:
-        """The parts up to an instant; `None`: there were more than are kept."""
-        if self._left < 0:
-            return None
-        return list(pieces_up_to(self._pieces, end))
-
-
-MOST_LATE = 1000
-"""Failures of a requirement of which it is looked up whether what they awaited came late."""
-
-MOST_LATE_IN_ALL = 10_000
-"""The same of all requirements, of which each gets its share, and at least one."""
-
-MOST_VALUES = 3
-"""The most signals of a failed part whose values are shown; `rvmon why` shows all."""
+        """The pieces up to an instant; `None`: there were more than are kept."""
+        return None if self._notes is not None else list(pieces_up_to(self._pieces, end))
 
 
 def post_analysis(
@@ -87,101 +99,91 @@ def post_analysis(
         found["goals"] = _goals(spec, trace, end)
     if not explains:
         return found
+    notes = remembered.finish(end)
     failures = list(_first_failures(report))
-    values, windows = _Values(spec, failures), _Windows(spec, failures, report.origin)
-    late = _missed(spec, report)
-    silent = [name for name in report.verdicts if report.is_silent(name)]
-    if not late and not silent and not values.names and not windows.names:
-        return found
-    from rvmon.analysis.truths import look_through
+    values, windows = _Values(spec, failures, notes), _Windows(spec, failures, report.origin)
+    late = _Late(spec, report, notes)
+    triggers = {
+        name: spec.looking.trigger(name) for name in report.verdicts if report.is_silent(name)
+    }
+    questions = [*late.questions, *(trigger.question for trigger in triggers.values())]
+    seen: RecordedTruths | None = None
+    if questions or triggers or values.names or windows.names:
+        from rvmon.analysis.truths import look_through
 
-    questions = [question for _, waits in late.values() for question in waits.values()]
-    triggers = {name: spec.looking.trigger(name) for name in silent}
-    questions += [trigger.question for trigger in triggers.values()]
-    until = end if questions else max(values.until, windows.until)
-    pieces: Iterable[Batch | Sample] | None = remembered.until(until)
-    if pieces is None:
-        asked = {
-            name
-            for question in questions
-            for part in question.formulas
-            for name in names_read(part)
-        }
-        asked |= {
-            question.for_each.value.event for question in questions if question.for_each is not None
-        }
-        pieces = _read_again(spec, recording, asked | values.names | windows.names, until)
-    noted = windows.noted(values.noted(pieces), Trace((), names, end, recording.outages))
-    seen = look_through(
-        spec.checked, questions, noted, end, names, spec.looking.plans, recording.outages
-    )
-    misses = {name: trigger.miss_in(seen) for name, trigger in triggers.items()}
+        until = end if questions else max(values.until, windows.until)
+        pieces: Iterable[Batch | Sample] | None = remembered.until(until)
+        if pieces is None:
+            asked = {name for question in questions for name in question.names}
+            pieces = _read_again(spec, recording, asked | values.names | windows.names, until)
+        noted = windows.noted(values.noted(pieces), Trace((), names, end, recording.outages))
+        seen = look_through(
+            spec.checked, questions, noted, end, names, spec.looking.plans, recording.outages
+        )
+        misses = {name: trigger.miss_in(seen) for name, trigger in triggers.items()}
+        found["misses"] = {name: miss for name, miss in misses.items() if miss}
     shown: dict[str, dict[int, dict[str, str]]] = {}
     for requirement, number, own in (*values.of_attempts(), *windows.of_attempts()):
         if own:
             shown.setdefault(requirement, {}).setdefault(number, {}).update(own)
     found["values"] = shown
-    found["late"] = _arrived(late, seen) if late else {}
-    found["misses"] = {name: miss for name, miss in misses.items() if miss}
+    found["late"] = late.arrived(seen)
     return found
 
 
 class _Values:
-    """The values of the signals of the first failures, noted as a recording is read."""
+    """The values of the signals of the first failures.
 
-    def __init__(self, spec: Spec, failures: Sequence[Attempt]) -> None:
+    Attributes:
+        names: the signals that are to be looked up.
+        until: up to this instant, ticks.
+    """
+
+    def __init__(self, spec: Spec, failures: Sequence[Attempt], notes: FailureNotes | None) -> None:
+        self.names: set[str] = set()
+        self.until = 0
         self._spec = spec
-        self._reads = [
-            (attempt, names) for attempt in failures if (names := _names_blamed(spec, attempt))
-        ]
-        self._asked: dict[int, set[str]] = {}
-        for attempt, names in self._reads:
-            self._asked.setdefault(attempt.decided or 0, set()).update(names)
-        self.names: Set[str] = {name for names in self._asked.values() for name in names}
-        self.until = max(self._asked, default=0)
-        self._known: dict[int, Mapping[str, str]] = {}
+        self._reads: list[tuple[Attempt, Set[str]]] = []
+        if not failures:
+            return
+        from rvmon.cli.failure_notes import names_blamed, values_at
+
+        self._known = {} if notes is None else dict(notes.values.known)
+        self._at = values_at(spec)
+        for attempt in failures:
+            names, instant = names_blamed(spec, attempt), attempt.decided or 0
+            if names:
+                self._reads.append((attempt, names))
+            unknown = {name for name in names if (instant, name) not in self._known}
+            if unknown:
+                self._at.ask(instant, unknown)
+                self.until = max(self.until, instant)
+                self.names |= unknown
 
     def noted(self, pieces: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
         """The pieces, unchanged; nothing is kept of one that was passed."""
-        if not self._asked:
+        if not self.names:
             yield from pieces
             return
-        from rvmon.report.changes import RunChanges
-
-        changes = RunChanges(self._spec.checked, self.names)
-        waiting = sorted(self._asked, reverse=True)
-
-        def note(until: int) -> None:
-            while waiting and waiting[-1] <= until:
-                instant = waiting.pop()
-                self._known[instant] = self._values_at(instant, changes)
-
         for piece in pieces:
-            times = [piece.t] if isinstance(piece, Sample) else piece.times
-            if waiting and len(times):
-                note(int(times[0]) - 1)
-                changes.add(piece)
-                note(int(times[-1]) - 1)  # of the last instant more may come
-                for one in changes.by_name.values():
-                    one.forget()
+            if isinstance(piece, Sample) or len(piece.times):
+                self._at.take([piece])
             yield piece
-        note(self.until)
-
-    def _values_at(self, instant: int, changes: RunChanges) -> Mapping[str, str]:
-        signals = self._spec.checked.signals
-        return {
-            name: value_text(changes.by_name[name].value_at(instant), signals[name].type.unit)
-            for name in sorted(self._asked[instant])
-        }
+        self._at.finish()
+        self._known |= self._at.known
 
     def of_attempts(self) -> Iterator[tuple[str, int, Mapping[str, str]]]:
         """By requirement and number of the attempt, what they were at its decision."""
         from rvmon.report.tracks import concerned_names
 
+        signals = self._spec.checked.signals
         for attempt, names in self._reads:
-            values = self._known[attempt.decided or 0]
             order = concerned_names(self._spec.requirements[attempt.requirement])
-            own = {name: values[name] for name in order if name in names}
+            own = {
+                name: value_text(self._known[attempt.decided or 0, name], signals[name].type.unit)
+                for name in order
+                if name in names
+            }
             yield attempt.requirement, attempt.number, own
 
 
@@ -189,12 +191,13 @@ class _Windows:
     """The values of the past windows of the first failures."""
 
     def __init__(self, spec: Spec, failures: Sequence[Attempt], origin: int) -> None:
-        from rvmon.analysis.window_values import windows_blamed
-
         self._spec = spec
         self._origin = origin
         self._asked: dict[tuple[str, int], list[Asked]] = {}
         for attempt in failures:
+            from rvmon.analysis.window_values import windows_blamed
+            from rvmon.cli.failure_notes import MOST_VALUES
+
             assert attempt.blame is not None, "only these are asked for"
             requirement = spec.requirements[attempt.requirement]
             found = windows_blamed(spec.checked, requirement, attempt.blame)
@@ -233,31 +236,6 @@ class _Windows:
             yield requirement, number, own
 
 
-def _names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
-    """The signals of which the value tells why it failed.
-
-    Not what is itself true or false, nor what was measured over a window.
-    """
-    from rvmon.report.tracks import blamed_names
-
-    assert attempt.blame is not None, "only these are asked for"
-    requirement = spec.requirements[attempt.requirement]
-    measured: set[str] = set()
-    for subformula in subformulas(requirement.consequent):
-        if isinstance(subformula, Amount):
-            measured |= {*names_read(subformula)}
-        elif isinstance(subformula, Compare):
-            windows = windows_in(subformula.left, subformula.right)
-            measured |= {name for window in windows for name in names_in(window)}
-    signals = spec.checked.signals
-    signals_blamed = {
-        name
-        for name in blamed_names(requirement, attempt.blame) - measured
-        if name in signals and signals[name].type.kind is not Kind.BOOL
-    }
-    return signals_blamed if len(signals_blamed) <= MOST_VALUES else set()
-
-
 def _first_failures(report: Report) -> Iterator[Attempt]:
     """The failures that are shown, if it is known what was to blame."""
     for name, verdict in report.verdicts.items():
@@ -277,37 +255,44 @@ def _read_again(
     return Source(opened(spec, judged.path, only=only), end, is_cut=True).pieces()
 
 
-def _missed(
-    spec: Spec, report: Report
-) -> Mapping[str, tuple[Sequence[Attempt], Mapping[int, Question]]]:
-    """By requirement its first failures, and what these awaited by number of the attempt."""
-    failed = [name for name, verdict in report.verdicts.items() if verdict == "F"]
-    if not failed:
-        return {}
-    from rvmon.analysis.subformulas import waits_of
+class _Late:
+    """When what the first failures awaited came after all.
 
-    most = max(1, min(MOST_LATE, MOST_LATE_IN_ALL // len(failed)))
-    found = {}
-    for name in failed:
-        requirement = spec.requirements[name]
-        # What was captured, and each instance, takes a pass over the recording by itself.
-        is_alone = bool(requirement.for_each or requirement.captures)
-        own = SHOWN_PER_REQUIREMENT if is_alone else most
-        attempts = list(islice(report.of(name, Verdict.FAIL), own))
-        waits = waits_of(requirement, attempts)
-        if waits:
-            found[name] = attempts, waits
-    return found
+    Attributes:
+        questions: what is to be looked up.
+    """
 
+    def __init__(self, spec: Spec, report: Report, notes: FailureNotes | None) -> None:
+        self._known: Mapping[tuple[str, int], int | None] = {} if notes is None else notes.late
+        self._failed: dict[str, list[Attempt]] = {}
+        self._waits: dict[str, Mapping[int, Question]] = {}
+        failed = [name for name, verdict in report.verdicts.items() if verdict == "F"]
+        if failed:
+            from rvmon.analysis.late_arrival import waits_of
+            from rvmon.cli.failure_notes import looked_up
 
-def _arrived(
-    late: Mapping[str, tuple[Sequence[Attempt], Mapping[int, Question]]], seen: RecordedTruths
-) -> Mapping[str, Mapping[int, int]]:
-    """By requirement and number of the attempt, when what it awaited came after all."""
-    from rvmon.analysis.subformulas import late_in
+            for name in failed:
+                requirement = spec.requirements[name]
+                most = looked_up(requirement, len(failed))
+                attempts = list(islice(report.of(name, Verdict.FAIL), most))
+                left = [one for one in attempts if (name, one.number) not in self._known]
+                self._failed[name] = attempts
+                self._waits[name] = waits_of(requirement, left)
+        self.questions = [one for waits in self._waits.values() for one in waits.values()]
 
-    arrived = {name: late_in(attempts, waits, seen) for name, (attempts, waits) in late.items()}
-    return {name: found for name, found in arrived.items() if found}
+    def arrived(self, seen: RecordedTruths | None) -> Mapping[str, Mapping[int, int]]:
+        """By requirement and number of the attempt, when it came; `seen`: of the questions."""
+        found = {}
+        for name, attempts in self._failed.items():
+            came = {one.number: self._known.get((name, one.number)) for one in attempts}
+            if seen is not None and self._waits[name]:
+                from rvmon.analysis.late_arrival import late_in
+
+                came |= late_in(attempts, self._waits[name], seen)
+            own = {number: at for number, at in came.items() if at is not None}
+            if own:
+                found[name] = own
+        return found
 
 
 def _goals(spec: Spec, trace: str, end: int) -> Mapping[str, Verdict]:

@@ -54,6 +54,8 @@ def judge_recording(
     try:
         for piece in source.pieces():
             judge.take(piece)
+            if source.taken is not None:
+                source.taken(piece, judge.core)
     except TraceError:
         decided(judge.core.flush())
         raise

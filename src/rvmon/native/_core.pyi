@@ -125,6 +125,12 @@ class Monitor:
     def flush(self) -> Sequence[Attempt]:
         """The attempts that were decided since the last call."""
 
+    def failed(self, first: int, wanted: bytes, /) -> tuple[int, tuple[Attempt, ...]]:
+        """The number of records, and the attempts that failed among those from `first` on.
+
+        Of the requirements with a 1 in `wanted`, which has a byte for each.
+        """
+
     def open(self) -> tuple[Attempt, ...]:
         """The attempts that are undecided now, and those that will stay so."""
 

@@ -19,6 +19,7 @@ from rvmon.trace.schema import Gaps, Kind, Schema
 from rvmon.trace.time import ticks_of_seconds
 
 if TYPE_CHECKING:
+    from rvmon import native
     from rvmon.recordings.batch import Batch
     from rvmon.recordings.recording import FileRecording
     from rvmon.recordings.table_recording import TableRecording
@@ -34,12 +35,14 @@ class Source:
         until: the end of the trace in ticks, if it is not its last sample.
         is_cut: whether what comes after that end is left out.
         shown: passes samples and batches on as they are read, with a progress bar.
+        taken: called with each sample or batch once it was judged, and the run, which goes on.
     """
 
     recording: Recording
     until: int | None = None
     is_cut: bool = False
     shown: Callable[[Iterator[Any]], Iterator[Any]] = iter
+    taken: Callable[[Any, native.Monitor], object] | None = None
 
     @property
     def names(self) -> frozenset[str] | None:

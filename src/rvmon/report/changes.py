@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, overload
 
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.recordings.coalesce import updates_in
+from rvmon.recordings.last_updates import known
 from rvmon.recordings.source import HeldRecording
 from rvmon.trace.sample import Sample, Scalar, Value
 
@@ -136,21 +137,16 @@ class RunChanges:
 
     Args:
         spec: declares them.
-        only: the names to collect; `None`: all.
 
     Attributes:
         by_name: the changes of each so far.
     """
 
-    def __init__(self, spec: CheckedSpec, only: Set[str] | None = None) -> None:
+    def __init__(self, spec: CheckedSpec) -> None:
         self._signals = spec.signals
         self._ignoring = spec.ignoring
         stale = {name: signal.stale_after for name, signal in spec.signals.items()}
-        self.by_name = {
-            name: Changes(stale.get(name))
-            for name in (*spec.signals, *spec.events)
-            if only is None or name in only
-        }
+        self.by_name = {name: Changes(stale.get(name)) for name in (*spec.signals, *spec.events)}
 
     def add(self, piece: Batch | Sample) -> None:
         """Add the changes in the next piece."""
@@ -182,7 +178,7 @@ class Changes:
     def add(self, t: int, value: Value, *, is_signal: bool) -> None:
         """Add an update."""
         if is_signal:
-            self._add_value(t, _known(value))
+            self._add_value(t, known(value))
         elif value is not False:
             self._found.append((t, None if value is None else True))
 
@@ -248,23 +244,6 @@ class Changes:
             occurrences[t] = True if said == YES else occurrences.get(t)
         self._found += occurrences.items()
 
-    def value_at(self, instant: int) -> Scalar:
-        """A signal's value at an instant, not before what `forget` has discarded."""
-        # By the last update, not the last change: a value that is said again is not stale.
-        if self._last is not None and instant >= self._last:
-            limit = self._stale_after
-            return None if limit is not None and instant > self._last + limit else self._known
-        self._settle()
-        for course in reversed(self._courses):
-            if behind := course.behind(instant):
-                return course[behind - 1][1]
-        return None
-
-    def forget(self) -> None:
-        """Discard all changes but the last one."""
-        self._courses = []
-        self._found = [] if self._last is None else [(self._last, self._known)]
-
     def _settle(self) -> None:
         """Move the changes added one by one into columns."""
         if self._found:
@@ -281,10 +260,3 @@ class Changes:
 def _plain(value: Any) -> Scalar:
     scalar: Scalar = value.item() if hasattr(value, "item") else value
     return scalar
-
-
-def _known(value: Value) -> Scalar:
-    """A signal's value; `None` if it is unknown."""
-    if isinstance(value, float) and value != value:  # NaN
-        return None
-    return value if isinstance(value, bool | int | float | str) else None

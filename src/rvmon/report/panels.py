@@ -7,13 +7,8 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TypeGuard
 
-from rvmon.analysis.subformulas import (
-    PartTruth,
-    TriggerParts,
-    late_in,
-    part_truths_of,
-    waits_of,
-)
+from rvmon.analysis.late_arrival import late_in, waits_of
+from rvmon.analysis.subformulas import PartTruth, TriggerParts, part_truths_of
 from rvmon.analysis.truths import Question, RecordedTruths, look_through, parts_of
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec

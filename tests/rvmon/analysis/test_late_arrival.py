@@ -3,7 +3,7 @@
 import pytest
 
 import rvmon
-from rvmon.analysis.subformulas import late_in, waits_of
+from rvmon.analysis.late_arrival import late_in, waits_of
 from rvmon.analysis.truths import look_through
 from rvmon.trace.sample import Sample
 

@@ -138,8 +138,55 @@ def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch, h
     }
 
 
+ON_THE_WAY = {
+    "a signal": "q and x > 1",
+    "what is false": "not q or x < 0",
+    "an update": "updated(x) and not p",
+    "what is known": "known(x) and x < -2",
+    "nothing that comes": "x > 9",
+    "an event": "go",
+    "an event with a signal": "go and q",
+}
+READ_AGAIN = {
+    "a change": "changed(x)",
+    "the past": "once[0 s, 2 s] (p and go)",
+    "a window": "count(go, 3 s) >= 2",
+}
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("stale", ["", "stale after 300 ms"])
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 300 ms"])
+@pytest.mark.parametrize("awaited", [ON_THE_WAY, READ_AGAIN])
+def test_late_answers_are_noted_on_the_way(awaited, time, stale, traces, monkeypatch):
+    """They are those of a short recording, which is remembered, and so are the values."""
+    text = HEAD.format(time=time).replace("x : real", f"x : real {stale}") + "".join(
+        f"requirement R{number}\n  upon go or p\n  then within 500 ms ({formula})\n"
+        for number, formula in enumerate(awaited.values())
+    )
+    text += "requirement S\n  whenever q\n  then immediately x < 1\n"
+    spec, opened, begin = rvmon.loads(text), [], post_analysis.opened
+    monkeypatch.setattr(
+        post_analysis,
+        "opened",
+        lambda *given, **more: opened.append(given) or begin(*given, **more),
+    )
+    for trace in traces:
+        short = judge(spec, trace, Options()).report
+        with monkeypatch.context() as patch:
+            patch.setattr(post_analysis, "MOST_HELD", 60)
+            patch.setattr(post_analysis, "_AT_ONCE", 30)
+            patch.setattr("rvmon.recordings.places.BLOCK", 900)
+            assert judge(spec, trace, Options()).report == short
+        assert short.values["S"]
+        assert len(short.late) > 1
+    # In clocked time an event counts at the next position: then what was before is asked for.
+    is_again = awaited is READ_AGAIN or time == "sampled every 300 ms"
+    assert len(opened) == (len(traces) if is_again else 0)
+
+
 def test_of_many_failures_in_all_each_requirement_has_some_looked_up(tmp_path, monkeypatch):
-    monkeypatch.setattr("rvmon.cli.post_analysis.MOST_LATE_IN_ALL", 4)
+    monkeypatch.setattr("rvmon.cli.failure_notes.MOST_LATE_IN_ALL", 4)
     text = "spec s\nevent e\nsignal p : bool\n" + "".join(
         f"requirement R{n}\n  upon e then within {n + 1} ms p\n" for n in range(9)
     )

@@ -204,20 +204,6 @@ static PyObject *reset_of(monitor *c, PyObject *unused)
     return is_done(rv_reset(c->m)) ? Py_NewRef(Py_None) : NULL;
 }
 
-static PyObject *times_of(monitor *c, PyObject *unused)
-{
-    const rv_times found = rv_times_of(c->m);
-    (void)unused;
-    return Py_BuildValue("NNN", instant(found.began, RV_NO_TIME), instant(found.last, RV_NO_TIME),
-                         instant(found.reached, RV_NO_TIME));
-}
-
-static PyObject *next_due_of(monitor *c, PyObject *unused)
-{
-    (void)unused;
-    return instant(rv_next_due(c->m), RV_NEVER);
-}
-
 METHOD(judge)
 METHOD(advance)
 METHOD(lose)
@@ -229,6 +215,7 @@ METHOD(keep)
 METHOD(arrivals)
 METHOD(take_arrivals)
 METHOD(flush)
+METHOD(failed)
 METHOD(open)
 METHOD(records)
 METHOD(counts)
@@ -322,6 +309,7 @@ static PyMethodDef monitor_methods[] = {
     {"arrivals", monitor_arrivals, METH_NOARGS, NULL},
     {"take_arrivals", monitor_take_arrivals, METH_O, NULL},
     {"flush", monitor_flush, METH_NOARGS, NULL},
+    {"failed", monitor_failed, METH_VARARGS, NULL},
     {"open", monitor_open, METH_NOARGS, NULL},
     {"records", monitor_records, METH_NOARGS, NULL},
     {"counts", monitor_counts, METH_NOARGS, NULL},

@@ -192,6 +192,7 @@ bool gather(void *user, const rv_record *record, const rv_number *captured);
 PyObject *attempts_of(gathering *g);
 void gather_records(const monitor *c, int64_t first, bool open, gathering *g);
 PyObject *decided_since(monitor *c);
+PyObject *failed_of(monitor *c, PyObject *args);
 
 /* ---- module_open.c */
 PyObject *monitor_new(PyTypeObject *type, PyObject *args, PyObject *unused);
@@ -212,6 +213,8 @@ PyObject *records_of(monitor *c, PyObject *unused);
 PyObject *records_from(const monitor *c, int64_t first);
 PyObject *counts_of(monitor *c, PyObject *unused);
 PyObject *stale_of(monitor *c, PyObject *unused);
+PyObject *times_of(monitor *c, PyObject *unused);
+PyObject *next_due_of(monitor *c, PyObject *unused);
 
 /* ---- module_rows.c */
 PyObject *rows_of(monitor *c, PyObject *args);

@@ -192,3 +192,28 @@ PyObject *decided_since(monitor *c)
     return made;
 }
 
+
+/* failed(first, wanted): the number of records, and the attempts that failed among those from `first`
+ * on, of the requirements with a 1 in `wanted`, which has a byte for each. */
+PyObject *failed_of(monitor *c, PyObject *args)
+{
+    const rv_record *records;
+    const int64_t count = rv_records(c->m, &records);
+    long long first;
+    Py_buffer wanted;
+    gathering g;
+    int64_t i;
+    if (!PyArg_ParseTuple(args, "Ly*", &first, &wanted)) {
+        return NULL;
+    }
+    begin_gathering(&g, c);
+    for (i = (first > 0) ? (int64_t)first : 0; (i < count) && !g.failed; i++) {
+        const rv_record *one = &records[i];
+        if ((one->verdict == RV_FAIL) && (one->requirement < wanted.len)
+            && (((const uint8_t *)wanted.buf)[one->requirement] != 0U)) {
+            (void)gather(&g, one, rv_captured(c->m, one));
+        }
+    }
+    PyBuffer_Release(&wanted);
+    return Py_BuildValue("LN", (long long)count, attempts_of(&g));
+}

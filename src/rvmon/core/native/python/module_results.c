@@ -157,6 +157,20 @@ PyObject *stale_of(monitor *c, PyObject *unused)
     return made;
 }
 
+PyObject *times_of(monitor *c, PyObject *unused)
+{
+    const rv_times found = rv_times_of(c->m);
+    (void)unused;
+    return Py_BuildValue("NNN", instant(found.began, RV_NO_TIME), instant(found.last, RV_NO_TIME),
+                         instant(found.reached, RV_NO_TIME));
+}
+
+PyObject *next_due_of(monitor *c, PyObject *unused)
+{
+    (void)unused;
+    return instant(rv_next_due(c->m), RV_NEVER);
+}
+
 /* Coverage, truths and situations. */
 
 PyObject *instant(int64_t t, int64_t none)

@@ -1,0 +1,143 @@
+"""What is told of failures, noted as a long recording is judged, which then is read only once."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence, Set
+from typing import TYPE_CHECKING
+
+from rvmon.analysis.arrivals import Arrivals
+from rvmon.analysis.late_arrival import awaited
+from rvmon.language.checked.classify import subformulas
+from rvmon.language.checked.formula import Amount, Compare, windows_in
+from rvmon.language.checked.names_read import names_in, names_read
+from rvmon.language.checked.specification import Requirement
+from rvmon.recordings.last_updates import ValuesAt
+from rvmon.report.tracks import blamed_names
+from rvmon.report.wording import SHOWN_PER_REQUIREMENT
+from rvmon.session import Spec
+from rvmon.trace.sample import Sample
+from rvmon.trace.schema import Kind
+
+if TYPE_CHECKING:
+    from rvmon import native
+    from rvmon.recordings.batch import Batch
+    from rvmon.recordings.recording import FileRecording
+    from rvmon.verdicts.attempt import Attempt
+
+MOST_LATE = 1000
+"""Failures of a requirement of which it is looked up whether what they awaited came late."""
+
+MOST_LATE_IN_ALL = 10_000
+"""The same of all requirements, of which each gets its share, and at least one."""
+
+MOST_VALUES = 3
+"""The most signals of a failed part whose values are shown; `rvmon why` shows all."""
+
+
+def looked_up(requirement: Requirement, failed: int) -> int:
+    """The failures of a requirement that are looked up, where so many requirements failed."""
+    # What was captured, and each instance, takes a pass over the recording by itself.
+    if requirement.for_each or requirement.captures:
+        return SHOWN_PER_REQUIREMENT
+    return max(1, min(MOST_LATE, MOST_LATE_IN_ALL // failed))
+
+
+class FailureNotes:
+    """Notes on the failures of a recording as it is judged.
+
+    Args:
+        spec: the specification.
+        recording: is judged.
+        only: ids of the requirements, or `None` for all.
+        core: judges it.
+
+    Attributes:
+        late: by requirement and number of the attempt, when what it awaited came after all, ticks;
+            `None`: it did not, or nothing was awaited. It lacks what cannot be known so.
+        values: the values at failures; they lack what cannot be known so.
+    """
+
+    def __init__(
+        self,
+        spec: Spec,
+        recording: FileRecording,
+        only: Sequence[str] | None,
+        core: native.Monitor,
+    ) -> None:
+        self._spec = spec
+        self._core = core
+        self._numbers = spec.planned(only).packed.numbers
+        self._wanted = bytearray(b"\1" * len(self._numbers))
+        self._records = 0
+        self._failed: Counter[str] = Counter()
+        self._arrivals = None if recording.outages else Arrivals(spec.checked, recording.names)
+        self.late = {} if self._arrivals is None else self._arrivals.found
+        self.values = values_at(spec)
+
+    def take(self, pieces: Sequence[Batch | Sample], until: int) -> None:
+        """Take the next pieces that were judged, which tell all up to an instant (ticks)."""
+        self._records, attempts = self._core.failed(self._records, bytes(self._wanted))
+        for attempt in attempts:
+            self._ask_about(attempt)
+        if pieces:
+            self.values.take(pieces)
+        if self._arrivals is not None:
+            self._arrivals.take(pieces, until)
+
+    def finish(self, pieces: Sequence[Batch | Sample], end: int) -> None:
+        """Take the last pieces of a recording that ends at an instant (ticks)."""
+        self.take(pieces, end)
+        self.values.finish()
+
+    def _ask_about(self, attempt: Attempt) -> None:
+        name = attempt.requirement
+        requirement = self._spec.requirements[name]
+        self._failed[name] += 1
+        # The share of a requirement gets less as others fail, never more.
+        if self._failed[name] > looked_up(requirement, len(self._failed)):
+            self._wanted[self._numbers[name]] = 0
+            return
+        blame, decided = attempt.blame, attempt.decided
+        if self._failed[name] <= SHOWN_PER_REQUIREMENT and blame is not None:
+            self.values.ask(decided or 0, names_blamed(self._spec, attempt))
+        if self._arrivals is not None and not (requirement.for_each or requirement.captures):
+            deadline = 0 if blame is None else blame.window[1] or 0
+            key = name, attempt.number
+            self._arrivals.ask(key, awaited(requirement, attempt), deadline)
+
+
+def values_at(spec: Spec) -> ValuesAt:
+    """Finds the values of signals at failures."""
+    checked = spec.checked
+    names = {
+        name
+        for requirement in spec.requirements.values()
+        for name in names_read(requirement.consequent)
+        if name in checked.signals and checked.signals[name].type.kind is not Kind.BOOL
+    }
+    stale_after = {name: signal.stale_after for name, signal in checked.signals.items()}
+    return ValuesAt(names, checked.ignoring, stale_after)
+
+
+def names_blamed(spec: Spec, attempt: Attempt) -> Set[str]:
+    """The signals of which the value tells why it failed, if it is known what was to blame.
+
+    Not what is itself true or false, nor what was measured over a window.
+    """
+    assert attempt.blame is not None, "only these are asked for"
+    requirement = spec.requirements[attempt.requirement]
+    measured: set[str] = set()
+    for subformula in subformulas(requirement.consequent):
+        if isinstance(subformula, Amount):
+            measured |= {*names_read(subformula)}
+        elif isinstance(subformula, Compare):
+            windows = windows_in(subformula.left, subformula.right)
+            measured |= {name for window in windows for name in names_in(window)}
+    signals = spec.checked.signals
+    signals_blamed = {
+        name
+        for name in blamed_names(requirement, attempt.blame) - measured
+        if name in signals and signals[name].type.kind is not Kind.BOOL
+    }
+    return signals_blamed if len(signals_blamed) <= MOST_VALUES else set()

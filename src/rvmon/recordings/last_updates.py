@@ -1,0 +1,157 @@
+"""The last update of each signal, as a recording goes by."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence, Set
+from typing import TYPE_CHECKING
+
+from rvmon.recordings.coalesce import updates_in
+from rvmon.trace.sample import Sample, Scalar, Value
+
+if TYPE_CHECKING:
+    from rvmon.recordings.batch import Batch, Cells
+
+FOREVER = (1 << 63) - 1
+"""Later than any tick."""
+
+Update = tuple[int, Scalar]
+"""An instant in ticks, and the value; `None`: unknown."""
+
+
+class LastUpdates:
+    """Keeps the last update of some signals.
+
+    Args:
+        names: of the signals.
+        ignoring: those of which that they are unknown is no update.
+    """
+
+    def __init__(self, names: Set[str], ignoring: frozenset[str]) -> None:
+        self._names = names
+        self._ignoring = ignoring
+        self._found: dict[str, Update] = {}
+
+    def add(self, pieces: Sequence[Batch | Sample]) -> None:
+        """Take the next pieces of the recording."""
+        wanted = set(self._names)
+        for piece in reversed(pieces):  # what stands last is mostly found at once
+            for name, update in self._last_in(piece, wanted):
+                self._found[name] = update
+                wanted.discard(name)
+            if not wanted:
+                return
+
+    def until(self, instant: int, piece: Batch | Sample | None) -> Mapping[str, Update]:
+        """By name the last update up to an instant (ticks), which may lie in the next piece."""
+        if piece is None or isinstance(piece, Sample):
+            is_past = piece is not None and piece.t <= instant
+            own = self._last_in(piece, self._names) if piece is not None and is_past else ()
+        else:
+            own = self._last_in(piece.up_to(instant), self._names)
+        return {**self._found, **dict(own)}
+
+    def _last_in(self, piece: Batch | Sample, names: Set[str]) -> Iterator[tuple[str, Update]]:
+        if isinstance(piece, Sample):
+            values = updates_in(piece.values, self._ignoring)
+            for name in names & values.keys():
+                yield name, (piece.t, known(values[name]))
+            return
+        for name in names & piece.signals.keys():
+            row = _last_row(piece.signals[name])
+            if row is not None:
+                yield name, (int(piece.times[row]), _value_in(piece.signals[name], row))
+
+
+def known(value: Value) -> Scalar:
+    """The value of a signal; `None` if it is unknown."""
+    if isinstance(value, float) and value != value:  # NaN
+        return None
+    return value if isinstance(value, bool | int | float | str) else None
+
+
+def _last_row(cells: Cells) -> int | None:
+    """The last row that says something of a signal."""
+    from rvmon.recordings.batch import NO_UPDATE
+
+    count = len(cells.values)
+    if not count or cells.says is None or cells.says[-1] != NO_UPDATE:
+        return count - 1 if count else None
+    said = (cells.says != NO_UPDATE).nonzero()[0]
+    return int(said[-1]) if len(said) else None
+
+
+def _value_in(cells: Cells, row: int) -> Scalar:
+    from rvmon.recordings.batch import UNKNOWN
+
+    value = known(cells.values[row].item())
+    if cells.says is not None and cells.says[row] == UNKNOWN:
+        return None
+    return value if cells.labels is None else cells.labels[int(value or 0)]
+
+
+class ValuesAt:
+    """The values of signals at instants, as a recording goes by.
+
+    Args:
+        names: of the signals that may be asked for.
+        ignoring: see `LastUpdates`.
+        stale_after: by name from when on a value counts as unknown, ticks behind its update.
+
+    Attributes:
+        known: by instant and name.
+    """
+
+    def __init__(
+        self, names: Set[str], ignoring: frozenset[str], stale_after: Mapping[str, int | None]
+    ) -> None:
+        self.known: dict[tuple[int, str], Scalar] = {}
+        self._stale_after = stale_after
+        self._updates = LastUpdates(names, ignoring)
+        self._asked: dict[int, Set[str]] = {}
+        self._next = FOREVER
+        self._since: int | None = None
+
+    def ask(self, instant: int, names: Set[str]) -> None:
+        """Ask for signals at an instant (ticks); in vain, if that lies in what was taken."""
+        if self._since is None or instant >= self._since:
+            self._asked[instant] = self._asked.get(instant, set()) | names
+            self._next = min(self._next, instant)
+
+    def take(self, pieces: Sequence[Batch | Sample]) -> None:
+        """Take the next pieces of the recording, of which there is one at least."""
+        last, place = last_of(pieces[-1]), 0
+        while self._next < last:  # at the last instant more may come
+            passed = place
+            while last_of(pieces[place]) <= self._next:
+                place += 1
+            self._updates.add(pieces[passed:place])
+            self._settle(pieces[place])
+        self._updates.add(pieces[place:])
+        self._since = last
+
+    def finish(self) -> None:
+        """Say that nothing follows."""
+        while self._asked:
+            self._settle(None)
+
+    def _settle(self, piece: Batch | Sample | None) -> None:
+        """Find what is asked for at the next instant, which may lie in a piece."""
+        instant = self._next
+        updates = self._updates.until(instant, piece)
+        for name in self._asked.pop(instant):
+            # By the last update, not the last change: a value that is said again is not stale.
+            t, value = updates.get(name, (instant, None))
+            limit = self._stale_after.get(name)
+            is_stale = limit is not None and instant > t + limit
+            self.known[instant, name] = None if is_stale else value
+        self._next = min(self._asked, default=FOREVER)
+
+
+def first_of(piece: Batch | Sample) -> int:
+    """The first instant of a piece, ticks."""
+    return piece.t if isinstance(piece, Sample) else int(piece.times[0])
+
+
+def last_of(piece: Batch | Sample) -> int:
+    """The last instant of a piece, ticks."""
+    return piece.t if isinstance(piece, Sample) else int(piece.times[-1])
