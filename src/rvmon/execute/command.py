@@ -49,6 +49,8 @@ def run(words: Sequence[str], **options: Any) -> subprocess.CompletedProcess[str
     options = {"capture_output": True, "encoding": "utf-8", "errors": "replace", **options}
     if os.name != "posix":
         return subprocess.run(words, stdin=subprocess.DEVNULL, check=False, **options)  # noqa: S603 - words, no shell
+    # The system closes the pipe however this process ends, also by SIGKILL; then `read` returns,
+    # and the shell kills its process group, which the new session makes its own.
     watched, held = os.pipe()
     shell = ["/bin/sh", "-c", _WATCHED, "sh", *words]
     try:

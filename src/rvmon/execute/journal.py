@@ -73,6 +73,8 @@ def add(path: Path, entry: bytes) -> None:
     Raises:
         OSError: it cannot be written.
     """
+    # One write without a buffer: a killed process leaves the whole entry, or a torn last line that
+    # its checksum tells.
     with path.open("ab", buffering=0) as file:
         file.write(_line(entry))
 
@@ -105,6 +107,7 @@ class Journal:
 
 def checksum(*inputs: object) -> str:
     """A checksum of what results depend on, rvmon and Python included."""
+    # Another rvmon or Python may give other results: its journal must not be gone on with.
     own = list(contents(Path(__file__).parents[1]))
     return hashlib.sha256(json.dumps([*inputs, own, sys.version]).encode()).hexdigest()
 

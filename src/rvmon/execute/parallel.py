@@ -132,6 +132,7 @@ class _Pool:
 
     def end(self) -> None:
         """End all processes at once, whatever they do."""
+        # All are killed before any is waited for, so that they end together.
         for worker in self._workers:
             worker.process.kill()
             worker.connection.close()
@@ -206,6 +207,8 @@ class _Pool:
 
     def _left(self) -> Iterator[tuple[int, bytes]]:
         """The tasks that no worker has, ascending."""
+        # Those of lost workers first, the lowest number first: results come in order, and wait for
+        # it.
         while self._returned:
             yield heappop(self._returned)
         try:
