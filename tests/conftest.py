@@ -1,10 +1,11 @@
-"""What tests share: programs that CI always has, and golden files."""
+"""What tests share: programs that CI always has, what is made once, and golden files."""
 
+import fcntl
 import gc
 import os
 import shutil
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -17,8 +18,23 @@ from tests.seconds import Seconds
 def pytest_configure(config: pytest.Config) -> None:
     """Have the seconds of each folder added up where the results arrive."""
     gc.disable()  # what is collected stays
+    config.pluginmanager.register(_Doctests())
     if not hasattr(config, "workerinput"):
         config.pluginmanager.register(Seconds())
+
+
+class _Doctests:
+    """A plugin, so that it sees `src` too, that looks for doctests only where a prompt stands."""
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_collect_file(
+        self, file_path: Path
+    ) -> Generator[None, list[pytest.Collector], list[pytest.Collector]]:
+        """Spare pytest the import of modules without doctests, and the walk through them."""
+        collectors = yield
+        if not collectors or ">>>" in file_path.read_text(encoding="utf-8"):
+            return collectors
+        return [collector for collector in collectors if type(collector) is pytest.Module]
 
 
 def pytest_collection_finish() -> None:
@@ -99,6 +115,32 @@ def unsynced() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("os.fsync", lambda _: None)
         yield
+
+
+Make = Callable[[Path], object]
+
+
+@pytest.fixture(scope="session")
+def shared(scratch: Path) -> Callable[[str, Make], Path]:
+    """What takes long to make is made once, whichever process of the tests asks for it first.
+
+    Takes the name of a folder, and what fills it; returns the folder.
+    """
+
+    def made(name: str, make: Make) -> Path:
+        folder = scratch / "shared" / name
+        folder.parent.mkdir(exist_ok=True)
+        with folder.with_suffix(".lock").open("w", encoding="utf-8") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            done = folder.with_suffix(".done")
+            if not done.exists():
+                shutil.rmtree(folder, ignore_errors=True)  # of one that failed
+                folder.mkdir()
+                make(folder)
+                done.touch()
+        return folder
+
+    return made
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -5,7 +5,6 @@ import io
 import json
 
 import pytest
-from tests.handover.campaign.shared_folder import shared_folder
 
 from handover.campaign.closing import UNREACHABLE, query_of
 from handover.cli import main
@@ -18,7 +17,7 @@ pytestmark = pytest.mark.campaign
 
 
 @pytest.fixture(scope="module")
-def closed(tmp_path_factory):
+def closed(shared):
     """A folder with a suite of a few tests, the exit code and what was printed."""
 
     def make(folder):
@@ -27,7 +26,7 @@ def closed(tmp_path_factory):
             code = main(["close", "--tests", "12", "--jobs", "1", "--out", str(folder / "out")])
         (folder / "told.json").write_text(json.dumps([code, told.getvalue()]))
 
-    folder = shared_folder(tmp_path_factory, "closed", make)
+    folder = shared("closed", make)
     return folder / "out", *json.loads((folder / "told.json").read_text())
 
 

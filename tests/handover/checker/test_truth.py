@@ -315,10 +315,10 @@ BY_SAMPLES = {
 
 @pytest.mark.parametrize("name", PLANTED)
 def test_a_planted_fault_fails_its_requirements(monkeypatch, name):
+    """Without it nothing of that test fails, as `test_directed.py` has it."""
     fault, test, requirements = PLANTED[name]
     monkeypatch.setitem(mutants.MUTATIONS, name, fault)
     assert failed(TESTS[test], name) >= set(requirements.split())
-    assert not failed(TESTS[test]) & set(requirements.split())
 
 
 @pytest.mark.parametrize("requirement", BY_SAMPLES)

@@ -6,9 +6,7 @@ import struct
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
@@ -36,9 +34,12 @@ class Exported:
         folder: where it is made.
         cases: the cases; specifications that the core judges.
         command: the compiler with its options.
+        core: the core as an object that is made by them.
     """
 
-    def __init__(self, folder: Path, cases: Sequence[Case], command: Sequence[str]) -> None:
+    def __init__(
+        self, folder: Path, cases: Sequence[Case], command: Sequence[str], core: Path
+    ) -> None:
         self.cases = cases
         self._compiled = [
             compile_spec(replace(case.spec, name=f"case {number}"))
@@ -53,12 +54,11 @@ class Exported:
         for name, text in texts.items():
             (folder / name).write_text(text, encoding="utf-8")
         (folder / "plans.h").write_text(_plans(names))
-        self.compile(command)
+        self.compile(command, core)
 
-    def compile(self, command: Sequence[str]) -> None:
-        """Compile the program, by a compiler with its options."""
-        sources = [str(DRIVER), str(core_object(*command))]
-        line = [*command, "-I.", *sources, "-o", self._program.name, "-lm"]
+    def compile(self, command: Sequence[str], core: Path) -> None:
+        """Compile the program, by a compiler with its options, with the core as they make it."""
+        line = [*command, "-I.", str(DRIVER), str(core), "-o", self._program.name, "-lm"]
         subprocess.run(line, cwd=self._program.parent, check=True)  # noqa: S603
 
     def judge(
@@ -120,20 +120,12 @@ class Exported:
         return [_record(*one) for one in zip(rows, values, strict=True)]
 
 
-def core_object(*command: str) -> Path:
-    """The core as a compiler with its options makes it, once for all that ask."""
-    return Path(_core(command).name) / "rvmon_core.o"
-
-
-@cache
-def _core(command: tuple[str, ...]) -> TemporaryDirectory[str]:
-    """A folder with the core as an object, which takes longest; it is the same for all cases."""
-    folder: TemporaryDirectory[str] = TemporaryDirectory()
+def core_in(command: Sequence[str], folder: Path) -> None:
+    """Compile the core into `rvmon_core.o` of a folder, by a compiler with its options."""
     for name, text in core_files().items():
-        Path(folder.name, name).write_text(text, encoding="utf-8")
+        (folder / name).write_text(text, encoding="utf-8")
     line = [*command, "-c", "rvmon_core.c", "-o", "rvmon_core.o"]
-    subprocess.run(line, cwd=folder.name, check=True)  # noqa: S603
-    return folder
+    subprocess.run(line, cwd=folder, check=True)  # noqa: S603
 
 
 def _plans(names: Sequence[str]) -> str:

@@ -1,12 +1,15 @@
 """The exported C: it judges as the extension does, and is never green for want of memory."""
 
 import re
+import shlex
 import shutil
 import subprocess
+import zlib
+from functools import partial
 from itertools import islice
 
 import pytest
-from tests.rvmon.core.exported import HEAP, Exported, core_object
+from tests.rvmon.core.exported import HEAP, Exported, core_in
 from tests.tools.differential import cases_of
 from tests.tools.hostile import FORGERIES, hostile_names
 
@@ -26,6 +29,10 @@ pytestmark = pytest.mark.compiler
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic")
 SANITIZED = ("-O0", "-fsanitize=address,undefined", "-fsanitize-undefined-trap-on-error")
 """Where something undefined is done the program dies; to tell of it would take long to compile."""
+WATCHED = ("gcc", *STRICT, *SANITIZED)
+NARROW = ("gcc", *STRICT, "-m32", "-msse2", "-mfpmath=sse")
+STRICTEST = (*STRICT, "-Wconversion", "-Wshadow")
+PLAIN = ("gcc", *STRICTEST)
 GREEN = {"1", "3"}
 """Passed, and not triggered."""
 
@@ -42,12 +49,29 @@ def judged(seed, many, **profile):
         number += 1
 
 
-def test_exported_c_judges_as_the_extension(tmp_path):
-    exported = Exported(tmp_path, list(judged("export", 60)), ["gcc", *STRICT, *SANITIZED])
+@pytest.fixture(scope="module")
+def core_object(shared):
+    """The core as a compiler with its options makes it, which takes longest: once for all."""
+
+    def made(*command):
+        name = f"core {zlib.crc32(shlex.join(command).encode()):x}"
+        return shared(name, partial(core_in, command)) / "rvmon_core.o"
+
+    return made
+
+
+@pytest.fixture
+def exported(tmp_path, core_object):
+    """Makes one program of cases."""
+    return lambda cases: Exported(tmp_path, cases, WATCHED, core_object(*WATCHED))
+
+
+def test_exported_c_judges_as_the_extension(exported, core_object):
+    exported = exported(list(judged("export", 60)))
     wanted = [2 * exported.records_of_extension(number) for number in range(60)]
     told = [records(run) for run in exported.judge([(number, HEAP) for number in range(60)])]
     assert told == wanted
-    exported.compile(["gcc", "-m32", "-msse2", "-mfpmath=sse"])
+    exported.compile(NARROW, core_object(*NARROW))
     told = [records(run) for run in exported.judge([(number, HEAP) for number in range(60)])]
     assert told == wanted, "32 bits"
     assert sum(map(len, told)) > 150
@@ -59,7 +83,7 @@ def records(run):
     return [line for line in run if line.startswith(("r ", "x "))]
 
 
-def test_memory_is_bounded_however_long_windows_are_followed(tmp_path):
+def test_memory_is_bounded_however_long_windows_are_followed(exported):
     """Of windows within windows what is over is given up, where samples are positions, too."""
     cases = []
     for time in ("held", "sampled", "sampled every 2 ns"):
@@ -67,8 +91,7 @@ def test_memory_is_bounded_however_long_windows_are_followed(tmp_path):
         spec = rvmon.loads(f"time {time}\nsignal p : bool\nrequirement R\n  {required}\n").checked
         samples = [Sample(t, {"p": t % 17 > 2}) for t in range(3000)]
         cases += [Case(spec, tuple(samples[:many])) for many in (500, 3000)]
-    exported = Exported(tmp_path, cases, ["gcc", *STRICT, *SANITIZED])
-    runs = exported.judge([(number, HEAP) for number in range(len(cases))])
+    runs = exported(cases).judge([(number, HEAP) for number in range(len(cases))])
     used = [int(run[-1].split()[-1]) for run in runs]
     assert used[::2] == used[1::2]
 
@@ -78,12 +101,12 @@ def without_memory(run):
     return [line.rpartition(" ")[0] if line.startswith("e ") else line for line in run]
 
 
-def test_notes_change_nothing_and_are_bounded(tmp_path):
+def test_notes_change_nothing_and_are_bounded(exported):
     """Whoever keeps them: records and verdicts stay; what is not needed any more goes."""
     cases = list(judged("notes", 60))
-    exported = Exported(tmp_path, cases, ["gcc", *STRICT, *SANITIZED])
+    of_cases = exported(cases)
     runs = [(number, HEAP) for number in range(len(cases))]
-    bare, noted = exported.judge(runs), exported.judge(runs, notes=True)
+    bare, noted = of_cases.judge(runs), of_cases.judge(runs, notes=True)
     assert list(map(without_memory, bare)) == list(map(without_memory, noted))
     long = []
     for time in ("held", "sampled", "sampled every 2 ns"):
@@ -96,8 +119,7 @@ def test_notes_change_nothing_and_are_bounded(tmp_path):
             ).checked
             turns = [Sample(t, {"p": t % 17 > 2, "q": t % 5 == 0}) for t in range(4000)]
             long += [Case(spec, tuple(turns[:many])) for many in (1000, 4000)]
-    exported = Exported(tmp_path, long, ["gcc", *STRICT, *SANITIZED])
-    runs = exported.judge([(number, HEAP) for number in range(len(long))], notes=True)
+    runs = exported(long).judge([(number, HEAP) for number in range(len(long))], notes=True)
     used = [int(run[-1].split()[-1]) for run in runs]
     told = [len(records(run)) for run in runs]
     grown = [b - a for a, b in zip(used[::2], used[1::2], strict=True)]
@@ -108,9 +130,9 @@ def test_notes_change_nothing_and_are_bounded(tmp_path):
     )
 
 
-def test_short_memory_is_never_green(tmp_path):
+def test_short_memory_is_never_green(exported):
     """Whatever the block: judged as with a heap, or refused, or said; then nothing has passed."""
-    exported = Exported(tmp_path, list(judged("memory", 40)), ["gcc", *STRICT, *SANITIZED])
+    exported = exported(list(judged("memory", 40)))
     spoilt = 0
     for number, whole in enumerate(exported.judge([(number, HEAP) for number in range(40)])):
         enough = int(whole[-1].split()[-1])
@@ -166,23 +188,15 @@ def compiled(folder, *line):
     subprocess.run(line, cwd=folder, check=True)  # noqa: S603
 
 
-@pytest.fixture
-def strict():
-    """The compilers that there are, each with all warnings as errors."""
-    warnings = [*STRICT, "-Wconversion", "-Wshadow"]
-    names = ["arm-none-eabi-gcc -mthumb -mcpu=cortex-m3", "clang", "gcc -O1"]
-    return [[*name.split(), *warnings] for name in names if shutil.which(name.split()[0])]
-
-
-def test_nothing_but_the_interface_is_seen(tmp_path, strict):
+def test_nothing_but_the_interface_is_seen(tmp_path, core_object):
     """Strict compilers take all files; what they define for others is `rv_…`, and tables."""
     (plan,) = written(tmp_path, text_of("door", "A"))
-    *others, gcc = strict
-    for line in others:
-        compiled(tmp_path, *line, "-fsyntax-only", plan, "rvmon_core.c")
-    compiled(tmp_path, *gcc, "-c", plan, "-o", "plan.o")
-    compiled(tmp_path, *gcc, "-c", "rvmon_core.c", "-o", "core.o")
-    for name, prefix in (("core.o", "rv_"), ("plan.o", "door_")):
+    for compiler in ("arm-none-eabi-gcc -mthumb -mcpu=cortex-m3", "clang"):
+        line = [*compiler.split(), *STRICTEST, "-fsyntax-only", plan, "rvmon_core.c"]
+        if shutil.which(line[0]):
+            compiled(tmp_path, *line)
+    compiled(tmp_path, *PLAIN, "-c", plan, "-o", "plan.o")
+    for name, prefix in ((core_object(*PLAIN), "rv_"), ("plan.o", "door_")):
         line = [shutil.which("nm"), "-g", "--defined-only", tmp_path / name]
         done = subprocess.run(line, check=True, stdout=subprocess.PIPE, text=True)  # noqa: S603
         found = [line.split()[-1] for line in done.stdout.splitlines()]
@@ -261,12 +275,11 @@ requirement R2
 
 
 @pytest.mark.parametrize("text", [text_of("door", "A"), KEYED])
-def test_the_stated_memory_is_enough(tmp_path, gcc, text):
+def test_the_stated_memory_is_enough(tmp_path, core_object, text):
     (plan,) = written(tmp_path, text)
     (tmp_path / "main.c").write_text(SIZES)
     begins = []
-    for word in ([], ["-m32", "-msse2", "-mfpmath=sse"]):
-        line = [gcc, *STRICT, *word]
+    for line in (PLAIN, NARROW):
         compiled(tmp_path, *line, "main.c", plan, core_object(*line), "-o", "main", "-lm")
         done = subprocess.run([tmp_path / "main"], check=True, stdout=subprocess.PIPE)  # noqa: S603
         least, stated = map(int, done.stdout.split())
@@ -310,11 +323,11 @@ int main()
 """
 
 
-def test_the_face_for_cpp(tmp_path, gcc):
+def test_the_face_for_cpp(tmp_path, core_object):
     (plan,) = written(tmp_path, text_of("door", "A"))
     (tmp_path / "main.cpp").write_text(FACE)
-    compiled(tmp_path, gcc, *SANITIZED, "-c", plan)
-    objects = [plan.replace(".c", ".o"), core_object("gcc", *STRICT, *SANITIZED)]
+    compiled(tmp_path, *WATCHED, "-c", plan)
+    objects = [plan.replace(".c", ".o"), core_object(*WATCHED)]
     warnings = ["-Wall", "-Wextra", "-Wconversion", "-Wshadow", "-pedantic", "-Werror"]
     for compiler in filter(shutil.which, ("clang++", "g++")):
         for standard in ("-std=c++20", "-std=c++11"):

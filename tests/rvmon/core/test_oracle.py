@@ -33,7 +33,7 @@ def test_each_call_says_what_the_law_has_it_say(kind, time):
     profile, traces, special = KINDS[kind]
     is_any = kind == "any"
     forms = ("c", "c rows", "c+next+interrupt") if is_any else ("c rows", "c+interrupt")
-    number, each = (25, 8) if is_any else (15, 4)
+    number, each = (12, 6) if is_any else (8, 4)
     compiler = Compiler()
     makers = {form: Maker(form, compiler) for form in forms}
     seeds = [f"{kind}/{time.name}/{seed}" for seed in range(number)]

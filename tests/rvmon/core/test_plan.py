@@ -222,7 +222,8 @@ def test_comparisons_of_too_many_events_are_refused():
 def check(tmp_path_factory):
     """The core's own check of bytes: the section that is wrong, or −1."""
     library = tmp_path_factory.mktemp("core") / "core.so"
-    sources = [f"{amalgamate.FOLDER}/{name}" for name in amalgamate.core_files()]
+    names = (one for one in amalgamate.core_files() if one.startswith(("plan/", "input/functions")))
+    sources = [f"{amalgamate.FOLDER}/{name}" for name in names]
     flags = [
         "-O0",
         "-shared",

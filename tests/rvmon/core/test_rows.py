@@ -74,7 +74,7 @@ def test_a_signal_is_not_born_by_nan():
 def test_rows_equal_steps():
     compiler = Compiler()
     judged = 0
-    for seed in range(12):
+    for seed in range(6):
         rng = random.Random(f"rows equal steps {seed}")
         spec = random_spec(rng, Profile(many=8, wide=10))
         planned = planned_for(spec, compiler)
@@ -82,7 +82,7 @@ def test_rows_equal_steps():
             table = random_table(rng, spec, planned.single_payloads, 200)
             assert not rows_differ(planned, spec, table), f"seed {seed}"
             judged += len(table.rows)
-    assert judged > 2_000
+    assert judged > 1_000
 
 
 @pytest.mark.parametrize("limit", [0, 2, 2.5, 2**53 + 1, -(2**62) + 1, 1e19])

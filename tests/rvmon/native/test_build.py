@@ -155,7 +155,7 @@ def test_free_threaded_needs_headers(hook, monkeypatch, tmp_path):
 
 
 @pytest.mark.compiler
-def test_builds_are_equal(hook, tmp_path):
+def test_builds_are_equal(copied, hook, tmp_path):
     """Two builds from one source, in two folders, are the same bytes."""
     (tmp_path / "one").mkdir()
     (tmp_path / "two").mkdir()
