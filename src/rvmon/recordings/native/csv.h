@@ -88,6 +88,13 @@ bool csv_take(csv_reader *r, int32_t column, csv_cell c);
 /* Behind the quote that ends a cell whose text begins here; NULL: there is none in this text. */
 const char *csv_quoted(const csv_reader *r, const char *at, csv_cell *c, int64_t *line);
 
+/* Of a function in a loop over cells, which compilers would call, as it is long. */
+#if defined(__GNUC__)
+#define CSV_INNERMOST static inline __attribute__((always_inline))
+#else
+#define CSV_INNERMOST static inline
+#endif
+
 static inline bool is_digit(char c)
 {
     return (c >= '0') && (c <= '9');

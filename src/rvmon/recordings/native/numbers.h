@@ -295,7 +295,7 @@ static inline bool longer_decimal(const char *to, int64_t size, short_decimal *m
 
 /* A cell of digits and at most one point, 16 characters behind its sign at most; there are 16 bytes
  * before its end. False: it is something else. */
-static inline bool short_of(const char *from, const char *to, short_decimal *made)
+CSV_INNERMOST bool short_of(const char *from, const char *to, short_decimal *made)
 {
     const int64_t signs = (*from == '-') ? 1 : 0;
     const int64_t size = to - from - signs;
