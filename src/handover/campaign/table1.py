@@ -175,7 +175,7 @@ def robot_tables(summary: CampaignSummary) -> dict[str, RobotTables]:
             control = replace(control, title=title)
         shown[name] = RobotTables(
             own=own,
-            beside={"paper": paper_table()} if name == "legacy" else {},
+            compared={"paper": paper_table()} if name == "legacy" else {},
             control=control,
             control_label="no fit",
             control_title="The same without the fitted loss of signals",

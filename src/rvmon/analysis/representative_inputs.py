@@ -73,8 +73,8 @@ def turning_values(
     if not ordered:
         return [0.0, 1.0]
     between = [(low + high) / 2 for low, high in pairwise(ordered)]
-    beside = [ordered[0] - _stride(ordered[0]), ordered[-1] + _stride(ordered[-1])]
-    return sorted({_tidy(value) for value in (*ordered, *between, *beside)}, reverse=True)
+    outer = [ordered[0] - _stride(ordered[0]), ordered[-1] + _stride(ordered[-1])]
+    return sorted({_tidy(value) for value in (*ordered, *between, *outer)}, reverse=True)
 
 
 def is_solved(comparison: Compare) -> bool:

@@ -122,9 +122,9 @@ class Robot:
 
     Attributes:
         system: makes what plays its tests, once in each process.
-        spec: file of its requirements; `None` judges nothing.
-        coverage: files of further specifications: what their coverpoints, crosses and goals show is
-            gathered, beside what those of `spec` do and what its requirements are seen to do.
+        spec: the file of its requirements; `None` judges nothing.
+        coverage: files of further specifications, whose coverpoints, crosses and goals are covered
+            in addition to those of `spec` and to the behaviour of its requirements.
         title: its name in tables and pages; default: its name in the campaign.
         spec_name: the name of its requirements there; default: the path.
     """
@@ -159,7 +159,7 @@ class Robot:
 class Control:
     """A test without what its strategy, or chance, adds to it: played right after it.
 
-    Its outcome is kept beside that of the test, and is shown in a table of its own.
+    Its outcome is kept with that of the test, and is shown in a table of its own.
 
     Attributes:
         name: heads that table, such as `without wind`.
@@ -222,13 +222,13 @@ class Campaign:
         transitions: of its code, likewise, and with them every pair of two that follow
             each other; default: from each of `states` to each other one, where those that cannot be
             are for `Closing.unreachable`.
-        control: a variant played beside each test.
+        control: a variant played with each test.
         expected_failures: failures that do not fail the campaign.
         gates: by strategy, what its tests have to bring; those of all strategies without one are
             compared with that of the name "" together, and without that with `Gate()`.
         timeout_s: seconds that a test may take before it is ended; `None`: any.
-        sources: files and folders that runs depend on, beside those that define tests, strategies
-            and systems: where one has changed, an unfinished campaign is not gone on with.
+        sources: further files and folders that runs depend on, besides the definitions of tests,
+            strategies and systems: if one has changed, an unfinished campaign is not continued.
         packages: Python packages on whose versions runs depend, likewise.
         program: the installed program that runs it; empty: the script that was started.
         presentation: of its figures.

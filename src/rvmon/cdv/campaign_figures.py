@@ -165,7 +165,7 @@ class CampaignSummary:
         simulated_s: simulated seconds, in all tests.
         figures: the sums of what the systems report of all runs.
         kind: the word for a block of the measured code.
-        control: the name of what was played beside tests.
+        control: the name of the variant that was played with each test.
     """
 
     name: str

@@ -185,7 +185,7 @@ def _tables(
     """The table of a robot, whose counts lead to examples, and that of its control."""
     table = table_html(
         tables.own,
-        beside=tables.beside,
+        further=tables.compared,
         link=lambda *cell: examples.get((robot, *cell)),
         witnesses={
             name: tests[robot, test]
@@ -195,7 +195,7 @@ def _tables(
     )
     if tables.control is None or not tables.control_label:
         return table, None
-    return table, table_html(tables.control, beside=tables.beside)
+    return table, table_html(tables.control, further=tables.compared)
 
 
 def _silent(

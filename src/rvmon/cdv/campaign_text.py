@@ -141,10 +141,10 @@ def _named(name: str, text: str) -> Text:
 
 
 def _print_verdicts(tables: RobotTables, console: Console) -> None:
-    beside = dict(tables.beside)
+    further = dict(tables.compared)
     if tables.control is not None and tables.control_label:
-        beside = {tables.control_label: tables.control, **beside}
-    console.print(table_text(tables.own, beside=beside))
+        further = {tables.control_label: tables.control, **further}
+    console.print(table_text(tables.own, further=further))
     if tables.remark:
         console.print(tables.remark, style="dim")
 
@@ -229,7 +229,7 @@ def dated_files(folder: Path) -> dict[Path, int]:
 
 
 def left_over(folder: Path, before: Mapping[Path, int]) -> str:
-    """Say which files of an earlier campaign lie beside those of this one; empty if none does.
+    """Say which files of an earlier campaign remain next to those of this one; empty if none does.
 
     Args:
         folder: of the campaign, which is written.
@@ -271,6 +271,8 @@ def typed(program: str, words: Iterable[object]) -> str:
     """
     if not program:
         return shlex.join(["python", os.path.relpath(sys.argv[0]), *map(str, words)])
-    beside = Path(sys.executable).with_name(program)
-    name = program if shutil.which(program) or not beside.exists() else os.path.relpath(beside)
+    installed = Path(sys.executable).with_name(program)
+    name = (
+        program if shutil.which(program) or not installed.exists() else os.path.relpath(installed)
+    )
     return shlex.join([name, *map(str, words)])

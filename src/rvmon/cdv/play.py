@@ -57,8 +57,8 @@ def player(
             spooled(spool, job).write_bytes(pickle.dumps(recorded))
         outcome = outcome_of(recorded)
         with blamed(f"test `{job.test.name}`: its control cannot be made"):
-            beside = None if control is None else control(job.test)
-        return outcome, None if beside is None else outcome_of(bench.play(beside))
+            variant = None if control is None else control(job.test)
+        return outcome, None if variant is None else outcome_of(bench.play(variant))
 
     return played
 

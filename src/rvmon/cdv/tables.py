@@ -39,17 +39,17 @@ class RobotTables:
 
     Attributes:
         own: its counts.
-        beside: by label, counts that each row is compared with.
+        compared: by label, the table that each row is compared with.
         control: the same counts with the controls of tests, where there are some.
         control_label: heads those lines of the text; empty: they stand in files only.
         control_title: heads that table of the page.
-        sources: remarks of the page on what stands beside.
+        sources: remarks of the page on the compared tables.
         remark: below the tables.
         witnesses: by requirement, the test that follows the run by which model checking shows it.
     """
 
     own: VerdictTable
-    beside: Mapping[str, VerdictTable] = field(default_factory=dict)
+    compared: Mapping[str, VerdictTable] = field(default_factory=dict)
     control: VerdictTable | None = None
     control_label: str = ""
     control_title: str = ""

@@ -21,7 +21,7 @@ from rvmon.verdicts.report import Report
 
 
 def path_of(out: str) -> Path:
-    """The file that keeps what was judged until all is, beside that for the verdicts."""
+    """The file that keeps verdicts until all recordings are judged, next to the output file."""
     return Path(f"{out}.unfinished")
 
 

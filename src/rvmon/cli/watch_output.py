@@ -37,7 +37,7 @@ _SHOWN_FAILURES = 5
 _SHOWN_ROBOTS = 8
 _MOST_OPEN = 100
 _FRAME = 5
-"""Lines of a robot's table beside its rows."""
+"""Lines of a robot's table in addition to its rows."""
 _FEW = 4
 """Rows that a robot has at least, before another robot is shown."""
 
@@ -93,7 +93,7 @@ class Output(logging.Handler):
         say(_line(judgement), flush=True)
 
     def note(self, text: str) -> None:
-        """Say something beside the verdicts."""
+        """Say something that is no verdict."""
         warn(text)
 
     def show(self, driver: Driver) -> None:

@@ -121,7 +121,7 @@ def core_files() -> dict[str, str]:
 
 
 def plan_files(plan: Plan) -> dict[str, str]:
-    """The texts of what stands beside the core; see `c_files`."""
+    """The texts of all files but the core; see `c_files`."""
     packed = pack(plan)
     prefix = prefix_of(plan.spec.name)
     return {

@@ -161,7 +161,7 @@ Link = Callable[[str, str, Verdict], str | None]
 def table_html(
     table: VerdictTable,
     *,
-    beside: Mapping[str, VerdictTable] | None = None,
+    further: Mapping[str, VerdictTable] | None = None,
     link: Link | None = None,
     witnesses: Mapping[str, str] | None = None,
 ) -> Markup:
@@ -169,11 +169,11 @@ def table_html(
 
     Args:
         table: the counts.
-        beside: by label, tables whose counts stand in further lines of each row.
+        further: by label, tables whose counts stand in further lines of each row.
         link: the target of a count.
         witnesses: by requirement, the address of a run that shows what model checking says.
     """
-    others = beside or {}
+    others = further or {}
     text = render(
         "counts.html",
         table=table,

@@ -115,19 +115,19 @@ ABREAST = 14
 """The characters per verdict that the groups side by side may take within 80 columns."""
 
 
-def table_text(table: VerdictTable, *, beside: Mapping[str, VerdictTable] | None = None) -> Group:
+def table_text(table: VerdictTable, *, further: Mapping[str, VerdictTable] | None = None) -> Group:
     """A table as a renderable of rich.
 
     Args:
         table: the counts.
-        beside: by label, tables whose counts stand in further lines of each row; matched by
+        further: by label, tables whose counts stand in further lines of each row; matched by
             requirement and by name of the group.
     """
-    beside = beside or {}
-    width = _width(table, *beside.values())
+    further = further or {}
+    width = _width(table, *further.values())
     abreast = max(1, ABREAST // width)
     grids = [
-        _grid(table, beside, table.groups[first : first + abreast], width, with_checked=not first)
+        _grid(table, further, table.groups[first : first + abreast], width, with_checked=not first)
         for first in range(0, len(table.groups), abreast)
     ]
     notes = (Text(note, style="dim") for note in table.notes)
@@ -149,7 +149,7 @@ def _width(table: VerdictTable, *others: VerdictTable) -> int:
 
 def _grid(
     table: VerdictTable,
-    beside: Mapping[str, VerdictTable],
+    further: Mapping[str, VerdictTable],
     groups: Sequence[RunGroup],
     width: int,
     *,
@@ -158,12 +158,12 @@ def _grid(
     shown = {group.name for group in groups}
     others = {
         f"  {label}": verdict_table
-        for label, verdict_table in beside.items()
+        for label, verdict_table in further.items()
         if shown & {group.name for group in verdict_table.groups}
     }
     grid = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 2, 0, 0))
     grid.add_column("", no_wrap=True)
-    # Only beside the first groups, as it does not depend on the group.
+    # Only further the first groups, as it does not depend on the group.
     has_checked = with_checked and any(
         verdict_table.checked for verdict_table in (table, *others.values())
     )

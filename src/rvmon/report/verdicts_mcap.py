@@ -77,7 +77,7 @@ def refuse_mcap(path: str) -> None:
 
 
 def layout_path(path: str) -> str:
-    """The file of the layout beside that of the verdicts."""
+    """The file of the layout, next to that of the verdicts."""
     return f"{path}.layout.json"
 
 
@@ -88,7 +88,7 @@ def write_verdicts(
     samples: Iterable[Sample],
     scene: Scene | None = None,
 ) -> None:
-    """Write states of requirements, attempts and values over time, and the layout beside.
+    """Write states of requirements, attempts and values over time, and the layout next to it.
 
     Args:
         path: of the MCAP file.

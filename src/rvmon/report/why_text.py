@@ -126,7 +126,7 @@ def _cell(part_truth: PartTruth, breakdown: Breakdown, column: int) -> str:
     if true and not false:
         return TRUE
     if not true:
-        # False only if it is false throughout: beside an unknown tick nothing is claimed.
+        # False only if it is false throughout the column: an unknown tick leaves it unknown.
         known = any(a <= low and high <= b for a, b in part_truth.false)
         return FALSE if known else UNKNOWN
     if _inside(part_truth.true, low, high):

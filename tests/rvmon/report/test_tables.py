@@ -42,20 +42,20 @@ def as_text(renderable, width=80):
 
 def test_tables_are_as_agreed(golden):
     """With published counts in a second line; those of the page lead to examples."""
-    golden("table.txt", as_text(table_text(OURS, beside={"paper": PAPER})))
+    golden("table.txt", as_text(table_text(OURS, further={"paper": PAPER})))
     golden("table.tex", table_latex(OURS))
     golden("table.csv", tables_csv({"ours": OURS, "paper": PAPER}))
     link = "#{}-{}-{}".format
-    golden("table.html", table_html(OURS, beside={"paper": PAPER}, link=link) + "\n")
+    golden("table.html", table_html(OURS, further={"paper": PAPER}, link=link) + "\n")
 
 
 def test_intervals_are_as_agreed(golden):
     """Below each count that of its share, outwards; a table beside it may have none."""
     sampled = replace(OURS, shows_intervals=True)
-    golden("intervals.txt", as_text(table_text(sampled, beside={"paper": PAPER})))
+    golden("intervals.txt", as_text(table_text(sampled, further={"paper": PAPER})))
     golden("intervals.tex", table_latex(sampled))
     golden("intervals.csv", tables_csv({"ours": sampled, "paper": PAPER}))
-    page = table_html(sampled, beside={"paper": PAPER})
+    page = table_html(sampled, further={"paper": PAPER})
     assert page.count("<small>23–44</small>") == 2
     assert "<small>0–4</small>" in page
 

@@ -161,7 +161,7 @@ def _smallest(tests: Sequence[Added], goals: Goals, times: int) -> Smallest:
             for item, hit in items.items()
             if (group, item) in places
         }
-        if times > 1:  # beside its hits, each test counts as one
+        if times > 1:  # each test counts as one, however often it hits
             row |= {place + len(places): 1 for place in row}
         rows.append(row)
     if times > 1:

@@ -175,8 +175,8 @@ class Mutator:
                 name = self._learned.choose(rng, path, names, drawn)
                 of = next(field.type for field in fields if field.encode_name == name)
                 whole = _filled(value, kind)
-                beside = _filled(donor, kind) if isinstance(donor, dict) else whole
-                inner = beside.get(name, whole[name])
+                members = _filled(donor, kind) if isinstance(donor, dict) else whole
+                inner = members.get(name, whole[name])
                 new = self._changed(whole[name], of, inner, f"{path}.{name}", rng, drawn)
                 return {**whole, name: new}
             case inspect.VarTupleType() | inspect.ListType():

@@ -121,7 +121,7 @@ HANGS = "it computes without an end: its time, or its memory, was all"
 """Said of both: an endless loop that also collects something may come first to either."""
 
 PATIENCE_S = 60.0
-"""Seconds of wall time, beside those that the suite may take, until a mutant is ended."""
+"""Seconds of wall time that a mutant may take in addition to those of the suite."""
 
 
 def play_mutants(

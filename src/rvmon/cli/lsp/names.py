@@ -55,7 +55,7 @@ _LINES = {
         "upon",
         "then",
     ): "`upon θ then ψ`: ψ is required each time θ becomes true; of an event: each time it occurs",
-    ("now",): "`now` is the time since the first instant, beside a duration",
+    ("now",): "`now` is the time since the first instant, compared with a duration",
     ("if", "else"): "`if φ then x else y` is a number, or a formula",
     ("whenever",): "`whenever θ then ψ`: ψ is required at every instant at which θ holds",
     ("monitor as response",): "`monitor as response within D`: derived from the requirement's "
@@ -80,7 +80,7 @@ _LINES = {
     ("AG", "AF", "AX", "EG", "EF", "EX"): "Properties are CTL: `AG AF AX EG EF EX A[φ U ψ] "
     "E[φ U ψ]`",
     ("goal",): "`goal` how often each has to be hit (default: once)",
-    ("weight",): "`weight` how much a coverpoint or cross counts in the total beside others",
+    ("weight",): "`weight` how much a coverpoint or cross counts in the total relative to others",
     ("ignore", "illegal"): "ignored and illegal combinations",
 }
 
@@ -234,7 +234,7 @@ class Names:
             yield name.span, target
 
     def _labels(self, node: object) -> Iterator[Name]:
-        """Names that are labels, for they stand beside a signal that has them."""
+        """Names that are labels, as they are compared with a signal that has them."""
         match node:
             case Comparison(left=left, right=right):
                 pairs: list[tuple[object, object]] = [(left, right), (right, left)]

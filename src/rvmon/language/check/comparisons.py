@@ -1,4 +1,4 @@
-"""Comparisons: numbers, labels beside their signal, ages, and durations."""
+"""Comparisons: numbers, labels with their signal, ages, and durations."""
 
 from __future__ import annotations
 
@@ -21,7 +21,6 @@ from rvmon.language.check.quantities import (
 )
 from rvmon.language.check.scope import (
     Age,
-    Beside,
     Chosen,
     Lone,
     Moment,
@@ -29,6 +28,7 @@ from rvmon.language.check.scope import (
     Operands,
     Quantity,
     Scope,
+    TimeValue,
     Value,
 )
 from rvmon.language.checked.arithmetic import NumericOp
@@ -85,7 +85,7 @@ def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
 def _compared(time: TimeModel, node: Comparison, left: Value, right: Value) -> Formula:
     op, places = node.op, (node.left.span, node.right.span)
     # Ages and `now` are moved to the left side, which halves the cases below.
-    if isinstance(right, Beside) and not isinstance(left, Beside):
+    if isinstance(right, TimeValue) and not isinstance(left, TimeValue):
         left, right, op, places = right, left, op.mirrored, places[::-1]
     if isinstance(left, Moment) and isinstance(right, Now):
         left, right, op, places = right, left, op.mirrored, places[::-1]
@@ -152,7 +152,7 @@ def _amount(lone: Lone, unit: Unit, op: CompareOp, limit: Placed, span: Span) ->
 
 
 def _counted(lone: Lone, limit: Placed, strict: bool, span: Span) -> Formula:
-    """A count or duration beside a constant, in whole numbers."""
+    """A comparison of a count or duration with a constant, in whole numbers."""
     value, place = limit
     exact = (value.constant or 0) * value.unit.factor
     if lone.share or lone.of.measured is Measured.COUNT:
@@ -217,8 +217,8 @@ def _extreme(lone: Lone, op: CompareOp, limit: Placed, span: Span) -> Formula | 
     return same if op is CompareOp.EQ else Unary(UnaryOp.NOT, same, None, span)
 
 
-def alone(value: Beside, span: Span) -> Diagnostic:
-    """The finding for a value that is only allowed beside something else in a comparison."""
+def alone(value: TimeValue, span: Span) -> Diagnostic:
+    """The finding for a value of time that is no side of a comparison."""
     match value:
         case Age():
             return rules.age_alone(span)
@@ -232,7 +232,7 @@ def formula_of(value: Value, span: Span) -> Formula:
     Raises:
         Refusal: it is a number or label.
     """
-    if isinstance(value, Beside):
+    if isinstance(value, TimeValue):
         raise Refusal(alone(value, span))
     match value:
         case Quantity(node=SignalValue(name=name), truth=True):
@@ -253,7 +253,7 @@ def number_of(value: Value, span: Span) -> Quantity:
     Raises:
         Refusal: it is a formula or label.
     """
-    if isinstance(value, Beside):
+    if isinstance(value, TimeValue):
         raise Refusal(alone(value, span))
     match value:
         case Quantity(truth=False, labels=()):
@@ -267,7 +267,7 @@ def number_of(value: Value, span: Span) -> Quantity:
 
 
 def _comparable(value: Value, span: Span) -> Placed:
-    if isinstance(value, Beside):
+    if isinstance(value, TimeValue):
         raise Refusal(alone(value, span))
     if not isinstance(value, Quantity) or value.truth:
         raise Refusal(rules.compared_truth(span))

@@ -219,7 +219,7 @@ def checked_property(
 
 
 def _foreign(checker: Checker, expression: expressions.Expression) -> list[expressions.Name]:
-    """The names that the spec does not declare, labels beside a signal not counted."""
+    """The names that the spec does not declare, without labels compared with a signal."""
     labels = {label for s in checker.table.signals.values() for label in s.type.labels}
     return [
         part

@@ -46,7 +46,7 @@ def by_limits(op: CompareOp, make: Callable[[bool], Formula], span: Span) -> For
 
 
 def above(of: WindowValue, limit: Numeric, strict: bool, span: Span) -> Amount:
-    """A window beside a number; a duration is the integral of 1."""
+    """A comparison of a window with a number; a duration is the integral of 1."""
     if of.measured is Measured.DURATION:
         of = replace(of, measured=Measured.INTEGRAL, value=Literal(1))
     known = None if isinstance(limit, Literal) else itself(limit, span)
@@ -97,11 +97,11 @@ def _alone(op: CompareOp, moving: Numeric, other: Numeric, span: Span) -> Formul
         case Arithmetic(op=NumericOp.ABS, args=(inner,)):
             return _magnitude(op, inner, other, span)
         case Arithmetic(op=how, args=(first, second)) if how in _INVERSE:
-            if _moves(first) and _may_go(how, second):
+            if _moves(first) and _may_combine(how, second):
                 turned = op if _is_upward(how, second) else op.mirrored
                 return _alone(turned, first, _joined(_INVERSE[how], other, second), span)
             # `c / x` is not monotonic: it jumps where x passes 0.
-            if how is not NumericOp.DIV and _moves(second) and _may_go(how, first):
+            if how is not NumericOp.DIV and _moves(second) and _may_combine(how, first):
                 turned = op if _is_upward(how, first) else op.mirrored
                 if how is NumericOp.SUB:
                     return _alone(op.mirrored, second, _joined(how, first, other), span)
@@ -124,19 +124,19 @@ def _joined(how: NumericOp, left: Numeric, right: Numeric) -> Numeric:
     return Arithmetic(how, (left, right))
 
 
-def _may_go(how: NumericOp, beside: Numeric) -> bool:
-    """Whether an operand may stand beside a moving one: any fixed term, or a constant factor."""
+def _may_combine(how: NumericOp, other: Numeric) -> bool:
+    """Whether a moving operand may be combined with another: a fixed term, or a constant factor."""
     if how in (NumericOp.ADD, NumericOp.SUB):
-        return not _moves(beside)
+        return not _moves(other)
     # The sign of a factor decides whether the comparison is reversed, so it must be known here.
-    return isinstance(beside, Literal) and beside.value != 0
+    return isinstance(other, Literal) and other.value != 0
 
 
-def _is_upward(how: NumericOp, beside: Numeric) -> bool:
+def _is_upward(how: NumericOp, other: Numeric) -> bool:
     """Whether the whole grows as the moving side of it does."""
-    if how in (NumericOp.ADD, NumericOp.SUB) or not isinstance(beside, Literal):
+    if how in (NumericOp.ADD, NumericOp.SUB) or not isinstance(other, Literal):
         return True
-    return not isinstance(beside.value, str) and beside.value > 0
+    return not isinstance(other.value, str) and other.value > 0
 
 
 def _magnitude(op: CompareOp, inner: Numeric, other: Numeric, span: Span) -> Formula:

@@ -11,7 +11,7 @@ from functools import reduce
 from typing import assert_never
 
 from rvmon.diagnostics import Span
-from rvmon.language.check.scope import Beside, Chosen, Quantity, Value
+from rvmon.language.check.scope import Chosen, Quantity, TimeValue, Value
 from rvmon.language.checked.arithmetic import NumericOp, UnitRule
 from rvmon.language.checked.formula import (
     Arithmetic,
@@ -217,7 +217,7 @@ def _exact(value: Quantity, unit: Unit) -> Fraction:
 
 
 def _nodes(args: Sequence[Placed], unit: Unit) -> tuple[Numeric, ...]:
-    """All values in `unit`; constants as whole numbers beside whole numbers, else as floats."""
+    """All values in `unit`; constants as whole numbers if all others are, else as floats."""
     whole = all(value.integral for value, _ in args if value.constant is None)
     return tuple(_node(value, unit, whole, place) for value, place in args)
 
@@ -277,7 +277,7 @@ def decided(value: Value, span: Span) -> Formula:
     if isinstance(value, Chosen):
         chosen, otherwise = decided(value.chosen, span), decided(value.otherwise, span)
         return either(value.condition, chosen, otherwise, span)
-    assert not isinstance(value, Quantity | Beside), "it was made of formulas"
+    assert not isinstance(value, Quantity | TimeValue), "it was made of formulas"
     return value
 
 
@@ -351,11 +351,11 @@ def seconds_of(duration: Placed) -> Numeric:
 
 
 def brought_to(unit: Unit, placed: Placed, span: Span) -> Numeric:
-    """A number as it stands beside one of a unit in a comparison.
+    """A number converted to a unit, as in a comparison.
 
     Raises:
         Refusal: the units do not fit, or a constant is out of range.
     """
-    beside = compare(CompareOp.GE, (Quantity(SignalValue(""), unit=unit), span), placed, span)
-    assert isinstance(beside, Compare), "one side varies"
-    return beside.right
+    compared = compare(CompareOp.GE, (Quantity(SignalValue(""), unit=unit), span), placed, span)
+    assert isinstance(compared, Compare), "one side varies"
+    return compared.right

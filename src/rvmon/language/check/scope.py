@@ -58,7 +58,7 @@ class Age:
 
 @dataclass(frozen=True, slots=True)
 class Chosen:
-    """`if φ then x else y` of numbers; a comparison of it is one of each, beside φ."""
+    """`if φ then x else y` of numbers; a comparison of it becomes one of each, with φ."""
 
     condition: Formula
     chosen: Value
@@ -91,7 +91,7 @@ class Moment:
 
 @dataclass(frozen=True, slots=True)
 class Lone:
-    """A number that is just a window; beside a limit it is compared in a way of its own.
+    """A number that is just a window; with a limit it has a comparison of its own.
 
     Attributes:
         of: the window; of a share, its duration.
@@ -106,10 +106,10 @@ class Lone:
     begun: Formula | None = None
 
 
-Beside = Age | Now | Moment
-"""The values that are only allowed beside something else in a comparison."""
+TimeValue = Age | Now | Moment
+"""The values of time, which are only allowed as one side of a comparison."""
 
-Value = Formula | Quantity | Beside | Chosen
+Value = Formula | Quantity | TimeValue | Chosen
 
 
 @dataclass(frozen=True, slots=True)

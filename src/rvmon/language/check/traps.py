@@ -165,7 +165,7 @@ def _reach(part: Formula) -> int:
 
 
 def _operand(formula: Formula) -> str:
-    """A formula as it stands beside an operator of time."""
+    """A formula as an operand of a temporal operator is printed."""
     text = format_formula(formula)
     is_call = isinstance(formula, Unary) and formula.op.entry.called
     return text if is_call or isinstance(formula, Atom) else f"({text})"

@@ -298,7 +298,7 @@ class Binary:
 
 @dataclass(frozen=True, slots=True)
 class Amount:
-    """`count(φ, D) >= n`, `sum(x, D) > c` and their kin: a window beside a limit, exactly.
+    """`count(φ, D) >= n`, `sum(x, D) > c` and their kin: a window compared with a limit, exactly.
 
     Attributes:
         of: the window.

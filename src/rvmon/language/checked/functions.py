@@ -53,7 +53,7 @@ _OF_UPDATES = (
     Function("updated", Probe.UPDATED, (Argument.SOURCE,), "x is updated, with any value"),
     Function(
         *("age", None, (Argument.SOURCE,)),
-        "the time since the last update of x, beside a duration",
+        "the time since the last update of x, compared with a duration",
     ),
     Function(
         *("prev", UpdateFunction.PREV, (Argument.SIGNAL,)), "the value of x before its last update"
@@ -84,7 +84,7 @@ _AMOUNTS = (
     ),
     Function(
         *("share", Measured.DURATION, _COUNTED),
-        "that duration divided by D, beside a number or `%`",
+        "that duration divided by D, compared with a number or `%`",
         optional=1,
     ),
     Function(

@@ -99,7 +99,7 @@ class Operator:
         dual: the sign of the operator that is `not φ` of the negations of its operands.
         chained: whether it is associative and written in chains without brackets.
         pulse: whether it is true at single instants only.
-        also: other ways to write it, beside its word and sign.
+        also: other ways to write it, besides its word and sign.
     """
 
     sign: str

@@ -143,7 +143,7 @@ class Coverpoint:
         bins: in order; they may overlap and need not be exhaustive.
         upon: the formula at which bins are sampled; `None`: every position.
         goal: hits that each bin needs.
-        weight: in the total, beside other coverpoints and crosses; 0: for nothing.
+        weight: in the total, relative to other coverpoints and crosses; 0: for nothing.
         span: of the item.
     """
 

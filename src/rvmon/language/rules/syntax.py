@@ -31,12 +31,12 @@ def reach(operator: Span, operand: Span, end: Span) -> Diagnostic:
 
 
 def two_sides(whole: Span, operator: Span, connective: Span, near: Span) -> Diagnostic:
-    """`a unless b and c`: the connective may belong to what stands beside it alone.
+    """`a unless b and c`: the connective may belong to its neighbour alone.
 
     Args:
         whole: the operator with both its sides.
         operator: of the `until` family.
-        connective: the connective beside it.
+        connective: the neighbouring connective.
         near: the side that both may claim.
     """
     first, second = short(operator.text), short(connective.text)
