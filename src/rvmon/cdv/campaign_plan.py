@@ -173,8 +173,8 @@ class Results:
         seconds: wall time.
         cut_short: why not all tests were played; empty if they were.
         groups: measured besides those of the campaign.
-        unreachable: why items of the coverage model cannot be hit, by group and item; further ones than
-            the campaign names.
+        unreachable: by group and item, why items cannot be hit; further ones than the campaign
+            names.
     """
 
     plan: Plan
