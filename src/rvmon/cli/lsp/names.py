@@ -32,8 +32,8 @@ _RUNS = "`in at least 95 % of runs`, `in at most 5 % of runs`: single runs are e
 _LINES = {
     ("spec",): '`spec NAME "title"`',
     ("time", "sampled", "every"): "`time held`, `time sampled`, `time sampled every 20 ms`",
-    ("max delay",): "`max delay 50 ms`: late samples of a stream are put in order within that "
-    "time, those of a file altogether",
+    ("max delay",): "`max delay 50 ms`: late samples of a stream are sorted within that time, "
+    "those of a file whatever their delay",
     ("import",): '`import "signals.rv"`, relative to the file, within the project',
     ("signal",): "`signal a, b : TYPE ROLE ignore NaN stale after D`",
     ("event",): "`event a, pick(id: int, x: real [m]) ROLE`; a payload field is read as `pick.id`",
@@ -65,10 +65,10 @@ _LINES = {
     ("monitor as cover",): "`monitor as cover`: the requirement's `property E<> …` is a goal that "
     "some run should show",
     ("source", "rationale", "severity", "tags"): '`source "…"`, `rationale "…"`, `severity high`, '
-    "`tags a, b`: kept and shown",
+    "`tags a, b`: shown in tables",
     ("let",): "`let v = expression`: the value at the trigger, for the consequent",
     ("for each",): "`for each x in event.field`: one instance of the requirement for each value",
-    ("at end",): "`at end: strict`: what becomes of an attempt that is undecided at the end",
+    ("at end",): "`at end: strict`: the policy for attempts that are undecided at the end",
     ("in at least", "in at most", "of runs"): _RUNS,
     ("scope", "before", "after", "between"): "`scope before (r)`, `scope after (q)`, `scope "
     "between (q) and (r)`, `scope after (q) until (r)`",
@@ -79,8 +79,8 @@ _LINES = {
     ("inf",): "`[1 s, inf)` (or `∞`)",
     ("AG", "AF", "AX", "EG", "EF", "EX"): "Properties are CTL: `AG AF AX EG EF EX A[φ U ψ] "
     "E[φ U ψ]`",
-    ("goal",): "`goal` how often each has to be hit (default: once)",
-    ("weight",): "`weight` how much a coverpoint or cross counts in the total relative to others",
+    ("goal",): "`goal` the hits that each needs (default: 1)",
+    ("weight",): "`weight` the weight of a coverpoint or cross in the total",
     ("ignore", "illegal"): "ignored and illegal combinations",
 }
 
