@@ -10,6 +10,7 @@ from rvmon.cli.reading import opened
 from rvmon.language.checked.names_read import names_in
 from rvmon.language.checked.specification import TimeModel
 from rvmon.language.print import format_window
+from rvmon.recordings.last_updates import last_of
 from rvmon.recordings.source import Source, pieces_up_to
 from rvmon.report.wording import SHOWN_PER_REQUIREMENT, value_text
 from rvmon.session import Spec
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 
 MOST_HELD = 65_536
 """The most rows kept in memory; of a longer recording failures are noted as it is judged."""
-
 
 _AT_ONCE = 16_384
 """Rows of a longer recording of which failures are noted together."""
@@ -61,8 +61,7 @@ class Remembered:
                 from rvmon.cli.failure_notes import FailureNotes
 
                 self._notes = FailureNotes(*self._judged, core)
-            last = piece.t if isinstance(piece, Sample) else int(piece.times[-1])
-            self._notes.take(self._pieces, last)
+            self._notes.take(self._pieces, last_of(piece))
             self._pieces, self._rows = [], 0
 
     def finish(self, end: int) -> FailureNotes | None:
