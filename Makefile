@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 TESTED := PYTHONDONTWRITEBYTECODE= $(BIN)/python -m pytest -n auto --dist worksteal
 
 # What the native code is built from: where one of these changed, it is built anew.
-CORE := $(wildcard src/rvmon/core/native/*.[ch] src/rvmon/core/native/*/*.[ch] src/rvmon/models/native/*.[ch] src/rvmon/recordings/native/*.[ch]) src/rvmon/core/amalgamate.py hatch_build.py
+CORE := $(wildcard src/rvmon/core/native/*.[ch] src/rvmon/core/native/*/*.[ch] src/rvmon/models/native/*.[ch] src/rvmon/recordings/native/*.[ch]) src/rvmon/native/sources.py hatch_build.py
 WARNINGS := -Wall -Wextra -Wconversion -Wshadow -pedantic -Werror
 
 .PHONY: help demo core test quick check sanitize docs format bench claims fuzz extension release clean

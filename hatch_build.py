@@ -34,13 +34,13 @@ except ImportError:  # run as a program, which needs Python alone
 
 PACKAGE = Path(__file__).resolve().parent / "src" / "rvmon"
 CORE = PACKAGE / "core" / "native"
-AMALGAMATE = PACKAGE / "core" / "amalgamate.py"
 BESIDE = {
     "_zones": PACKAGE / "models" / "native",
     "_csv": PACKAGE / "recordings" / "native",
 }
 """The other extensions and the folders of their sources."""
 NATIVE = PACKAGE / "native"
+SOURCES = NATIVE / "sources.py"
 ZIG = "ziglang>=0.13,<1"
 LIMITED_API = "0x030B0000"
 """The stable ABI of Python 3.11, which one extension for all later versions needs."""
@@ -185,12 +185,12 @@ def _flags_of_python(home: Path) -> list[str]:
 
 def _source_hash(home: Path) -> str:
     """As the package computes it at import; the package itself needs what is not installed yet."""
-    return str(runpy.run_path(str(NATIVE / "sources.py"))["source_hash"](str(home)))
+    return str(runpy.run_path(str(SOURCES))["source_hash"](str(home)))
 
 
 def _unit() -> str:
     """The sources of the core as one, of which messages name the files."""
-    return str(runpy.run_path(str(AMALGAMATE))["core_source"]("core.h", str(CORE), lines=True))
+    return str(runpy.run_path(str(SOURCES))["core_source"]("core.h", str(CORE), lines=True))
 
 
 def _machine() -> list[str]:

@@ -21,7 +21,7 @@ import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from rvmon.core import amalgamate
+from rvmon.native import sources as core_sources
 
 ROOT = Path(__file__).parents[1]
 DIST = ROOT / "dist"
@@ -124,11 +124,11 @@ def _compiled_elsewhere(tools: Path) -> str:
     """A line about the core, but for what knows of Python, compiled for other systems."""
     python = tools / "bin" / "python"
     _run([python, "-m", "pip", "install", "-q", "ziglang>=0.13,<1"])
-    sources = [Path(amalgamate.FOLDER, name) for name in amalgamate.core_files()]
+    sources = [Path(core_sources.FOLDER, name) for name in core_sources.core_files()]
     for target in TARGETS:
         for source in sources:
             made = tools / f"{target}-{source.stem}.o"
-            flags = [*FLAGS, "-I", amalgamate.FOLDER]
+            flags = [*FLAGS, "-I", core_sources.FOLDER]
             line = [python, "-m", "ziglang", "cc", "-target", target, *flags, "-c", source]
             _run([*line, "-o", made])
     return f"core: {len(sources)} files of C compile for {', '.join(TARGETS)}"

@@ -30,15 +30,15 @@ from tests.tools.drive import Found, Lost, told
 from tests.tools.forms import Compiler, Maker
 
 from rvmon.cdv.mutation.python_mutants import Mutant
-from rvmon.core import amalgamate
 from rvmon.monitor.packed_plan import PlannedCore, planned_core
+from rvmon.native import sources as core_sources
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.trace.sample import Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 
 ROOT = Path(__file__).resolve().parent.parent
-CORE = Path(amalgamate.FOLDER)
+CORE = Path(core_sources.FOLDER)
 REPLAY = Path(__file__).with_name("core_replay.c")
 FLAGS = ("-std=c99", "-O1", "-ffp-contract=off", "-w")
 MOST_MEMORY = 2 << 30
@@ -123,7 +123,7 @@ def _number(planned: PlannedCore, kind: Kind, value: Scalar) -> tuple[int, int]:
 
 def sources() -> list[Path]:
     """The C of the core, without the binding."""
-    return [CORE / name for name in amalgamate.core_files()]
+    return [CORE / name for name in core_sources.core_files()]
 
 
 class Trial:

@@ -38,7 +38,7 @@ from handover.model import handover_network
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import load_network, loads_network
-from rvmon.models.network.network import Chance, Extremes, Mean, Network, Query, Simulation
+from rvmon.models.network import Chance, Extremes, Mean, Network, Query, Simulation
 from rvmon.models.runs.statistics import sample, trajectories
 from rvmon.models.search.budget import Budget, Meter
 from rvmon.models.search.extremes import extremes

@@ -32,7 +32,7 @@ from handover.model import handover_network
 from handover.robot.mutants import MUTATIONS
 from rvmon.cdv.campaign_plan import Played, plan
 from rvmon.cdv.play import execute
-from rvmon.models.network.network import Network
+from rvmon.models.network import Network
 from rvmon.verdicts import Verdict
 
 STRATEGIES = ("pseudorandom", "constrained", "model-based")

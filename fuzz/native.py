@@ -30,7 +30,6 @@ from tests.tools.sanitize import guarded_memory
 from tests.tools.timed_plans import search_plans
 from tests.tools.watched import truths_plan, with_random_coverage
 
-from rvmon.core import amalgamate
 from rvmon.core.pack import pack
 from rvmon.coverage.monitor import Bins
 from rvmon.errors import RvmonError
@@ -38,11 +37,12 @@ from rvmon.logic.plan import Plan
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.packed_plan import planned_core
 from rvmon.monitor.requirement_plans import plan_alone
+from rvmon.native import sources as core_sources
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import TraceProfile, random_trace
 
 HARNESS = Path(__file__).with_name("harness.c")
-CORE = Path(amalgamate.FOLDER)
+CORE = Path(core_sources.FOLDER)
 ZONES_HARNESS = HARNESS.with_name("zones.c")
 ZONES = HARNESS.parents[1] / "src" / "rvmon" / "models" / "native"
 COMPILER = "afl-clang-fast"
@@ -136,7 +136,7 @@ def compiled(folder: Path, target: str) -> Path:
     else:
         memory = folder / "memory.c"
         memory.write_text(guarded_memory(), encoding="utf-8")
-        names = [name for name in amalgamate.core_files() if name != "memory.c"]
+        names = [name for name in core_sources.core_files() if name != "memory.c"]
         sources = [*(CORE / name for name in names), HARNESS, memory]
     flags = [*FLAGS, f"-I{home}", *TARGETS[target]]
     words = [COMPILER, *flags, *map(str, sources), "-lm", "-o", str(made)]

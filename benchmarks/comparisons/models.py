@@ -20,11 +20,11 @@ from tests.tools.timed_regions import Steps, TooManyRegionsError, shows
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import loads_network
+from rvmon.models.network import Asked, LeadsToFormula, Network
 from rvmon.models.network.expressions import UnaryOp, UnaryOperation
 from rvmon.models.network.guards import compares_of, is_linear
-from rvmon.models.network.network import Asked, LeadsToFormula, Network
+from rvmon.models.runs import Ending
 from rvmon.models.runs.exact_times import Rules
-from rvmon.models.runs.run import Ending
 from rvmon.models.search.budget import Policy
 from rvmon.models.search.verify import verify
 from rvmon.models.uppaal_xml import uppaal_xml

@@ -16,6 +16,7 @@ from random import Random
 import networkx as nx
 from tests.tools.timed_regions import JOINED, Region, RegionGraph, TooManyRegionsError, truth_of
 
+from rvmon.models.network import Network
 from rvmon.models.network.expressions import (
     BinaryOperation,
     Expression,
@@ -25,9 +26,8 @@ from rvmon.models.network.expressions import (
     UnaryOperation,
 )
 from rvmon.models.network.guards import is_linear, parts_of
-from rvmon.models.network.network import Network
+from rvmon.models.runs import Run
 from rvmon.models.runs.exact_times import Rules, initial_configuration
-from rvmon.models.runs.run import Run
 
 _Node = tuple[Region, frozenset[PathFormula]]
 

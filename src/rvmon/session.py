@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Unpack
 
 from rvmon.errors import SpecError
 from rvmon.language.checked.names_read import requirements_asked, sources_asked
-from rvmon.recordings.formats import FORMATS
+from rvmon.recordings import FORMATS
 from rvmon.texts import cannot_read, text_of_file
 from rvmon.trace.time import ticks_of_seconds
 from rvmon.verdicts.attempt import Attempt

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import networkx as nx
 
+from rvmon.models.network import Asked, LeadsToFormula, Network, Query
 from rvmon.models.network.expressions import (
     BinaryOp,
     BinaryOperation,
@@ -21,7 +22,6 @@ from rvmon.models.network.expressions import (
     UnaryOperation,
 )
 from rvmon.models.network.guards import is_plain, parts_of
-from rvmon.models.network.network import Asked, LeadsToFormula, Network, Query
 from tests.tools.timed_regions import Region, RegionGraph, Steps, truth_of
 
 Regions = frozenset[Region]

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import loads_network
+from rvmon.models.network import Asked, LeadsToFormula, Network
 from rvmon.models.network.derived import Watcher
 from rvmon.models.network.expressions import (
     FALSE,
@@ -17,7 +18,6 @@ from rvmon.models.network.expressions import (
     PathFormula,
 )
 from rvmon.models.network.guards import normal_form
-from rvmon.models.network.network import Asked, LeadsToFormula, Network
 from rvmon.models.search.budget import Policy
 from rvmon.models.search.ltl import ways_of
 from rvmon.models.search.search_plan import Plan, Seek, Sought

@@ -16,6 +16,7 @@ from math import floor
 from operator import ge, gt, le, lt
 from typing import Any
 
+from rvmon.models.network import LeadsToFormula, Network
 from rvmon.models.network.evaluate import evaluator
 from rvmon.models.network.expressions import (
     BinaryOp,
@@ -38,14 +39,13 @@ from rvmon.models.network.guards import (
     speaks_of_deadlock,
     with_deadlock,
 )
-from rvmon.models.network.network import LeadsToFormula, Network
+from rvmon.models.runs import Run
 from rvmon.models.runs.exact_times import (
     Configuration,
     InvalidRunError,
     Rules,
     initial_configuration,
 )
-from rvmon.models.runs.run import Run
 from rvmon.models.search.budget import Outcome
 
 

@@ -22,7 +22,7 @@ from handover.generator.model_based import model_based, save_templates
 from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.robot.handover import STATES
 from rvmon.cdv import Campaign, Control, Robot, Strategy
-from rvmon.cdv.campaign_figures import CampaignSummary
+from rvmon.cdv.campaign_summary import CampaignSummary
 from rvmon.cdv.campaign_text import TEMPLATES
 from rvmon.cdv.tables import Presentation
 from rvmon.errors import not_installed

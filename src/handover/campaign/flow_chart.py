@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 
 from handover.collector.code import COMMON, TRANSITIONS
 from handover.robot.handover import STATES
-from rvmon.cdv.campaign_figures import BlockCoverage, StrategySummary, Transition
+from rvmon.cdv.campaign_summary import BlockCoverage, StrategySummary, Transition
 from rvmon.report.html import e
 from rvmon.texts import percent_text
 

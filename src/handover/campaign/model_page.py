@@ -101,8 +101,8 @@ def claims() -> list[str]:
 
 
 def _verifier() -> Callable[[str], Row]:
+    from rvmon.models.network import Chance
     from rvmon.models.network.expressions import PathFormula, PathOp
-    from rvmon.models.network.network import Chance
     from rvmon.models.runs.statistics import sample
     from rvmon.models.search.verify import verify
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import msgspec
 
 from rvmon.cdv import tables
-from rvmon.cdv.campaign_figures import CampaignSummary
+from rvmon.cdv.campaign_summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
 from rvmon.files import write_whole
 from rvmon.report.table import RunGroup, VerdictTable

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from handover.driver.play import Run
     from rvmon.models.conform import Conformance, Recorded
-    from rvmon.models.network.network import Network
+    from rvmon.models.network import Network
 
 OBSERVED = (
     "grip_closed",

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from handover.generator.abstract_test import AbstractTest, Action
     from handover.world.process import Process
     from handover.world.world import World
-    from rvmon.report.scene import Scene
+    from rvmon.report.tracks import Scene
 
 
 @dataclass(frozen=True, slots=True)

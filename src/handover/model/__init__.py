@@ -7,7 +7,7 @@ from importlib import resources
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rvmon.models.network.network import Network
+    from rvmon.models.network import Network
 
 
 __all__ = ["handover_network"]

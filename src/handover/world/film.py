@@ -7,7 +7,7 @@ import math
 from handover.world import parameters as p
 from handover.world.building import palm_corners, table_corners
 from handover.world.scene import Scene
-from rvmon.report import scene as shown
+from rvmon.report import tracks as shown
 
 BODIES = (
     "upper_arm",

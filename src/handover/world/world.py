@@ -19,7 +19,7 @@ from handover.world.recorder import Recorder, SampleValue, Truth
 from handover.world.sensing import Reading, Sensors
 
 if TYPE_CHECKING:
-    from rvmon.report import scene as shown
+    from rvmon.report import tracks as shown
 
 PERFECT = SensorFaults()
 

@@ -13,7 +13,7 @@ from rvmon.live.robot import Judgement
 from rvmon.recordings.messages.ros import ros_topic, ros_types
 
 if TYPE_CHECKING:
-    from rvmon.recordings.messages.topic import Topic
+    from rvmon.recordings.messages import Topic
 
 _DEPTH = 10_000
 """The most messages of a topic queued in DDS; further ones are rejected, and reported as lost."""

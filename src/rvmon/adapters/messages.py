@@ -9,8 +9,8 @@ from typing import Any
 
 from rvmon.live.clock import SimulatedClock
 from rvmon.live.driver import Driver
+from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.rows import MessageReaders
-from rvmon.recordings.messages.topic import Topic
 from rvmon.recordings.messages.topic_matching import matched
 from rvmon.trace.schema import Clock, Schema
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT

@@ -9,8 +9,8 @@ from typing import Any
 from rvmon.adapters.messages import CLOCK, MessageFeed
 from rvmon.errors import RvmonError
 from rvmon.live.robot import Judgement
+from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.ros import bag_readers, ros_topic
-from rvmon.recordings.messages.topic import Topic
 
 _TURN_S = 0.2
 """Seconds between two looks at the connections: rospy makes lost ones anew, and tells nobody."""

@@ -14,7 +14,7 @@ from typing import Any
 from rvmon.adapters.messages import CLOCK, MessageFeed
 from rvmon.errors import RvmonError
 from rvmon.live.robot import Judgement
-from rvmon.recordings.messages.topic import Topic
+from rvmon.recordings.messages import Topic
 from rvmon.trace.schema import Kind
 
 _DEPTH = 1_000

@@ -11,10 +11,10 @@ from importlib import resources
 from rvmon.analysis import findings
 from rvmon.diagnostics import Severity
 from rvmon.errors import UnknownNameError
-from rvmon.language.rules import Rule, names, properties, requirements, syntax, types
-from rvmon.models.network.rules import RULES as MODELS
+from rvmon.language.rules import Rule, names, requirements, syntax, types
+from rvmon.models import RULES as MODELS
 
-_FAMILIES = (syntax, names, types, requirements, properties, findings)
+_FAMILIES = (syntax, names, types, requirements, findings)
 _WARNINGS = ("TA010",)
 
 

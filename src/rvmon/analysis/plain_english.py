@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import assert_never
 
-from rvmon.core.judges import machine_of
+from rvmon.core.monitors import machine_of
 from rvmon.language.checked.classify import has_future
 from rvmon.language.checked.formula import (
     TRIGGERED,

@@ -92,7 +92,7 @@ class WindowValues:
     def __init__(
         self, spec: CheckedSpec, asked: Sequence[Asked], origin: int, recording: Trace
     ) -> None:
-        from rvmon.monitor.recording_run import RecordingRun  # imports NumPy
+        from rvmon.monitor.evaluate import RecordingRun  # imports NumPy
 
         self._asked = asked
         requirements = {

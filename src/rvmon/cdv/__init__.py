@@ -17,8 +17,7 @@ from rvmon.cdv.campaign import (
     Strategy,
     Unreachable,
 )
-from rvmon.cdv.code_under_test import Block, Code, blocks_of
-from rvmon.cdv.system import Observer, Run, System
+from rvmon.cdv.system import Block, Code, Observer, Run, System, blocks_of
 from rvmon.cdv.test import Test, TestError
 
 __all__ = [

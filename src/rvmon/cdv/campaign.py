@@ -8,8 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
-from rvmon.cdv.code_under_test import Code
-from rvmon.cdv.system import System
+from rvmon.cdv.system import Code, System
 from rvmon.cdv.tables import Presentation
 from rvmon.cdv.template import Edge, Template
 from rvmon.cdv.test import Test
@@ -20,7 +19,7 @@ from rvmon.texts import did_you_mean
 
 if TYPE_CHECKING:
     from rvmon.coverage.monitor import SpecCoverage
-    from rvmon.models.network.network import Network
+    from rvmon.models.network import Network
     from rvmon.session import Spec
 
 

@@ -9,8 +9,8 @@ from xml.etree.ElementTree import Element
 from markupsafe import Markup
 from msgspec import structs
 
-from rvmon.cdv.campaign_figures import CampaignSummary, differences
 from rvmon.cdv.campaign_plan import Job, Played
+from rvmon.cdv.campaign_summary import CampaignSummary, differences
 from rvmon.cdv.coverage import CoverageFigures
 from rvmon.cdv.tables import INTERVALS, Presentation, RobotTables
 from rvmon.coverage import Ending

@@ -12,8 +12,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cdv.campaign_figures import NOTHING, BlockCoverage, CampaignSummary, RobotSummary
 from rvmon.cdv.campaign_plan import Results
+from rvmon.cdv.campaign_summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary
 from rvmon.cdv.tables import (
     INTERVALS,
     LEGEND,

@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING
 
 import rvmon
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.code_under_test import Code
-from rvmon.cdv.system import Run
+from rvmon.cdv.system import Code, Run
 from rvmon.coverage import (
     PAIRS,
     STATES,

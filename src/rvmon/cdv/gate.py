@@ -8,8 +8,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.cdv.campaign import STRATEGY, Campaign, ExpectedFailure, Gate, unreachable_items
-from rvmon.cdv.campaign_figures import differences, missed
 from rvmon.cdv.campaign_plan import Played, Results, accepted_failures, is_about
+from rvmon.cdv.campaign_summary import differences, missed
 from rvmon.cdv.coverage import coverage_model, covered_share
 from rvmon.cdv.sequential_test import Decision
 from rvmon.coverage import Ending

@@ -16,9 +16,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from rvmon.cdv.campaign import Campaign, Robot
 from rvmon.cdv.campaign_plan import Job, Outcome, Plan, Played, Results
 from rvmon.cdv.code_coverage import Meter, hits_of_states
-from rvmon.cdv.code_under_test import Code
 from rvmon.cdv.resume import Unfinished
-from rvmon.cdv.system import Checker, Observer, Run, System, Taker, Values
+from rvmon.cdv.system import Checker, Code, Observer, Run, System, Taker, Values
 from rvmon.cdv.test import TestError, blamed
 from rvmon.coverage import Ending, Hits
 from rvmon.errors import RvmonError

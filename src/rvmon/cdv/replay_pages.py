@@ -11,9 +11,9 @@ from functools import partial
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign, Robot
-from rvmon.cdv.campaign_figures import CampaignSummary
 from rvmon.cdv.campaign_page import Examples, campaign_page, comparable_jobs
 from rvmon.cdv.campaign_plan import Job, Played, Results
+from rvmon.cdv.campaign_summary import CampaignSummary
 from rvmon.cdv.campaign_text import RUNS, TESTS, typed
 from rvmon.cdv.coverage import write_coverage
 from rvmon.cdv.play import Bench, Recorded, spooled
@@ -22,8 +22,8 @@ from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import Test
 from rvmon.execute import parallel
 from rvmon.files import write_whole
+from rvmon.report.attempt_panels import JudgedRun, RunPage
 from rvmon.report.html import Child, e
-from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
 from rvmon.session import Spec
 from rvmon.trace.sample import Sample

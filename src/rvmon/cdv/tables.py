@@ -10,7 +10,7 @@ from xml.etree.ElementTree import Element
 import msgspec
 from markupsafe import Markup
 
-from rvmon.cdv.campaign_figures import (
+from rvmon.cdv.campaign_summary import (
     NOTHING,
     BlockCoverage,
     CampaignSummary,

@@ -14,9 +14,9 @@ from rvmon.cdv.test import TestError
 from rvmon.files import write_whole
 
 if TYPE_CHECKING:
-    from rvmon.models.network.network import Edge as NetworkEdge
-    from rvmon.models.network.network import Network
-    from rvmon.models.runs.run import Run
+    from rvmon.models.network import Edge as NetworkEdge
+    from rvmon.models.network import Network
+    from rvmon.models.runs import Run
 
 
 Action = TypeVar("Action")

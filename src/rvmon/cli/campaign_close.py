@@ -14,8 +14,7 @@ import msgspec
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_plan import Plan, Results
 from rvmon.cdv.campaign_text import TESTS, TEXT_COLUMNS, dated_files, left_over, typed
-from rvmon.cdv.close import Budget, Closed, close
-from rvmon.cdv.close.close import MARGIN
+from rvmon.cdv.close import MARGIN, Budget, Closed, close
 from rvmon.cdv.close.faults import with_mutants
 from rvmon.cdv.close.outcome import closed_document, print_closed
 from rvmon.cdv.gate import CampaignJudgement

@@ -8,8 +8,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.campaign_figures import CampaignSummary
 from rvmon.cdv.campaign_plan import Job, Outcome, Results
+from rvmon.cdv.campaign_summary import CampaignSummary
 from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.play import outcomes
 from rvmon.cdv.resume import sources_of

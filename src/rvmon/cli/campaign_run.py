@@ -13,9 +13,9 @@ from tempfile import TemporaryDirectory
 
 from rvmon.cdv import tables
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.campaign_figures import CampaignSummary
 from rvmon.cdv.campaign_page import choose_examples, comparable_jobs
 from rvmon.cdv.campaign_plan import Job, Plan, Played, Results, plan, plan_of_folder
+from rvmon.cdv.campaign_summary import CampaignSummary
 from rvmon.cdv.campaign_text import (
     dated_files,
     left_over,
@@ -26,12 +26,12 @@ from rvmon.cdv.campaign_text import (
 )
 from rvmon.cdv.coverage import coverage_model
 from rvmon.cdv.gate import CampaignJudgement, RobotRequirement, judge_campaign, judge_test
+from rvmon.cdv.outcome_counts import summarise
 from rvmon.cdv.play import INTERRUPTED, Bench, PlayerApart, execute, outcome_of
 from rvmon.cdv.replay_pages import Replay, play_again, replay_page, write_pages
 from rvmon.cdv.resume import unfinished
 from rvmon.cdv.sequential_test import Decision
 from rvmon.cdv.shrink import Shrunk, regression_test, removed, save_regression, shrink
-from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import RobotTables
 from rvmon.cdv.test import Test, TestError, to_json
 from rvmon.cdv.test import load as load_test

@@ -8,7 +8,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from rvmon import __version__
-from rvmon.cli.judging import Judged, Options, judge
+from rvmon.cli.evaluation import Judged, Options, judge
 from rvmon.cli.options import constants_of, refuse_over
 from rvmon.cli.output import say, warn
 from rvmon.cli.reading import (

@@ -11,7 +11,7 @@ from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.errors import TraceError, UnknownNameError
 from rvmon.models.conform import Allowed, Conformance, actions_in, conform, labels_of
 from rvmon.models.language.load import load_network
-from rvmon.models.network.network import Network
+from rvmon.models.network import Network
 from rvmon.recordings.places import found_recordings
 from rvmon.recordings.recording import FileRecording
 from rvmon.texts import counted

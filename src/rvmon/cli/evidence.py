@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
-from rvmon.cli.judging import Judged, judge_all, spec_and_options
+from rvmon.cli.evaluation import Judged, judge_all, spec_and_options
 from rvmon.cli.options import constants_of
 from rvmon.cli.output import bar, say
 from rvmon.cli.run_output import rows_of
@@ -31,7 +31,7 @@ from rvmon.evidence import (
     texts_of,
     write_evidence,
 )
-from rvmon.recordings.formats import form_of_folder
+from rvmon.recordings import form_of_folder
 from rvmon.recordings.places import files_of
 from rvmon.report.trace_matrix import Row, rows_by_item
 from rvmon.session import Spec, load

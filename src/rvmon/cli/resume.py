@@ -10,12 +10,12 @@ from pathlib import Path
 
 import msgspec
 
-from rvmon.cli.judging import Judged, Options
+from rvmon.cli.evaluation import Judged, Options
 from rvmon.coverage import Hit
 from rvmon.errors import RvmonError, writing
 from rvmon.execute import journal
 from rvmon.language.checked.serialise import to_plain
-from rvmon.recordings.formats import databases_beside, form_of_folder
+from rvmon.recordings import databases_beside, form_of_folder
 from rvmon.session import Spec
 from rvmon.verdicts.report import Report
 

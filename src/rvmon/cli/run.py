@@ -9,7 +9,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.judging import (
+from rvmon.cli.evaluation import (
     Judged,
     Options,
     as_known,

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.judging import Judged
+from rvmon.cli.evaluation import Judged
 from rvmon.cli.output import say
 from rvmon.cli.reading import reading_words
 from rvmon.files import write_file

@@ -25,8 +25,8 @@ from rvmon.models.describe import (
 )
 from rvmon.models.language.elaborate import chosen_queries
 from rvmon.models.language.load import load_network
-from rvmon.models.network.network import Chance, Extremes, Mean, Network, Query, Simulation
-from rvmon.models.runs.run import Run
+from rvmon.models.network import Chance, Extremes, Mean, Network, Query, Simulation
+from rvmon.models.runs import Run
 from rvmon.models.runs.statistics import ERROR, Sampled, sample, trajectories
 from rvmon.models.search.budget import Budget, Meter, Outcome, Policy, Watch
 from rvmon.models.search.extremes import Extreme, extremes

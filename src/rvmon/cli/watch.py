@@ -20,7 +20,7 @@ from rvmon.cli.reading import mapped_names, refuse_empty
 from rvmon.cli.watch_output import Output, output_named, refuse_others, watch_kept
 from rvmon.errors import RvmonError, SpecError
 from rvmon.live import Clock, Judgement, Live, SimulatedClock, WallClock
-from rvmon.recordings.formats import FORMATS, form_of_folder
+from rvmon.recordings import FORMATS, form_of_folder
 from rvmon.recordings.places import endings_of
 from rvmon.session import Spec, load
 from rvmon.verdicts import Verdict

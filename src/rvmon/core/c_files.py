@@ -10,13 +10,12 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from textwrap import wrap
 
-from rvmon.core import amalgamate
 from rvmon.core.pack import pack
 from rvmon.core.sections import Packed
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec, Type
 from rvmon.logic.plan import Plan
-from rvmon.native import memory_of
+from rvmon.native import memory_of, sources
 from rvmon.trace.schema import Kind
 from rvmon.version import __version__
 
@@ -112,11 +111,11 @@ def c_files(plan: Plan) -> dict[str, str]:
 def core_files() -> dict[str, str]:
     """The texts of the core's files, which are the same for each specification."""
     head = f"/* The monitor core of rvmon {__version__}. SPDX-License-Identifier: Apache-2.0 */\n"
-    face = Path(amalgamate.FOLDER, "core.hpp").read_text(encoding="utf-8")
+    face = Path(sources.FOLDER, "core.hpp").read_text(encoding="utf-8")
     return {
-        f"{CORE}.h": head + amalgamate.core_header(),
-        f"{CORE}.c": head + amalgamate.core_source(f"{CORE}.h"),
-        f"{CORE}.hpp": head + face.replace(f'"{amalgamate.HEADER}"', f'"{CORE}.h"'),
+        f"{CORE}.h": head + sources.core_header(),
+        f"{CORE}.c": head + sources.core_source(f"{CORE}.h"),
+        f"{CORE}.hpp": head + face.replace(f'"{sources.HEADER}"', f'"{CORE}.h"'),
     }
 
 

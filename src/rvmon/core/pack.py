@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import prod
 
 from rvmon.core.atoms import Atom, Atoms, Names, Programs
-from rvmon.core.judges import SHARED, Judges, Unit
+from rvmon.core.monitors import SHARED, Judges, Unit
 from rvmon.core.nodes import Nodes
 from rvmon.core.obligations import Automata, add_form
 from rvmon.core.sections import Listed, Numbering, Packed, Section, Sections, packed

@@ -24,10 +24,10 @@ from rvmon.logic.plan import Plan, Watch, WatchGroup, plan_of_watches
 from rvmon.logic.state_formula import FALSE
 from rvmon.logic.three_valued import Reader
 from rvmon.monitor.compiled_spec import CompiledSpec, Kept
+from rvmon.monitor.evaluate import RecordingRun
 from rvmon.monitor.feed import refuse_settle
 from rvmon.monitor.monitor import Monitor
 from rvmon.monitor.packed_plan import PlannedCore, planned_as
-from rvmon.monitor.recording_run import RecordingRun
 from rvmon.monitor.snapshot import Options
 from rvmon.recordings.source import Source
 from rvmon.trace.sample import Recording, Sample

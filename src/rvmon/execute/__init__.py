@@ -4,18 +4,22 @@
 starts any for Python's work. `journal` keeps results as they come, so that work which was ended
 goes on; a `Shard` is a share of the work for one of several machines, none of which knows of
 another: begun without a shard where all their journals are, work finds in them what was done.
-`command.run` runs a program; `interrupted_by_sigterm` has all of them cleaned up.
+`run_command` runs a program; `interrupted_by_sigterm` has all of them cleaned up.
 """
 
 from __future__ import annotations
 
+import os
 import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+if TYPE_CHECKING:
+    import subprocess
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,3 +107,52 @@ def _literal(name: str) -> str:
     import glob
 
     return glob.escape(name)
+
+
+_WATCHED = """
+exec 3<&0
+"$@" </dev/null 3<&- &
+job=$!
+{ read _; kill -9 0; } <&3 >/dev/null 2>&1 &
+exec 3<&-
+wait $job
+code=$?
+kill -9 $!
+exit $code
+"""
+"""Run a command; when standard input ends before, kill it and all that it began."""
+
+
+def run_command(words: Sequence[str], **options: Any) -> subprocess.CompletedProcess[str]:
+    r"""Run a command to its end; one that is not over when this process ends, ends with it.
+
+    Args:
+        words: the command. It has no standard input.
+        options: for `subprocess.run`.
+
+    Returns:
+        Its exit code, 128 and the signal's number if one ended it, and what it printed.
+
+    Raises:
+        OSError: it cannot be run.
+        subprocess.TimeoutExpired: it took longer than the option `timeout` allows.
+
+    >>> run_command(["echo", "hello"]).stdout
+    'hello\n'
+    """
+    import subprocess
+
+    options = {"capture_output": True, "encoding": "utf-8", "errors": "replace", **options}
+    if os.name != "posix":
+        return subprocess.run(words, stdin=subprocess.DEVNULL, check=False, **options)  # noqa: S603 - words, no shell
+    # The system closes the pipe however this process ends, also by SIGKILL; then `read` returns,
+    # and the shell kills its process group, which the new session makes its own.
+    watched, held = os.pipe()
+    shell = ["/bin/sh", "-c", _WATCHED, "sh", *words]
+    try:
+        return subprocess.run(  # noqa: S603 - the caller's words
+            shell, stdin=watched, start_new_session=True, check=False, **options
+        )
+    finally:
+        os.close(held)
+        os.close(watched)

@@ -1,1 +1,76 @@
-"""Networks of timed automata: text forms, zone model checker, witnesses, conformance, suites."""
+"""Networks of timed automata: text forms, zone model checker, witnesses, conformance, suites.
+
+Here are the diagnostics of models and queries: their codes, and how they are made and raised.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rvmon.diagnostics import Diagnostic, Label, Severity, Span, render_full
+from rvmon.errors import ModelError
+
+RULES = {
+    "TA001": "syntax",
+    "TA002": "unknown-name",
+    "TA003": "double-name",
+    "TA004": "wrong-kind",
+    "TA005": "unbounded-int",
+    "TA006": "not-constant",
+    "TA007": "out-of-range",
+    "TA008": "diagonal-constraint",
+    "TA009": "clock-in-wrong-place",
+    "TA010": "channel-without-partner",
+    "TA011": "clock-guard-on-urgent-channel",
+    "TA013": "no-initial-location",
+    "TA014": "no-beginning",
+    "TA015": "wrong-arguments",
+    "TA016": "not-supported",
+    "TA017": "bad-weight",
+    "TA018": "malformed-xml",
+    "TA019": "too-large",
+    "TA020": "query-not-supported",
+    "TA021": "no-automaton",
+    "TA022": "unreadable-file",
+    "TA023": "no-unit",
+}
+"""Name of each code."""
+
+
+def finding(
+    code: str,
+    message: str,
+    span: Span | None,
+    fix: str = "",
+    *,
+    others: Sequence[Label] = (),
+    severity: Severity = Severity.ERROR,
+) -> Diagnostic:
+    """Make a diagnostic of one of the `RULES`; `others` are further places that matter."""
+    places = () if span is None else (Label(span),)
+    return Diagnostic(code, RULES[code], severity, message, (*places, *others), fix)
+
+
+def left_out(query: str, found: Diagnostic) -> Diagnostic:
+    """The warning that a query of a model is not asked, for the reason that a finding gives."""
+    message = f"the query `{' '.join(query.split())}` is left out: {found.message}"
+    fix = found.help or "E<>, A[], A<>, E[] and --> are understood"
+    span = found.spans[0].span if found.spans else None
+    return finding("TA020", message, span, fix, severity=Severity.WARNING)
+
+
+def model_error(
+    code: str, message: str, span: Span | None, fix: str = "", *, others: Sequence[Label] = ()
+) -> ModelError:
+    """A single finding as an exception."""
+    return refusal(finding(code, message, span, fix, others=others))
+
+
+def refusal(*findings: Diagnostic) -> ModelError:
+    """All findings as one `ModelError`, in order of place."""
+    ordered = sorted(findings, key=_place)
+    return ModelError(ordered, render_full(ordered))
+
+
+def _place(diagnostic: Diagnostic) -> int:
+    return diagnostic.spans[0].span.start if diagnostic.spans else -1

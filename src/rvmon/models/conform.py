@@ -17,6 +17,8 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from itertools import combinations, groupby
 
+from rvmon.models import model_error
+from rvmon.models.network import Network, check_clocks
 from rvmon.models.network.derived import Watcher, finer
 from rvmon.models.network.evaluate import Evaluator
 from rvmon.models.network.expressions import (
@@ -32,10 +34,8 @@ from rvmon.models.network.expressions import (
     UnaryOperation,
 )
 from rvmon.models.network.guards import together
-from rvmon.models.network.network import Network, check_clocks
-from rvmon.models.network.rules import model_error
+from rvmon.models.runs import Action, Position, Run
 from rvmon.models.runs.moves import check_start
-from rvmon.models.runs.run import Action, Position, Run
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter
 from rvmon.models.search.native_search import seek
 from rvmon.models.search.search_plan import Seek, Sought

@@ -8,11 +8,11 @@ from dataclasses import asdict
 from fractions import Fraction
 from typing import Any
 
+from rvmon.models.network import Network, Query, Simulation
 from rvmon.models.network.expressions import Variable
 from rvmon.models.network.fractions import number_of
-from rvmon.models.network.network import Network, Query, Simulation
 from rvmon.models.requirement_check import Observation
-from rvmon.models.runs.run import Action, Ending, Position, Run, RunStep, Window
+from rvmon.models.runs import Action, Ending, Position, Run, RunStep, Window
 from rvmon.models.runs.statistics import ERROR, Sampled, Trajectory
 from rvmon.models.search.budget import Outcome
 from rvmon.models.search.extremes import Extreme

@@ -20,8 +20,10 @@ from rvmon.logic.formula import (
     nodes_of,
 )
 from rvmon.logic.lower import Obligation, lower
+from rvmon.models import model_error
 from rvmon.models.conform import labels_of
 from rvmon.models.language.elaborate import signal_on
+from rvmon.models.network import Network, check_clocks
 from rvmon.models.network.derived import finer
 from rvmon.models.network.evaluate import Evaluator, evaluator
 from rvmon.models.network.expressions import (
@@ -32,13 +34,11 @@ from rvmon.models.network.expressions import (
     VariableValue,
 )
 from rvmon.models.network.guards import either, together
-from rvmon.models.network.network import Network, check_clocks
-from rvmon.models.network.rules import model_error
 from rvmon.models.network.scope import PlacedSymbol
 from rvmon.models.requirement_observer import Observed
 from rvmon.models.requirement_propositions import NotExpressibleError
+from rvmon.models.runs import Run
 from rvmon.models.runs.moves import check_start
-from rvmon.models.runs.run import Run
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Statistics, Watch
 from rvmon.models.search.native_search import seek
 from rvmon.models.search.search_plan import Seek, Sought

@@ -17,6 +17,7 @@ from itertools import product
 from rvmon.language.checked.formula import Bound, BoundAtom
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton
 from rvmon.logic.lower import Obligation
+from rvmon.models.network import Network
 from rvmon.models.network.derived import Watcher
 from rvmon.models.network.evaluate import evaluator
 from rvmon.models.network.expressions import (
@@ -30,7 +31,6 @@ from rvmon.models.network.expressions import (
     LocationKind,
 )
 from rvmon.models.network.guards import either, together
-from rvmon.models.network.network import Network
 from rvmon.models.requirement_propositions import (
     Ages,
     Edge,

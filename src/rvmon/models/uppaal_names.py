@@ -9,6 +9,7 @@ from itertools import groupby
 from math import prod
 from typing import assert_never
 
+from rvmon.models.network import Network
 from rvmon.models.network.expressions import (
     Assignment,
     BinaryOp,
@@ -41,7 +42,6 @@ from rvmon.models.network.expressions import (
 )
 from rvmon.models.network.fractions import FUNCTIONS, number_of
 from rvmon.models.network.guards import parts_of
-from rvmon.models.network.network import Network
 
 _KEYWORDS = (
     "after_update and assign before_update bool break broadcast case chan clock "

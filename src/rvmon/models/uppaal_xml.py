@@ -12,10 +12,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 from xml.sax.saxutils import escape
 
-from rvmon.models.network.expressions import TRUE, LocationKind, PathFormula, PathOp, Slot, Variable
-from rvmon.models.network.fractions import number_of
-from rvmon.models.network.guards import has_paths
-from rvmon.models.network.network import (
+from rvmon.models.network import (
     Automaton,
     Edge,
     Extremes,
@@ -25,6 +22,9 @@ from rvmon.models.network.network import (
     Query,
     QueryFormula,
 )
+from rvmon.models.network.expressions import TRUE, LocationKind, PathFormula, PathOp, Slot, Variable
+from rvmon.models.network.fractions import number_of
+from rvmon.models.network.guards import has_paths
 from rvmon.models.uppaal_names import Names, Thing, function_lines, type_text, updates_text
 from rvmon.texts import quoted, shown, shown_line
 from rvmon.trace.time import TICKS_PER_UNIT

@@ -66,7 +66,7 @@ class TruthsRun:
     """
 
     def __init__(self, plan: TruthsPlan, recording: Trace) -> None:
-        from rvmon.monitor.recording_run import RecordingRun  # imports NumPy
+        from rvmon.monitor.evaluate import RecordingRun  # imports NumPy
 
         self._plan = plan
         self._run = RecordingRun(plan.spec, plan.planned, Source(recording), finds=False)

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.monitor.evaluate import Decided, judge_source, open_trace
+from rvmon.monitor.evaluate import Decided, RecordingRun, judge_source, open_trace
 from rvmon.monitor.packed_plan import planned_core
-from rvmon.monitor.recording_run import RecordingRun
 from rvmon.monitor.robustness import FIGURES, Key, Margins, Robustness, Stream
 from rvmon.recordings.source import Reading, Source
 from rvmon.trace.sample import Sample

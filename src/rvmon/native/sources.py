@@ -1,4 +1,4 @@
-"""The C sources of the extensions, and a hash of them that tells a forgotten build.
+"""The C sources of the extensions: their hash, which tells a forgotten build; the core as one file.
 
 The build hook runs this file alone: it imports nothing of rvmon.
 """
@@ -6,6 +6,7 @@ The build hook runs this file alone: it imports nothing of rvmon.
 from __future__ import annotations
 
 import os
+import re
 import zlib
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
@@ -47,3 +48,72 @@ def source_hash(folder: str = FOLDER) -> str:
         finally:
             os.close(file)
     return f"{value:08x}" if names else ""
+
+
+HEADER = "core.h"
+"""The public header, for programs that embed the core; the other headers are internal."""
+BINDING = "python"
+"""The folder of the Python binding, which is not amalgamated."""
+
+# Not compiled here: each start imports this file, and the patterns are for builds.
+_INCLUDE = r'^#include (?:"(?P<own>[^"]+)"|<(?P<system>[^>]+)>).*\n'
+_PROTOTYPE = r"^(?!typedef |static |extern |return )(?=[A-Za-z_][\w ]*[ *]+\w+\([^;{}]*\);)"
+
+
+def core_header(folder: str = FOLDER) -> str:
+    """The text of the public header of the core, which includes no other file of it."""
+    return _text(folder, HEADER)
+
+
+def core_files(folder: str = FOLDER) -> list[str]:
+    """The sources of the core except the Python binding: paths relative to `folder`, sorted."""
+    places = ["", *(name for name in os.listdir(folder) if "." not in name and name != BINDING)]
+    names = [
+        f"{place}/{name}" if place else name
+        for place in places
+        for name in os.listdir(os.path.join(folder, place))
+        if name.endswith(".c")
+    ]
+    return sorted(names)
+
+
+def core_source(header: str, folder: str = FOLDER, *, lines: bool = False) -> str:
+    """All sources of the core except the Python binding, concatenated.
+
+    Functions shared between files become static, so that only `rv_…` is visible outside.
+
+    Args:
+        header: the name by which the public header is included.
+        folder: the folder of the sources.
+        lines: whether `#line` directives name the original files in compiler messages.
+    """
+    names = core_files(folder)
+    done = {HEADER}
+    system: dict[str, None] = {}
+    body = "".join(_body(folder, name, done, system, lines) for name in names)
+    taken = {found["system"] for found in re.finditer(_INCLUDE, core_header(folder), re.MULTILINE)}
+    includes = "".join(f"#include <{name}>\n" for name in sorted(system) if name not in taken)
+    return f'#include "{header}"\n\n{includes}{body}'
+
+
+def _body(folder: str, name: str, done: set[str], system: dict[str, None], lines: bool) -> str:
+    """A file without its includes, preceded by the headers it needs that are not in `done`."""
+    done.add(name)
+    text = _text(folder, name)
+    needed = ""
+    for found in re.finditer(_INCLUDE, text, re.MULTILINE):
+        if found["system"]:
+            system[found["system"]] = None
+        elif found["own"] not in done:
+            needed += _body(folder, found["own"], done, system, lines)
+    # With `#line` directives, the line numbers of the original have to be preserved.
+    text = re.sub(_INCLUDE, "\n" if lines else "", text, flags=re.MULTILINE)
+    if name.endswith(".h"):
+        text = re.sub(_PROTOTYPE, "static ", text, flags=re.MULTILINE)
+    start = f'#line 1 "{name}"\n' if lines else f"\n/* {f' {name} ':-^90} */\n\n"
+    return needed + start + (text if lines else re.sub(r"\n{3,}", "\n\n", text))
+
+
+def _text(folder: str, name: str) -> str:
+    with open(os.path.join(folder, name), encoding="utf-8") as file:
+        return file.read()

@@ -8,9 +8,9 @@ from typing import Any
 
 from rvmon.errors import RvmonError, TraceError, writing
 from rvmon.files import staged
+from rvmon.recordings import FORMATS, MESSAGE_FORMATS
 from rvmon.recordings.clip_piece import Copied, Piece, stamp_number, stamp_text
 from rvmon.recordings.csv_rows import Layout
-from rvmon.recordings.formats import FORMATS, MESSAGE_FORMATS
 from rvmon.recordings.parquet import (
     numbers_of_durations,
     parquet_batches,

@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from rvmon.recordings.clip_piece import Copied, Piece
+from rvmon.recordings.messages import Messages
 from rvmon.recordings.messages.fields import stamp_getter
 from rvmon.recordings.messages.file import open_messages
 from rvmon.recordings.messages.mcap import mcap_errors
 from rvmon.recordings.messages.ros import bag_errors, bag_readers
-from rvmon.recordings.messages.topic import Messages
 from rvmon.recordings.messages.topic_matching import matched
 from rvmon.recordings.places import local_path
 from rvmon.trace.schema import Bound, Clock

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, TextIO
 
 from rvmon.errors import RvmonError, TraceError, needed
-from rvmon.recordings.formats import FORMATS, form_of_folder
+from rvmon.recordings import FORMATS, form_of_folder
 from rvmon.recordings.values import first_line
 from rvmon.texts import cannot_read
 

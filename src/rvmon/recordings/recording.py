@@ -16,15 +16,15 @@ from stat import S_ISFIFO
 from typing import TYPE_CHECKING, BinaryIO
 
 from rvmon.errors import TraceError
-from rvmon.recordings.csv_dialect import bare_names, opened_as_csv
-from rvmon.recordings.csv_rows import Layout, read_layout, split_lines
-from rvmon.recordings.csv_text import CsvText
-from rvmon.recordings.formats import (
+from rvmon.recordings import (
     ARRAYS,
     FORMATS,
     MESSAGE_FORMS,
     form_of_folder,
 )
+from rvmon.recordings.csv_dialect import bare_names, opened_as_csv
+from rvmon.recordings.csv_rows import Layout, read_layout, split_lines
+from rvmon.recordings.csv_text import CsvText
 from rvmon.recordings.joined import Joined, schemas_of
 from rvmon.recordings.places import (
     JOINT,

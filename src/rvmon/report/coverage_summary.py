@@ -16,7 +16,7 @@ from rvmon.coverage.holes import Hole, hole_of, nearest_tests
 from rvmon.coverage.questions import Answers, Comparison, Step, compare
 from rvmon.coverage.ranking import Smallest, fewest, ranking
 from rvmon.language.checked.properties import BinKind
-from rvmon.language.rules.properties import MOST_COMBINATIONS
+from rvmon.language.rules.requirements import MOST_COMBINATIONS
 from rvmon.report.table import RunGroup, VerdictTable
 from rvmon.texts import counted
 from rvmon.trace.time import format_stamped

@@ -8,8 +8,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from rvmon.language.checked.specification import CheckedSpec
-from rvmon.report.scene import Outline, Scene
-from rvmon.report.tracks import thresholds
+from rvmon.report.tracks import Outline, Scene, thresholds
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 

@@ -11,9 +11,9 @@ from xml.etree.ElementTree import Element
 from markupsafe import Markup
 
 from rvmon.language.checked.specification import CheckedSpec
+from rvmon.report.attempt_panels import shown_attempts
 from rvmon.report.html import asset, render
 from rvmon.report.panel_html import spec_lines
-from rvmon.report.panels import shown_attempts
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import axis_row, place_of, timeline
 from rvmon.report.wording import MARKS, full_reason, verdict_colours, without_attempts

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 from rvmon.analysis.subformulas import PartTruth
 from rvmon.language.checked.specification import Requirement
+from rvmon.report.attempt_panels import Panel
 from rvmon.report.changes import Course
 from rvmon.report.html import Child, e
-from rvmon.report.panels import Panel
 from rvmon.report.time_axis import moment, with_moments
 from rvmon.report.timeline import axis_row, guides_of, timeline, truth_row
 from rvmon.report.tracks import Track, TrackKind, blamed_names

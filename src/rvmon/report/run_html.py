@@ -9,6 +9,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import groupby, islice
 
+from rvmon.report.attempt_panels import Panel, RunPage, opening, panel_id, panels_of
 from rvmon.report.html import e, render
 from rvmon.report.panel_html import (
     has_unknown,
@@ -17,11 +18,9 @@ from rvmon.report.panel_html import (
     parts_timeline,
     spec_lines,
 )
-from rvmon.report.panels import Panel, RunPage, opening, panel_id, panels_of
-from rvmon.report.scene import Outline, Scene
 from rvmon.report.time_axis import View, moment, whole_run
 from rvmon.report.timeline import axis_row, place_of
-from rvmon.report.tracks import PLACES, Track, TrackKind
+from rvmon.report.tracks import PLACES, Outline, Scene, Track, TrackKind
 from rvmon.report.wording import forecast_sentence, health_facts, instants_of, value_text
 from rvmon.trace.sample import Scalar
 from rvmon.trace.time import TICKS_PER_SECOND, format_stamped

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 from rvmon.files import output_folder, write_whole
 from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.report.attempt_panels import JudgedRun, RunPage
 from rvmon.report.html import render
-from rvmon.report.panels import JudgedRun, RunPage
 from rvmon.report.run_html import run_page
 from rvmon.report.wording import in_short
 from rvmon.trace.sample import Sample

@@ -28,8 +28,7 @@ from rvmon.report.foxglove_layout import (
     seconds_and_rest,
     topic_of,
 )
-from rvmon.report.scene import Scene
-from rvmon.report.tracks import concerned_names
+from rvmon.report.tracks import Scene, concerned_names
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
 from rvmon.verdicts import LAW, Verdict

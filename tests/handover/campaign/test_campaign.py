@@ -11,8 +11,8 @@ from handover.checker import spec_path
 from handover.generator.abstract_test import directed
 from rvmon.cdv.campaign_page import choose_examples, comparable_jobs
 from rvmon.cdv.campaign_plan import plan
+from rvmon.cdv.outcome_counts import summarise
 from rvmon.cdv.play import execute
-from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import to_json
 from rvmon.session import load
 from rvmon.verdicts import Verdict

@@ -17,7 +17,7 @@ from tests.tools.servers import LOOPBACK, SYSTEM, master_of_ros1, missing, rosma
 from rvmon import RvmonError, Verdict, loads
 from rvmon.adapters.messages import MessageFeed
 from rvmon.live import Driver, Live, SimulatedClock
-from rvmon.recordings.messages.topic import Topic
+from rvmon.recordings.messages import Topic
 from rvmon.trace.schema import Kind
 
 SPEC = """

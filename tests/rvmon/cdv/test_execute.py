@@ -7,8 +7,8 @@ import pytest
 
 from rvmon import cdv
 from rvmon.cdv.campaign_plan import plan
+from rvmon.cdv.outcome_counts import summarise
 from rvmon.cdv.play import execute
-from rvmon.cdv.summarise import summarise
 from rvmon.cdv.tables import verdict_table
 from rvmon.coverage import Ending
 from rvmon.errors import RvmonError

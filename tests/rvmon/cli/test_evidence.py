@@ -254,15 +254,15 @@ def test_what_has_no_hash_of_its_own_is_refused(base, capsys, words, told):
 
 def test_what_changes_while_it_is_judged_is_told(base, capsys, monkeypatch):
     """Evidence of something else than was judged is never written."""
-    from rvmon.cli import judging
+    from rvmon.cli import evaluation
 
-    judge = judging.judge
+    judge = evaluation.judge
 
     def other(*words, **more):
         (base / "a.csv").write_text("stamp,v,go\n0,2,\n")
         return judge(*words, **more)
 
-    monkeypatch.setattr(judging, "judge", other)
+    monkeypatch.setattr(evaluation, "judge", other)
     assert run("a.csv") == 2
     assert "changed meanwhile" in capsys.readouterr().err
     assert not (base / "e.zip").exists()

@@ -10,7 +10,7 @@ import pytest
 import rvmon
 from rvmon.analysis.subformulas import why_not_triggered
 from rvmon.cli import post_analysis
-from rvmon.cli.judging import Options, judge
+from rvmon.cli.evaluation import Options, judge
 from rvmon.monitor.notes import NotesReader
 from rvmon.recordings import recording
 from rvmon.verdicts.report import Report

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 from tests.rvmon.cli.conftest import DOOR
 
-from rvmon.cli import judging, main
-from rvmon.cli.judging import judge
+from rvmon.cli import evaluation, main
+from rvmon.cli.evaluation import judge
 
 PASS = "t,closed,knock\n0,1,\n1,,1\n2,0,\n5,,\n"
 FAIL = "t,closed,knock\n0,1,\n1,,1\n5,,\n"
@@ -135,7 +135,7 @@ def test_a_process_that_is_killed_costs_only_what_was_not_judged(files, capsys, 
             os.kill(os.getpid(), signal.SIGKILL)
         return judge(spec, trace, options, **how)
 
-    monkeypatch.setattr(judging, "judge", killed)
+    monkeypatch.setattr(evaluation, "judge", killed)
     traces = ["P.csv", "I.csv", "NT.csv"]
     code = main(["run", "door.rv", *traces, "--jobs", "2", "--format", "json", "--junit", "j.xml"])
     told = capsys.readouterr()

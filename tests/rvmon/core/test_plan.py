@@ -26,7 +26,7 @@ from tests.rvmon.core.plan_reader import (
 )
 
 import rvmon
-from rvmon.core import amalgamate, sections
+from rvmon.core import sections
 from rvmon.core.atoms import DEPTH, MOST_EVENTS, NOW, OPERATIONS, WINDOW, AtomOp, Code
 from rvmon.core.nodes import NodeOp
 from rvmon.core.obligations import Measure, Operator
@@ -37,6 +37,7 @@ from rvmon.logic.plan import Plan as Planned
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.packed_plan import planned_core
 from rvmon.monitor.requirement_plans import plan_alone
+from rvmon.native import sources as core_sources
 from rvmon.testing.generate.spec import Profile, random_spec
 
 ROOT = Path(__file__).parents[3]
@@ -183,7 +184,7 @@ def test_records_have_the_layout_that_c_gives_them(tmp_path):
     head = '#include <stdio.h>\n#include "plan/plan.h"\nint main(void)\n{\n'
     source.write_text("\n".join([head, *lines, "return 0;\n}\n"]), encoding="utf-8")
     program = tmp_path / "sizes"
-    command = ["gcc", *STRICT, f"-I{amalgamate.FOLDER}", str(source), "-o", str(program)]
+    command = ["gcc", *STRICT, f"-I{core_sources.FOLDER}", str(source), "-o", str(program)]
     subprocess.run(command, check=True)  # noqa: S603
     printed = subprocess.run([program], check=True, capture_output=True, text=True)  # noqa: S603
     found = dict(line.split() for line in printed.stdout.splitlines())
@@ -222,8 +223,10 @@ def test_comparisons_of_too_many_events_are_refused():
 def check(tmp_path_factory):
     """The core's own check of bytes: the section that is wrong, or −1."""
     library = tmp_path_factory.mktemp("core") / "core.so"
-    names = (one for one in amalgamate.core_files() if one.startswith(("plan/", "input/functions")))
-    sources = [f"{amalgamate.FOLDER}/{name}" for name in names]
+    names = (
+        one for one in core_sources.core_files() if one.startswith(("plan/", "input/functions"))
+    )
+    sources = [f"{core_sources.FOLDER}/{name}" for name in names]
     flags = [
         "-O0",
         "-shared",
@@ -231,7 +234,7 @@ def check(tmp_path_factory):
         "-fsanitize=undefined",
         "-fsanitize-undefined-trap-on-error",
     ]
-    flags.append(f"-I{amalgamate.FOLDER}")
+    flags.append(f"-I{core_sources.FOLDER}")
     command = ["gcc", *STRICT, *flags, *sources, "-o", str(library), "-lm"]
     subprocess.run(command, check=True)  # noqa: S603
     function = ctypes.CDLL(str(library)).rv_plan_check

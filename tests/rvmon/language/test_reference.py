@@ -10,10 +10,10 @@ from rvmon.language.checked.functions import FUNCTIONS
 from rvmon.language.compile import compile_text
 from rvmon.language.formatter import format_text
 from rvmon.language.rules import MOST
-from rvmon.language.rules.properties import MOST_COMBINATIONS
+from rvmon.language.rules.requirements import MOST_COMBINATIONS
+from rvmon.language.rules.syntax import DEEPEST, LARGEST
 from rvmon.language.syntax.keywords import CLAUSE_WORDS, INFIX_WORDS, ITEM_WORDS, RESERVED
 from rvmon.language.syntax.parse import grammar
-from rvmon.language.syntax.size_limits import DEEPEST, LARGEST
 from rvmon.units import unit_table
 
 DOCS = Path(__file__).parents[3] / "docs" / "reference"

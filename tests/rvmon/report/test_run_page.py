@@ -10,11 +10,11 @@ import pytest
 from tests.tools.hostile import FORGERIES, STEERING
 
 import rvmon
-from rvmon.report.panels import JudgedRun, RunPage, opening
+from rvmon.report.attempt_panels import JudgedRun, RunPage, opening
 from rvmon.report.run_html import run_page
 from rvmon.report.run_pages import write_run_pages
 from rvmon.report.run_text import print_reports
-from rvmon.report.scene import Outline, Scene
+from rvmon.report.tracks import Outline, Scene
 from rvmon.trace.sample import Health, HealthKind
 from rvmon.trace.time import TICKS_PER_SECOND
 

@@ -11,7 +11,7 @@ from tests.tools.bags import START, write_ros1
 import rvmon
 from rvmon.cli import main
 from rvmon.report.foxglove_layout import scene_updates
-from rvmon.report.scene import Outline, Scene
+from rvmon.report.tracks import Outline, Scene
 
 pytest.importorskip("mcap")
 

@@ -7,11 +7,11 @@ from dataclasses import replace
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.close.outcome import Choice, Closed, Trade
-from rvmon.cdv.code_under_test import Code
 from rvmon.cdv.mutation.baseline import Suite, mutated_code, record_suite
 from rvmon.cdv.mutation.play import play_mutants
 from rvmon.cdv.mutation.python_mutants import HELD_OUT, Mutant, code_mutants
 from rvmon.cdv.mutation.survivors import equivalents
+from rvmon.cdv.system import Code
 from rvmon.coverage.ranking import smallest
 
 Killers = Mapping[str, frozenset[str]]

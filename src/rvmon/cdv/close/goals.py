@@ -29,8 +29,8 @@ from rvmon.language.checked.properties import BinKind
 
 if TYPE_CHECKING:
     from rvmon.cdv.test import Test
-    from rvmon.models.network.network import Edge, Network
-    from rvmon.models.runs.run import Run
+    from rvmon.models.network import Edge, Network
+    from rvmon.models.runs import Run
     from rvmon.models.search.suite import Suite
 
 

@@ -11,10 +11,9 @@ from itertools import zip_longest
 
 from rvmon.cdv.campaign import Campaign, Robot
 from rvmon.cdv.code_coverage import code_groups, statements_name
-from rvmon.cdv.code_under_test import Code
 from rvmon.cdv.mutation.python_mutants import Mutant
 from rvmon.cdv.play import Bench
-from rvmon.cdv.system import Run, Values
+from rvmon.cdv.system import Code, Run, Values
 from rvmon.cdv.test import Test
 from rvmon.coverage import Subject
 from rvmon.errors import RvmonError

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType
 
-from rvmon.cdv.code_under_test import Code
 from rvmon.cdv.mutation.python_operators import OPERATORS, Operator, Scope, Strings
+from rvmon.cdv.system import Code
 from rvmon.errors import RvmonError
 from rvmon.texts import text_of_file
 

@@ -32,8 +32,7 @@ from rvmon.language.checked.rewrite import read
 from rvmon.language.print import format_formula
 from rvmon.language.rules import Refusal, Reported
 from rvmon.language.rules import names as name_rules
-from rvmon.language.rules import properties as rules
-from rvmon.language.rules import requirements as trigger_rules
+from rvmon.language.rules import requirements as rules
 from rvmon.language.syntax import expressions, items
 
 _MOST = 10**9
@@ -46,7 +45,7 @@ def checked_cover(checker: Checker, item: items.CoverItem) -> Cover | None:
     if formula is None:
         return None
     if end := end_part(formula):
-        checker.report(trigger_rules.end_not_alone(end.span or item.span))
+        checker.report(rules.end_not_alone(end.span or item.span))
         return None
     shown = Unary(UnaryOp.EVENTUALLY, formula, Interval(), item.formula.span)
     return Cover(item.name.text, shown, item.span)
@@ -138,7 +137,7 @@ def present(formula: Formula) -> Formula:
         raise Refusal(rules.looks_ahead(ahead.span))
     end = end_part(formula)
     if end is not None and end.span is not None:
-        raise Refusal(trigger_rules.end_not_alone(end.span))
+        raise Refusal(rules.end_not_alone(end.span))
     return formula
 
 

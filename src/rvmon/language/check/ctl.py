@@ -29,7 +29,7 @@ from rvmon.language.checked.properties import (
 from rvmon.language.checked.specification import TimeModel
 from rvmon.language.print import format_formula
 from rvmon.language.rules import Refusal, Reported, short
-from rvmon.language.rules import properties as rules
+from rvmon.language.rules import requirements as rules
 from rvmon.language.rules import types as type_rules
 from rvmon.language.syntax import expressions
 from rvmon.language.syntax.items import PropertyClause, RequirementItem, TagsClause, TextClause

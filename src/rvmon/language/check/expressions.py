@@ -40,8 +40,9 @@ from rvmon.language.checked.operators import Tense, Window
 from rvmon.language.checked.specification import TimeModel
 from rvmon.language.rules import Findings, Refusal, Reported
 from rvmon.language.rules import names as name_rules
-from rvmon.language.rules import properties as property_rules
+from rvmon.language.rules import requirements as requirement_rules
 from rvmon.language.rules import types as rules
+from rvmon.language.rules.syntax import Cost, Effort
 from rvmon.language.syntax.expressions import (
     Call,
     Choice,
@@ -62,7 +63,6 @@ from rvmon.language.syntax.expressions import (
 )
 from rvmon.language.syntax.expressions import Window as WindowSyntax
 from rvmon.language.syntax.items import ConstItem, DefineItem
-from rvmon.language.syntax.size_limits import Cost, Effort
 from rvmon.trace.schema import Kind
 from rvmon.units import PLAIN, UnknownUnitError, parse_unit
 
@@ -207,7 +207,7 @@ class Checker:
             case Operation(op=op, args=args, span=span):
                 return self.calculated(op, args, scope, span)
             case Path() | Quantified() | LeadsTo():
-                raise Refusal(property_rules.path_outside(expression.span))
+                raise Refusal(requirement_rules.path_outside(expression.span))
             case _:
                 assert_never(expression)
 

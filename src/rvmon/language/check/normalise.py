@@ -25,7 +25,7 @@ from rvmon.language.checked.properties import PathUnary, Property, StateAtom
 from rvmon.language.checked.rewrite import chain, rewritten
 from rvmon.language.checked.specification import Event, Mode, Role, Signal
 from rvmon.language.rules import Refusal
-from rvmon.language.rules import properties as rules
+from rvmon.language.rules import requirements as rules
 
 _ALL = Interval()
 

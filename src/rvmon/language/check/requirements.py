@@ -57,7 +57,6 @@ from rvmon.language.checked.specification import (
 )
 from rvmon.language.rules import Refusal, Reported, short
 from rvmon.language.rules import names as name_rules
-from rvmon.language.rules import properties as property_rules
 from rvmon.language.rules import requirements as rules
 from rvmon.language.rules import types as type_rules
 from rvmon.language.syntax.expressions import Ident, ungrouped
@@ -190,11 +189,11 @@ def _parts(
         case ResponseMonitor(within=within, span=span):
             ticks = checker.duration(within, EVERYWHERE)
             if ctl is None:
-                raise Refusal(property_rules.no_property(span))
+                raise Refusal(rules.no_property(span))
             return Mode.UPON, *derived_response(checker.table, ctl, ticks, span)
         case WrittenMonitor(span=span):
             if ctl is None:
-                raise Refusal(property_rules.nothing_written(span))
+                raise Refusal(rules.nothing_written(span))
             return normalised(linear_form(ctl, span, checker.table.time))
         case CoverMonitor():
             raise AssertionError("a goal is no requirement")

@@ -20,6 +20,7 @@ from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.language.rules import Findings, Refusal
 from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import syntax as rules
+from rvmon.language.rules.syntax import LARGEST
 from rvmon.language.syntax.expressions import Expression
 from rvmon.language.syntax.grammar_cache import parser_of
 from rvmon.language.syntax.items import ImportItem, Item, ParsedSpec
@@ -30,7 +31,6 @@ from rvmon.language.syntax.keywords import (
     RESERVED,
     split_items,
 )
-from rvmon.language.syntax.size_limits import LARGEST
 from rvmon.language.syntax.syntax_errors import explain_unexpected
 from rvmon.language.syntax.tree_builder import Builder
 from rvmon.texts import ImportTree, nearest, text_of_file, tree_of

@@ -11,6 +11,7 @@ from typing import TypeVar
 
 from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 from rvmon.errors import ModelError
+from rvmon.models import finding, model_error, refusal
 from rvmon.models.language import syntax
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.symbols import (
@@ -25,9 +26,8 @@ from rvmon.models.language.symbols import (
     parts_of_initial,
     variable_of,
 )
+from rvmon.models.network import Channel, Clock
 from rvmon.models.network.expressions import BaseType, Constant, Slot, Variable
-from rvmon.models.network.network import Channel, Clock
-from rvmon.models.network.rules import finding, model_error, refusal
 from rvmon.models.network.scope import (
     ConstantSymbol,
     ConstantValue,

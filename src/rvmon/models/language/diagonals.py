@@ -18,7 +18,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 from rvmon.diagnostics import Span
+from rvmon.models import model_error
 from rvmon.models.language import syntax
+from rvmon.models.network import Automaton, Channel, Clock, Edge
 from rvmon.models.network.expressions import (
     MAX_TIME,
     Assignment,
@@ -36,8 +38,6 @@ from rvmon.models.network.expressions import (
     VariableValue,
 )
 from rvmon.models.network.guards import normal_form, parts_of, resets_in
-from rvmon.models.network.network import Automaton, Channel, Clock, Edge
-from rvmon.models.network.rules import model_error
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from rvmon.diagnostics import Severity, Source, Span
+from rvmon.models import finding, left_out, model_error
 from rvmon.models.language import automaton_syntax, syntax
 from rvmon.models.language.automaton_syntax import Document, SignalText
 from rvmon.models.language.declare import Findings, Parts, declare
@@ -16,9 +17,7 @@ from rvmon.models.language.operations import as_real, assuming, is_real
 from rvmon.models.language.parse import parse_query
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.symbols import INT32, claim
-from rvmon.models.network.expressions import FALSE, TRUE, BaseType, Expression
-from rvmon.models.network.guards import is_discrete, is_plain
-from rvmon.models.network.network import (
+from rvmon.models.network import (
     Automaton,
     Chance,
     Extremes,
@@ -32,7 +31,8 @@ from rvmon.models.network.network import (
     Simulation,
     Term,
 )
-from rvmon.models.network.rules import finding, left_out, model_error
+from rvmon.models.network.expressions import FALSE, TRUE, BaseType, Expression
+from rvmon.models.network.guards import is_discrete, is_plain
 from rvmon.models.network.scope import (
     AutomatonKey,
     AutomatonSymbol,

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 from rvmon.diagnostics import Span
+from rvmon.models import model_error
 from rvmon.models.language import syntax
 from rvmon.models.language.operations import fitted
 from rvmon.models.language.resolve import Resolver
@@ -41,7 +42,6 @@ from rvmon.models.network.expressions import (
     statements_in,
 )
 from rvmon.models.network.guards import parts_of
-from rvmon.models.network.rules import model_error
 from rvmon.models.network.scope import (
     ChosenSymbol,
     FunctionSymbol,

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rvmon.diagnostics import Span
+from rvmon.models import model_error
 from rvmon.models.language import automaton_syntax, syntax
 from rvmon.models.language.automaton_syntax import Document
 from rvmon.models.language.declare import Findings, Parts, check_range
@@ -21,9 +22,7 @@ from rvmon.models.language.symbols import (
     leaves,
     values_of,
 )
-from rvmon.models.network.expressions import TRUE, BaseType, BinaryOp, Expression
-from rvmon.models.network.guards import guards_of, refuse_changes, split_guard
-from rvmon.models.network.network import (
+from rvmon.models.network import (
     Automaton,
     Channel,
     Edge,
@@ -32,7 +31,8 @@ from rvmon.models.network.network import (
     Rate,
     Sync,
 )
-from rvmon.models.network.rules import model_error
+from rvmon.models.network.expressions import TRUE, BaseType, BinaryOp, Expression
+from rvmon.models.network.guards import guards_of, refuse_changes, split_guard
 from rvmon.models.network.scope import (
     ConstantSymbol,
     PlacedSymbol,

@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from rvmon.diagnostics import Source
+from rvmon.models import model_error
 from rvmon.models.language.elaborate import elaborate
 from rvmon.models.language.parse import parse_document
 from rvmon.models.language.uppaal_reader import read_uppaal
+from rvmon.models.network import Network
 from rvmon.models.network.expressions import LocationKind
-from rvmon.models.network.network import Network
-from rvmon.models.network.rules import model_error
 from rvmon.texts import cannot_read, text_of_file
 
 

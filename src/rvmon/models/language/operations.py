@@ -8,7 +8,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rvmon.diagnostics import Span
+from rvmon.models import model_error
 from rvmon.models.language.symbols import Calls, check_count, is_alike, leaves, value_of
+from rvmon.models.network import LeadsToFormula
 from rvmon.models.network.evaluate import apply_binary, apply_unary, check_shift, evaluator
 from rvmon.models.network.expressions import (
     MAX_TIME,
@@ -30,8 +32,6 @@ from rvmon.models.network.expressions import (
 )
 from rvmon.models.network.fractions import FUNCTIONS, OPERATIONS, gives_fraction, literal, number_of
 from rvmon.models.network.guards import is_discrete, is_fixed, is_linear
-from rvmon.models.network.network import LeadsToFormula
-from rvmon.models.network.rules import model_error
 from rvmon.models.network.scope import Symbol
 
 COMPARISONS = {BinaryOp.LT, BinaryOp.LE, BinaryOp.EQ, BinaryOp.NE, BinaryOp.GE, BinaryOp.GT}

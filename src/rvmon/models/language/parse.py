@@ -13,10 +13,10 @@ import lark
 from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.errors import ModelError
 from rvmon.language.syntax.grammar_cache import parser_of
+from rvmon.models import model_error, refusal
 from rvmon.models.language.automaton_syntax import Document, QueryText
 from rvmon.models.language.syntax_builder import SyntaxBuilder
 from rvmon.models.language.unsupported import reason_at
-from rvmon.models.network.rules import model_error, refusal
 
 STARTS = (
     "document",

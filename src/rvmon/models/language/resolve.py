@@ -8,6 +8,7 @@ from typing import assert_never
 
 from rvmon.diagnostics import Span
 from rvmon.errors import ModelError
+from rvmon.models import model_error, refusal
 from rvmon.models.language import operations, syntax
 from rvmon.models.language.diagonals import Diagonals, difference, terms_of
 from rvmon.models.language.symbols import (
@@ -38,7 +39,6 @@ from rvmon.models.network.expressions import (
 )
 from rvmon.models.network.fractions import FUNCTIONS, literal
 from rvmon.models.network.guards import is_fixed, refuse_changes
-from rvmon.models.network.rules import model_error, refusal
 from rvmon.models.network.scope import (
     AutomatonKey,
     AutomatonSymbol,

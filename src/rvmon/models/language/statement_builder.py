@@ -9,9 +9,9 @@ from lark import Token, Transformer, Tree, v_args
 from lark.tree import Meta
 
 from rvmon.diagnostics import Span
+from rvmon.models import model_error
 from rvmon.models.language import automaton_syntax, syntax
 from rvmon.models.network.expressions import BinaryOp, PathOp, UnaryOp
-from rvmon.models.network.rules import model_error
 
 # ruff: noqa: ARG002, D102 - the methods are the grammar's rules, called with one signature
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import assert_never
 
 from rvmon.diagnostics import Span
+from rvmon.models import model_error
 from rvmon.models.language import syntax
 from rvmon.models.language.operations import clock_number, fitted
 from rvmon.models.language.resolve import Resolver
@@ -40,7 +41,6 @@ from rvmon.models.network.expressions import (
     While,
 )
 from rvmon.models.network.guards import is_discrete
-from rvmon.models.network.rules import model_error
 from rvmon.models.network.scope import (
     ConstantSymbol,
     PlacedSymbol,

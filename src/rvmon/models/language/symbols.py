@@ -8,6 +8,7 @@ from math import prod
 from typing import Any, Protocol, assert_never
 
 from rvmon.diagnostics import Label, Span
+from rvmon.models import model_error
 from rvmon.models.language import syntax
 from rvmon.models.network.evaluate import check_index
 from rvmon.models.network.expressions import (
@@ -20,7 +21,6 @@ from rvmon.models.network.expressions import (
     Variable,
     VariableValue,
 )
-from rvmon.models.network.rules import model_error
 from rvmon.models.network.scope import (
     AutomatonKey,
     AutomatonSymbol,

@@ -11,12 +11,12 @@ from typing import Any, ClassVar
 from lark import Token, Tree, v_args
 from lark.tree import Meta
 
+from rvmon.models import model_error
 from rvmon.models.language import automaton_syntax, syntax
 from rvmon.models.language.automaton_syntax import SignalText
 from rvmon.models.language.statement_builder import Maker, QueryBuilder, is_rule
 from rvmon.models.language.syntax import TypeText
 from rvmon.models.network.expressions import BaseType, BinaryOp, LocationKind, UnaryOp
-from rvmon.models.network.rules import model_error
 from rvmon.trace.time import TICKS_PER_UNIT
 
 LARGEST = (1 << 31) - 1

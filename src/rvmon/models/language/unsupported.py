@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from rvmon.diagnostics import Span
-from rvmon.models.network.rules import model_error
+from rvmon.models import model_error
 
 Reason = tuple[str, str]
 """An unsupported construct, and the way to do without it."""

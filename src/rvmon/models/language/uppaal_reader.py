@@ -23,13 +23,13 @@ from xml.parsers import expat
 
 from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.errors import ModelError
+from rvmon.models import finding, left_out, model_error
 from rvmon.models.language import automaton_syntax, syntax
 from rvmon.models.language.automaton_syntax import Document
 from rvmon.models.language.declare import Findings
 from rvmon.models.language.parse import MAX_CHARACTERS, parse_part
 from rvmon.models.language.unsupported import without_comments
 from rvmon.models.network.expressions import LocationKind
-from rvmon.models.network.rules import finding, left_out, model_error
 from rvmon.trace.time import TICKS_PER_UNIT
 
 MAX_DEPTH = 20

@@ -9,6 +9,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+from rvmon.models import model_error
+from rvmon.models.network import (
+    Automaton,
+    Clock,
+    Edge,
+    Guard,
+    Location,
+    Network,
+    Priorities,
+)
 from rvmon.models.network.expressions import (
     FALSE,
     TRUE,
@@ -27,16 +37,6 @@ from rvmon.models.network.expressions import (
     VariableValue,
 )
 from rvmon.models.network.guards import resets_in
-from rvmon.models.network.network import (
-    Automaton,
-    Clock,
-    Edge,
-    Guard,
-    Location,
-    Network,
-    Priorities,
-)
-from rvmon.models.network.rules import model_error
 
 
 def finer(network: Network, factor: int) -> Network:

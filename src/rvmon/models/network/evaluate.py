@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import assert_never
 
 from rvmon.diagnostics import Span
+from rvmon.models import model_error
 from rvmon.models.network.expressions import (
     MAX_TIME,
     MOST_ROUNDS,
@@ -36,7 +37,6 @@ from rvmon.models.network.expressions import (
     While,
 )
 from rvmon.models.network.fractions import GRID, operation
-from rvmon.models.network.rules import model_error
 
 
 def apply_unary(op: UnaryOp, value: int) -> int:

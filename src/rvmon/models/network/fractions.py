@@ -10,8 +10,8 @@ import struct
 from collections.abc import Callable
 
 from rvmon.diagnostics import Span
+from rvmon.models import model_error
 from rvmon.models.network.expressions import Constant, Expression, Fractional
-from rvmon.models.network.rules import model_error
 
 GRID = 1_000
 """Steps of simulated time in one unit: all times are whole numbers of them."""

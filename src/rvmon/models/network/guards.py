@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 
 from rvmon.diagnostics import Span
+from rvmon.models import model_error
+from rvmon.models.network import Guard
 from rvmon.models.network.evaluate import chained
 from rvmon.models.network.expressions import (
     FALSE,
@@ -31,8 +33,6 @@ from rvmon.models.network.expressions import (
     expressions_of,
     statements_in,
 )
-from rvmon.models.network.network import Guard
-from rvmon.models.network.rules import model_error
 
 _NEGATED_CLOCK = {
     ClockOp.LT: ClockOp.GE,

@@ -13,6 +13,7 @@ from itertools import product
 from typing import Any, TypeVar
 
 from rvmon.errors import ModelError
+from rvmon.models.network import Edge, Guard, Network
 from rvmon.models.network.evaluate import Frame, evaluator, runner, slot_evaluator
 from rvmon.models.network.expressions import (
     TRUE,
@@ -21,8 +22,7 @@ from rvmon.models.network.expressions import (
     Expression,
     LocationKind,
 )
-from rvmon.models.network.network import Edge, Guard, Network
-from rvmon.models.runs.run import Action, Run
+from rvmon.models.runs import Action, Run
 
 T = TypeVar("T")
 

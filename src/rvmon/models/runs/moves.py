@@ -16,6 +16,8 @@ from math import inf
 
 from rvmon.diagnostics import Label, Span
 from rvmon.errors import ModelError
+from rvmon.models import model_error
+from rvmon.models.network import Edge, Guard, Network
 from rvmon.models.network.evaluate import (
     Evaluator,
     Frame,
@@ -37,9 +39,7 @@ from rvmon.models.network.expressions import (
     LocationKind,
 )
 from rvmon.models.network.guards import alternatives_of
-from rvmon.models.network.network import Edge, Guard, Network
-from rvmon.models.network.rules import model_error
-from rvmon.models.runs.run import Atom, bound_of
+from rvmon.models.runs import Atom, bound_of
 
 AtomMaker = Callable[[Locations, Values], tuple[Atom, ...]]
 """The clock bounds of a guard or invariant, given the variables."""

@@ -21,13 +21,13 @@ from dataclasses import dataclass
 from math import ceil, inf, prod
 from random import Random
 
+from rvmon.models import model_error
+from rvmon.models.network import Location, Network
 from rvmon.models.network.evaluate import evaluator
 from rvmon.models.network.expressions import Expression
 from rvmon.models.network.fractions import GRID, number_in
-from rvmon.models.network.network import Location, Network
-from rvmon.models.network.rules import model_error
+from rvmon.models.runs import Atom
 from rvmon.models.runs.moves import Move, Space, State, pieces_of
-from rvmon.models.runs.run import Atom
 
 CHECK_EVERY = 256
 """Moves between two looks at the clock."""

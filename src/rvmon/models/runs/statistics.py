@@ -19,12 +19,12 @@ from statistics import NormalDist
 from typing import TypeVar
 
 from rvmon.confidence import interval
+from rvmon.models import model_error
+from rvmon.models.network import Chance, Mean, Network, Query, Simulation
 from rvmon.models.network.evaluate import evaluator
 from rvmon.models.network.expressions import BinaryOp, PathOp
 from rvmon.models.network.fractions import GRID, number_in
 from rvmon.models.network.guards import has_paths, normal_form, speaks_of_deadlock
-from rvmon.models.network.network import Chance, Mean, Network, Query, Simulation
-from rvmon.models.network.rules import model_error
 from rvmon.models.runs.moves import Space, State, check_start
 from rvmon.models.runs.simulate import CutShortError, stretches, trial_of
 

@@ -17,10 +17,8 @@ from fractions import Fraction
 from itertools import pairwise, product
 from math import ceil, inf, isqrt
 
-from rvmon.models.network.network import Network
-from rvmon.models.runs.exact_times import Rules
-from rvmon.models.runs.moves import Move, State
-from rvmon.models.runs.run import (
+from rvmon.models.network import Network
+from rvmon.models.runs import (
     Action,
     Atom,
     Constraint,
@@ -32,6 +30,8 @@ from rvmon.models.runs.run import (
     Window,
     Zone,
 )
+from rvmon.models.runs.exact_times import Rules
+from rvmon.models.runs.moves import Move, State
 
 
 @dataclass(frozen=True, slots=True)

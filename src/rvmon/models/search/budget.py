@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
-from rvmon.models.network.network import Query
-from rvmon.models.runs.run import Run
+from rvmon.models.network import Query
+from rvmon.models.runs import Run
 
 
 @dataclass(frozen=True, slots=True)

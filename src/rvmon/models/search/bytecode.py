@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import assert_never
 
+from rvmon.models import model_error
 from rvmon.models.network.expressions import (
     Assignment,
     BinaryOp,
@@ -31,7 +32,6 @@ from rvmon.models.network.expressions import (
     statements_in,
 )
 from rvmon.models.network.guards import parts_of
-from rvmon.models.network.rules import model_error
 
 # The numbers of `plan.h`.
 END, CONST, VARIABLE, INDEX, ROW, ELEMENT, LOOKUP, PLACE, NOT, NEGATE, TRUTH = range(11)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from rvmon.models.network import Automaton, Edge, Network
 from rvmon.models.network.expressions import (
     BinaryOp,
     BinaryOperation,
@@ -26,7 +27,6 @@ from rvmon.models.network.expressions import (
     UnaryOperation,
     VariableValue,
 )
-from rvmon.models.network.network import Automaton, Edge, Network
 
 Limits = dict[int, int]
 """For each clock that is compared the largest number; others are compared with none."""

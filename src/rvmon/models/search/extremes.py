@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from fractions import Fraction
 from math import floor
 
+from rvmon.models import model_error
+from rvmon.models.network import Extremes, Network, Query, Term, check_clocks
 from rvmon.models.network.evaluate import evaluator
 from rvmon.models.network.expressions import (
     BinaryOp,
@@ -21,11 +23,9 @@ from rvmon.models.network.expressions import (
     Expression,
 )
 from rvmon.models.network.guards import compares_of, is_discrete, normal_form
-from rvmon.models.network.network import Extremes, Network, Query, Term, check_clocks
-from rvmon.models.network.rules import model_error
+from rvmon.models.runs import Run
 from rvmon.models.runs.exact_times import Rules
 from rvmon.models.runs.moves import Space, check_start
-from rvmon.models.runs.run import Run
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Statistics, Watch
 from rvmon.models.search.clock_bounds import value_range
 from rvmon.models.search.native_search import seek

@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from rvmon.diagnostics import Span
+from rvmon.models import model_error
 from rvmon.models.network.expressions import (
     FALSE,
     TRUE,
@@ -25,7 +26,6 @@ from rvmon.models.network.expressions import (
     PathOp,
 )
 from rvmon.models.network.guards import is_discrete, normal_form, parts_of
-from rvmon.models.network.rules import model_error
 
 MOST_STATES = 2_000
 MOST_SETS = 28

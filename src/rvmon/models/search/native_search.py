@@ -11,11 +11,11 @@ from itertools import product
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple
 
+from rvmon.models import model_error
+from rvmon.models.network import Guard, Network
 from rvmon.models.network.guards import together
-from rvmon.models.network.network import Guard, Network
-from rvmon.models.network.rules import model_error
+from rvmon.models.runs import STRICT, Atom, Ending, Run, Zone, close, universe
 from rvmon.models.runs.moves import Space, State, atoms_of, pieces_of
-from rvmon.models.runs.run import STRICT, Atom, Ending, Run, Zone, close, universe
 from rvmon.models.runs.timing import (
     PathStep,
     Piece,

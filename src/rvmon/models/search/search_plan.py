@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from enum import IntEnum
 from math import log
 
+from rvmon.models import model_error
+from rvmon.models.network import Edge, Guard, Network
 from rvmon.models.network.expressions import (
     TRUE,
     BinaryOp,
@@ -33,8 +35,6 @@ from rvmon.models.network.guards import (
     speaks_of_deadlock,
     together,
 )
-from rvmon.models.network.network import Edge, Guard, Network
-from rvmon.models.network.rules import model_error
 from rvmon.models.search.budget import Policy
 from rvmon.models.search.bytecode import Programs
 from rvmon.models.search.clock_bounds import ClockBounds, location_bounds

@@ -14,6 +14,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
+from rvmon.models.network import Network, check_clocks
 from rvmon.models.network.expressions import (
     Assignment,
     BinaryOp,
@@ -26,9 +27,8 @@ from rvmon.models.network.expressions import (
     Variable,
     VariableValue,
 )
-from rvmon.models.network.network import Network, check_clocks
+from rvmon.models.runs import Run
 from rvmon.models.runs.moves import check_start
-from rvmon.models.runs.run import Run
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Statistics, Watch
 from rvmon.models.search.native_search import seek
 from rvmon.models.search.search_plan import Seek, Sought

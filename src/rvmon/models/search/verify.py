@@ -6,7 +6,19 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from rvmon.diagnostics import Span
+from rvmon.models import model_error
 from rvmon.models.language.elaborate import asked_on
+from rvmon.models.network import (
+    Chance,
+    Extremes,
+    LeadsToFormula,
+    Mean,
+    Network,
+    Query,
+    QueryFormula,
+    Simulation,
+    check_clocks,
+)
 from rvmon.models.network.expressions import (
     FALSE,
     TRUE,
@@ -26,20 +38,8 @@ from rvmon.models.network.guards import (
     together,
     with_deadlock,
 )
-from rvmon.models.network.network import (
-    Chance,
-    Extremes,
-    LeadsToFormula,
-    Mean,
-    Network,
-    Query,
-    QueryFormula,
-    Simulation,
-    check_clocks,
-)
-from rvmon.models.network.rules import model_error
+from rvmon.models.runs import Ending, Run
 from rvmon.models.runs.moves import check_start
-from rvmon.models.runs.run import Ending, Run
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Outcome, Policy, Watch
 from rvmon.models.search.ltl import check_linear, ways_of
 from rvmon.models.search.native_search import seek

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.specification import CheckedSpec
-from rvmon.recordings.formats import DATABASES
+from rvmon.recordings import DATABASES
+from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.field_meanings import expect_units
-from rvmon.recordings.messages.topic import Topic
 from rvmon.texts import cannot_read, did_you_mean, text_of_file
 from rvmon.trace.schema import Applied, Binding, Bound, Clock, Constant, Kind, Schema, Term, gaps_of
 from rvmon.trace.stamps import stamps_of

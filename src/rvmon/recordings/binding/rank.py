@@ -22,8 +22,8 @@ from rvmon.recordings.binding.vocabulary import (
     parts_of,
     words_of,
 )
+from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.field_meanings import Sort
-from rvmon.recordings.messages.topic import Topic
 from rvmon.trace.schema import Kind
 from rvmon.units import parse_unit
 

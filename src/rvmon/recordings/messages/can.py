@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from rvmon.errors import TraceError, needed
-from rvmon.recordings.formats import DATABASES, databases_beside
+from rvmon.recordings import DATABASES, databases_beside
+from rvmon.recordings.messages import Message, Messages, Topic, errors_as_damage
 from rvmon.recordings.messages.column_topics import path_of
-from rvmon.recordings.messages.topic import Message, Messages, Topic, errors_as_damage
 from rvmon.recordings.values import first_line
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rvmon.recordings.messages.topic import Message, Messages, Topic, errors_as_damage
+from rvmon.recordings.messages import Message, Messages, Topic, errors_as_damage
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from rvmon.errors import TraceError, needed
+from rvmon.recordings.messages import Topic, errors_as_damage
 from rvmon.recordings.messages.column_topics import ColumnMessages, Columns, ColumnTopic, leaves_of
-from rvmon.recordings.messages.topic import Topic, errors_as_damage
 from rvmon.trace.sample import Outage
 
 _TYPES: dict[str, Any] = {

@@ -26,8 +26,8 @@ from functools import cache, reduce
 from importlib import resources
 
 from rvmon.errors import TraceError
+from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.comments import is_vector, spoken_unit, unit_in_comment
-from rvmon.recordings.messages.topic import Topic
 from rvmon.trace.schema import (
     TURNS,
     Applied,

@@ -10,7 +10,7 @@ from operator import attrgetter
 from typing import Any, assert_never
 
 from rvmon.errors import TraceError
-from rvmon.recordings.messages.topic import Topic
+from rvmon.recordings.messages import Topic
 from rvmon.recordings.values import plain
 from rvmon.texts import nearest, shorten
 from rvmon.trace.sample import calculated

@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from rvmon.errors import TraceError
+from rvmon.recordings.messages import Message, Messages
 from rvmon.recordings.messages.rows import Skew, message_rows
-from rvmon.recordings.messages.topic import Message, Messages
 from rvmon.recordings.messages.topic_matching import matched
 from rvmon.recordings.messages.transforms import WithTransforms, pairs_asked, sends_transforms
 from rvmon.recordings.places import local_path

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.errors import TraceError, needed
+from rvmon.recordings.messages import Topic, errors_as_damage
 from rvmon.recordings.messages.column_topics import (
     ColumnMessages,
     ColumnTopic,
@@ -18,7 +19,6 @@ from rvmon.recordings.messages.column_topics import (
     kind_of_type,
     path_of,
 )
-from rvmon.recordings.messages.topic import Topic, errors_as_damage
 from rvmon.recordings.table_recording import ticks_of_column
 from rvmon.texts import did_you_mean
 from rvmon.trace.schema import Stamps

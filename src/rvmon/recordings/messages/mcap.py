@@ -16,9 +16,9 @@ import msgspec
 
 from rvmon.errors import TraceError, needed
 from rvmon.recordings.jsonl_rows import decoded
+from rvmon.recordings.messages import Message, Messages, Topic, by_name, errors_as_damage
 from rvmon.recordings.messages.flatbuffer import FlatBuffers
 from rvmon.recordings.messages.ros import BagMessages, refuse_fewer, ros_topic
-from rvmon.recordings.messages.topic import Message, Messages, Topic, by_name, errors_as_damage
 from rvmon.recordings.values import first_line
 from rvmon.texts import shorten
 from rvmon.trace.schema import Kind

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import Any
 
 from rvmon.errors import TraceError, needed
+from rvmon.recordings.messages import Message, Messages, Topic, by_name, errors_as_damage
 from rvmon.recordings.messages.comments import comments_of
 from rvmon.recordings.messages.field_meanings import plain_type
-from rvmon.recordings.messages.topic import Message, Messages, Topic, by_name, errors_as_damage
 from rvmon.recordings.values import first_line
 from rvmon.trace.schema import Kind
 

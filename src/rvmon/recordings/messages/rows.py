@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rvmon.errors import TraceError
+from rvmon.recordings.messages import Messages, Topic
 from rvmon.recordings.messages.fields import getter, stamp_getter
-from rvmon.recordings.messages.topic import Messages, Topic
 from rvmon.recordings.rows import Row
 from rvmon.recordings.values import DESCRIPTION, as_declared, fits, plain
 from rvmon.texts import shorten

@@ -18,10 +18,10 @@ from pathlib import Path
 from typing import Any
 
 from rvmon.errors import TraceError
+from rvmon.recordings import TOPICS
 from rvmon.recordings.csv_dialect import opened_as_csv
 from rvmon.recordings.csv_rows import read_layout, split_lines
-from rvmon.recordings.formats import TOPICS
-from rvmon.recordings.messages.topic import Message, Messages, Topic
+from rvmon.recordings.messages import Message, Messages, Topic
 from rvmon.recordings.places import bounded_lines, endings_of, named_errors
 from rvmon.recordings.values import FALSE_WORDS, TRUE_WORDS, double_of
 from rvmon.texts import did_you_mean, text_of_file

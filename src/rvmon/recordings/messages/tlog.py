@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.errors import TraceError, needed
-from rvmon.recordings.messages.topic import Message, Messages, Topic
+from rvmon.recordings.messages import Message, Messages, Topic
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from rvmon.errors import TraceError
+from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.field_meanings import expect_units, plain_type
 from rvmon.recordings.messages.fields import arrays_with_names, expect_kinds, field_of
-from rvmon.recordings.messages.topic import Topic
 from rvmon.trace.schema import Bound, Field, Kind, Schema, Term
 
 

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from rvmon.recordings.messages.topic import Message, Messages, Topic
+from rvmon.recordings.messages import Message, Messages, Topic
 from rvmon.trace.schema import Kind
 
 SOURCES = ("/tf", "/tf_static")

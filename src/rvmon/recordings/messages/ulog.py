@@ -12,8 +12,8 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from rvmon.errors import TraceError, needed
+from rvmon.recordings.messages import Topic, errors_as_damage
 from rvmon.recordings.messages.column_topics import ColumnMessages, ColumnTopic, joined, leaves_of
-from rvmon.recordings.messages.topic import Topic, errors_as_damage
 from rvmon.trace.sample import Outage
 from rvmon.trace.time import TIME_LIMIT
 

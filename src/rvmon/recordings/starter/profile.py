@@ -14,11 +14,11 @@ import msgspec
 import numpy as np
 
 from rvmon.errors import TimeOrderError, TraceError
+from rvmon.recordings import MESSAGE_FORMS
 from rvmon.recordings.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells, NotPlainError
 from rvmon.recordings.cells import cells_of_values
 from rvmon.recordings.csv_dialect import name_and_unit, opened_as_csv
 from rvmon.recordings.csv_rows import split_lines
-from rvmon.recordings.formats import MESSAGE_FORMS
 from rvmon.recordings.joined import topics_of
 from rvmon.recordings.places import bounded_lines, files_of, local_path, named_errors, opened
 from rvmon.recordings.recording import JOINED, FileRecording, format_of, messages_of

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rvmon.models.language.load import loads_network
-from rvmon.models.runs.run import Timing, close
+from rvmon.models.runs import Timing, close
 from rvmon.models.search.verify import verify
 
 

@@ -5,7 +5,7 @@ from random import Random
 
 import pytest
 
-from rvmon.models.runs.run import bound_of, universe
+from rvmon.models.runs import bound_of, universe
 from rvmon.models.runs.timing import TimedStep, timing_of
 from rvmon.models.search.native_search import surely_passes, time_passes
 

@@ -13,6 +13,7 @@ from tests.tools.timed_generate import random_model
 from tests.tools.timed_plans import search_plans
 
 from rvmon.models.language.load import load_network, loads_network
+from rvmon.models.network import LeadsToFormula
 from rvmon.models.network.derived import finer
 from rvmon.models.network.expressions import (
     BinaryOperation,
@@ -21,7 +22,6 @@ from rvmon.models.network.expressions import (
     PathFormula,
     UnaryOperation,
 )
-from rvmon.models.network.network import LeadsToFormula
 from rvmon.models.search.native_search import search
 from rvmon.models.search.verify import verify
 

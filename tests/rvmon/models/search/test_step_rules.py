@@ -5,7 +5,7 @@ import pytest
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import loads_network
-from rvmon.models.runs.run import Window
+from rvmon.models.runs import Window
 from rvmon.models.runs.statistics import sample
 from rvmon.models.search.budget import Policy
 from rvmon.models.search.verify import verify

@@ -4,7 +4,7 @@ import pytest
 
 from rvmon.errors import ModelError
 from rvmon.models.language.load import loads_network
-from rvmon.models.runs.run import Ending
+from rvmon.models.runs import Ending
 from rvmon.models.search.verify import verify
 
 LOOP = """

@@ -5,8 +5,8 @@ from fractions import Fraction
 import pytest
 
 from rvmon.models.language.load import loads_network
+from rvmon.models.runs import Run, RunStep, Window
 from rvmon.models.runs.exact_times import InvalidRunError, Rules
-from rvmon.models.runs.run import Run, RunStep, Window
 from rvmon.models.runs.timing import TimedStep, earliest, timing_of
 from rvmon.models.search.budget import Policy
 from rvmon.models.search.verify import verify

@@ -6,8 +6,8 @@ from importlib import resources
 import pytest
 
 from rvmon.errors import TraceError
+from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.field_meanings import Sort, expect_units, is_listed, meaning_of
-from rvmon.recordings.messages.topic import Topic
 from rvmon.trace.schema import Bound, Field, Kind, Schema
 
 pytest.importorskip("rosbags")

@@ -7,7 +7,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from rvmon.cdv.campaign import unreachable_items
-from rvmon.cdv.campaign_figures import (
+from rvmon.cdv.campaign_plan import Outcome, Played, Results
+from rvmon.cdv.campaign_summary import (
     BlockCoverage,
     CampaignSummary,
     KnownAnswer,
@@ -15,7 +16,6 @@ from rvmon.cdv.campaign_figures import (
     StrategySummary,
     missed,
 )
-from rvmon.cdv.campaign_plan import Outcome, Played, Results
 from rvmon.cdv.code_coverage import (
     branches_name,
     measured_groups,

@@ -14,10 +14,9 @@ from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.report.changes import Changes, changes_of
 from rvmon.report.html import Child
-from rvmon.report.scene import Scene
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt
-from rvmon.report.tracks import Track, TrackKind, tracks_of
+from rvmon.report.tracks import Scene, Track, TrackKind, tracks_of
 from rvmon.trace.sample import Sample, Scalar
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt
