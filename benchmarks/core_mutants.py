@@ -43,10 +43,8 @@ REPLAY = Path(__file__).with_name("core_replay.c")
 FLAGS = ("-std=c99", "-O1", "-ffp-contract=off", "-w")
 MOST_MEMORY = 2 << 30
 
-
 _NO, _UNKNOWN, _YES = 0, 1, 2
 _NO_TIME = -(1 << 63)
-_NOTHING = (0, 0)
 
 PROFILE = Profile(crowded=5, many=8, wide=20, amounts=20)
 TRACES = TraceProfile(sparse=12, long=8, outages=25)
@@ -71,18 +69,15 @@ def recorded(pairs: int, seed: object) -> bytes:
 
 
 def _case(planned: PlannedCore, case: Case) -> Iterator[int]:
-    absent = [
-        number
-        for name, number in planned.numbers.items()
-        if case.names is not None and name not in case.names
-    ]
+    there = planned.numbers.keys() if case.names is None else case.names
+    absent = [number for name, number in planned.numbers.items() if name not in there]
     actions = [*told(case)]
     yield from (len(absent), *absent, _NO_TIME if case.end is None else case.end, len(actions))
     for action in actions:
         match action:
             case Sample(t, values):
                 updates = [*_updates(planned, values)]
-                yield from (0, t, len(updates), *(word for one in updates for word in one))
+                yield from (0, t, len(updates), *itertools.chain(*updates))
             case Lost(names, t) | Found(names, t):
                 lost = [planned.numbers[name] for name in sorted(names)]
                 yield from (2 + isinstance(action, Found), t, len(lost), *lost)
@@ -94,28 +89,22 @@ def _updates(planned: PlannedCore, values: Mapping[str, Value]) -> Iterator[Sequ
     """Of each update: name, what it says, a number, how many fields, these."""
     for name, value in values.items():
         number, kind = planned.numbers[name], planned.packed.signals.get(name)
-        if kind is not None:
-            known = _number(planned, kind, value)  # type: ignore[arg-type]
-            yield (number, _YES if known[0] else _UNKNOWN, *known, 0)
-        elif isinstance(value, tuple):
-            for payload in value:
-                yield (number, _YES, *_NOTHING, *_payload(planned, name, payload))
-        elif isinstance(value, Mapping):
-            yield (number, _YES, *_NOTHING, *_payload(planned, name, value))
+        if isinstance(value, tuple | Mapping):
+            kinds = {field: one for (of, field), one in planned.packed.fields.items() if of == name}
+            for payload in value if isinstance(value, tuple) else (value,):
+                fields = [_number(planned, one, payload.get(field)) for field, one in kinds.items()]
+                yield number, _YES, 0, 0, len(fields), *itertools.chain(*fields)
+        elif kind is not None:
+            known = _number(planned, kind, value)
+            yield number, _YES if known[0] else _UNKNOWN, *known, 0
         else:
-            yield (number, _UNKNOWN if value is None else _YES if value else _NO, *_NOTHING, 0)
-
-
-def _payload(planned: PlannedCore, event: str, payload: Mapping[str, Scalar]) -> Sequence[int]:
-    kinds = {field: kind for (of, field), kind in planned.packed.fields.items() if of == event}
-    numbers = [_number(planned, kind, payload.get(field)) for field, kind in kinds.items()]
-    return [len(numbers), *(word for one in numbers for word in one)]
+            yield number, _UNKNOWN if value is None else _YES if value else _NO, 0, 0, 0
 
 
 def _number(planned: PlannedCore, kind: Kind, value: Scalar) -> tuple[int, int]:
     """Its kind and bits as `rv_number` has them."""
     if value is None or value != value:
-        return _NOTHING
+        return 0, 0
     if kind is Kind.REAL:
         return 2, struct.unpack("<q", struct.pack("<d", float(value)))[0]
     return 1, planned.packed.labels[str(value)] if kind is Kind.LABEL else int(value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import resource
 import signal
@@ -15,6 +16,10 @@ from typing import NamedTuple
 
 POLL_S = 0.005
 """Between two looks at a process; what it is told to have used includes who began it."""
+
+
+_PARENT_DEATH_SIGNAL = 1
+"""`PR_SET_PDEATHSIG` of Linux."""
 
 
 class Cost(NamedTuple):
@@ -42,9 +47,19 @@ def measured(
     environment: Mapping[str, str] | None = None,
     folder: Path | None = None,
 ) -> Cost:
-    """Run a program, at most so many seconds, in at most so many bytes."""
+    """Run a program, at most so many seconds, in at most so many bytes.
+
+    It ends with who began it, however that ends; what it has begun itself, and nobody ends, when it
+    has computed as long as all cores could have in that time.
+    """
+    parent, library = os.getpid(), ctypes.CDLL(None)
+    cpu = int(limit * (os.cpu_count() or 1)) + 1
 
     def bounded() -> None:
+        library.prctl(_PARENT_DEATH_SIGNAL, signal.SIGKILL)
+        if os.getppid() != parent:  # it has ended before it was asked for
+            os._exit(1)
+        resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         if memory is not None:
             resource.setrlimit(resource.RLIMIT_AS, (memory, memory))

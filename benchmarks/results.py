@@ -15,11 +15,13 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
+from typing import Any
 
+import jinja2
 import msgspec
 from benchmarks.growth import cliffs
 from benchmarks.output import table
@@ -28,13 +30,14 @@ from benchmarks.peers.client import Peer
 from benchmarks.peers.environment import Environment, prepare
 from benchmarks.program import program
 from benchmarks.timing import files
-from benchmarks.timing.agreement import Agreement, compare, margins_alike, peers_in
+from benchmarks.timing.agreement import Agreement, by_peer, compare, margins_alike, peers_in
 from benchmarks.timing.r2u2 import R2u2
 from benchmarks.timing.race import Figure, Result, contenders, measure, say
 from benchmarks.timing.workload import FORMS, QUICK, SECTIONS, Size, processed
 
 HERE = Path(__file__).parent
 OUT = HERE / "RESULTS.md"
+TEMPLATE = HERE / "results.md.j2"
 ONLINE = tuple(one for one in SECTIONS if one != "batch")
 RECORDINGS = ("batch", "process", "files")
 EVERY = (*ONLINE, *RECORDINGS, "cliffs", "differences")
@@ -55,6 +58,9 @@ TITLES = {
     "differences": "Where the peers read otherwise",
 }
 
+FLATNESS = 1.2
+"""The most by which bound 100,000 may cost more than bound 10."""
+
 
 @dataclass(frozen=True, slots=True)
 class Goal:
@@ -70,21 +76,13 @@ class Goal:
     changing: float  # only results where at most this share of the rows changes
 
 
-def _read_goals() -> Iterator[Goal]:
+def _goals() -> list[Goal]:
     with (HERE / "goals.csv").open(newline="") as file:
-        for one in csv.DictReader(file):
-            yield msgspec.convert(one, Goal, strict=False)
+        return msgspec.convert([*csv.DictReader(file)], list[Goal], strict=False)
 
 
-GOALS = tuple(_read_goals())
-"""Of `goals.csv`."""
-
-FLATNESS = 1.2
-"""The most by which bound 100,000 may cost more than bound 10."""
-
-
-def run(size: Size, sections: Sequence[str], r2u2: Path | None) -> Iterator[str]:
-    """Measure the chosen sections; the page, line by line, reporting what is under way."""
+def run(size: Size, sections: Sequence[str], r2u2: Path | None) -> dict[str, Any]:
+    """Measure the chosen sections, reporting what is under way; what the page says."""
     began, environment = time.monotonic(), prepare()
     results, agreements = list[Result](), list[Agreement]()
     peers = peers_in(environment)
@@ -94,23 +92,24 @@ def run(size: Size, sections: Sequence[str], r2u2: Path | None) -> Iterator[str]
             agreements += found
     for peer in peers.values():
         peer.close()
-    tables = {one: [*_told(one, size, environment)] for one in sections if one in EVERY[-3:]}
+    tables = {
+        TITLES[one]: "\n".join(_told(one, size, environment))
+        for one in sections
+        if one in EVERY[-3:]
+    }
     absent = dict(environment.missing)
     if r2u2 is None:
         absent["R2U2"] = "the package index has none; `--r2u2` with a clone of its repository"
     if left := [TITLES[one] for one in EVERY if one not in sections]:
         absent["sections"] = "; ".join(left)
-    minutes = round((time.monotonic() - began) / 60)
-    versions = {"rvmon": f"{version('rvmon')} ({_commit()})", **environment.versions}
-    yield "CPU time per row of the trace, median of the passes with the least and the most in"
-    yield f"brackets; contenders take turns; {minutes} minutes. Times move with the machine, ratios"
-    yield "in one run hold. A ratio is only given where both sides judged alike."
-    yield from ("", f"* Machine: {machine()}")
-    yield "* Versions: " + ", ".join(f"{name} {one}" for name, one in versions.items())
-    yield from (f"* Not measured: {name}: {why}" for name, why in absent.items())
-    yield from page(results, agreements)
-    for section, lines in tables.items():
-        yield from ("", f"## {TITLES[section]}", "", *lines)
+    said = content(results, agreements)
+    return said | {
+        "minutes": round((time.monotonic() - began) / 60),
+        "machine": machine(),
+        "versions": {"rvmon": f"{version('rvmon')} ({_commit()})", **environment.versions},
+        "absent": absent,
+        "sections": said["sections"] | tables,
+    }
 
 
 def _told(section: str, size: Size, environment: Environment) -> Iterator[str]:
@@ -172,33 +171,28 @@ def _commit() -> str:
     return done.stdout.strip() or "unknown"
 
 
-def page(results: Sequence[Result], agreements: Sequence[Agreement]) -> Iterator[str]:
-    """Goals, a table of each section, and who agrees on how much; as Markdown."""
-    compared = [entry for entry in agreements if entry.compared]
-    yield from ("", "## Goals", "", "Times are medians over the workloads that count; the ratio is")
-    yield from ("the peer's time over ours: its median, and the least, which counts as much.", "")
-    head = ("mode", "we", "", "peer", "", "workloads", "ratio (least to most)", "goal", "met")
-    yield from table(head, _goals(results, compared))
-    for section, title in TITLES.items():
-        own = [result for result in results if result.section == section]
-        if own:
-            yield from ("", f"## {title}", "", *_section(own))
-    if not compared:
-        return
-    yield from ("", "## Agreement", "")
-    yield "Verdicts compared row by row, at the end of each trace and on damaged traces, and the"
-    yield "instant of the first failure. rtamt judges the past by the stepping that is timed."
-    about = ("peer", "form", "workloads", "with our FALSE", "equal", "of", "our FALSE among them")
-    yield from ("", *table(about, _agreed(compared)))
-    for entry in compared:
-        if entry.equal < entry.compared:
-            where = f"{entry.label} disagrees on {entry.name}, {entry.form}"
-            yield from ("", f"{where}: {entry.equal} of {entry.compared}.")
-    if calm := sorted({f"{e.label} on {e.name}, {e.form}" for e in compared if not e.false}):
-        text = "; ".join(calm)
-        yield from ("", f"Ours was never FALSE, so that agreement says little: {text}.")
-    if remarks := sorted({f"{e.label}: {e.remark}" for e in agreements if e.remark}):
-        yield from ("", f"Not compared, and so without a ratio: {'; '.join(remarks)}.")
+def content(results: Sequence[Result], agreements: Sequence[Agreement]) -> dict[str, Any]:
+    """What the page says of figures: goals, a table of each section, who agrees on how much."""
+    compared = [one for one in agreements if one.compared]
+    by_section = {
+        title: [one for one in results if one.section == section]
+        for section, title in TITLES.items()
+    }
+    return {
+        "goals": [*_met(results, compared)],
+        "sections": {title: "\n".join(_section(own)) for title, own in by_section.items() if own},
+        "compared": compared,
+        "agreed": [*_agreed(compared)],
+        "calm": {f"{one.label} on {one.name}, {one.form}" for one in compared if not one.false},
+        "remarks": {f"{one.label}: {one.remark}" for one in agreements if one.remark},
+    }
+
+
+def page(said: Mapping[str, Any]) -> str:
+    """The page, as Markdown."""
+    template = jinja2.Template(TEMPLATE.read_text("utf-8"), undefined=jinja2.StrictUndefined)
+    made: str = template.render(said, table=lambda *one: "\n".join(table(*one)))
+    return f"{made}\n"
 
 
 def time_text(nanoseconds: float) -> str:
@@ -230,8 +224,7 @@ def _figure(result: Result, label: str) -> Figure | None:
 
 def _alike(compared: Sequence[Agreement], result: Result, ours: Figure, peer: Figure) -> bool:
     """Whether verdicts were compared on this workload, and all and the timed ones were the same."""
-    name = peer.label.split()[0].rstrip(",")
-    about = (name, result.name, result.form)
+    about = (by_peer(peer.label), result.name, result.form)
     checked = [one for one in compared if (one.label, one.name, one.form) == about]
     whole = ours.rows == peer.rows == result.rows
     if whole and result.form == "past" and ours.violated != peer.violated:
@@ -239,8 +232,9 @@ def _alike(compared: Sequence[Agreement], result: Result, ours: Figure, peer: Fi
     return bool(checked) and all(one.equal == one.compared for one in checked)
 
 
-def _goals(results: Sequence[Result], compared: Sequence[Agreement]) -> Iterator[Sequence[str]]:
-    for goal in GOALS:
+def _met(results: Sequence[Result], compared: Sequence[Agreement]) -> Iterator[Sequence[str]]:
+    """A row for each goal."""
+    for goal in _goals():
         pairs = [
             (ours.median, peer.median)
             for result in results
@@ -307,13 +301,17 @@ def _agreed(compared: Sequence[Agreement]) -> Iterator[Sequence[str]]:
 
 
 def show(
-    name: str, *, quick: bool, only: Sequence[str], r2u2: Path | None, out: Path | None
+    name: str,
+    *,
+    quick: bool,
+    only: Sequence[str],
+    r2u2: Path | None = None,
+    out: Path | None = None,
 ) -> None:
     """Measure, and write the page, or print it."""
     shown = ["FOLDER" if Path(one) == r2u2 else one for one in sys.argv[1:]]
     command = " ".join([f"python -m benchmarks.{name}", *shown])
-    lines = run(QUICK if quick else Size(), only, r2u2)
-    text = "\n".join(["# Results", "", f"Written by `{command}`.", *lines, ""])
+    text = page({"command": command, **run(QUICK if quick else Size(), only, r2u2)})
     if out is None:
         print(text)
     else:

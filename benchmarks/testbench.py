@@ -22,13 +22,13 @@ from __future__ import annotations
 import ast
 import inspect
 import os
-import resource
 import sys
 import time
 import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
+from importlib import import_module
 from itertools import islice
 from pathlib import Path
 from statistics import median
@@ -108,8 +108,7 @@ def _place(source: str, line: int) -> str:
 def closing(*, tests: int = 400, seeds: int = 3, seed: int = 1) -> None:
     """Holes that are closed, of a campaign by at most so many tests."""
     sys.path.insert(0, str(EXAMPLE))
-    from campaign import campaign as people  # type: ignore[import-not-found]
-
+    people = import_module("campaign").campaign
     handover = handover_campaign(("correct",))
     unwritten = replace(handover.closing, written=())
     for campaign, robot, strategies in (
@@ -124,7 +123,7 @@ def closing(*, tests: int = 400, seeds: int = 3, seed: int = 1) -> None:
 def _timed(
     campaign: Campaign, robot: str, strategies: tuple[str, ...], seed: int, tests: int
 ) -> None:
-    before = _cpu_s()
+    before = sum(os.times()[:4])  # with all processes that it began
     closed = close(campaign, robot, seed=seed, strategies=strategies, budget=Budget(tests))
     reached = {}
     for percent in (90, 95, 99, 100):
@@ -135,17 +134,10 @@ def _timed(
     print(
         f"{campaign.name}, seed {seed}: {closed.met} of {closed.goals} goals by "
         f"{len(closed.tests)} tests, {sum(bool(one.goals) for one in closed.tests)} of which added "
-        f"one, {_cpu_s() - before:.1f} s of CPU; {shares}; suite "
+        f"one, {sum(os.times()[:4]) - before:.1f} s of CPU; {shares}; suite "
         f"{closed.needed} ({closed.sizes}), at least {closed.fewest}",
         flush=True,
     )
-
-
-def _cpu_s() -> float:
-    own, played = (
-        resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
-    )
-    return own.ru_utime + own.ru_stime + played.ru_utime + played.ru_stime
 
 
 def shrinking(*, failures: int = 20, seed: int = 1) -> None:

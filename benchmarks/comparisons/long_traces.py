@@ -1,29 +1,40 @@
-"""The core against progression, on traces too long for the law: what is kept over time stays right.
+"""The core against the law on arrays, on traces too long for the oracle: what is kept stays right.
 
 Random formulas with windows of up to some hundred ticks, required from the start or upon a signal,
-in held and in sampled time; nothing is unknown. What an attempt owes is taken on by `progression`,
-which has the formula's core form in common with the core, and neither automata, queues, networks
-nor chains of windows. Compared are, of every attempt, trigger, verdict
-and instant of what the prefix decides, stepped and by rows.
+in held and in sampled time; nothing is unknown. When a formula is decided at a position follows
+from when its operands are, as the law has it of prefixes: that is worked out for all positions at
+once, and has nothing in common with the core, neither automata, queues, networks nor the core form
+of formulas. Compared are, of every attempt, trigger, verdict and instant of what the prefix
+decides, stepped and by rows.
 """
 
 from __future__ import annotations
 
 import random
-from bisect import bisect_right
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 
+import numpy as np
 from benchmarks.comparisons.comparison import Found
+from numpy.typing import NDArray
 from tests.tools.build import scaled
+from tests.tools.common_fragment import EVER, to_core
 from tests.tools.drive import drive
 from tests.tools.forms import FORMS, Compiler, Maker
 from tests.tools.generate_ltl import random_mtl
 
-from rvmon.errors import RvmonError
-from rvmon.language.checked.formula import Bound, BoundAtom, Constant, SignalAtom
+from rvmon.language.checked.formula import (
+    Binary,
+    BinaryOp,
+    Bound,
+    BoundAtom,
+    Formula,
+    Interval,
+    SignalAtom,
+    Unary,
+    UnaryOp,
+)
 from rvmon.language.checked.specification import (
     CheckedSpec,
     Mode,
@@ -33,13 +44,6 @@ from rvmon.language.checked.specification import (
     Type,
 )
 from rvmon.language.print import format_formula
-from rvmon.logic.alphabet import Alphabet, alphabet_of, holds
-from rvmon.logic.automaton import FAILED, NOW, PASSED, Location, Token, location_of, normalise
-from rvmon.logic.formula import Factory, Literal, Temporal
-from rvmon.logic.lower import lower
-from rvmon.logic.progress import after, step, value
-from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClausesError
-from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Elapsed, State, StateOp
 from rvmon.testing.generate import BOOLS
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
@@ -48,94 +52,11 @@ from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Decision
 from rvmon.verdicts.report import Report
 
-MOST_CLOCKS = 16
-"""Obligations with an age of their own that one attempt may owe at once.
+Instants = NDArray[np.int64]
+Decided = tuple[Instants, Instants]
+"""Of a formula, by position, the instants at which it is known to be true, and to be false."""
 
-A window above 0 that is started anew at every tick of held time would need one for every tick.
-"""
-
-MOST_CLAUSES = 32
-"""Ways to fulfil what one attempt owes that may be weighed at once, before they are reduced."""
-
-
-class TooManyObligationsError(RvmonError):
-    """An attempt cannot be judged by progression within bounded memory."""
-
-
-class Progression:
-    """Judges any formula; memory grows with the residuals that occur.
-
-    Source: AUTOMATA 1.
-
-    Args:
-        required: the consequent under `X`, as an attempt starts before its trigger's position.
-        alphabet: of that formula.
-
-    Raises:
-        TooManyObligationsError: in a step, if an attempt owes more than `MOST_CLOCKS` at once, or
-            in more than `MOST_CLAUSES` ways.
-    """
-
-    def __init__(self, required: Temporal, alphabet: Alphabet) -> None:
-        self.alphabet = alphabet
-        self._locations: list[Location] = []
-        self._index: dict[Residual, int] = {}
-        self._edges: dict[tuple[int, tuple[int, ...], int], tuple[int, tuple[int, ...]]] = {}
-        for residual in (FAILS, HOLDS):
-            self._location(residual)
-        self.start: Token = (self._location(frozenset([frozenset([(required, NO_CLOCK)])])), ())
-
-    def _location(self, residual: Residual) -> int:
-        if residual not in self._index:
-            self._index[residual] = len(self._locations)
-            self._locations.append(location_of(residual))
-        return self._index[residual]
-
-    def step(self, token: Token, t: int, letter: int) -> Token:
-        """The token after a position at `t`."""
-        index, anchors = token
-        cuts = self._locations[index].cuts
-        ages = [t - anchor for anchor in anchors]
-        # Within a region of ages the same is owed.
-        key = index, tuple(map(bisect_right, cuts, ages)), letter
-        if key not in self._edges:
-            self._edges[key] = self._edge(index, ages, letter)
-        target, sources = self._edges[key]
-        return target, tuple([t if source == NOW else anchors[source] for source in sources])
-
-    def _edge(self, index: int, ages: list[int], letter: int) -> tuple[int, tuple[int, ...]]:
-        """The target, and the sources of its clocks."""
-        valuation = self.alphabet.valuation(letter)
-
-        def read(literal: Literal) -> Residual:
-            return HOLDS if holds(literal.sense, valuation[literal.proposition]) else FAILS
-
-        try:
-            reached = step(self._locations[index].residual, ages, read, MOST_CLAUSES)
-        except TooManyClausesError:
-            raise TooManyObligationsError("it can be fulfilled in too many ways") from None
-        residual, sources = normalise(reached, len(ages))
-        if len(sources) > MOST_CLOCKS:
-            raise TooManyObligationsError("it has too many open obligations at once")
-        return self._location(residual), sources
-
-    def settle(self, token: Token, t: int, until: int) -> tuple[Token, int]:
-        """Let time pass from `t` to `until` without a position.
-
-        Returns the token and the instant of its decision, or the next at which it might be decided.
-        """
-        index, anchors = token
-        location = self._locations[index]
-        aged = zip(location.cuts, anchors, strict=True) if anchors else ()
-        for t in sorted({anchor + cut for own, anchor in aged for cut in own if anchor + cut > t}):
-            if t > until:
-                break
-            truth = value(after(location.residual, [t - anchor for anchor in anchors]))
-            if truth != UNKNOWN:
-                return (PASSED if truth else FAILED, ()), t
-        return token, t
-
-
+NEVER = np.iinfo(np.int64).max
 TRIGGER = SignalAtom("p")
 LENGTHS = (1, 7, 40)
 """What the windows of a few ticks are multiplied by."""
@@ -149,6 +70,116 @@ class Long:
     """Settings of `long`: of how many samples a trace is."""
 
     samples: int = 10_000
+
+
+class Decisions:
+    """When formulas are decided, at each position of a trace.
+
+    Args:
+        case: of one requirement, without unknown values.
+    """
+
+    def __init__(self, case: Case) -> None:
+        stamps = np.array([one.t for one in case.samples], np.int64)
+        is_held = case.spec.time is TimeModel.HELD
+        self.times = np.arange(stamps[0], stamps[-1] + 1) if is_held else stamps
+        # Where only samples are positions, that none follows is known an instant behind the end.
+        self._last = int(stamps[-1]) + (not is_held)
+        self._row_at = np.searchsorted(stamps, self.times, "right") - 1
+        self._samples = case.samples
+
+    def of(self, formula: Formula) -> Decided:
+        """Of a formula in the operators of `to_core`."""
+        match formula:
+            case SignalAtom(name=name):
+                told = np.array([one.values[name] for one in self._samples], bool)[self._row_at]
+                return np.where(told, self.times, NEVER), np.where(told, NEVER, self.times)
+            case Unary(op=UnaryOp.NOT, operand=operand):
+                true, false = self.of(operand)
+                return false, true
+            case Unary(op=UnaryOp.ALWAYS, operand=operand, interval=interval):
+                true, false = self.of(operand)
+                failed, kept = self._until(None, (false, true), interval or EVER)
+                return kept, failed
+            case Unary(op=UnaryOp.EVENTUALLY, operand=operand, interval=interval):
+                return self._until(None, self.of(operand), interval or EVER)
+            case Binary(op=op, left=left, right=right, interval=interval):
+                one, other = self.of(left), self.of(right)
+                if op is BinaryOp.UNTIL:
+                    return self._until(one, other, interval or EVER)
+                joins = [np.maximum, np.minimum]
+                first, second = joins if op is BinaryOp.AND else joins[::-1]
+                return first(one[0], other[0]), second(one[1], other[1])
+        raise AssertionError(f"no such formula is drawn: {formula}")
+
+    def _until(self, left: Decided | None, right: Decided, window: Interval) -> Decided:
+        """Of `left U right`; without `left`, of `F right`.
+
+        It is true when at some place of the window `right` is, and `left` at all before it; and
+        false when each place is excluded by the one or the other, those to come by `left` or by the
+        end of the window.
+        """
+        times, count = self.times, len(self.times)
+        always = np.full(count, times[0]), np.full(count, NEVER)
+        kept, broken = left or always
+        met, missed = right
+        first = np.searchsorted(times, times + window.low)
+        end = first
+        if window.high is not None:
+            end = np.searchsorted(times, times + window.high, "right")
+        else:  # from the first on, the places behind are those of the next one
+            later: Decided = np.full(count + 1, NEVER), np.full(count + 1, NEVER)
+            for k in range(count - 1, -1, -1):
+                later[0][k] = min(met[k], max(kept[k], later[0][k + 1]))
+                later[1][k] = max(missed[k], min(broken[k], later[1][k + 1]))
+        true, false = np.full(count, NEVER), np.full(count, times[0])
+        held, gone = (one.copy() for one in always)  # `left` so far: kept, and broken
+        place = np.arange(count)
+        for offset in range(int((end - place).max())):
+            size = count - offset
+            at = place[:size] + offset
+            inside, within = (at >= first[:size]) & (at < end[:size]), at < end[:size]
+            found = np.maximum(met[offset:], held[:size])
+            passed = np.minimum(missed[offset:], gone[:size])
+            np.minimum(true[:size], found, out=true[:size], where=inside)
+            np.maximum(false[:size], passed, out=false[:size], where=inside)
+            np.maximum(held[:size], kept[offset:], out=held[:size], where=within)
+            np.minimum(gone[:size], broken[offset:], out=gone[:size], where=within)
+        if window.high is None:
+            return np.maximum(held, later[0][first]), np.minimum(gone, later[1][first])
+        over = times + window.high + 1
+        over[over > self._last] = NEVER
+        return true, np.maximum(false, np.minimum(over, gone))
+
+
+def by_law(case: Case) -> Told:
+    """What the law says of a case."""
+    (requirement,) = case.spec.requirements.values()
+    decisions = Decisions(case)
+    true, false = decisions.of(to_core(requirement.consequent))
+    told: dict[int, tuple[int, int | None, Verdict | None]] = {}
+    before = False
+    for sample in case.samples:
+        starts = sample.t == 0 if requirement.trigger != TRIGGER else bool(sample.values["p"])
+        if starts and not before:
+            place = int(np.searchsorted(decisions.times, sample.t))
+            ends = [(int(true[place]), Verdict.PASS), (int(false[place]), Verdict.FAIL)]
+            at, verdict = min(ends, key=lambda end: end[0])
+            told[len(told) + 1] = (sample.t, *((None, None) if at == NEVER else (at, verdict)))
+        before = starts
+    return told
+
+
+def of_report(report: Report) -> Told:
+    """What a report says of its attempts."""
+    return {
+        one.number: (
+            (one.triggered, one.decided, one.verdict)
+            if one.decision is Decision.PREFIX
+            else (one.triggered, None, None)
+        )
+        for one in report.attempts
+    }
 
 
 def _case(seed: int, number: int, samples: int) -> Case:
@@ -173,110 +204,11 @@ def _samples(rng: random.Random, count: int) -> Iterator[Sample]:
         t += rng.choice((1, 1, 1, 2, 3, 8, 41))
 
 
-def by_progression(case: Case) -> Told:
-    """What progression makes of a case; attempts that owe the same go on together.
-
-    Raises:
-        TooManyObligationsError: one owes too much at once.
-    """
-    (requirement,) = case.spec.requirements.values()
-    is_held = case.spec.time is TimeModel.HELD
-    factory = Factory()
-    required = lower(requirement, factory, sampled=not is_held).required
-    alphabet = alphabet_of(required)
-    machine = Progression(factory.next(required), alphabet)
-    told: dict[int, tuple[int, int | None, Verdict | None]] = {}
-    going: dict[Token, list[int]] = {}
-    # Where only samples are positions, that none follows is known an instant behind the end.
-    last = case.samples[-1].t + (not is_held)
-    before = False
-    for sample, until in zip(case.samples, _until(case.samples, last), strict=True):
-        starts = sample.t == 0 if requirement.trigger != TRIGGER else bool(sample.values["p"])
-        if starts and not before:
-            number = len(told) + 1
-            told[number] = sample.t, None, None
-            going.setdefault(machine.start, []).append(number)
-        before = starts
-        letter = _letter(alphabet, sample)
-        behind: dict[Token, list[int]] = {}
-        for token, numbers in going.items():
-            after, at = _taken(machine, token, letter, sample.t, until, is_held=is_held)
-            if after[0] > PASSED:
-                behind.setdefault(after, []).extend(numbers)
-                continue
-            verdict = Verdict.PASS if after[0] == PASSED else Verdict.FAIL
-            told.update({one: (told[one][0], at, verdict) for one in numbers})
-        going = behind
-    return told
-
-
-def _until(samples: Sequence[Sample], last: int) -> Iterator[int]:
-    """For each sample the last instant before the next one."""
-    yield from (later.t - 1 for _, later in pairwise(samples))
-    yield last
-
-
-def _letter(alphabet: Alphabet, sample: Sample) -> int:
-    letter = 0
-    for proposition, entry in zip(alphabet.propositions, alphabet.pessimistic, strict=True):
-        letter += entry[TRUE if _holds(proposition, sample) else FALSE]
-    return letter
-
-
-def _holds(state: State, sample: Sample) -> bool:
-    """Whether a formula without operators of the past is true; all is known."""
-    match state.op, state.leaf:
-        case StateOp.LEAF, SignalAtom(name=name):
-            return bool(sample.values[name])
-        case StateOp.LEAF, Constant(value=value):
-            return value
-        case StateOp.LEAF, Elapsed(duration=0):  # each sample is a position
-            return True
-        case StateOp.NOT, _:
-            return not _holds(state.args[0], sample)
-        case StateOp.AND, _:
-            return all(_holds(one, sample) for one in state.args)
-        case StateOp.OR, _:
-            return any(_holds(one, sample) for one in state.args)
-    raise AssertionError(f"nothing of these formulas is lowered to {state.op}, {state.leaf}")
-
-
-def _taken(
-    machine: Progression, token: Token, letter: int, t: int, until: int, *, is_held: bool
-) -> tuple[Token, int]:
-    """A token after a sample and the time behind it, and the instant if that decided it."""
-    after = machine.step(token, t, letter)
-    if not is_held:
-        return (after, t) if after[0] <= PASSED else machine.settle(after, t, until)
-    while after[0] > PASSED and t < until:  # in held time every tick is a position
-        t, before = t + 1, after
-        after = machine.step(before, t, letter)
-        if after == before and not after[1]:  # without clocks it only loops
-            break
-    return after, t
-
-
-def of_report(report: Report) -> Told:
-    """What a report says of its attempts."""
-    return {
-        one.number: (
-            (one.triggered, one.decided, one.verdict)
-            if one.decision is Decision.PREFIX
-            else (one.triggered, None, None)
-        )
-        for one in report.attempts
-    }
-
-
 def judge_long(seed: int, own: Long, numbers: range) -> Found:
     counts, texts = Counter[str](), list[str]()
     for number in numbers:
         case = _case(seed, number, own.samples)
-        try:
-            wanted = by_progression(case)
-        except TooManyObligationsError:
-            counts["passed over: too much is required at once"] += 1
-            continue
+        wanted = by_law(case)
         counts.update(traces=1, samples=len(case.samples))
         for _, _, verdict in wanted.values():
             counts[f"attempts {'open' if verdict is None else verdict.value}"] += 1

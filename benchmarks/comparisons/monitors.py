@@ -1,4 +1,4 @@
-"""The core against the oracle, progression, a tableau, and what was lost filled in."""
+"""The core against the oracle, the law on arrays, a tableau, and what was lost filled in."""
 
 from __future__ import annotations
 
@@ -317,7 +317,7 @@ COMPARISONS = {
         "specifications of 10 traces",
     ),
     "long": Comparison(
-        "the core against progression, on traces too long for the oracle",
+        "the core against the law on arrays, on traces too long for the oracle",
         judge_long,
         "traces",
         (Long(),),

@@ -2,10 +2,8 @@
 
 The formulas of a workload are judged at every row of its last rows, where the Timescales families
 are violated, and of traces that were damaged at random, so that both verdicts occur: ours by the
-monitor that is measured, the peer by its own. Where the formula speaks of the past, the first
-failure of the requirement that is timed has to be at the peer's first FALSE.
-
-rtamt is asked for the past by the stepping that is timed, for the future by its offline evaluation.
+monitor that is measured, the peer by its own, on as many rows as it judges in a given time. rtamt,
+which is timed on the past, is stepped for that.
 """
 
 from __future__ import annotations
@@ -20,21 +18,16 @@ from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.environment import Environment
 from benchmarks.peers.ways import RTAMT_STEPPED, WAYS, Cell, Question, Way, answers, ask_monitor
 from benchmarks.timing.race import PEERS, Figure, margin_text
-from benchmarks.timing.workload import Size, Workload, always_text, specification
+from benchmarks.timing.workload import Size, Workload
 from tests.tools.common_fragment import UntranslatableError
 
 from rvmon import loads
 from rvmon.errors import RvmonError
 from rvmon.language.checked.names_read import names_read
-from rvmon.monitor.robustness import Measured
 from rvmon.testing.law.syntax import intervals
-from rvmon.verdicts import Verdict
 
-WAYS_OF = {entry.label: entry.way for entry in PEERS}
+WAYS_OF = {entry.label: entry.way for entry in PEERS} | {"rtamt": RTAMT_STEPPED}
 """Who is asked for the verdicts of which contender; the native reelay is the same program."""
-
-RTAMT_BOUND = 300
-"""The longest deadline of the future that its offline evaluation judges in reasonable time."""
 
 MOST_ROWS = 4000
 MOST_DAMAGED = 40
@@ -57,23 +50,18 @@ class Agreement:
     remark: str = ""  # why nothing was compared
 
 
+def by_peer(label: str) -> str:
+    """The label of the peer, of one of the ways in which it is timed."""
+    return label.split()[0].rstrip(",")
+
+
 class _Case:
-    """A trace and what we say of it: at every row, and the row at which the requirement fails."""
+    """A trace, and what we say of it at every row."""
 
     def __init__(self, question: Question) -> None:
         self.question = question
         self.answers = answers(question, ask_monitor)
         self.falses = self.answers.count(False)
-        columns: Mapping[str, Sequence[float]] = question.columns  # type: ignore[assignment]
-        monitor = loads(specification([always_text(question.formula)], columns)).monitor()
-        rows = enumerate(zip(*columns.values(), strict=True))
-        decided = (
-            one
-            for t, row in rows
-            for one in monitor.step_ns(t, dict(zip(columns, row, strict=True)))
-        )
-        failed = (one.decided for one in decided if one.verdict is Verdict.FAIL)
-        self.failure = next(failed, None)
 
 
 def peers_in(environment: Environment) -> dict[str, Peer]:
@@ -88,13 +76,13 @@ def peers_in(environment: Environment) -> dict[str, Peer]:
 def compare(
     workload: Workload, timed: Sequence[Figure], peers: Mapping[str, Peer], size: Size
 ) -> Iterator[Agreement]:
-    """Compare ours on the workload's first formula with each peer that can be asked.
+    """Compare ours on the workload's first formula with each peer that was timed.
 
     Args:
         workload: the measured workload.
-        timed: the figures: a peer asked by stepping gets as many rows as fit into the time.
+        timed: the figures: a peer gets as many rows as it judges in the time.
         peers: the other monitors, by label.
-        size: the number of traces, and the time for which a peer may step.
+        size: the number of traces, and the time for which a peer may judge.
     """
     name, form = workload.name, workload.form
     try:
@@ -102,24 +90,15 @@ def compare(
     except RvmonError as error:
         yield Agreement("rvmon", name, form, remark=str(error).splitlines()[0])
         return
-    costs, bound = {figure.label: figure.median for figure in timed}, _bound(workload)
-    for label, peer in peers.items():
-        way, asked, remark = WAYS_OF[label], cases, ""
-        if label == "rtamt" and form == "future" and bound > RTAMT_BOUND:
-            remark = f"future: its offline evaluation takes too long above {RTAMT_BOUND} rows"
-        elif label == "rtamt" and form == "past":
-            if label not in costs:
-                continue
-            fitting = int(size.step_seconds * 1e9 / costs[label])
-            way, asked = RTAMT_STEPPED, [*_fitting(cases, bound, fitting)]
-            if not asked:
-                remark = (
-                    f"past: no bound fails on the rows that it steps in {size.step_seconds:g} s"
-                )
-        if remark:
-            yield Agreement(label, name, form, remark=remark)
+    costs = {by_peer(figure.label): figure.median for figure in timed}
+    for label in [one for one in peers if one in costs]:
+        fitting = int(size.step_seconds * 1e9 / costs[label])
+        asked = [*_fitting(cases, _bound(workload), fitting)]
+        if asked:
+            yield _compared(Agreement(label, name, form), WAYS_OF[label], peers[label], asked)
         else:
-            yield _compared(Agreement(label, name, form), way, peer, asked)
+            text = f"{form}: no bound fails on the rows that it judges in {size.step_seconds:g} s"
+            yield Agreement(label, name, form, remark=text)
 
 
 def _fitting(cases: Sequence[_Case], bound: int, rows: int) -> Iterator[_Case]:
@@ -146,11 +125,7 @@ def _compared(about: Agreement, way: Way, peer: Peer, cases: Sequence[_Case]) ->
         for own, other in zip(case.answers, theirs, strict=True):
             if own is not None and other is not None:
                 count.update(compared=1, equal=own is other, false=not own)
-        if about.form == "past":
-            first = theirs.index(False) if False in theirs else None
-            count.update(compared=1, equal=first == case.failure)
-    told = count["equal"], count["compared"], count["false"]
-    return Agreement(about.label, about.name, about.form, *told)
+    return replace(about, equal=count["equal"], compared=count["compared"], false=count["false"])
 
 
 def _cases(workload: Workload, traces: int) -> Iterator[_Case]:
@@ -213,14 +188,13 @@ def margins_alike(workload: Workload, environment: Environment) -> Iterator[Agre
     spec = loads(margin_text(workload))
     arrays = {name: np.array(column) for name, column in columns.items()}
     offline = spec.robustness({"t_ns": np.arange(MEASURED_ROWS), **arrays}, time="t_ns")
-    told = [[(t, one.low, one.high) for t, one in offline.streams["R1"]]]
+    sure = {t for t, one in offline.streams["R1"] if one.low == one.high}
+    ours = [(t, one.low) for t, one in offline.streams["R1"]]
     for streams in (True, False):
         monitor = spec.robustness_monitor(streams=streams)
-        found: list[Measured] = []
         for t, row in enumerate(zip(*columns.values(), strict=True)):
-            found += monitor.step_ns(t, dict(zip(columns, row, strict=True)))
-        told.append([(one.t, one.robustness.low, one.robustness.high) for one in found])
-    sure = {t for t, low, high in told[0] if low == high}
-    pairs = [(low, theirs[t]) for own in told for t, low, _ in own if t in sure]
-    equal, false = (sum(own == its for own, its in pairs), sum(own < 0 for own, _ in pairs))
+            found = monitor.step_ns(t, dict(zip(columns, row, strict=True)))
+            ours += [(one.t, one.robustness.low) for one in found]
+    pairs = [(low, theirs[t]) for t, low in ours if t in sure]
+    equal, false = sum(own == its for own, its in pairs), sum(own < 0 for own, _ in pairs)
     yield Agreement("sentil", workload.name, workload.form, equal, len(pairs), false)
