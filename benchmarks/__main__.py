@@ -5,7 +5,7 @@ from __future__ import annotations
 BENCHMARKS = {
     "online": "what a sample costs, beside all peers: forms, inputs, many monitors, robustness",
     "recordings": "what a file costs: columns, whole processes, large, many and odd files",
-    "growth": "how cost grows: hard streams, large inputs, requirements, tests, automata",
+    "growth": "how cost grows: hard streams, open attempts, tests, automata",
     "differential": "ours against something independent, on random cases",
     "peers": "what other monitors say of the same formulas, and of the same faults",
     "core_mutants": "does the core's C hold a line that no test needs?",

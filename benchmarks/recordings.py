@@ -1,10 +1,11 @@
 """Recordings from the file to the verdict: columns, whole processes, large, many and odd files.
 
-    python -m benchmarks.recordings [--quick] [--only batch process files]
+    python -m benchmarks.recordings [--quick] [--only batch files]
 
-Columns in memory and whole processes judge families of formulas beside reelay, whose C++ is built
-where g++ and Boost are, 10^5 rows beside 10^6. Files are a robot's: one large beside DuckDB, the
-same as other programs write it, one of twice as many rows for the memory, many at once, a tiny one.
+Columns in memory judge families of formulas beside reelay, whose C++ is built where g++ and Boost
+are, 10^5 rows beside 10^6; so do whole processes. Other files are a robot's: one large beside
+DuckDB, the same as other programs write it, one of twice as many rows for the memory, many at once,
+a tiny one.
 Ratios are of the first of a group over the one, and stand only where both find the same failures.
 """
 

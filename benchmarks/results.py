@@ -23,23 +23,22 @@ from typing import Any
 
 import jinja2
 import msgspec
-from benchmarks.growth import cliffs
 from benchmarks.output import table
 from benchmarks.peers import differences
 from benchmarks.peers.client import Peer
 from benchmarks.peers.environment import Environment, prepare
 from benchmarks.program import program
-from benchmarks.timing import files
+from benchmarks.timing import cliffs, files
 from benchmarks.timing.agreement import Agreement, by_peer, compare, margins_alike, peers_in
 from benchmarks.timing.r2u2 import R2u2
 from benchmarks.timing.race import Figure, Result, contenders, measure, say
-from benchmarks.timing.workload import FORMS, QUICK, SECTIONS, Size, processed
+from benchmarks.timing.workload import FORMS, QUICK, SECTIONS, Size
 
 HERE = Path(__file__).parent
 OUT = HERE / "RESULTS.md"
 TEMPLATE = HERE / "results.md.j2"
 ONLINE = tuple(one for one in SECTIONS if one != "batch")
-RECORDINGS = ("batch", "process", "files")
+RECORDINGS = ("batch", "files")
 EVERY = (*ONLINE, *RECORDINGS, "cliffs", "differences")
 BUILT_FOR = ("many", "bound")
 """Sections that R2U2 takes part in: it is built anew for each workload."""
@@ -52,8 +51,7 @@ TITLES = {
     "failing": "Values that change at every row, formulas that fail at 1 % and at 30 % of them",
     "margins": "Robustness, of values that change and cross at every row",
     "batch": "Columns in memory",
-    "process": "Whole processes, from the file to the verdict",
-    "files": "Whole files, on all cores",
+    "files": "Whole processes, from the file to the verdict, on all cores",
     "cliffs": "Hard streams beside their quiet neighbours",
     "differences": "Where the peers read otherwise",
 }
@@ -128,12 +126,6 @@ def _measured(
     section: str, size: Size, environment: Environment, peers: dict[str, Peer], r2u2: Path | None
 ) -> Iterator[tuple[Result, list[Agreement]]]:
     """The results of a section, each with whether both sides judge alike."""
-    if section == "process":
-        for workload in processed(size):
-            say(f"process: {workload.name}")
-            result = files.judged_by_programs(workload, size, environment)
-            yield result, [*compare(workload, result.figures, peers, size)]
-        return
     taking_part = [*contenders(environment, section)] if section in SECTIONS else []
     built = R2u2(r2u2) if r2u2 is not None and section in BUILT_FOR else None
     for workload in SECTIONS[section](size) if section in SECTIONS else ():

@@ -1,17 +1,22 @@
-"""Recordings through every door, and doors that lose something."""
+"""Recordings through every door, doors that lose something, and damage to all that is read."""
 
 from __future__ import annotations
 
 import logging
+import os
 import random
 import tempfile
+import traceback
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 from benchmarks.comparisons.comparison import Comparison, Found
+from fuzz.damage import damaged
+from fuzz.targets import TARGETS, run, seeds
 from tests.tools.differential import cases_of
 from tests.tools.doors import Content, content_of, doors, whole
 from tests.tools.lossy_doors import DOORS, outcomes
@@ -83,7 +88,33 @@ def judge_lost(seed: int, own: Lossy, numbers: range) -> Found:
     return counts, texts
 
 
+def judge_damage(seed: int, numbers: range) -> Found:
+    """Each input that is damaged is read, or refused; nothing else comes out."""
+    counts, texts = Counter[str](), list[str]()
+    os.environ["RVMON_CACHE"] = "off"
+    for number in numbers:
+        rng = random.Random(f"{seed}/{number}")
+        name = rng.choice(sorted(TARGETS))
+        data = damaged(rng.choice(_kept(name)), rng, _kept(name))
+        try:
+            counts[f"{name}: {run(name, data)}"] += 1
+        except Exception:  # noqa: BLE001 - this is what is looked for
+            texts.append(f"number {number}, {name} {data!r}:\n{traceback.format_exc(limit=-3)}")
+    return counts, texts
+
+
+@cache
+def _kept(name: str) -> list[bytes]:
+    return [*seeds(name)]
+
+
 COMPARISONS = {
+    "damage": Comparison(
+        "damaged specifications, bindings, models, recordings, snapshots are read or refused",
+        judge_damage,
+        "inputs",
+        part=500,
+    ),
     "doors": Comparison(
         "a recording as CSV, JSON lines, Parquet, arrays, frames …: one report, byte by byte",
         judge_doors,

@@ -1,18 +1,13 @@
-"""The model checker against a walk through all regions, and its readers against damage."""
+"""The model checker against a walk through all regions."""
 
 from __future__ import annotations
 
-import tempfile
-import traceback
 from collections import Counter
 from collections.abc import Iterator
-from functools import cache
-from pathlib import Path
 from random import Random
 
 from benchmarks.comparisons.comparison import Comparison, Found
 from benchmarks.comparisons.timed_ltl import LinearTruth, random_linear, satisfied_by
-from fuzz.timed_damage import damaged, survives
 from tests.tools.timed_ctl import holds_at_start
 from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import Steps, TooManyRegionsError, shows
@@ -27,9 +22,7 @@ from rvmon.models.runs import Ending
 from rvmon.models.runs.exact_times import Rules
 from rvmon.models.search.budget import Policy
 from rvmon.models.search.verify import verify
-from rvmon.models.uppaal_xml import uppaal_xml
 
-ROOT = Path(__file__).parents[2]
 MOST_REGIONS = 1_500
 
 KINDS = (
@@ -112,37 +105,6 @@ def _agrees(network: Network, text: str, counts: Counter[str]) -> bool:
     return agrees
 
 
-def judge_damage(seed: int, numbers: range) -> Found:
-    """Each damaged model is read, or refused with a finding; nothing else comes out."""
-    counts, texts = Counter[str](), list[str]()
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "model"
-        for number in numbers:
-            random = Random(number if seed == 1 else f"{seed}/{number}")
-            path.write_bytes(damaged(random.choice(_corpus()), random, _corpus()))
-            try:
-                counts[survives(path)] += 1
-            except Exception:  # noqa: BLE001 - this is what is looked for
-                texts.append(f"model {number}:\n{traceback.format_exc(limit=-3)}")
-    return counts, texts
-
-
-@cache
-def _corpus() -> list[bytes]:
-    """The textbook models, the handover, and small random models in both forms."""
-    return [*_models()]
-
-
-def _models() -> Iterator[bytes]:
-    for path in sorted((ROOT / "examples" / "models").iterdir()):
-        if path.suffix in (".ta", ".xml"):
-            yield path.read_bytes()
-    yield (ROOT / "src/handover/model/handover.ta").read_bytes()
-    small = [random_model(seed) for seed in range(20)]
-    yield from (text.encode() for text in small)
-    yield from (uppaal_xml(loads_network(text)).encode() for text in small)
-
-
 COMPARISONS = {
     "networks": Comparison(
         "queries on random networks against a walk through all regions", judge_queries, "networks"
@@ -151,12 +113,6 @@ COMPARISONS = {
         "CTL and LTL on random networks against fixpoints and a tableau on all regions",
         judge_logics,
         "networks",
-    ),
-    "damage": Comparison(
-        "damaged models, in both text forms, are read or refused with a finding",
-        judge_damage,
-        "models",
-        part=500,
     ),
 }
 

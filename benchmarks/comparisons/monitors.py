@@ -24,7 +24,6 @@ from tests.tools.generate_ltl import random_ltl, random_mtl
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge as oracle
 from tests.tools.ltl3 import Letter, Tableau
-from tests.tools.put_away import put_away
 from tests.tools.sound import is_spoken_of, narrowed, overturned
 
 from rvmon.errors import RvmonError
@@ -38,7 +37,6 @@ from rvmon.language.checked.specification import (
     Type,
 )
 from rvmon.language.print import format_formula
-from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.robustness import Measured, Robustness, RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.testing.generate import BOOLS, Rng, chance
@@ -183,21 +181,6 @@ def judge_robustness(seed: int, profile: Profile, traces: TraceProfile, numbers:
     return counts, texts
 
 
-def judge_snapshots(seed: int, profile: Profile, traces: TraceProfile, numbers: range) -> Found:
-    """Whether a run that is put away at each call, and taken up again, goes on alike."""
-    counts, texts = Counter[str](), list[str]()
-    for number in numbers:
-        own = replace(traces, outages=100 * (number % 2))
-        (case,) = cases_of(f"away {seed}/{number}", profile, own, windows=15, letters=4)
-        counts[f"runs, {case.spec.time.value}"] += 1
-        counts["runs with outages"] += bool(case.outages)
-        try:
-            counts["taken up again"] += put_away(compile_spec(case.spec), case)
-        except Exception as error:  # noqa: BLE001 - whatever it raises is a finding
-            texts.append(f"number {number}: {type(error).__name__}: {error}\n{show_case(case)}")
-    return counts, texts
-
-
 @dataclass(frozen=True, slots=True)
 class Fillings:
     """Settings of `fillings`."""
@@ -304,12 +287,6 @@ COMPARISONS = {
         judge_robustness,
         "specifications of 8 traces",
         (Profile(many=8), TraceProfile()),
-    ),
-    "snapshots": Comparison(
-        "a run put away and taken up again at each call beside one that is not",
-        judge_snapshots,
-        "runs",
-        (Profile(many=8, wide=12, amounts=30), TraceProfile(sparse=8, long=8)),
     ),
     "coverage": Comparison(
         "what coverpoints and crosses are hit against the definition",

@@ -8,20 +8,19 @@ import os
 import random
 import statistics
 import sys
-import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 from benchmarks.output import table
 from benchmarks.peers import dialects
 from benchmarks.peers.dialects import translate
-from benchmarks.peers.environment import Environment, packed
+from benchmarks.peers.environment import Environment
 from benchmarks.process import Cost, measured
 from benchmarks.program import in_turn
-from benchmarks.timing.race import Result, figure_of, result_of
-from benchmarks.timing.workload import Size, Workload, always_text, specification
+from benchmarks.timing.workload import Size, always_text, processed, specification
 
 _PEERS = Path(__file__).parents[1] / "peers"
 RVMON = (sys.executable, "-m", "rvmon", "run")
@@ -47,6 +46,10 @@ cross both = fast, near
 """
 
 
+Failures = list[list[tuple[str, int]]]
+"""By report the attempts that failed: requirement, and when it began."""
+
+
 @dataclass(slots=True)
 class Task:
     """A way to judge some files."""
@@ -54,11 +57,10 @@ class Task:
     what: str  # is judged
     who: str  # judges
     command: Sequence[str]  # exits 0 or 1
-    read: Callable[[str], object]  # what was found, from what it prints
-    rows: int = 1  # of all files
+    read: Callable[[str], Failures]  # what was found, from what it prints
     refusal: str = ""  # why it was not measured
     costs: list[Cost] = field(default_factory=list)  # of the passes that count
-    found: object = None  # in the last pass
+    found: Failures = field(default_factory=list)  # in the last pass
 
 
 def measure(tasks: Sequence[Task], repeats: int, folder: Path) -> None:
@@ -81,75 +83,45 @@ def measure(tasks: Sequence[Task], repeats: int, folder: Path) -> None:
             task.costs.append(cost)
 
 
-def judged_by_programs(workload: Workload, size: Size, environment: Environment) -> Result:
-    """A family of formulas, judged by every program there is."""
-    with tempfile.TemporaryDirectory() as folder:
-        tasks = [*_programs(workload, environment, Path(folder))]
-        measure(tasks, size.processes, Path(folder))
-    figures = [
-        figure_of(
-            one.who,
-            one.rows,
-            [1e9 * cost.cpu for cost in one.costs],
-            (one.found if isinstance(one.found, int) else None,),
-        )
-        for one in tasks
-        if not one.refusal
-    ]
-    return result_of(workload, figures, [(one.who, one.refusal) for one in tasks if one.refusal])
+def _families(size: Size, environment: Environment, folder: Path) -> Iterator[Task]:
+    """Families of formulas beside reelay's C++, of which the first violated row counts."""
+    for number, workload in enumerate(processed(size)):
+        own = folder / f"family{number}"
+        own.mkdir()
+        spec, path = own / "spec.rv", own / "trace.csv"
+        (formula,) = workload.formulas
+        spec.write_text(specification([always_text(formula)], workload.columns))
+        arrays = {name: np.array(column) for name, column in workload.columns.items()}
+        table = {"t_ns": np.arange(workload.rows, dtype=np.int64), **arrays}
+        rows = zip(*(one.astype(np.int64).tolist() for one in table.values()), strict=True)
+        lines = (f"{','.join(map(str, row))}\n" for row in rows)
+        path.write_text("".join([f"{','.join(table)}\n", *lines]))
+        if environment.reelay is not None:
+            pattern = f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
+            command = (str(environment.reelay), "csv", str(path), pattern)
+            yield Task(workload.name, "reelay C++", command, _violated)
+        ours: tuple[str, ...] = (*RVMON, str(spec), *JSON)
+        yield Task(workload.name, "rvmon run", (*ours, str(path)), _first_failure)
+        if find_spec("pyarrow"):
+            import pyarrow
+            from pyarrow import parquet
+
+            parquet.write_table(pyarrow.table(table), path.with_suffix(".parquet"))
+            ours = (*ours, str(path.with_suffix(".parquet")))
+            yield Task(workload.name, "rvmon run, Parquet", ours, _first_failure)
 
 
-def _programs(workload: Workload, environment: Environment, folder: Path) -> Iterator[Task]:
-    (formula,) = workload.formulas
-    columns, rows = workload.columns, workload.rows
-    spec, csv, data = (folder / name for name in ("spec.rv", "trace.csv", "trace.bytes"))
-    spec.write_text(specification([always_text(formula)], columns))
-    pattern = f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
-    cells = enumerate(zip(*columns.values(), strict=True))
-    lines = (f"{t}," + ",".join("1" if cell else "0" for cell in row) + "\n" for t, row in cells)
-    with csv.open("w") as file:
-        file.write("t_ns," + ",".join(columns) + "\n")
-        file.writelines(lines)
-    parquet = folder / "trace.parquet"
-    for name, path in {"csv": csv, "parquet": parquet}.items():
-        if path.exists() or _write_parquet(parquet, workload):
-            ours = (*RVMON, str(spec), *JSON, str(path))
-            yield Task("", f"rvmon run, {name}", ours, _first_failure, rows)
-    if environment.reelay is not None:
-        data.write_bytes(packed(columns))
-        for mode, path in (("csv", csv), ("binary", data)):
-            command = (str(environment.reelay), mode, str(path), pattern)
-            yield Task("", f"reelay C++, {mode}", command, _violated, rows)
-    if parquet.exists() and {"reelay", "pyarrow"} <= set(environment.versions):
-        program = str(_PEERS / "parquet_with_reelay.py")
-        command = (str(environment.python), program, str(parquet), pattern)
-        yield Task("", "reelay, parquet", command, _violated, rows)
-
-
-def _write_parquet(path: Path, workload: Workload) -> bool:
-    try:
-        import pyarrow as pa
-        from pyarrow import parquet
-    except ImportError:
-        return False
-    arrays = {name: np.array(column) for name, column in workload.columns.items()}
-    times = np.arange(workload.rows, dtype=np.int64)
-    parquet.write_table(pa.table({"t_ns": times, **arrays}), path)
-    return True
-
-
-def _first_failure(printed: str) -> int | None:
+def _first_failure(printed: str) -> Failures:
     attempts = json.loads(printed)["requirements"]["R1"]["attempts"]
-    return min((one["decided"] for one in attempts if one["verdict"] == "F"), default=None)
+    return [sorted(("R1", one["decided"]) for one in attempts if one["verdict"] == "F")[:1]]
 
 
-def _violated(printed: str) -> int | None:
+def _violated(printed: str) -> Failures:
     row = int(printed.split()[1])
-    return None if row < 0 else row
+    return [[] if row < 0 else [("R1", row)]]
 
 
-def _failures(printed: str) -> list[list[tuple[str, int]]]:
-    """By report the attempts that failed: requirement, and when it began."""
+def _failures(printed: str) -> Failures:
     reports = json.loads(printed)
     return [
         sorted(
@@ -208,6 +180,7 @@ def _tasks(size: Size, environment: Environment, folder: Path) -> Iterator[Task]
     small = [str(written(folder / f"small{n:04}.csv", 50, n)) for n in range(SMALL)]
     yield judged(f"{SMALL:,} files of 50 rows", *small)
     yield judged("10 rows", str(written(folder / "tiny.csv", 10, 0)))
+    yield from _families(size, environment, folder)
 
 
 def _odd(plain: Path) -> Mapping[str, Path]:
@@ -250,7 +223,7 @@ def written(path: Path, rows: int, seed: int) -> Path:
     return path
 
 
-def _told(printed: str) -> list[list[tuple[str, int]]]:
+def _told(printed: str) -> Failures:
     return [[(name, instant) for name, instant in json.loads(printed)]]
 
 
@@ -259,7 +232,7 @@ def _cells(task: Task, first: Task) -> Sequence[str]:
     wall, cpu = [one.seconds for one in task.costs], [one.cpu for one in task.costs]
     alike = task.found == first.found
     ratio = statistics.median(one.seconds for one in first.costs) / statistics.median(wall)
-    count = sum(map(len, task.found)) if isinstance(task.found, list) else 0
+    count = sum(map(len, task.found))
     return (
         task.what,
         task.who,

@@ -18,7 +18,7 @@ from benchmarks.peers.client import PeerError
 from benchmarks.peers.dialects import C2PO, spelling, translate
 from benchmarks.peers.ways import Question, answers, ask_monitor
 from benchmarks.timing.agreement import Agreement
-from benchmarks.timing.race import Pass
+from benchmarks.timing.race import Pass, passed
 from benchmarks.timing.workload import Workload
 from tests.tools.common_fragment import UntranslatableError
 
@@ -58,11 +58,8 @@ class R2u2:
         )
 
     def run(self) -> Pass:
-        """One pass in a process of its own; it measures its loop alone."""
         own = self.folder
-        said = _run(own / "loop", own / "spec.bin", own / "rows", *self.sizes)
-        spent, *violated = map(int, said.split())
-        return Pass(spent, tuple(None if row < 0 else row + 1 for row in violated))
+        return passed([own / "loop", own / "spec.bin", own / "rows", *self.sizes], later=1)
 
     def close(self) -> None:
         """Nothing is held."""

@@ -6,7 +6,7 @@ import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -101,31 +101,32 @@ class Worker:
         self.peer.close()
 
 
+def passed(command: Sequence[str | Path], later: int = 0) -> Pass:
+    """One pass of a program that measures its loop alone; it tells rows so much later than ours."""
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    spent, *violated = map(int, done.stdout.split())
+    return Pass(spent, tuple(None if row < 0 else row + later for row in violated))
+
+
 @dataclass(slots=True)
 class NativeReelay:
-    """reelay's C++ monitor over bytes in memory."""
+    """reelay's C++ monitor over bytes in memory, a process for each pass."""
 
     binary: Path
     label: str = "reelay C++"
-    command: list[str] = field(default_factory=list)
+    patterns: list[str] = field(default_factory=list)
 
     def prepare(self, workload: Workload, rows: int) -> None:
         """Write the rows to a file, from which each pass reads them first."""
         if not set(workload.columns) <= set(LETTERS):
             raise UntranslatableError("its harness knows the columns p, q, r, s")
-        path = HOME / "rows.bin"
-        path.write_bytes(packed({name: one[:rows] for name, one in workload.columns.items()}))
-        patterns = [
-            f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
-            for formula in workload.formulas
-        ]
-        self.command = [str(self.binary), "memory", str(path), *patterns, "1"]
+        columns = {name: one[:rows] for name, one in workload.columns.items()}
+        (HOME / "rows.bin").write_bytes(packed(columns))
+        said = (translate(formula, dialects.REELAY_DISCRETE) for formula in workload.formulas)
+        self.patterns = [f"historically({one})" for one in said]
 
     def run(self) -> Pass:
-        """One pass in a process of its own; it measures the loop alone."""
-        done = subprocess.run(self.command, capture_output=True, text=True, check=True)
-        spent, *violated = (int(word) for word in done.stdout.split())
-        return Pass(spent, tuple(None if row < 0 else row for row in violated))
+        return passed([self.binary, "memory", HOME / "rows.bin", *self.patterns])
 
     def close(self) -> None:
         """Nothing is held."""
@@ -221,27 +222,30 @@ def measure(
     seconds *= LONGER.get(workload.section, 1)
     refusals: dict[str, str] = {}
     rows: dict[str, int] = {}
-    for one in contenders:
+    for each in contenders:
         try:
-            rows[one.label] = _prepare(one, workload, seconds)
+            rows[each.label] = _prepare(each, workload, seconds)
         except (UntranslatableError, PeerError) as error:
-            refusals[one.label] = str(error).splitlines()[0]
-    ready = [one for one in contenders if one.label in rows]
-    passes: dict[str, list[Pass]] = {one.label: [] for one in ready}
-    for number, one in in_turn(ready, repeats):
-        own = passes[one.label]
-        if one.label in refusals or (number > 1 and own[0].cpu_ns > SLOW * seconds * 1e9):
+            refusals[each.label] = str(error).splitlines()[0]
+    ready = [each for each in contenders if each.label in rows]
+    passes: dict[str, list[Pass]] = {each.label: [] for each in ready}
+    for number, each in in_turn(ready, repeats):
+        own = passes[each.label]
+        if each.label in refusals or (number > 1 and own[0].cpu_ns > SLOW * seconds * 1e9):
             continue
         try:
-            own.append(one.run())
+            own.append(each.run())
         except PeerError as error:
-            refusals[one.label] = str(error).splitlines()[0]
-    figures = [
-        figure_of(label, rows[label], [one.cpu_ns for one in own], own[-1].violated)
-        for label, own in passes.items()
-        if label not in refusals
-    ]
-    return result_of(workload, figures, refusals.items())
+            refusals[each.label] = str(error).splitlines()[0]
+    figures = []
+    for label, own in passes.items():
+        if label not in refusals:
+            spent = [one.cpu_ns / rows[label] for one in own]
+            least, middle, most = min(spent), statistics.median(spent), max(spent)
+            figures.append(Figure(label, rows[label], middle, least, most, own[-1].violated))
+    one = workload
+    about = one.section, one.name, one.form, one.rows, one.changing
+    return Result(*about, tuple(figures), tuple(refusals.items()))
 
 
 def _prepare(contender: Contender, workload: Workload, seconds: float) -> int:
@@ -258,23 +262,6 @@ def _prepare(contender: Contender, workload: Workload, seconds: float) -> int:
     if fitting != rows:
         contender.prepare(workload, fitting)
     return fitting
-
-
-def figure_of(
-    label: str, rows: int, cpu_ns: Sequence[float], violated: tuple[int | None, ...]
-) -> Figure:
-    """Of the CPU nanoseconds of some passes."""
-    least, middle, most = min(cpu_ns), statistics.median(cpu_ns), max(cpu_ns)
-    return Figure(label, rows, middle / rows, least / rows, most / rows, violated)
-
-
-def result_of(
-    workload: Workload, figures: Sequence[Figure], refusals: Iterable[tuple[str, str]]
-) -> Result:
-    """The figures with what tells the workload, but not its rows."""
-    one = workload
-    about = one.section, one.name, one.form, one.rows, one.changing
-    return Result(*about, tuple(figures), tuple(refusals))
 
 
 _BEGAN = time.monotonic()

@@ -24,8 +24,7 @@ FEW = {
     "lost": (8, ["doors=live,stdin"], "stdin: runs", 8),
     "networks": (2, [], "runs checked as concrete runs", 10),
     "logics": (5, [], "CTL: true", 5),
-    "damage": (30, [], "refused", 10),
-    "snapshots": (3, [], "taken up again", 20),
+    "damage": (60, [], "spec: refused", 1),
 }
 """How many, settings, and a count with what it is at least."""
 

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 from benchmarks.__main__ import BENCHMARKS
-from benchmarks.growth import cliffs
+from benchmarks.timing import cliffs
 
 
 # Other tests of the same process have imported some of them.

@@ -32,11 +32,11 @@ def test_all_ways_find_the_same_failures(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr(files, "EACH", 1_000)
     monkeypatch.setattr(files, "measured", in_this_process)
     absent = Environment(Path(sys.executable), {}, {"duckdb": "not on this index"})
-    size = replace(QUICK, file_rows=20_000, files=2, processes=1)
+    size = replace(QUICK, file_rows=20_000, columns=2_000, files=2, processes=1)
     lines = list(files.table_of_files(size, absent, tmp_path))
     assert lines[-1] == "Not measured: DuckDB, 20,000 rows: not on this index."
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines[2:-2]]
-    assert len(cells) == 12
-    assert [ratio.endswith("×") for *_, ratio, _ in cells].count(True) == 6
+    assert len(cells) == 16
+    assert [ratio.endswith("×") for *_, ratio, _ in cells].count(True) == 8
     assert not any("others" in failures for *_, failures in cells)
     assert any(failures not in ("0", "–") for *_, failures in cells)

@@ -1,15 +1,14 @@
 // reelay's own C++ monitor, discrete time, without Python.
 //
-//   monitor memory|binary|csv FILE PATTERN... [rounds]
+//   monitor memory|csv FILE PATTERN...
 //
 // A row is one byte: bit i is the column of the letter LETTERS[i]; a column is named `v_` and that
-// letter. `memory` reads FILE (bytes) whole, then measures the monitors' loop `rounds` times and prints
-// CPU ns and the first violated row per pattern; `binary` and `csv` (a header, then `t,0,1,…`) judge
-// while they read, as a program would that is called once.
+// letter. `memory` reads FILE (bytes) whole, then measures the monitors' loop and prints CPU ns and the
+// first violated row per pattern; `csv` (a header, then `t,0,1,…`) judges while it reads, as a program
+// would that is called once.
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <fstream>
@@ -76,32 +75,28 @@ static std::int64_t cpu_ns() {
   return now.tv_sec * 1000000000LL + now.tv_nsec;
 }
 
-static int memory(const char *path, const std::vector<std::string> &patterns, int rounds) {
+static int memory(const char *path, const std::vector<std::string> &patterns) {
   std::ifstream file(path, std::ios::binary);
   std::vector<char> rows((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  for (int round = 0; round < rounds; ++round) {
-    Judge judge(patterns);
-    auto began = cpu_ns();
-    for (char bits : rows) judge.take(Row{static_cast<std::uint8_t>(bits)});
-    judge.print(cpu_ns() - began);
-  }
+  Judge judge(patterns);
+  auto began = cpu_ns();
+  for (char bits : rows) judge.take(Row{static_cast<std::uint8_t>(bits)});
+  judge.print(cpu_ns() - began);
   return 0;
 }
 
-static int stream(const char *path, const std::vector<std::string> &patterns, bool csv) {
+static int stream(const char *path, const std::vector<std::string> &patterns) {
   std::FILE *file = std::fopen(path, "rb");
   if (!file) return 2;
   Judge judge(patterns);
   static char block[1 << 16];
   int columns[16], count = -1, column = 0;  // -1: the name of the time column
-  bool header = csv;
+  bool header = true;
   std::uint8_t bits = 0;
   for (std::size_t got; (got = std::fread(block, 1, sizeof block, file)) > 0;) {
     for (std::size_t i = 0; i < got; ++i) {
       char c = block[i];
-      if (!csv) {
-        judge.take(Row{static_cast<std::uint8_t>(c)});
-      } else if (header) {
+      if (header) {
         if ((c == ',' || c == '\n')) ++count;
         else if (count >= 0 && count < 16) columns[count] = c - 'p';  // the last letter of a name
         if (c == '\n') header = false;
@@ -123,10 +118,6 @@ static int stream(const char *path, const std::vector<std::string> &patterns, bo
 
 int main(int argc, char **argv) {
   if (argc < 4) return 2;
-  int rounds = 1, last = argc;
-  if (argc > 4 && std::strspn(argv[argc - 1], "0123456789") == std::strlen(argv[argc - 1]))
-    rounds = std::atoi(argv[--last]);
-  std::vector<std::string> patterns(argv + 3, argv + last);
-  if (!std::strcmp(argv[1], "memory")) return memory(argv[2], patterns, rounds);
-  return stream(argv[2], patterns, !std::strcmp(argv[1], "csv"));
+  std::vector<std::string> patterns(argv + 3, argv + argc);
+  return std::strcmp(argv[1], "memory") ? stream(argv[2], patterns) : memory(argv[2], patterns);
 }

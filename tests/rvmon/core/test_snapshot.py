@@ -8,11 +8,11 @@ from collections import Counter
 from typing import Any
 
 import pytest
+from tests.rvmon.core.put_away import HEAD, Twins, put_away
 from tests.rvmon.core.test_outages import planned
 from tests.tools.differential import case_of
 from tests.tools.drive import Found, Lost
 from tests.tools.forms import Compiler
-from tests.tools.put_away import HEAD, Twins, put_away
 from tests.tools.special_specs import random_chain
 
 from rvmon.language.checked.specification import TimeModel

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
+from tests.tools.drive import Found, Lost, told
+
 from rvmon import native
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.packed_plan import PlannedCore, planned_core
@@ -12,7 +14,6 @@ from rvmon.monitor.records import report_of_run
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample
 from rvmon.verdicts.attempt import Attempt
-from tests.tools.drive import Found, Lost, told
 
 HEAD = 32
 """Bytes of the head of a snapshot; the last eight are the hash of what follows."""

@@ -1,20 +1,10 @@
-"""Models damaged at random: a reader refuses them or reads them, and never stumbles."""
+"""Inputs damaged at random, piece by piece: a reader refuses them or reads them."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from pathlib import Path
 from random import Random
-
-from rvmon.errors import ModelError
-from rvmon.models.language.load import load_network, loads_network
-from rvmon.models.search.budget import Budget
-from rvmon.models.search.verify import verify
-from rvmon.models.uppaal_xml import network_dot, uppaal_xml
-
-SMALL = Budget(states=300, seconds=5.0)
-"""What each query of a damaged model may cost."""
 
 TOKENS = b"""
 automaton query location invariant start edge when on do select system unit signal weight as
@@ -23,21 +13,21 @@ or not true false E<> A[] A<> E[] EF AG --> [<=3] -> == != <= >= ++ -- += := ! ?
 ( ) { } [ ] , ; : . ' " * / % + - 0 1 -1 7 99999999999999999999 0.5 x y i P0 l0
 <template> </template> <location> <nta> </nta> &lt; &gt; &amp; &x; <![CDATA[ ]]> <!-- -->
 """.split()
-"""Words that both text forms give a meaning to, and some that they do not."""
+"""Words that the text forms of models give a meaning to, and some that they do not."""
 
 _PIECE = re.compile(rb"([A-Za-z_]\w*)|(\d+)|(\s+)|([^\w\s]+)|(_)")
-"""What a model is made of: words, numbers, space, signs."""
+"""What a text is made of: words, numbers, space, signs."""
 
 _NUMBERS = (b"0", b"1", b"3", b"-1", b"100", b"9999", b"16777216", b"2147483648")
 
 
 def damaged(data: bytes, random: Random, others: Sequence[bytes]) -> bytes:
-    """A model with one to five changes of pieces: of another kind, none, often, from elsewhere.
+    """An input with one to five changes of pieces: of another kind, none, often, from elsewhere.
 
     Args:
-        data: of the model.
+        data: of the input.
         random: the source of all choices.
-        others: models that pieces are taken from.
+        others: inputs that pieces are taken from.
     """
     pieces = _pieces(data)
     for _ in range(random.choice((1, 1, 1, 1, 2, 5))):
@@ -63,33 +53,5 @@ def damaged(data: bytes, random: Random, others: Sequence[bytes]) -> bytes:
 
 
 def _pieces(data: bytes) -> list[tuple[int, bytes]]:
-    """The pieces of a model, each with its kind."""
+    """The pieces of an input, each with its kind."""
     return [(found.lastindex or 0, found[0]) for found in _PIECE.finditer(data)]
-
-
-def survives(path: Path) -> str:
-    """Read a file as a model and do with it what can be done; how far that went.
-
-    Any exception but `ModelError` is a fault of the reader, or of the checker, and is not caught.
-
-    Returns:
-        `refused`, `stopped` (a query or a run of it is refused) or `checked`.
-    """
-    try:
-        network = load_network(path)
-    except ModelError as error:
-        return _told(error, "refused")
-    network_dot(network)
-    try:
-        loads_network(uppaal_xml(network))
-        for query in network.queries[:3]:
-            verify(network, query, budget=SMALL)
-    except ModelError as error:
-        return _told(error, "stopped")
-    return "checked"
-
-
-def _told(error: ModelError, end: str) -> str:
-    if not error.diagnostics:
-        raise error  # people would see nothing
-    return end
