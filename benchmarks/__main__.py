@@ -9,7 +9,7 @@ BENCHMARKS = {
     "differential": "ours against something independent, on random cases",
     "peers": "what other monitors say of the same formulas, and of the same faults",
     "core_mutants": "does the core's C hold a line that no test needs?",
-    "models": "the model checker: states and time, and whose models it reads",
+    "models": "the model checker: states and time, beside TChecker",
     "table1": "Table 1 over many seeds, and whether runs conform to the model",
     "testbench": "faults that are seen, holes that are closed, failures that are shrunk",
     "endurance": "a monitor that lives long, and processes that are killed",

@@ -8,9 +8,9 @@ come again, NaN, a signal that becomes stale. How many attempts pass and fail in
 known, and compared at the end. Prints memory after each tenth, the times of steps with the time to
 ask the clock, and what is said where time itself ends, at 2^62 ns.
 
-`kills` begins runs that are kept (`rvmon watch --state`, a program with a `DurableMonitor`,
-`rvmon run --resume`, shards, a campaign) again after each kill at a random point until they end:
-what they write is compared with what they write undisturbed. Exits 1 if anything is wrong.
+`kills` begins runs that are kept (`rvmon watch --state`, `rvmon run --resume`, shards, a campaign)
+again after each kill at a random point until they end: what they write is compared with what they
+write undisturbed. Exits 1 if anything is wrong.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
@@ -164,7 +164,6 @@ def soak(*, samples: int = 1_000_000, only: Sequence[str] = (*KNOWN,)) -> int:
     return int(wrong > 0 or not whole)
 
 
-WATCH = "rvmon watch --state"
 _JUDGE = "rvmon run s.rv . --out out/v.csv --resume"
 RESUMED = {
     "rvmon run --resume": [_JUDGE],
@@ -238,15 +237,11 @@ def _resumed(kind: str, folder: Path, kills: int, dice: random.Random) -> Counte
     return found
 
 
-def _watched(kind: str, folder: Path, kills: int, dice: random.Random) -> Counter[str]:
+def _watched(_: str, folder: Path, kills: int, dice: random.Random) -> Counter[str]:
     """Verdicts of lines, told by lives that are killed, beside those of one that is not."""
     seed = dice.randrange(1 << 30)
     killed_watch.written(folder, seed, 40 * kills)
-    expected = killed_watch.whole(folder)
-    run: Callable[[], object] = partial(cli.main, killed_watch.WATCH.split(" "))
-    if kind != WATCH:
-        run = partial(killed_watch.program, folder)
-    found, done = killed_watch.killed(folder, kills, seed, run)
+    expected, found, done = killed_watch.killed(folder, kills, seed)
     return Counter(
         {
             "kills": done,
@@ -258,7 +253,7 @@ def _watched(kind: str, folder: Path, kills: int, dice: random.Random) -> Counte
     )
 
 
-KINDS = {**dict.fromkeys(RESUMED, _resumed), **dict.fromkeys((WATCH, "DurableMonitor"), _watched)}
+KINDS = {**dict.fromkeys(RESUMED, _resumed), "rvmon watch --state": _watched}
 WRONG = ("changed", "left behind", "lost", "of nobody")
 """What must not be counted."""
 

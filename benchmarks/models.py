@@ -1,8 +1,7 @@
-"""The model checker: what textbook networks and the handover cost, and whose models it reads.
+"""The model checker: what textbook networks and the handover cost, beside TChecker.
 
     python -m benchmarks.models cost [--seconds 60] [--repeat 3]
     python -m benchmarks.models tchecker PATH/TO/tck-reach MODEL…
-    python -m benchmarks.models originals FOLDER [--seconds 2] [--most 200]
 
 `cost` prints symbolic states visited and stored, seconds of CPU (the least of some searches) and
 bytes of memory for each stored state, each network in a process of its own.
@@ -10,23 +9,15 @@ bytes of memory for each stored state, each network in a process of its own.
 `tchecker` searches the same models, edge by edge, by TChecker (`aLU-covreach`), too: a MODEL is a
 file of TChecker's, as the scripts of its examples write them. Its memory is that of its whole
 process, ours what the search added.
-
-For `originals`, FOLDER holds clones of the repositories of `uppaal_originals.txt`, which has a line
-for each repository (its name, and the commit that was looked at) and below it one for each model:
-the first 16 digits of its SHA-256, and its path. A file is known by its content, wherever it lies;
-the models are not ours and stand in no repository of ours. Prints how many are read, and refused by
-reason, and how many of their queries are decided, undecided within the time, and left out.
 """
 
 from __future__ import annotations
 
-import hashlib
 import json
 import re
 import resource
 import sys
 import time
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -35,22 +26,14 @@ from benchmarks.process import measured
 from benchmarks.program import program
 
 from handover.model import handover_network
-from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import load_network, loads_network
-from rvmon.models.network import Chance, Extremes, Mean, Network, Query, Simulation
-from rvmon.models.runs.statistics import sample, trajectories
-from rvmon.models.search.budget import Budget, Meter
-from rvmon.models.search.extremes import extremes
+from rvmon.models.network import Network, Query
+from rvmon.models.search.budget import Budget
 from rvmon.models.search.verify import verify
 
 HERE = Path(__file__).parent
 MODELS = HERE.parent / "examples" / "models"
-MANIFEST = HERE / "uppaal_originals.txt"
-_MODEL = re.compile(r"  ([0-9a-f]{16}) (.+)")
-_WORDS = re.compile(r" \(\d+ places\)|`[^`]*`|\d+")
-"""What differs between findings of one kind."""
-
 COLLISION = "E<> Station(1).Transm and Station(2).Transm and Bus.Idle"
 """Of CSMA/CD, as TChecker asks it: the model's own query compares clocks."""
 
@@ -142,59 +125,6 @@ def tchecker(
         print(f"{their:10,} {done.cpu:8.2f} {used / their:8.0f} {times:6.1f}", flush=True)
 
 
-def known() -> dict[str, str]:
-    """The path of each model of the manifest, by its hash."""
-    lines = MANIFEST.read_text("utf-8").splitlines()
-    return {found[1]: found[2] for line in lines if (found := _MODEL.fullmatch(line))}
-
-
-def _end(network: Network, query: Query, budget: Budget) -> str:
-    """What comes of a query."""
-    try:
-        match query.formula:
-            case Chance() | Mean():
-                sample(network, query, watch=Meter(budget, None).goes_on)
-                return "simulated"
-            case Simulation():
-                trajectories(network, query, watch=Meter(budget, None).goes_on)
-                return "simulated"
-            case Extremes():
-                exact = all(one.exact for one in extremes(network, query, budget=budget))
-                return "decided" if exact else "undecided"
-            case _:
-                outcome = verify(network, query, budget=budget)
-                return "undecided" if outcome.holds is None else "decided"
-    except ModelError:
-        return "refused"
-
-
-def originals(folder: Path, *, seconds: float = 2.0, most: int | None = None) -> None:
-    """Models of public repositories: how many are read, and their queries decided in time."""
-    models, seen = known(), set[str]()
-    read, reasons, queries = 0, Counter[tuple[str, str]](), Counter[str]()
-    for path in sorted(folder.rglob("*.xml")):
-        if not path.is_file() or (most and len(seen) >= most):
-            continue
-        name = hashlib.sha256(path.read_bytes()).hexdigest()[:16]
-        if name not in models or name in seen:
-            continue
-        seen.add(name)
-        try:
-            network = load_network(path)
-        except ModelError as error:
-            reasons.update({(d.code, _WORDS.sub("", d.message)) for d in error.diagnostics})
-            continue
-        read += 1
-        queries["left out"] += sum(warning.code == "TA020" for warning in network.warnings)
-        for query in network.queries:
-            queries[_end(network, query, Budget(seconds=seconds))] += 1
-    print(f"{len(models)} models in the manifest, {len(seen)} found, {read} read")
-    for (code, reason), count in reasons.most_common(20):
-        print(f"  {count:5}  {code} {reason}")
-    for end, count in queries.most_common():
-        print(f"{count:6} queries {end}")
-
-
 def translated(text: str) -> str:
     """A model of TChecker as `.ta` text, with the query that its labels ask.
 
@@ -271,4 +201,4 @@ def _attributes(text: str) -> tuple[list[str], dict[str, str]]:
 
 
 if __name__ == "__main__":
-    sys.exit(program(__doc__, cost, one, tchecker, originals))
+    sys.exit(program(__doc__, cost, one, tchecker))

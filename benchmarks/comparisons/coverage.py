@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Sequence
 from itertools import product
 
-from tests.tools.watched import with_random_coverage
+from tests.tools.random_specs import with_random_coverage
 
 from rvmon.coverage import combination
 from rvmon.coverage.monitor import SpecCoverage

@@ -22,7 +22,7 @@ from tests.tools.build import scaled
 from tests.tools.common_fragment import EVER, to_core
 from tests.tools.drive import drive
 from tests.tools.forms import FORMS, Compiler, Maker
-from tests.tools.generate_ltl import random_mtl
+from tests.tools.random_specs import random_mtl
 
 from rvmon.language.checked.formula import (
     Binary,

@@ -13,17 +13,17 @@ import numpy as np
 from benchmarks.comparisons.comparison import Comparison, Found
 from benchmarks.comparisons.coverage import judge_hits
 from benchmarks.comparisons.long_traces import Long, judge_long
-from benchmarks.comparisons.unrolled import unrolled
+from tests.tools.common_fragment import unrolled
 from tests.tools.compare import Key
 from tests.tools.differential import campaign, case_of, cases_of, shrunk_case
 from tests.tools.doors import content_of, whole
 from tests.tools.drive import Found as Gained
 from tests.tools.drive import Lost, Told, told
 from tests.tools.forms import Compiler, Maker
-from tests.tools.generate_ltl import random_ltl, random_mtl
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge as oracle
 from tests.tools.ltl3 import Letter, Tableau
+from tests.tools.random_specs import random_ltl, random_mtl
 from tests.tools.sound import is_spoken_of, narrowed, overturned
 
 from rvmon.errors import RvmonError

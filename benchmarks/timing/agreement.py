@@ -1,22 +1,20 @@
 """Whether two sides judge alike, before their times are set side by side.
 
-The formulas of a workload are judged at every row of its last rows, where the Timescales families
-are violated, and of traces that were damaged at random, so that both verdicts occur: ours by the
-monitor that is measured, the peer by its own, on as many rows as it judges in a given time. rtamt,
-which is timed on the past, is stepped for that.
+The first formula of a workload is judged at every row of its last rows, where the Timescales
+families are violated: ours by the monitor that is measured, the peer by its own, on as many rows as
+it judges in a given time. rtamt, which is timed on the past, is stepped for that. On random
+formulas and traces they are compared by `benchmarks.differential peers`.
 """
 
 from __future__ import annotations
 
-import random
-from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.environment import Environment
-from benchmarks.peers.ways import RTAMT_STEPPED, WAYS, Cell, Question, Way, answers, ask_monitor
+from benchmarks.peers.ways import RTAMT_STEPPED, WAYS, Question, answers, ask_monitor
 from benchmarks.timing.race import PEERS, Figure, margin_text
 from benchmarks.timing.workload import Size, Workload
 from tests.tools.common_fragment import UntranslatableError
@@ -30,9 +28,6 @@ WAYS_OF = {entry.label: entry.way for entry in PEERS} | {"rtamt": RTAMT_STEPPED}
 """Who is asked for the verdicts of which contender; the native reelay is the same program."""
 
 MOST_ROWS = 4000
-MOST_DAMAGED = 40
-"""So many damaged traces are tried until ours is FALSE on one."""
-
 MEASURED_ROWS = 2_000
 """Of which all figures of robustness are compared."""
 
@@ -55,15 +50,6 @@ def by_peer(label: str) -> str:
     return label.split()[0].rstrip(",")
 
 
-class _Case:
-    """A trace, and what we say of it at every row."""
-
-    def __init__(self, question: Question) -> None:
-        self.question = question
-        self.answers = answers(question, ask_monitor)
-        self.falses = self.answers.count(False)
-
-
 def peers_in(environment: Environment) -> dict[str, Peer]:
     """Who can be asked, by the label under which it is timed."""
     return {
@@ -82,96 +68,34 @@ def compare(
         workload: the measured workload.
         timed: the figures: a peer gets as many rows as it judges in the time.
         peers: the other monitors, by label.
-        size: the number of traces, and the time for which a peer may judge.
+        size: the time for which a peer may judge.
     """
-    name, form = workload.name, workload.form
-    try:
-        cases = list(_cases(workload, size.traces))
-    except RvmonError as error:
-        yield Agreement("rvmon", name, form, remark=str(error).splitlines()[0])
-        return
+    about = Agreement("rvmon", workload.name, workload.form)
+    formula = workload.formulas[0]
+    bound = max((max(i.low, i.high or 0) for i in intervals(formula)), default=0)
     costs = {by_peer(figure.label): figure.median for figure in timed}
     for label in [one for one in peers if one in costs]:
+        about = replace(about, label=label)
         fitting = int(size.step_seconds * 1e9 / costs[label])
-        asked = [*_fitting(cases, _bound(workload), fitting)]
-        if asked:
-            yield _compared(Agreement(label, name, form), WAYS_OF[label], peers[label], asked)
-        else:
-            text = f"{form}: no bound fails on the rows that it judges in {size.step_seconds:g} s"
-            yield Agreement(label, name, form, remark=text)
-
-
-def _fitting(cases: Sequence[_Case], bound: int, rows: int) -> Iterator[_Case]:
-    """Cases of so many rows in all, those first where ours is FALSE most often; the ends of them.
-
-    A trace has to be longer than the formula's bound.
-    """
-    for case in sorted(cases, key=lambda case: case.falses, reverse=True):
-        taken = min(rows, case.question.ticks)
-        if taken > bound:
-            rows -= taken
-            ends = (slice(taken), slice(-taken, None)) if taken < case.question.ticks else ()
-            parts = [_Case(_part(case.question, one)) for one in ends] or [case]
-            yield max(parts, key=lambda part: part.falses)
-
-
-def _compared(about: Agreement, way: Way, peer: Peer, cases: Sequence[_Case]) -> Agreement:
-    count: Counter[str] = Counter()
-    for case in cases:
+        rows = min(max(300, 3 * bound), MOST_ROWS, workload.rows, fitting)
+        if rows <= bound:
+            text = f"no bound fails on the rows that it judges in {size.step_seconds:g} s"
+            yield replace(about, remark=f"{workload.form}: {text}")
+            continue
+        columns = {name: workload.columns[name][-rows:] for name in sorted({*names_read(formula)})}
+        question = Question(formula, columns)
         try:
-            theirs = way.truths(peer, case.question)
-        except (PeerError, UntranslatableError) as error:
-            return replace(about, remark=str(error))
-        for own, other in zip(case.answers, theirs, strict=True):
-            if own is not None and other is not None:
-                count.update(compared=1, equal=own is other, false=not own)
-    return replace(about, equal=count["equal"], compared=count["compared"], false=count["false"])
-
-
-def _cases(workload: Workload, traces: int) -> Iterator[_Case]:
-    """So many damaged traces, the first further one on which ours is FALSE, and the last rows."""
-    formula = workload.formulas[0]
-    read = {*names_read(formula)}
-    columns = {name: one for name, one in workload.columns.items() if name in read}
-    whole = Question(formula, columns)
-    rows = min(max(300, 3 * _bound(workload)), MOST_ROWS, workload.rows)
-    seen = False
-    for seed in range(MOST_DAMAGED):
-        if seed >= traces and seen:
-            break
-        case = _Case(_damaged(_part(whole, slice(rows)), f"{workload.name}/{seed}"))
-        seen = seen or case.falses > 0
-        if seed < traces or seen:
-            yield case
-    yield _Case(_part(whole, slice(-rows, None)))
-
-
-def _bound(workload: Workload) -> int:
-    found = (max(i.low, i.high or 0) for f in workload.formulas[:1] for i in intervals(f))
-    return max(found, default=0)
-
-
-def _part(question: Question, rows: slice) -> Question:
-    """Some of the rows of a trace, which are a trace themselves."""
-    columns = {name: column[rows] for name, column in question.columns.items()}
-    return replace(question, columns=columns)
-
-
-def _damaged(question: Question, seed: str) -> Question:
-    """The rows with single cells turned over and stretches of a column held."""
-    rng, rows = random.Random(seed), question.ticks
-    columns: dict[str, list[Cell]] = {n: list(column) for n, column in question.columns.items()}
-    for column in columns.values():
-        flips = rng.choice((0.0, 0.002, 0.02))
-        for row in range(rows):
-            if rng.random() < flips:
-                value = column[row]
-                column[row] = not value if isinstance(value, bool) else rng.uniform(-2.0, 2.0)
-        if rng.random() < 0.5:
-            start = rng.randrange(rows)
-            length = min(rng.randint(1, rows // 2), rows - start)
-            column[start : start + length] = [column[start]] * length
-    return replace(question, columns=columns)
+            pairs = zip(
+                answers(question, ask_monitor),
+                WAYS_OF[label].truths(peers[label], question),
+                strict=True,
+            )
+            both = [pair for pair in pairs if None not in pair]
+        except (PeerError, UntranslatableError, RvmonError) as error:
+            yield replace(about, remark=str(error).splitlines()[0])
+            continue
+        equal, false = sum(own is its for own, its in both), sum(not own for own, _ in both)
+        yield replace(about, equal=equal, compared=len(both), false=false)
 
 
 def margins_alike(workload: Workload, environment: Environment) -> Iterator[Agreement]:

@@ -54,7 +54,6 @@ class Size:
     longest: int = 300_000  # rows of the traces on which deadlines grow
     bounds: tuple[int, ...] = timescales.BOUNDS  # of the Timescales families
     counts: tuple[int, ...] = (10, 100, 1000)  # of monitors on one stream
-    traces: int = 2  # damaged ones per agreement
     step_seconds: float = 30  # that a peer may step on one workload to be compared
     repeats: int = 5  # passes of each contender
     processes: int = 3  # of each program, beside a first one that does not count
@@ -63,7 +62,7 @@ class Size:
     pass_seconds: float = 0.1  # what one pass may take; slow contenders get fewer rows
 
 
-QUICK = Size(5_000, 100_000, 20_000, (10, 1000), (10, 100), 1, 10, 3, 2, 1_000_000, 40, 0.05)
+QUICK = Size(5_000, 100_000, 20_000, (10, 1000), (10, 100), 10, 3, 2, 1_000_000, 40, 0.05)
 
 
 def formula(text: str, bools: str = "p, q, r, s", reals: str = "") -> Formula:

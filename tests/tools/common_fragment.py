@@ -1,7 +1,11 @@
-"""The common fragment: the few operators in which every formula of ours is given to a peer."""
+"""The common fragment: the few operators in which every formula of ours is given to a peer.
+
+For who knows no bounds they can be taken away.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 from rvmon.language.checked.formula import (
@@ -21,6 +25,7 @@ from rvmon.language.checked.formula import (
     UnaryOp,
 )
 from rvmon.language.checked.rewrite import Formulas, read
+from tests.tools.build import with_operands
 
 EVER = Interval(0, None)
 _KEPT = (UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, UnaryOp.ONCE, UnaryOp.HISTORICALLY)
@@ -59,3 +64,54 @@ def to_core(formula: Formula) -> Formula:
             return read(formula, to_core, Formulas())
         case Amount() | Passed():
             raise ValueError("it counts")
+
+
+def unrolled(formula: Formula) -> Formula:
+    """The same formula without bounds, where every tick is a position: windows as nests of `X`.
+
+    >>> from tests.tools.build import eventually, p
+    >>> from rvmon.language.print import format_formula
+    >>> format_formula(unrolled(eventually(p, 1, 2)))
+    'next (p or next p)'
+    """
+    return _unrolled(to_core(formula))
+
+
+def _unrolled(formula: Formula) -> Formula:
+    match formula:
+        case Unary(op=UnaryOp.EVENTUALLY | UnaryOp.ALWAYS, operand=operand, interval=interval):
+            join = either if formula.op is UnaryOp.EVENTUALLY else both
+            return _windowed(formula.op, join, _unrolled(operand), interval or EVER)
+        case Binary(op=BinaryOp.UNTIL, left=left, right=right, interval=interval):
+            return _until(_unrolled(left), _unrolled(right), interval or EVER)
+        case _:
+            return with_operands(formula, _unrolled)
+
+
+def _windowed(
+    op: UnaryOp, join: Callable[[Formula, Formula], Formula], operand: Formula, window: Interval
+) -> Formula:
+    later = _earlier(window)
+    if window.low:
+        return Unary(UnaryOp.NEXT, _windowed(op, join, operand, later))
+    if window.high is None:
+        return Unary(op, operand)
+    if window.high == 0:
+        return operand
+    return join(operand, Unary(UnaryOp.NEXT, _windowed(op, join, operand, later)))
+
+
+def _until(left: Formula, right: Formula, window: Interval) -> Formula:
+    later = _earlier(window)
+    if window.low:
+        return both(left, Unary(UnaryOp.NEXT, _until(left, right, later)))
+    if window.high is None:
+        return Binary(BinaryOp.UNTIL, left, right)
+    if window.high == 0:
+        return right
+    return either(right, both(left, Unary(UnaryOp.NEXT, _until(left, right, later))))
+
+
+def _earlier(window: Interval) -> Interval:
+    """The window as it is at the next tick."""
+    return Interval(max(window.low - 1, 0), None if window.high is None else window.high - 1)

@@ -26,8 +26,8 @@ from tests.tools.online import (
     is_silent,
     online_differences,
 )
+from tests.tools.random_specs import random_chain, random_letters
 from tests.tools.shrink import shrink
-from tests.tools.special_specs import random_chain, random_letters
 
 MANY = 20
 """Requirements that are many."""

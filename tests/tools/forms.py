@@ -79,14 +79,14 @@ class Maker:
         settle = "next" if "next" in self._ways else "now"
         monitor: Any = build_monitor(compiled, settle=settle, sources=case.names)
         if "interrupt" in self._ways:
-            monitor = Interrupted(monitor, rng)
+            monitor = Interrupted(monitor, rng, share=rng.choice((0.1, 1)))
         return HeldBack(monitor, case.spec, rng) if settle == "next" else Stepped(monitor, rng)
 
 
 class Interrupted:
-    """Before some of the calls, a monitor is replaced by the one that its snapshot gives."""
+    """Before some calls, or all, a monitor is replaced by the one that its snapshot gives."""
 
-    def __init__(self, monitor: Monitor, rng: random.Random, share: float = 0.1) -> None:
+    def __init__(self, monitor: Monitor, rng: random.Random, share: float) -> None:
         self._monitor = monitor
         self._rng = rng
         self._share = share

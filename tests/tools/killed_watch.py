@@ -8,22 +8,15 @@ import random
 import signal
 import sys
 import time
-from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import redirect_stderr, redirect_stdout, suppress
-from io import StringIO
+from contextlib import suppress
+from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
-from rvmon import loads
-from rvmon.adapters.json_objects import decoded_object
 from rvmon.cli import main
-from rvmon.errors import TraceError
-from rvmon.live import DurableMonitor, Judgement
-from rvmon.recordings.jsonl_rows import read_object
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND
-from rvmon.verdicts.attempt import Attempt
 from tests.tools.servers import LONG
 
 
@@ -128,11 +121,9 @@ def written(folder: Path, seed: int, count: int) -> None:
     """Write the specification and lines, of which some are none."""
     rng = random.Random(seed)
     (folder / "kept.rv").write_text(SPEC)
-    with (folder / "lines.jsonl").open("w") as file:
-        for t, values in samples(rng, count):
-            file.write(json.dumps({"t_ns": t, **values}) + "\n")
-            if rng.random() < 0.005:
-                file.write("torn {\n")
+    lines = [json.dumps({"t_ns": t, **values}) for t, values in samples(rng, count)]
+    torn = (f"{line}\ntorn {{\n" if rng.random() < 0.005 else f"{line}\n" for line in lines)
+    (folder / "lines.jsonl").write_text("".join(torn))
 
 
 def told(lines: Iterable[str], known: Verdicts) -> Verdicts:
@@ -145,53 +136,20 @@ def told(lines: Iterable[str], known: Verdicts) -> Verdicts:
     return known
 
 
-def whole(folder: Path) -> Verdicts:
-    """What it tells that nobody kills, in this process."""
-    files = (str(folder / name) for name in ("kept.rv", "lines.jsonl", "whole.state"))
-    spec, lines, state = files
-    with (
-        (folder / "whole.out").open("w") as file,
-        redirect_stdout(file),
-        redirect_stderr(StringIO()),
-    ):
-        main(["watch", spec, lines, "--state", state, "--format", "json"])
-    return told((folder / "whole.out").read_text().splitlines(keepends=True), {})
+WATCH = "watch kept.rv lines.jsonl --state {} --format json"
 
 
-WATCH = "watch kept.rv lines.jsonl --state killed.state --format json"
-
-
-def program(folder: Path) -> None:
-    """What a program does that has its samples kept, instead of `rvmon watch --state`."""
-    spec = loads(SPEC)
-
-    def tell(number: int, attempt: Attempt) -> None:
-        told = {"number": number, **Judgement("", 1, attempt).to_dict()}
-        print(json.dumps(told), flush=True)
-
-    monitor = DurableMonitor(
-        spec, folder / "killed.state", tell, every=50, keep=1000, settle="next"
-    )
-    lines = [one for one in (folder / "lines.jsonl").read_bytes().splitlines() if one.strip()]
-    for line in lines[monitor.taken :]:
-        try:
-            t, values = read_object(decoded_object(line), spec.schema, Counter())
-        except TraceError:
-            monitor.miss()
-            continue
-        with suppress(TraceError):
-            monitor.step_ns(t, values)
-    monitor.save()
-
-
-def killed(folder: Path, kills: int, seed: int, run: Callable[[], object]) -> tuple[Verdicts, int]:
-    """What it tells in all where it is killed, and how often it was before it came to the end."""
+def killed(folder: Path, kills: int, seed: int) -> tuple[Verdicts, Verdicts, int]:
+    """What it tells that nobody kills, what in all where it is killed, and how often it was."""
     rng, found, done = random.Random(seed), Verdicts(), 0
-    each = max(1, (folder / "whole.out").stat().st_size // (kills + 1))
+    whole = Forked(partial(main, WATCH.format("whole.state").split()), folder, folder / "told")
+    whole.kill_when(lambda: False)
+    expected, each = told(whole.lines(), {}), max(1, len("".join(whole.lines())) // (kills + 1))
     while True:
-        process = Forked(run, folder, folder / "killed.out")
+        run = partial(main, WATCH.format("killed.state").split())
+        process = Forked(run, folder, folder / "told")
         after = rng.randrange(1, 2 * each) if done < kills else NEVER
         done += process.kill_behind(after)
         told(process.lines(), found)
         if process.code != -signal.SIGKILL:
-            return found, done
+            return expected, found, done

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from lark import Lark, Transformer
 from tests.tools.build import requirement, spec_of, start
-from tests.tools.generate_ltl import random_ltl
 from tests.tools.ltl3 import Tableau
+from tests.tools.random_specs import random_ltl
 
 from rvmon import loads
 from rvmon.analysis.hoa import hoa

@@ -13,7 +13,7 @@ from tests.rvmon.core.test_outages import planned
 from tests.tools.differential import case_of
 from tests.tools.drive import Found, Lost
 from tests.tools.forms import Compiler
-from tests.tools.special_specs import random_chain
+from tests.tools.random_specs import random_chain
 
 from rvmon.language.checked.specification import TimeModel
 from rvmon.monitor.compiled_spec import compile_spec

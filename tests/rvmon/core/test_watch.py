@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 from tests.rvmon.core.plan_reader import Plan, layouts, with_numbers
-from tests.tools.watched import truths_plan, with_random_coverage
+from tests.tools.random_specs import truths_plan, with_random_coverage
 
 import rvmon
 from rvmon.core.pack import pack

@@ -4,7 +4,7 @@ import json
 import random
 
 import pytest
-from tests.tools.watched import with_random_coverage
+from tests.tools.random_specs import with_random_coverage
 
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile

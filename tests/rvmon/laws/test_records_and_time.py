@@ -6,7 +6,7 @@ from itertools import accumulate
 
 import pytest
 from tests.tools.build import requirement, spec_of
-from tests.tools.generate_ltl import random_mtl
+from tests.tools.random_specs import random_mtl
 
 from rvmon.language.checked.formula import EventAtom
 from rvmon.language.checked.specification import TimeModel

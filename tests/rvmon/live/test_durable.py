@@ -1,7 +1,6 @@
 """A run that goes on where its process was killed: no verdict is lost, changed or of nobody."""
 
 import random
-from functools import partial
 
 import pytest
 from tests.tools import killed_watch
@@ -141,9 +140,7 @@ def test_a_watch_goes_on_in_no_other_file(tmp_path, says, rows, is_same):
 @pytest.mark.process
 def test_a_watch_that_is_killed_goes_on(tmp_path):
     killed_watch.written(tmp_path, seed=1, count=150)
-    expected = killed_watch.whole(tmp_path)
-    watch = partial(main, killed_watch.WATCH.split(" "))
-    found, kills = killed_watch.killed(tmp_path, kills=3, seed=1, run=watch)
+    expected, found, kills = killed_watch.killed(tmp_path, kills=3, seed=1)
     assert kills > 0
     assert len(expected) > 50
     assert found == expected
