@@ -162,14 +162,11 @@ def _conclude(item: pytest.Item, judge: Judge) -> None:
 
 def _explained(report: Report, spec: Spec, wrong: list[str]) -> str:
     """An explanation of these requirements for people."""
-    import io
-
-    from rvmon.report.printer import Printer
+    from rvmon.report.printer import text_of
     from rvmon.report.run_text import print_report
 
-    text = io.StringIO()
-    print_report(report, spec.checked, Printer(text, width=100))
-    return f"not as wanted: {', '.join(wrong)}\n{text.getvalue().strip()}"
+    text = text_of(lambda printer: print_report(report, spec.checked, printer))
+    return f"not as wanted: {', '.join(wrong)}\n{text.strip()}"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -10,7 +10,6 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from rvmon.cdv.campaign_plan import Results
 from rvmon.cdv.campaign_summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary
@@ -24,15 +23,10 @@ from rvmon.cdv.tables import (
 )
 from rvmon.cdv.test import save
 from rvmon.files import write_whole
-from rvmon.report.table import table_latex, table_text, tables_csv
+from rvmon.report.printer import Cell, Printer, text_of
+from rvmon.report.table import print_table, table_latex, tables_csv
 from rvmon.texts import percent_text
 from rvmon.verdicts import Verdict
-
-if TYPE_CHECKING:
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
 
 _WIDE = 12
 """Characters beyond which a strategy's name goes to two lines, if it has a hyphen."""
@@ -41,7 +35,7 @@ _WIDE = 12
 def print_summary(
     summary: CampaignSummary,
     tables: Mapping[str, RobotTables],
-    console: Console,
+    printer: Printer,
     foremost: Sequence[str] = (),
 ) -> None:
     """Print requirements, the tables of all robots, the coverage of their code, known answers.
@@ -49,25 +43,25 @@ def print_summary(
     Args:
         summary: the campaign's figures.
         tables: its verdicts, by robot.
-        console: to print on.
+        printer: prints it.
         foremost: requirements that are shown, and in short; default: all, with all that there is.
     """
     for name, text in next(iter(summary.robots.values())).requirements.items():
         if not foremost or name in foremost:
-            console.print(_named(name, text))
-    console.print()
+            printer.line((name, "bold"), f"  {text}")
+    printer.line()
     if foremost:
         for robot, figures in reversed([*summary.robots.items()]):
-            _print_in_short(figures, tables[robot], foremost, console)
-        console.print(LEGEND, style="dim")
-        console.print()
+            _print_in_short(figures, tables[robot], foremost, printer)
+        printer.sentences(LEGEND, "dim")
+        printer.line()
         return
     for robot, figures in summary.robots.items():
         if figures.requirements and figures.strategies:
-            _print_verdicts(tables[robot], console)
-            console.print(LEGEND, style="dim")
-            console.print(INTERVALS, style="dim")
-            console.print()
+            _print_verdicts(tables[robot], printer)
+            printer.sentences(LEGEND, "dim")
+            printer.sentences(INTERVALS, "dim")
+            printer.line()
         under = figures.strategies.values()
         measured = {
             ("statements", "that ran"): [strategy_summary.statements for strategy_summary in under],
@@ -77,25 +71,24 @@ def print_summary(
         }
         for (what, how), columns in measured.items():
             if any(columns):
-                console.print(f"{figures.title}: {what} of its code {how}", style="bold")
+                printer.line((f"{figures.title}: {what} of its code {how}", "bold"))
                 heads = summary.kind, what, *figures.strategies
-                console.print(_shares(heads, columns))
-                console.print()
+                _print_shares(heads, columns, printer)
     for figures in summary.robots.values():
         for line in _known(figures):
-            console.print(line)
+            printer.sentences(line)
 
 
 def _print_in_short(
-    figures: RobotSummary, tables: RobotTables, foremost: Sequence[str], console: Console
+    figures: RobotSummary, tables: RobotTables, foremost: Sequence[str], printer: Printer
 ) -> None:
     for line in _known(figures):
-        console.print(line)
+        printer.sentences(line)
     whole = [sum(strategy.statements.values(), NOTHING) for strategy in figures.strategies.values()]
     if any(coverage.statements for coverage in whole):
         shares = zip(figures.strategies, map(_share, whole), strict=True)
         listed = ", ".join(f"{name} {share}" for name, share in shares)
-        console.print(f"{figures.title}: statements of its code that ran: {listed}")
+        printer.sentences(f"{figures.title}: statements of its code that ran: {listed}")
     if not (figures.requirements and figures.strategies):
         return
     counts = _together(figures)
@@ -111,10 +104,10 @@ def _print_in_short(
         shows_intervals=False,
     )
     control = tables.control and replace(tables.control, shows_intervals=False)
-    _print_verdicts(replace(tables, own=shown, control=control), console)
+    _print_verdicts(replace(tables, own=shown, control=control), printer)
     if rest:
         passed = sum(bool(verdicts[Verdict.PASS]) for verdicts in rest.values())
-        console.print(
+        printer.sentences(
             f"{len(rest)} further requirements: {passed} passed wherever they were triggered, "
             f"{len(rest) - passed} never were; with --out all of them are in table.txt.\n"
         )
@@ -134,37 +127,29 @@ def _together(figures: RobotSummary) -> dict[str, Counter[Verdict]]:
     return counts
 
 
-def _named(name: str, text: str) -> Text:
-    from rich.text import Text
-
-    return Text.assemble((name, "bold"), "  ", text)
-
-
-def _print_verdicts(tables: RobotTables, console: Console) -> None:
+def _print_verdicts(tables: RobotTables, printer: Printer) -> None:
     further = dict(tables.compared)
     if tables.control is not None and tables.control_label:
         further = {tables.control_label: tables.control, **further}
-    console.print(table_text(tables.own, further=further))
+    print_table(tables.own, printer, further=further)
     if tables.remark:
-        console.print(tables.remark, style="dim")
+        printer.sentences(tables.remark, "dim")
 
 
-def _shares(heads: Sequence[str], columns: Sequence[Mapping[str, BlockCoverage]]) -> Table:
-    """The share of each block that ran under each strategy."""
-    from rich import box
-    from rich.table import Table
-
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
-    table.add_column(heads[0], no_wrap=True)
-    for name in heads[1:]:
-        words = [name] if len(name) <= _WIDE else name.rsplit("-", 1)
-        table.add_column(" ".join(words), justify="right", min_width=max(map(len, words)))
-    for block, first in columns[0].items():
-        table.add_row(block, str(first.statements), *(_share(one[block]) for one in columns))
-    table.add_section()
+def _print_shares(
+    heads: Sequence[str], columns: Sequence[Mapping[str, BlockCoverage]], printer: Printer
+) -> None:
+    """Print the share of each block that ran under each strategy."""
+    split = [name.rpartition("-") if len(name) > _WIDE else ("", "", name) for name in heads]
+    over = [before for before, _, _ in split] if any(sign for _, sign, _ in split) else []
+    rows: list[Sequence[Cell]] = [
+        (block, str(first.statements), *(_share(one[block]) for one in columns))
+        for block, first in columns[0].items()
+    ]
     totals = [sum(one.values(), NOTHING) for one in columns]
-    table.add_row("all", str(totals[0].statements), *map(_share, totals), style="bold")
-    return table
+    foot = ["all", str(totals[0].statements), *map(_share, totals)]
+    names = [name for _, _, name in split]
+    printer.table(names, rows, range(1, len(heads)), over=over, foot=foot, wraps=(0,))
 
 
 def _share(block: BlockCoverage) -> str:
@@ -190,9 +175,6 @@ TEMPLATES = "templates"
 RUNS = "runs"
 """Folders of a campaign's folder."""
 
-TEXT_COLUMNS = 100
-"""Width of `table.txt`."""
-
 
 def write_tables(
     folder: Path,
@@ -204,7 +186,8 @@ def write_tables(
     named = {**named_tables(tables, summary.control), **presentation.further}
     latex = "\n".join(table_latex(table) for table in named.values())
     folder.mkdir(parents=True, exist_ok=True)
-    write_whole(folder / "table.txt", _plain_text(summary, tables))
+    text = text_of(lambda printer: print_summary(summary, tables, printer))
+    write_whole(folder / "table.txt", text)
     write_whole(folder / "table.csv", tables_csv(named, key="robot"))
     write_whole(folder / "table.tex", latex)
     write_whole(folder / "table.json", to_json(presentation.document(summary)))
@@ -246,16 +229,6 @@ def left_over(folder: Path, before: Mapping[Path, int]) -> str:
         f"files that this campaign did not write stay: {places}; who plays the folder plays those "
         "too: remove them, or name a new --out"
     )
-
-
-def _plain_text(summary: CampaignSummary, tables: Mapping[str, RobotTables]) -> str:
-    import io
-
-    from rvmon.report.terminal import Terminal
-
-    text = io.StringIO()
-    print_summary(summary, tables, Terminal(file=text, width=TEXT_COLUMNS, color_system=None))
-    return text.getvalue()
 
 
 def typed(program: str, words: Iterable[object]) -> str:

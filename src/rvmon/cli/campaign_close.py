@@ -3,26 +3,24 @@
 from __future__ import annotations
 
 import os
-import sys
 from argparse import Namespace
 from collections.abc import Sequence
 from dataclasses import replace
-from io import StringIO
 
 import msgspec
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_plan import Plan, Results
-from rvmon.cdv.campaign_text import TESTS, TEXT_COLUMNS, dated_files, left_over, typed
+from rvmon.cdv.campaign_text import TESTS, dated_files, left_over, typed
 from rvmon.cdv.close import MARGIN, Budget, Closed, close
 from rvmon.cdv.close.faults import with_mutants
 from rvmon.cdv.close.outcome import closed_document, print_closed
 from rvmon.cdv.gate import CampaignJudgement
 from rvmon.cdv.tables import to_json
-from rvmon.cli.campaign_run import written
+from rvmon.cli.campaign_run import page_printer, written
 from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.files import output_folder, write_whole
-from rvmon.report.terminal import Terminal
+from rvmon.report.printer import text_of
 
 
 def conduct_closing(
@@ -77,14 +75,15 @@ def conduct_closing(
     again = typed(campaign.program, [command, *amount, *others, "--out", arguments.out])
     conducted = written(_suite(campaign, arguments.seed, closed), specs, folder, arguments, again)
     if folder is not None:
-        write_whole(folder / "closing.txt", _text(closed))
+        text = text_of(lambda printer: print_closed(closed, printer))
+        write_whole(folder / "closing.txt", text)
         write_whole(folder / "closing.json", to_json(closed_document(closed)))
         if remark := left_over(folder, before):
             warn(remark)
     if arguments.format == "json":
         say_json(msgspec.json.encode(closed_document(closed)).decode())
     else:
-        print_closed(closed, Terminal() if sys.stdout.isatty() else Terminal(width=TEXT_COLUMNS))
+        print_closed(closed, page_printer())
         if folder is not None:
             replayed = typed(campaign.program, ["run", *others, "--suite", folder / TESTS])
             say(f"Play the suite again: {replayed}")
@@ -96,9 +95,3 @@ def _suite(campaign: Campaign, seed: int, closed: Closed) -> Results:
     plan = Plan(campaign, seed, {test.strategy: tests for test in tests})
     seconds = sum(played.outcome.seconds for played in closed.suite)
     return Results(plan, tuple(closed.suite), seconds, "", closed.groups, closed.proofs)
-
-
-def _text(closed: Closed) -> str:
-    text = StringIO()
-    print_closed(closed, Terminal(file=text, width=TEXT_COLUMNS, color_system=None))
-    return text.getvalue()

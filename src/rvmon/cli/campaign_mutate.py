@@ -18,9 +18,9 @@ from rvmon.cdv.mutation.python_mutants import Mutant, code_mutants
 from rvmon.cdv.mutation.report import (
     MutationReport,
     SuiteTried,
-    list_text,
     mutation_page,
-    report_text,
+    print_mutants,
+    print_mutation,
 )
 from rvmon.cdv.mutation.spec_mutants import SpecMutant, spec_mutants, try_spec_mutants
 from rvmon.cdv.mutation.survivors import equivalents, failing_runs, readers
@@ -29,6 +29,7 @@ from rvmon.cdv.test import Test, load
 from rvmon.cli.output import bar, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.files import output_folder, write_whole
+from rvmon.report.printer import Printer, text_of
 
 MOST_LISTED = 10
 """Survivors of a kind that the terminal shows; files have all."""
@@ -38,7 +39,8 @@ def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments:
     """Play suites on mutants of a robot's code, show and keep the scores, return an exit code."""
     mutants = _mutants(campaign, robot, arguments)
     if arguments.list:
-        say(list_text([*mutants.code, *mutants.spec], held_out=arguments.held_out), end="")
+        every: list[Mutant | SpecMutant] = [*mutants.code, *mutants.spec]
+        print_mutants(every, Printer(), held_out=arguments.held_out)
         return 0
     folder = output_folder(arguments.out) if arguments.out else None
     report = _reported(campaign, robot, strategies, mutants, arguments)
@@ -46,10 +48,11 @@ def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments:
         say_json(to_json(report.document()).decode().removesuffix("\n"))
     else:
         is_short = folder is not None or sys.stdout.isatty()
-        say(report_text(report, most=MOST_LISTED if is_short else None))
+        print_mutation(report, Printer(), most=MOST_LISTED if is_short else None)
         say(f"{len(mutants.code) + len(mutants.spec)} mutants in {report.seconds:.1f} s.")
     if folder is not None:
-        write_whole(folder / "mutation.txt", report_text(report))
+        text = text_of(lambda printer: print_mutation(report, printer))
+        write_whole(folder / "mutation.txt", text)
         write_whole(folder / "mutation.json", to_json(report.document()))
         write_whole(folder / "mutation.html", mutation_page(report))
     wrong = report.contradictions()

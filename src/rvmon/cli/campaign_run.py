@@ -39,9 +39,8 @@ from rvmon.cli.campaign_evidence import begun, write_campaign
 from rvmon.cli.output import bar, busy, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.files import output_folder, refuse_no_file, write_whole
-from rvmon.report.printer import Printer
+from rvmon.report.printer import TEXT_WIDTH, Printer
 from rvmon.report.run_text import print_report
-from rvmon.report.terminal import Terminal
 from rvmon.report.verdicts_mcap import refuse_mcap, write_verdicts
 from rvmon.session import Spec
 from rvmon.verdicts import Verdict
@@ -221,16 +220,21 @@ def show(campaign: Campaign, conducted: Conducted, form: str) -> None:
             tables.to_json(campaign.presentation.document(summary)).decode().removesuffix("\n")
         )
         return
-    console = Terminal() if sys.stdout.isatty() else Terminal(width=100)
-    print_summary(summary, conducted.tables, console, campaign.presentation.foremost)
+    printer = page_printer()
+    print_summary(summary, conducted.tables, printer, campaign.presentation.foremost)
     work = campaign.presentation.work(summary)
-    console.print(f"{summary.finished} tests in {summary.seconds:.1f} s: {work}.")
+    printer.sentences(f"{summary.finished} tests in {summary.seconds:.1f} s: {work}.")
     if summary.cut_short:
-        console.print(
+        printer.sentences(
             f"{summary.cut_short}: {summary.finished} of {summary.planned} tests were finished; "
             "the tables are partial",
-            style="yellow",
+            "yellow",
         )
+
+
+def page_printer() -> Printer:
+    """Prints to the terminal; elsewhere as wide as the files of a campaign are."""
+    return Printer(width=None if sys.stdout.isatty() else TEXT_WIDTH)
 
 
 def replay(campaign: Campaign, arguments: Namespace) -> int:

@@ -92,18 +92,18 @@ def _groups(coverage: Coverage, name: str | None) -> Sequence[Group]:
 
 def _print(summary: Summary, arguments: argparse.Namespace, groups: Sequence[Group]) -> None:
     from rvmon.report.coverage_text import print_bins, print_holes, print_overview, print_tests
-    from rvmon.report.terminal import Terminal
+    from rvmon.report.printer import Printer
 
-    console = Terminal()
-    print_overview(summary, console)
+    printer = Printer()
+    print_overview(summary, printer)
     if arguments.holes:
-        print_holes(summary, console)
+        print_holes(summary, printer)
     elif summary.holes and not groups:
         say("missing items: --holes")
     if groups:
-        print_bins(summary, groups, console)
+        print_bins(summary, groups, printer)
     if arguments.tests:
-        print_tests(summary, console)
+        print_tests(summary, printer)
 
 
 def _code(summary: Summary, arguments: argparse.Namespace) -> int:

@@ -51,16 +51,16 @@ def _ids(named: list[str], spec: Spec) -> list[str]:
 def _print(compiled: CompiledSpec, ids: list[str], *, difference: bool, runs: int) -> None:
     from rvmon.analysis.example import Budget
     from rvmon.report.explain_text import difference_explained, explained
-    from rvmon.report.terminal import Terminal
+    from rvmon.report.printer import Printer
 
-    console = Terminal(soft_wrap=True)
+    printer = Printer()
     budget = Budget(runs=runs)
     if difference:
-        for part in difference_explained(compiled, ids[0], ids[1], budget):
-            console.print(part)
+        for line in difference_explained(compiled, ids[0], ids[1], budget):
+            printer.line(*line)
         return
     for number, name in enumerate(ids):
         if number:
-            console.print()
-        for part in explained(compiled, name, budget):
-            console.print(part)
+            printer.line()
+        for line in explained(compiled, name, budget):
+            printer.line(*line)

@@ -11,8 +11,8 @@ from rvmon.cli.reading import reading_spec
 from rvmon.files import write_file
 from rvmon.recordings.starter.observed_values import Profile
 from rvmon.recordings.starter.profile import bound_profile, profile_of
-from rvmon.report.look_page import look_page, look_tables
-from rvmon.report.terminal import Terminal
+from rvmon.report.look_page import look_page, print_look
+from rvmon.report.printer import Printer
 
 if TYPE_CHECKING:
     from rvmon.session import Spec
@@ -33,9 +33,7 @@ def run(arguments: argparse.Namespace) -> int:
         write_file(arguments.output, look_page(profile, requirements))
         say(f"wrote {arguments.output}: {len(profile.columns):,} names")
         return 0
-    terminal = Terminal()
-    for shown in look_tables(profile, requirements):
-        terminal.print(shown)
+    print_look(profile, requirements, Printer())
     return 0
 
 

@@ -7,7 +7,7 @@ import io
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager
 from itertools import islice
 from shutil import get_terminal_size
 from typing import TYPE_CHECKING, TypeVar
@@ -16,6 +16,7 @@ from rvmon.texts import shown, shown_json
 from rvmon.trace.sample import Sample
 
 if TYPE_CHECKING:
+    from rich.console import Console
     from rich.progress import Progress
 
     from rvmon.diagnostics import Diagnostic
@@ -87,12 +88,11 @@ def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
     def show(done: float) -> None:
         nonlocal progress
         if progress is None and time.monotonic() - started >= PATIENCE_S:
+            from rich.markup import escape
             from rich.progress import Progress
 
-            from rvmon.report.terminal import Terminal
-
-            progress = Progress(console=Terminal(stderr=True), transient=True)
-            progress.add_task(what, total=total)
+            progress = Progress(console=_console(), transient=True)
+            progress.add_task(escape(shown(what)), total=total)
             progress.start()
         if progress is not None:
             progress.update(progress.task_ids[0], completed=done)
@@ -104,13 +104,24 @@ def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
             progress.stop()
 
 
-def busy(what: str) -> AbstractContextManager[object]:
-    """Tell a person at a terminal what is being done, where nobody knows how far it is."""
-    if not sys.stderr.isatty():
-        return nullcontext()
-    from rvmon.report.terminal import Terminal
+def _console() -> Console:
+    from rich.console import Console
 
-    return Terminal(stderr=True).status(what)
+    return Console(stderr=True, highlight=False, markup=False, emoji=False)
+
+
+@contextmanager
+def busy(what: str) -> Iterator[Callable[[str], None] | None]:
+    """Tell a person at a terminal what is being done, where nobody knows how far it is.
+
+    Yields:
+        What is to be called with other words for it; `None` where nobody sees them.
+    """
+    if not sys.stderr.isatty():
+        yield None
+        return
+    with _console().status(shown(what)) as status:
+        yield lambda text: status.update(shown(text))
 
 
 def shown_while_reading(recording: FileRecording, parts: Iterator[T]) -> Iterator[T]:

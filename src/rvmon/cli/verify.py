@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
 from rvmon.cli.options import budget_of
-from rvmon.cli.output import rendered, say, say_json, warn
+from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.models.describe import (
     extreme_data,
@@ -191,14 +190,12 @@ def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget)
 @contextmanager
 def _shown() -> Iterator[Watch | None]:
     """A line on a terminal's standard error that says how far a search is."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from rvmon.report.terminal import Terminal
-
-    with Terminal(stderr=True).status("starting") as status:
-        yield lambda progress: status.update(
-            f"{progress.visited:,} states, {progress.waiting:,} waiting, {progress.seconds:.0f} s"
+    with busy("starting") as told:
+        yield told and (
+            lambda progress: told(
+                f"{progress.visited:,} states, {progress.waiting:,} waiting, "
+                f"{progress.seconds:.0f} s"
+            )
         )
 
 
@@ -268,6 +265,7 @@ def _timeline(observation: Observation, shown: Run, spec: Spec) -> list[str]:
     from rvmon.models.conform import recording_of
     from rvmon.models.requirement_check import signals_of
     from rvmon.report.explain_text import picture_of
+    from rvmon.report.printer import plain
     from rvmon.report.tracks import concerned_names
     from rvmon.trace.sample import Sample
     from rvmon.trace.schema import Kind
@@ -302,4 +300,4 @@ def _timeline(observation: Observation, shown: Run, spec: Spec) -> list[str]:
         tuple(samples), end, {observation.requirement: report.verdicts[observation.requirement]},
         tuple(report.attempts),
     )  # fmt: skip
-    return [line.plain for line in picture_of(example, spec.checked, names)]
+    return [*map(plain, picture_of(example, spec.checked, names))]

@@ -8,24 +8,24 @@ import sys
 import zlib
 from collections import Counter, deque
 from collections.abc import Iterable, Iterator, Sequence
+from io import StringIO
 
 import msgspec
-from rich import box
-from rich.console import Group, RenderableType
+from rich.console import Console
 from rich.live import Live as Screen
-from rich.table import Table
 from rich.text import Text
 
 from rvmon.adapters.json_objects import decoded_object
 from rvmon.cli.output import say, say_json, warn
+from rvmon.diagnostics import wants_colour
 from rvmon.errors import RvmonError, TraceError
 from rvmon.live import Driver, Judgement, Status
 from rvmon.live.durable import DurableMonitor
 from rvmon.recordings.jsonl_rows import read_object
-from rvmon.report.terminal import Terminal
+from rvmon.report.printer import Cell, Printer
 from rvmon.report.wording import MARKS, health_facts, verdict_text
 from rvmon.session import Spec
-from rvmon.texts import counted
+from rvmon.texts import counted, shown
 from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_stamped
 from rvmon.verdicts import Verdict, fold
@@ -101,7 +101,7 @@ class Output(logging.Handler):
 
     def ended(self, driver: Driver) -> None:
         """Say what came of it."""
-        Terminal().print(tables(driver))
+        print_status(driver, Printer())
 
 
 class JsonOutput(Output):
@@ -131,7 +131,8 @@ class View(Output):
     def __init__(self, *, failures_only: bool) -> None:
         super().__init__(failures_only=failures_only)
         self._failures: deque[str] = deque(maxlen=_SHOWN_FAILURES)
-        self._screen = Screen(console=Terminal(), auto_refresh=False, transient=True)
+        self._console = Console(highlight=False, markup=False, emoji=False)
+        self._screen = Screen(console=self._console, auto_refresh=False, transient=True)
 
     def __enter__(self) -> View:
         super().__enter__()
@@ -149,21 +150,25 @@ class View(Output):
 
     def note(self, text: str) -> None:
         """Say something above the table."""
-        self._screen.console.print(text)
+        self._console.print(shown(text))
 
     def show(self, driver: Driver) -> None:
         """Show how it stands, no longer than the terminal is high."""
-        lines = sum(-(-len(failure) // self._screen.console.width) for failure in self._failures)
-        height = max(1, self._screen.console.height - lines - 1)
-        self._screen.update(self._drawn(driver, height), refresh=True)
+        lines = sum(-(-len(failure) // self._console.width) for failure in self._failures)
+        height = max(1, self._console.height - lines - 1)
+        self._screen.update(Text.from_ansi(self._drawn(driver, height)), refresh=True)
 
     def ended(self, driver: Driver) -> None:
         """Show how it stands at the end."""
-        self._screen.console.print(self._drawn(driver))
+        sys.stdout.write(self._drawn(driver))
 
-    def _drawn(self, driver: Driver, height: int | None = None) -> RenderableType:
-        failures = [Text(line, style=MARKS[Verdict.FAIL].terminal) for line in self._failures]
-        return Group(tables(driver, height), *failures)
+    def _drawn(self, driver: Driver, height: int | None = None) -> str:
+        text = StringIO()
+        printer = Printer(text, self._console.width, has_colour=wants_colour(sys.stdout))
+        print_status(driver, printer, height)
+        for line in self._failures:
+            printer.line((line, MARKS[Verdict.FAIL].terminal))
+        return text.getvalue()
 
 
 def output_named(name: str | None, *, failures_only: bool) -> Output:
@@ -188,11 +193,12 @@ def _line(judgement: Judgement) -> str:
     return f"{robot}{when}  {attempt.name} {attempt.verdict} {sign}{reason}"
 
 
-def tables(driver: Driver, height: int | None = None) -> RenderableType:
-    """Tables of robots and requirements, those first that need a look.
+def print_status(driver: Driver, printer: Printer, height: int | None = None) -> None:
+    """Print robots and their requirements, those first that need a look.
 
     Args:
         driver: of the robots.
+        printer: prints them.
         height: the number of lines; requirements that do not fit are counted. `None`: all.
     """
     statuses = driver.status(most_open=_MOST_OPEN)
@@ -202,12 +208,11 @@ def tables(driver: Driver, height: int | None = None) -> RenderableType:
     if height is not None:
         most = max(1, min(_SHOWN_ROBOTS, height // (_FRAME + min(requirements, _FEW))))
         rows = max(1, height // max(1, min(most, len(robots))) - _FRAME)
-    more = [fold(robot.verdicts.values()) for robot in robots[most:]]
-    return Group(
-        *(_table(robot, driver.spec, rows, is_cut=height is not None) for robot in robots[:most]),
-        *_rest(more, "robots"),
-        *([] if robots else ["nothing has come yet"]),
-    )
+    for robot in robots[:most]:
+        _print_robot(robot, driver.spec, rows, printer, is_cut=height is not None)
+    _print_rest([fold(robot.verdicts.values()) for robot in robots[most:]], "robots", printer)
+    if not robots:
+        printer.line("nothing has come yet")
 
 
 def _need(verdict: Verdict) -> int:
@@ -215,22 +220,19 @@ def _need(verdict: Verdict) -> int:
     return {Verdict.FAIL: 0, Verdict.INCONCLUSIVE: 1}.get(verdict, 2)
 
 
-def _rest(verdicts: Sequence[Verdict], of: str) -> Sequence[str]:
+def _print_rest(verdicts: Sequence[Verdict], of: str, printer: Printer) -> None:
     counts = Counter(verdicts)
     listed = ", ".join(
         f"{counts[verdict]} {verdict.value}" for verdict in Verdict if counts[verdict]
     )
-    return [f"… and {len(verdicts)} more {of}: {listed}"] if verdicts else []
+    if verdicts:
+        printer.line(f"… and {len(verdicts)} more {of}: {listed}")
 
 
-def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> RenderableType:
+def _print_robot(status: Status, spec: Spec, rows: int, printer: Printer, *, is_cut: bool) -> None:
     heading = f"{status.robot}  " if status.robot else ""
     run = f"run {status.run}, " if status.run > 1 else ""
     lost = f", {status.lost:,} lost" if status.lost else ""
-    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    for column in ("", "verdict", "passed", "failed", "open", "until"):
-        table.add_column(column, no_wrap=True)
-    table.add_column("requirement", style="dim")
     until: dict[str, int] = {}
     for attempt in status.open:
         if attempt.deadline is not None:
@@ -241,22 +243,20 @@ def _table(status: Status, spec: Spec, rows: int, *, is_cut: bool) -> Renderable
     if len(names) > rows:
         rows = max(1, rows - 1)  # one line counts the rest
         names.sort(key=lambda name: (_need(status.verdicts[name]), until.get(name, NEVER)))
+    cells: list[list[Cell]] = []
     for name in names[:rows]:
         left = ""
         if name in until:
             left = f"{max(0, until[name] - status.now) / TICKS_PER_SECOND:.1f} s"
         counts = [str(status.counts[name, one] or "") for one in (Verdict.PASS, Verdict.FAIL)]
         waiting = f"{status.open_counts[name]:,}" if status.open_counts.get(name) else ""
-        text = Text(spec.requirements[name].text, no_wrap=is_cut, overflow="ellipsis")
-        table.add_row(
-            name, Text(*verdict_text(status.verdicts[name])), *counts, waiting, left, text
-        )
+        text = (spec.requirements[name].text, "dim")
+        cells.append([name, verdict_text(status.verdicts[name]), *counts, waiting, left, text])
     when = format_stamped(status.now, status.since or 0)
-    return Group(
-        Text(f"{heading}{run}to {when}, {counted(status.samples, 'sample')}{lost}"),
-        table,
-        *_rest([status.verdicts[name] for name in names[rows:]], "requirements"),
-    )
+    printer.line(f"{heading}{run}to {when}, {counted(status.samples, 'sample')}{lost}")
+    heads = ("", "verdict", "passed", "failed", "open", "until", "requirement")
+    printer.table(heads, cells, is_cut=is_cut)
+    _print_rest([status.verdicts[name] for name in names[rows:]], "requirements", printer)
 
 
 _KEEP = 1000

@@ -26,7 +26,9 @@ from rvmon.monitor.missing_names import expect_names
 from rvmon.recordings.batch import Batch
 from rvmon.recordings.source import HeldRecording, Source, pieces_up_to
 from rvmon.report.changes import changes_of
+from rvmon.report.printer import Printer
 from rvmon.report.tracks import tracks_of
+from rvmon.report.why_text import attempt_values, why_lines
 from rvmon.report.wording import value_text
 from rvmon.session import load
 from rvmon.trace.sample import Sample, Trace
@@ -78,8 +80,6 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     assert report.end is not None, "a recording with an attempt has an end"
     with busy(f"taking {attempt.name} apart"):
         breakdown = dissect(spec.checked, samples, report.end, attempt, recording.names)
-    from rvmon.report.why_text import attempt_values, why_lines
-
     requirement = spec.requirements[name]
     changes = changes_of(spec.checked, samples)
     tracks = tracks_of(spec.checked, requirement, changes, report.absent)
@@ -91,11 +91,9 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
         say_json(msgspec.json.encode({**msgspec.to_builtins(breakdown), "values": values}).decode())
         return 0
 
-    from rvmon.report.terminal import Terminal
-
-    console = Terminal(soft_wrap=True)
+    printer = Printer()
     for line in why_lines(breakdown, requirement, values):
-        console.print(line)
+        printer.line(*line)
     return 0
 
 

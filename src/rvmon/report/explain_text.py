@@ -5,9 +5,6 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Collection, Iterator, Mapping, Sequence
 
-from rich.console import RenderableType
-from rich.text import Text
-
 from rvmon.analysis.example import Budget, Example, Found
 from rvmon.analysis.graph import graph_lines, graph_of
 from rvmon.analysis.plain_english import facts_of, requirement_in_words
@@ -18,6 +15,7 @@ from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.language.print import format_duration
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
+from rvmon.report.printer import Line, plain
 from rvmon.report.wording import MARKS
 from rvmon.trace.sample import Scalar, Value
 from rvmon.verdicts import Verdict
@@ -28,7 +26,7 @@ NARROWEST = 9
 """The least width of a column, in characters."""
 
 
-def picture_of(example: Example, spec: CheckedSpec, read: Collection[str]) -> list[Text]:
+def picture_of(example: Example, spec: CheckedSpec, read: Collection[str]) -> list[Line]:
     """An example timeline as lines, at most 80 columns wide if possible.
 
     Time is not to scale: each instant with a sample, trigger or decision has a column.
@@ -43,16 +41,16 @@ def picture_of(example: Example, spec: CheckedSpec, read: Collection[str]) -> li
     room = (WIDTH - margin) // len(instants)
     width = max(min(max(widest + 2, NARROWEST), room), 4)
     legend = legend_of(labels)
-    lines = [
-        Text.assemble(
+    lines: list[Line] = [
+        [
             (f"  {'time':<{margin - 2}}", "dim"),
             ("".join(f"{label:<{width}}" for label in labels).rstrip(), "dim"),
             (f"   ({legend})" if legend else "", "dim"),
-        )
+        ]
     ]
     for name in names:
         drawn = "".join(_fill(cell, width) for cell in cells[name])
-        lines.append(Text(f"  {name:<{margin - 2}}{drawn.rstrip()}"))
+        lines.append([f"  {name:<{margin - 2}}{drawn.rstrip()}"])
     for name in example.verdicts:
         lines += _verdict_lines(name, example, instants, margin, width)
     return lines
@@ -128,18 +126,18 @@ def _fill(cell: str, width: int) -> str:
 
 def _verdict_lines(
     name: str, example: Example, instants: Sequence[int], margin: int, width: int
-) -> list[Text]:
+) -> list[Line]:
     attempts = [attempt for attempt in example.attempts if attempt.requirement == name]
     if not attempts:
         mark = MARKS[Verdict.NOT_TRIGGERED]
-        return [Text(f"  {name:<{margin - 2}}{mark.sign} NT no attempt", style=mark.terminal)]
-    lines = []
+        return [[(f"  {name:<{margin - 2}}{mark.sign} NT no attempt", mark.terminal)]]
+    lines: list[Line] = []
     for attempt in attempts:
         head = name if len(attempts) == 1 else attempt.name
         mark = MARKS[attempt.verdict]
         drawn = _attempt(attempt, example, instants, width)
         verdict = f"{mark.sign} {attempt.verdict.value}"
-        lines.append(Text.assemble(f"  {head:<{margin - 2}}{drawn}", (verdict, mark.terminal)))
+        lines.append([f"  {head:<{margin - 2}}{drawn}", (verdict, mark.terminal)])
     return lines
 
 
@@ -181,27 +179,25 @@ _SHOWN = (
 )
 
 
-def explained(
-    compiled: CompiledSpec, name: str, budget: Budget | None = None
-) -> Iterator[RenderableType]:
+def explained(compiled: CompiledSpec, name: str, budget: Budget | None = None) -> Iterator[Line]:
     """One requirement: in words, facts, automaton, the shortest timeline of each verdict."""
     compiled_requirement = compiled.requirements[name]
     yield _title(compiled_requirement.requirement)
-    yield ""
+    yield []
     for line in requirement_in_words(compiled_requirement.requirement):
         yield _wrapped(line, "  ", "    ")
-    yield ""
+    yield []
     for heading, fact in facts_of(compiled_requirement).items():
         yield _wrapped(fact, f"  {heading:<12}", " " * 14)
     if compiled_requirement.automaton is not None:
-        yield ""
-        yield Text("The automaton", style="bold")
+        yield []
+        yield [("The automaton", "bold")]
         for line in graph_lines(
             graph_of(compiled_requirement, compiled_requirement.automaton, compiled.checked)
         ):
-            yield Text(line)
-    yield ""
-    yield Text("The shortest run on which it …", style="bold")
+            yield [line]
+    yield []
+    yield [("The shortest run on which it …", "bold")]
     can = possible(
         compiled.checked,
         compiled_requirement.obligation.trigger,
@@ -212,10 +208,10 @@ def explained(
     wanted = [verdict.value for verdict, _ in _SHOWN if verdict not in impossible]
     search = shortest_examples(compiled, [compiled_requirement], verdict_of(name), wanted, budget)
     for verdict, phrase in _SHOWN:
-        yield ""
+        yield []
         example = search.examples.get(verdict.value)
         if example is not None:
-            yield Text(f"… {phrase}")
+            yield [f"… {phrase}"]
             yield from picture_of(example, compiled.checked, _names_read(compiled_requirement))
         else:
             yield _wrapped(f"… {phrase}: {impossible.get(verdict) or _not_found(search)}", "", "  ")
@@ -223,14 +219,14 @@ def explained(
 
 def difference_explained(
     compiled: CompiledSpec, first: str, second: str, budget: Budget | None = None
-) -> Iterator[RenderableType]:
+) -> Iterator[Line]:
     """Two requirements: the shortest timelines on which they differ."""
     pair = [compiled.requirements[name] for name in (first, second)]
     for requirement in pair:
         yield _title(requirement.requirement)
         for line in requirement_in_words(requirement.requirement):
             yield _wrapped(line, "  ", "    ")
-        yield ""
+        yield []
     goal = difference_of(first, second)
     search = shortest_examples(compiled, pair, goal, ["hard", "soft"], budget)
     read = _names_read(pair[0]) | _names_read(pair[1])
@@ -239,16 +235,16 @@ def difference_explained(
     for kind, phrase in (("hard", "one fails and the other does not"), ("soft", "they differ")):
         example = search.examples.get(kind)
         if example is not None:
-            yield Text(f"The shortest run on which {phrase}", style="bold")
+            yield [(f"The shortest run on which {phrase}", "bold")]
             yield from picture_of(example, compiled.checked, read)
-            yield ""
+            yield []
 
 
-def _title(requirement: Requirement) -> RenderableType:
+def _title(requirement: Requirement) -> Line:
     text = f"{requirement.id}  {requirement.text}".rstrip()
-    wrapped = Text(textwrap.fill(text, WIDTH, subsequent_indent=" " * (len(requirement.id) + 2)))
-    wrapped.stylize("bold", 0, len(requirement.id))
-    return wrapped
+    end = len(requirement.id)
+    wrapped = textwrap.fill(text, WIDTH, subsequent_indent=" " * (end + 2))
+    return [(wrapped[:end], "bold"), wrapped[end:]]
 
 
 def _impossible(requirement: Requirement, can: Possible) -> Mapping[Verdict, str]:
@@ -286,8 +282,8 @@ def _names_read(compiled: CompiledRequirement) -> frozenset[str]:
     return compiled.reads | ({each.value.event} if each else set())
 
 
-def _wrapped(text: str, first: str, rest: str) -> RenderableType:
-    return Text(textwrap.fill(text, WIDTH, initial_indent=first, subsequent_indent=rest))
+def _wrapped(text: str, first: str, rest: str) -> Line:
+    return [textwrap.fill(text, WIDTH, initial_indent=first, subsequent_indent=rest)]
 
 
 def analysis_lines(analysis: Analysis, spec: CheckedSpec) -> list[str]:
@@ -298,7 +294,7 @@ def analysis_lines(analysis: Analysis, spec: CheckedSpec) -> list[str]:
         fails = f"one of {', '.join(ids)} fails" if len(ids) > 1 else f"{ids[0]} fails"
         lines += [f"After this, {fails}, whatever comes:"]
         drawn = {name for sample in example.samples for name in sample.values}
-        lines += [line.plain for line in picture_of(example, spec, drawn)]
+        lines += map(plain, picture_of(example, spec, drawn))
         lines.append("")
     examination = analysis.examination
     if examination.undecided:

@@ -6,12 +6,10 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
-from rich.table import Table
-from rich.text import Text
-
 from rvmon.language.checked.specification import Requirement
 from rvmon.recordings.starter.observed_values import Column, Profile, Stretch
 from rvmon.report.html import e, render
+from rvmon.report.printer import Printer
 from rvmon.report.time_axis import View, moment, round_instants
 from rvmon.report.wording import duration_text, first_of
 from rvmon.trace.sample import Outage
@@ -30,27 +28,25 @@ _LONGEST = 16
 _FEW = 3
 
 
-def look_tables(profile: Profile, requirements: Sequence[Requirement]) -> Iterator[Table | Text]:
-    """A table per requirement with the names that it reads, then per topic with the others."""
+def print_look(profile: Profile, requirements: Sequence[Requirement], printer: Printer) -> None:
+    """Print per requirement the names that it reads, then per topic the others."""
     span = duration_text(profile.end - profile.start)
     start = format_stamp(profile.start)
-    yield Text(f"{profile.path}: {profile.samples:,} samples in {span}, from {start}")
+    printer.sentences(f"{profile.path}: {profile.samples:,} samples in {span}, from {start}")
     for outage in profile.outages:
-        yield Text(f"lost: {_lost(outage, profile.start)}", "yellow")
+        printer.sentences(f"lost: {_lost(outage, profile.start)}", "yellow")
     for title, columns in grouped(profile, requirements):
-        table = Table(title=title, title_justify="left", title_style="bold", box=None)
-        table.show_header = False
-        for justify in ("left", "left", "left", "right", "left"):
-            table.add_column(justify=justify, overflow="fold")
-        table.columns[-1].no_wrap = True
+        if title:
+            printer.sentences(title, "bold")
+        rows = []
         for column in columns:
             kind, rate, gap, about = facts(column)
             rate = f"{rate}, gap {gap}" if gap else rate
-            table.add_row(_short(column.name, title), kind, about, rate, spark(column, profile))
-        yield table
+            rows.append((_short(column.name, title), kind, about, rate, spark(column, profile)))
+        printer.columns(rows, right=(3,), wraps=(0, 1, 2, 3))
     for why in dict.fromkeys(profile.left_out.values()):
         names = [name for name, reason in profile.left_out.items() if reason == why]
-        yield Text(f"left out: {first_of(names, _FEW)}: {why}", "bright_black")
+        printer.sentences(f"left out: {first_of(names, _FEW)}: {why}", "bright_black")
 
 
 def _lost(outage: Outage, start: int) -> str:

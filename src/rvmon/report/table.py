@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from rich import box
-from rich.console import Group
-from rich.table import Table
-from rich.text import Text
-
 from rvmon.confidence import interval, interval_text
+from rvmon.report.printer import Cell, Line, Piece, Printer
 from rvmon.report.wording import MARKS
 from rvmon.texts import shown_line
 from rvmon.verdicts import Verdict
@@ -115,23 +111,30 @@ ABREAST = 14
 """The characters per verdict that the groups side by side may take within 80 columns."""
 
 
-def table_text(table: VerdictTable, *, further: Mapping[str, VerdictTable] | None = None) -> Group:
-    """A table as a renderable of rich.
+def print_table(
+    table: VerdictTable,
+    printer: Printer,
+    *,
+    further: Mapping[str, VerdictTable] | None = None,
+) -> None:
+    """Print a table of verdicts, as many groups side by side as fit.
 
     Args:
         table: the counts.
+        printer: prints it.
         further: by label, tables whose counts stand in further lines of each row; matched by
             requirement and by name of the group.
     """
     further = further or {}
     width = _width(table, *further.values())
     abreast = max(1, ABREAST // width)
-    grids = [
-        _grid(table, further, table.groups[first : first + abreast], width, with_checked=not first)
-        for first in range(0, len(table.groups), abreast)
-    ]
-    notes = (Text(note, style="dim") for note in table.notes)
-    return Group(Text(table.title, style="bold"), *grids, *notes)
+    widths = (width - 1, *[width] * (len(Verdict) - 1))  # a gap stands before the first
+    printer.sentences(table.title, "bold")
+    for first in range(0, len(table.groups), abreast):
+        groups = table.groups[first : first + abreast]
+        _print_groups(table, further, groups, widths, printer, with_checked=not first)
+    for note in table.notes:
+        printer.sentences(note, "dim")
 
 
 def _width(table: VerdictTable, *others: VerdictTable) -> int:
@@ -147,68 +150,65 @@ def _width(table: VerdictTable, *others: VerdictTable) -> int:
     return max(WIDE if table.shows_intervals else WIDTH, longest + 2)
 
 
-def _grid(
+def _print_groups(
     table: VerdictTable,
     further: Mapping[str, VerdictTable],
     groups: Sequence[RunGroup],
-    width: int,
+    widths: Sequence[int],
+    printer: Printer,
     *,
     with_checked: bool,
-) -> Table:
+) -> None:
     shown = {group.name for group in groups}
     others = {
         f"  {label}": verdict_table
         for label, verdict_table in further.items()
         if shown & {group.name for group in verdict_table.groups}
     }
-    grid = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 2, 0, 0))
-    grid.add_column("", no_wrap=True)
-    # Only further the first groups, as it does not depend on the group.
+    # Only beside the first groups, as it does not depend on the group.
     has_checked = with_checked and any(
         verdict_table.checked for verdict_table in (table, *others.values())
     )
-    if has_checked:
-        grid.add_column(Text("model\nchecking"), justify="center")
-    letters = "".join(f"{verdict.value:>{width}}" for verdict in Verdict)
-    for group in groups:
-        runs = f"{group.name} ({group.runs})"
-        grid.add_column(Text(f"{runs:^{len(letters)}}\n{letters}"), no_wrap=True)
+    letters = _beside(Verdict, widths)
+    titles = (f"{group.name} ({group.runs})" for group in groups)
+    over = ["", *(["model"] if has_checked else []), *(f"{one:^{len(letters)}}" for one in titles)]
+    heads = ["", *(["checking"] if has_checked else []), *(letters for _ in groups)]
+    rows: list[list[Cell]] = []
     for name in table.requirements:
         for heading, source in {name: table, **others}.items():
-            dim = source is not table
-            cells = [Text(heading, style="dim" if dim else "bold")]
+            dim = "" if source is table else "dim"
+            checked: list[Cell] = []
             if has_checked:
-                cells.append(_checked_cell(source, name, dim=dim))
-            cells.extend(_counts_cell(source, group.name, name, width, dim=dim) for group in groups)
-            grid.add_row(*cells)
-    return grid
+                holds = checked_text(source.checked[name]) if name in source.checked else ""
+                checked = [(f"{holds:^{len('checking')}}", dim)]
+            lines = [_count_lines(source, group.name, name, widths, dim) for group in groups]
+            rows.append([(heading, dim or "bold"), *checked, *(counts for counts, _ in lines)])
+            if any(shares for _, shares in lines):
+                rows.append(["", *([""] if has_checked else []), *(shares for _, shares in lines)])
+    printer.table(heads, rows, over=over, wraps=())
 
 
-def _checked_cell(table: VerdictTable, name: str, *, dim: bool) -> Text:
-    shown = checked_text(table.checked[name]) if name in table.checked else ""
-    return Text(shown, style="dim" if dim else "")
-
-
-def _counts_cell(table: VerdictTable, group: str, name: str, width: int, *, dim: bool) -> Text:
+def _count_lines(
+    table: VerdictTable, group: str, name: str, widths: Sequence[int], dim: str
+) -> tuple[Line, Piece]:
     """The counts of a group, and below them the intervals of their shares."""
-    cell = Text()
-    counts, runs = next(
-        (
-            (run_group.counts.get(name), run_group.runs)
-            for run_group in table.groups
-            if run_group.name == group
-        ),
-        (None, 0),
-    )
-    for verdict in Verdict:
-        count = None if counts is None else counts.get(verdict, 0)
-        shown = "" if count is None else str(count) if count else ZERO
-        style = "dim" if dim or not count else MARKS[verdict].terminal
-        cell.append(f"{shown:>{width}}", style=style)
-    if table.shows_intervals and counts is not None:
-        shares = (interval_text(counts.get(verdict, 0), runs) for verdict in Verdict)
-        cell.append("\n" + "".join(f"{share:>{width}}" for share in shares), style="dim")
-    return cell
+    found = next((one for one in table.groups if one.name == group), None)
+    counts = None if found is None else found.counts.get(name)
+    if found is None or counts is None:
+        return [], ""
+    line: Line = []
+    for verdict, width in zip(Verdict, widths, strict=True):
+        count = counts.get(verdict, 0)
+        style = dim or (MARKS[verdict].terminal if count else "dim")
+        line.append((f"{count or ZERO:>{width}}", style))
+    if not table.shows_intervals:
+        return line, ""
+    shares = (interval_text(counts.get(verdict, 0), found.runs) for verdict in Verdict)
+    return line, (_beside(shares, widths), "dim")
+
+
+def _beside(texts: Iterable[str], widths: Sequence[int]) -> str:
+    return "".join(f"{text:>{width}}" for text, width in zip(texts, widths, strict=True))
 
 
 _SPECIAL = {

@@ -5,10 +5,9 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 
-from rich.text import Text
-
 from rvmon.analysis.subformulas import Breakdown, PartTruth
 from rvmon.language.checked.specification import Requirement
+from rvmon.report.printer import Line
 from rvmon.report.tracks import Track, signal_texts
 from rvmon.report.wording import (
     MARKS,
@@ -34,23 +33,23 @@ LEGEND = (
 
 def why_lines(
     breakdown: Breakdown, requirement: Requirement, values: Mapping[str, Sequence[str]]
-) -> Iterator[Text]:
+) -> Iterator[Line]:
     """The verdict with its reason, a row for the trigger and each part required, and values."""
     attempt = breakdown.attempt
-    yield Text.assemble((f"{attempt.name}  ", "bold"), verdict_text(attempt.verdict))
+    yield [(f"{attempt.name}  ", "bold"), verdict_text(attempt.verdict)]
     for line in _sentences(breakdown, requirement):
-        yield Text(wrapped(line, WIDTH))
-    yield Text("")
+        yield [wrapped(line, WIDTH)]
+    yield []
     yield from _axis(breakdown)
     part = ""
     for part_truth in breakdown.part_truths:
         if part_truth.part != part:
             part = part_truth.part
-            yield Text(f"  {part}", style="bold")
+            yield [(f"  {part}", "bold")]
         yield from _row(part_truth, breakdown)
-    yield Text(f"  {LEGEND}", style="dim")
+    yield [(f"  {LEGEND}", "dim")]
     if values:
-        yield Text("")
+        yield []
         instants = ["at the trigger", "at the end"][: len(next(iter(values.values())))]
         yield _columns("  values", instants, "bold")
         for name, texts in values.items():
@@ -70,9 +69,9 @@ def attempt_values(tracks: Sequence[Track], attempt: Attempt, end: int) -> dict[
     return {name: [one[name] for one in texts] for name in texts[0]}
 
 
-def _columns(first: str, others: Sequence[str], style: str = "") -> Text:
+def _columns(first: str, others: Sequence[str], style: str = "") -> Line:
     cells = "".join(f"{other:<{PLOT // 2}}" for other in others)
-    return Text(f"{first:<{WIDTH - PLOT}}{cells}".rstrip(), style=style)
+    return [(f"{first:<{WIDTH - PLOT}}{cells}".rstrip(), style)]
 
 
 def _sentences(breakdown: Breakdown, requirement: Requirement) -> Iterator[str]:
@@ -88,7 +87,7 @@ def _sentences(breakdown: Breakdown, requirement: Requirement) -> Iterator[str]:
         yield forecast_sentence(attempt.forecast)
 
 
-def _axis(breakdown: Breakdown) -> Iterator[Text]:
+def _axis(breakdown: Breakdown) -> Iterator[Line]:
     """The time axis with marks at the trigger and the decision."""
     attempt = breakdown.attempt
     marks = [" "] * PLOT
@@ -98,8 +97,8 @@ def _axis(breakdown: Breakdown) -> Iterator[Text]:
         marks[column] = MARKS[attempt.verdict].sign
     first, last = (format_instant(t, attempt.origin) for t in (breakdown.start, breakdown.end))
     margin = " " * (WIDTH - PLOT)
-    yield Text(f"{margin}{first}{last:>{PLOT - len(first)}}", style="dim")
-    yield Text(f"{margin}{''.join(marks)}".rstrip())
+    yield [(f"{margin}{first}{last:>{PLOT - len(first)}}", "dim")]
+    yield [f"{margin}{''.join(marks)}".rstrip()]
 
 
 def _column(t: int, breakdown: Breakdown) -> int:
@@ -107,14 +106,14 @@ def _column(t: int, breakdown: Breakdown) -> int:
     return min(max((t - breakdown.start) * PLOT // span, 0), PLOT - 1)
 
 
-def _row(part_truth: PartTruth, breakdown: Breakdown) -> Iterator[Text]:
+def _row(part_truth: PartTruth, breakdown: Breakdown) -> Iterator[Line]:
     room = WIDTH - PLOT - 2
     indent = "  " + "  " * min(part_truth.depth + 1, 6)
     lines = textwrap.wrap(part_truth.text, room - len(indent)) or [""]
     for line in lines[:-1]:
-        yield Text(f"{indent}{line}")
+        yield [f"{indent}{line}"]
     cells = (_cell(part_truth, breakdown, column) for column in range(PLOT))
-    yield Text(f"{indent + lines[-1]:<{WIDTH - PLOT}}{''.join(cells)}")
+    yield [f"{indent + lines[-1]:<{WIDTH - PLOT}}{''.join(cells)}"]
 
 
 def _cell(part_truth: PartTruth, breakdown: Breakdown, column: int) -> str:

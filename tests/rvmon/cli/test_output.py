@@ -1,14 +1,11 @@
 """What commands print of others is shown, and not obeyed."""
 
-import io
 import re
 from pathlib import Path
 
 import pytest
-from rich.table import Table
 
 from rvmon.cli import output as say
-from rvmon.report.terminal import Terminal
 
 ESCAPE = "a\x1b[31m\x9b8m\u202e"
 SHOWN = r"a\x1b[31m\x9b8m\u202e"
@@ -47,12 +44,3 @@ def test_a_tag_in_a_text_is_no_markup(tmp_path, says):
     told = says(1, "run", spec, trace).out
     assert "[bold]" in told
     assert "[/red] :smile:" in told
-
-
-def test_cells_of_tables_are_as_wide_as_what_is_shown():
-    table = Table()
-    table.add_column("", no_wrap=True)
-    table.add_row(ESCAPE)
-    text = io.StringIO()
-    Terminal(file=text, width=80).print(table)
-    assert f" {SHOWN} " in text.getvalue()

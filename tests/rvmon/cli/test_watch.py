@@ -15,9 +15,9 @@ from tests.rvmon.cli.conftest import DOOR
 
 from rvmon import loads
 from rvmon.cli import main
-from rvmon.cli.watch_output import tables
+from rvmon.cli.watch_output import print_status
 from rvmon.live import Driver, SimulatedClock
-from rvmon.report.terminal import Terminal
+from rvmon.report.printer import Printer
 
 FAILS = '{"t": 0, "closed": true, "knock": true}\n{"t": 3, "closed": false, "noise": 1}\n'
 
@@ -135,7 +135,7 @@ def test_a_view_of_much_fits_and_begins_with_what_failed():
     clock.set_ns(1)
     driver.work()
     page = StringIO()
-    Terminal(file=page, width=80).print(tables(driver, 22))
+    print_status(driver, Printer(page, 80), 22)
     lines = page.getvalue().splitlines()
     assert len(lines) <= 22
     shown = [line.split()[0] for line in lines if line.split()]

@@ -49,6 +49,36 @@ def test_counts_end_below_each_other():
     ]
 
 
+def test_the_widest_of_the_columns_that_are_wrapped_gives_way_first():
+    file = io.StringIO()
+    rows = [("a name of two lines", "P", "and a longer text beside it"), ("", "F", "short")]
+    Printer(file, 40).table(["", "verdict", "why"], rows, wraps=(0, 2))
+    assert file.getvalue().splitlines()[3:] == [
+        " a name of      P         and a longer",
+        " two lines                text beside",
+        "                          it",
+        "                F         short",
+        "",
+    ]
+
+
+def test_a_cell_has_pieces_and_a_table_a_second_head_and_a_foot():
+    file = io.StringIO()
+    rows = [["R1", [("5", "green"), (" 1", "dim")]]]
+    Printer(file, 80).table(["", "P F"], rows, over=["", "runs"], foot=["all", "6"], right=[1])
+    assert file.getvalue().splitlines() == [
+        *("", "       runs", "        P F", " " + "─" * 10, " R1     5 1", "", " all      6", ""),
+    ]
+
+
+def test_a_row_that_is_cut_is_one_line():
+    file = io.StringIO()
+    Printer(file, 34).table(
+        ["", "requirement"], [("R1", "the hand is held still all day")], is_cut=True
+    )
+    assert file.getvalue().splitlines()[3:] == [" R1   the hand is held still all…", ""]
+
+
 @pytest.mark.parametrize("width", [40, 80])
 def test_colours_change_no_text(monkeypatch, width):
     monkeypatch.delenv("NO_COLOR", raising=False)

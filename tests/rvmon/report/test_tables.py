@@ -4,10 +4,10 @@ import io
 from dataclasses import replace
 
 import pytest
-from rich.console import Console
 
 from rvmon.report.html import table_html
-from rvmon.report.table import RunGroup, VerdictTable, escape, table_latex, table_text, tables_csv
+from rvmon.report.printer import Printer
+from rvmon.report.table import RunGroup, VerdictTable, escape, print_table, table_latex, tables_csv
 from rvmon.report.wording import MARKS
 from rvmon.verdicts import Verdict
 
@@ -33,16 +33,16 @@ PAPER = VerdictTable(
 )
 
 
-def as_text(renderable, width=80):
+def as_text(shown, **further):
     """What the terminal shows, without colour."""
     text = io.StringIO()
-    Console(file=text, width=width, color_system=None).print(renderable)
+    print_table(shown, Printer(text, 80, has_colour=False), **further)
     return text.getvalue()
 
 
 def test_tables_are_as_agreed(golden):
     """With published counts in a second line; those of the page lead to examples."""
-    golden("table.txt", as_text(table_text(OURS, further={"paper": PAPER})))
+    golden("table.txt", as_text(OURS, further={"paper": PAPER}))
     golden("table.tex", table_latex(OURS))
     golden("table.csv", tables_csv({"ours": OURS, "paper": PAPER}))
     link = "#{}-{}-{}".format
@@ -52,7 +52,7 @@ def test_tables_are_as_agreed(golden):
 def test_intervals_are_as_agreed(golden):
     """Below each count that of its share, outwards; a table beside it may have none."""
     sampled = replace(OURS, shows_intervals=True)
-    golden("intervals.txt", as_text(table_text(sampled, further={"paper": PAPER})))
+    golden("intervals.txt", as_text(sampled, further={"paper": PAPER}))
     golden("intervals.tex", table_latex(sampled))
     golden("intervals.csv", tables_csv({"ours": sampled, "paper": PAPER}))
     page = table_html(sampled, further={"paper": PAPER})
@@ -63,7 +63,7 @@ def test_intervals_are_as_agreed(golden):
 @pytest.mark.parametrize("groups", [1, 2, 3, 4, 5])
 def test_text_fits_into_80_columns(groups):
     names = ["pseudorandom", "constrained", "model-based", "directed", "more"][:groups]
-    shown = as_text(table_text(table(*names, checked={"R1": True, "R2": None})))
+    shown = as_text(table(*names, checked={"R1": True, "R2": None}))
     assert "…" not in shown
     assert max(len(line.rstrip()) for line in shown.splitlines()) <= 80
     assert shown.count(" 33 ") == groups
@@ -73,7 +73,7 @@ def test_text_fits_into_80_columns(groups):
 def test_wide_counts_stay_apart():
     rows = {"R1": counts(1680, 123308, 0, 7)}
     wide = VerdictTable("wide", {"R1": ""}, tuple(RunGroup(n, 124995, rows) for n in "abc"))
-    for line in as_text(table_text(wide)).splitlines():
+    for line in as_text(wide).splitlines():
         assert not line.startswith("R1") or line.split() == ["R1", "1680", "123308", "·", "7"]
 
 

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from rvmon.cdv.campaign_plan import Played
 from rvmon.coverage import Group
 from rvmon.coverage.holes import Goal, Hole
 from rvmon.report.coverage_summary import name_of
-from rvmon.report.wording import wrapped
+from rvmon.report.printer import Cell, Printer
+from rvmon.report.wording import first_of, wrapped
 from rvmon.texts import counted, percent_text, share_text
-
-if TYPE_CHECKING:
-    from rich.console import Console
-    from rich.table import Table
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,38 +163,38 @@ SHOWN = 3
 """Goals that are named of those that a test met."""
 
 
-def print_closed(closed: Closed, console: Console) -> None:
+def print_closed(closed: Closed, printer: Printer) -> None:
     """Print what each test added, what is open and why, and how small the suite is."""
     useful = [test for test in closed.tests if test.goals]
     if useful:
-        console.print(_table(useful, closed))
+        _print_useful(useful, closed, printer)
     if idle := len(closed.tests) - len(useful):
-        console.print(f"{counted(idle, 'further test')} added nothing.")
-    console.print()
-    _print_reasons("cannot be met: the model proves it:", _by_text(closed.proved), console)
-    _print_reasons("cannot be met, by the campaign's argument:", _by_text(closed.argued), console)
+        printer.line(f"{counted(idle, 'further test')} added nothing.")
+    printer.line()
+    _print_reasons("cannot be met: the model proves it:", _by_text(closed.proved), printer)
+    _print_reasons("cannot be met, by the campaign's argument:", _by_text(closed.argued), printer)
     if closed.wrong:
-        console.print("declared unreachable, and met all the same:", style="bold red")
+        printer.line(("declared unreachable, and met all the same:", "bold red"))
         for goal, test in closed.wrong.items():
-            console.print(wrapped(f"{name_of(goal)}, by {test}", console.width))
+            printer.line(wrapped(f"{name_of(goal)}, by {test}", printer.width))
     if closed.open:
-        console.print(f"{counted(len(closed.open), 'open goal')}:", style="bold")
+        printer.line((f"{counted(len(closed.open), 'open goal')}:", "bold"))
         for goal, hole in closed.open.items():
-            console.print(wrapped(name_of(goal), console.width))
-            console.print(wrapped(f"  {hole}", console.width), style="dim")
+            printer.line(wrapped(name_of(goal), printer.width))
+            printer.line((wrapped(f"  {hole}", printer.width), "dim"))
         group, item = next(iter(closed.open))
-        console.print("What no test can show goes to `Closing.unreachable`, with the reason:")
-        console.print(f'  cdv.Unreachable({group!r}, {item!r}, "…")', markup=False, soft_wrap=True)
+        printer.line("What no test can show goes to `Closing.unreachable`, with the reason:")
+        printer.line(f'  cdv.Unreachable({group!r}, {item!r}, "…")')
     style = "bold red" if closed.wrong else "yellow" if closed.open else "bold green"
     left = f"; {closed.ended}" if closed.ended else ""
-    console.print(
+    printer.sentences(
         f"{share_text(closed.share)} covered: {closed.met} of {closed.goals} goals met by "
         f"{len(closed.tests)} tests in {closed.seconds:.1f} s{left}.",
-        style=style,
+        style,
     )
-    console.print(_suite_text(closed))
+    printer.sentences(_suite_text(closed))
     if closed.trade is not None:
-        console.print(_trade(closed.trade))
+        _print_trade(closed.trade, printer)
 
 
 def _suite_text(closed: Closed) -> str:
@@ -218,19 +214,15 @@ def _suite_text(closed: Closed) -> str:
     return f"{text}."
 
 
-def _trade(trade: Trade) -> Table:
-    from rich.table import Table
-
+def _print_trade(trade: Trade, printer: Printer) -> None:
     title = f"Of {trade.mutants + trade.held_out} mutants of the code are killed"
-    table = Table(box=None, pad_edge=False, title=title, title_justify="left", title_style="bold")
-    table.add_column("by")
-    chosen, held_out = f"of {trade.mutants} that choose", f"of {trade.held_out} held out"
-    for heading in ("tests", chosen, held_out):
-        table.add_column(heading, justify="right", no_wrap=True)
-    for choice in trade.choices:
-        figures = (choice.tests, choice.killed, choice.held_out)
-        table.add_row(_choice_text(choice.times), *map(str, figures))
-    return table
+    printer.line((title, "bold"))
+    heads = ["by", "tests", f"of {trade.mutants} that choose", f"of {trade.held_out} held out"]
+    rows = [
+        (_choice_text(choice.times), *map(str, (choice.tests, choice.killed, choice.held_out)))
+        for choice in trade.choices
+    ]
+    printer.table(heads, rows, right=(1, 2, 3), wraps=(0,))
 
 
 def _choice_text(times: int | None) -> str:
@@ -239,21 +231,13 @@ def _choice_text(times: int | None) -> str:
     return f"each goal by {counted(times, 'test')}" if times else "all that were played"
 
 
-def _table(useful: Sequence[Added], closed: Closed) -> Table:
-    from rich.table import Table
-
-    table = Table(box=None, pad_edge=False)
-    table.add_column("test", no_wrap=True)
-    for title in ("new", "share"):
-        table.add_column(title, justify="right", no_wrap=True)
-    table.add_column("made from, and what it added")
+def _print_useful(useful: Sequence[Added], closed: Closed, printer: Printer) -> None:
+    rows: list[tuple[Cell, ...]] = []
     for added in useful:
-        shown = ", ".join(map(name_of, added.goals[:SHOWN]))
-        more = f", … and {len(added.goals) - SHOWN} more" if len(added.goals) > SHOWN else ""
-        share = percent_text(added.met, closed.goals)
-        name = added.played.job.test.name
-        table.add_row(name, str(len(added.goals)), share, f"{added.origin}\n{shown}{more}")
-    return table
+        name, count = added.played.job.test.name, str(len(added.goals))
+        rows.append((name, count, percent_text(added.met, closed.goals), added.origin))
+        rows.append(("", "", "", first_of([*map(name_of, added.goals)], SHOWN)))
+    printer.table(["test", "new", "share", "made from, and what it added"], rows, right=(1, 2))
 
 
 def _by_text(reasons: Mapping[Goal, str]) -> dict[str, list[Goal]]:
@@ -263,10 +247,10 @@ def _by_text(reasons: Mapping[Goal, str]) -> dict[str, list[Goal]]:
     return goals_by_text
 
 
-def _print_reasons(heading: str, reasons: Mapping[str, Sequence[Goal]], console: Console) -> None:
+def _print_reasons(heading: str, reasons: Mapping[str, Sequence[Goal]], printer: Printer) -> None:
     if not reasons:
         return
-    console.print(heading, style="bold")
+    printer.line((heading, "bold"))
     for text, goals in reasons.items():
-        console.print(wrapped(f"{text}: {', '.join(map(name_of, goals))}", console.width))
-    console.print()
+        printer.line(wrapped(f"{text}: {', '.join(map(name_of, goals))}", printer.width))
+    printer.line()

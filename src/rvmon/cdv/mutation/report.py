@@ -20,7 +20,7 @@ from rvmon.cdv.mutation.survivors import (
     scored,
 )
 from rvmon.report.html import render
-from rvmon.report.terminal import plain_table
+from rvmon.report.printer import Printer
 from rvmon.texts import counted, percent_text
 
 ALL = "all"
@@ -221,33 +221,36 @@ SPEC_TITLE = (
 )
 
 
-def report_text(report: MutationReport, *, most: int | None = None) -> str:
-    """Scores, what killed, and the survivors of each suite as questions.
+def print_mutation(report: MutationReport, printer: Printer, *, most: int | None = None) -> None:
+    """Print scores, what killed, and the survivors of each suite as questions.
 
     Args:
         report: the report to show.
+        printer: prints it.
         most: survivors of each kind that are listed; `None`: all, and each mutant that is killed.
     """
-    lines = []
     if any(suite.tried for suite in report.suites.values()):
-        lines += ["Mutants of the code", "", plain_table([HEAD, *score_rows(report)])]
+        printer.line("Mutants of the code")
+        printer.table(HEAD, [*score_rows(report)], range(2, len(HEAD)), wraps=())
         for name, suite in report.suites.items():
-            left_out = (f"  left out: {one}: {why}" for one, why in suite.left_out.items())
-            lines += [f"{name}: {_killers(suite)}.", *left_out, ""]
+            printer.line(f"{name}: {_killers(suite)}.")
+            for test, why in suite.left_out.items():
+                printer.line(f"  left out: {test}: {why}")
+        printer.line()
     if any(suite.spec_tried for suite in report.suites.values()):
-        lines += ["Mutants of the requirements", ""]
-        lines += [plain_table([SPEC_HEAD, *spec_score_rows(report)])]
+        printer.line("Mutants of the requirements")
+        printer.table(SPEC_HEAD, [*spec_score_rows(report)], range(2, len(SPEC_HEAD)), wraps=())
     for name in report.suites:
         for title, blocks in _survivors(report, name):
-            lines += [f"{name}: {counted(len(blocks), 'survivor')}. {title}", ""]
+            printer.line(f"{name}: {counted(len(blocks), 'survivor')}. {title}\n")
             for block in blocks[:most]:
-                lines += [*block, ""]
+                printer.line("\n".join([*block, ""]))
             if most is not None and len(blocks) > most:
-                lines += [f"  … and {len(blocks) - most} more", ""]
+                printer.line(f"  … and {len(blocks) - most} more\n")
     for name in report.suites:
         if most is None and (kills := report.kills(name)):
-            lines += [f"{name}: killed", "", plain_table([KILLS_HEAD, *kills])]
-    return "\n".join(lines).rstrip("\n") + "\n"
+            printer.line(f"{name}: killed")
+            printer.table(KILLS_HEAD, kills, wraps=())
 
 
 def _survivors(report: MutationReport, suite: str) -> Iterator[tuple[str, list[list[str]]]]:
@@ -322,14 +325,16 @@ _HOW_TEXT = {
 }
 
 
-def list_text(mutants: Sequence[Mutant | SpecMutant], *, held_out: bool) -> str:
-    """The mutants one by one, without playing them."""
+def print_mutants(
+    mutants: Sequence[Mutant | SpecMutant], printer: Printer, *, held_out: bool
+) -> None:
+    """Print the mutants one by one, without playing them."""
     shown = [mutant for mutant in mutants if held_out or mutant.third != HELD_OUT]
     rows = [("third", "mutant", "change")]
-    rows += [(one.third, one.identity, one.brief) for one in shown]
+    printer.columns(rows + [(one.third, one.identity, one.brief) for one in shown])
     hidden = len(mutants) - len(shown)
     left = f", {hidden} of them held out and not listed" if hidden else ""
-    return plain_table(rows) + f"{len(mutants)} mutants{left}\n"
+    printer.line(f"{len(mutants)} mutants{left}")
 
 
 ABOUT = (

@@ -17,7 +17,7 @@ from rvmon.cdv.test import TestError
 from rvmon.coverage import Ending
 from rvmon.errors import ModelError, UnknownNameError
 from rvmon.models.language.load import loads_network
-from rvmon.report.terminal import Terminal
+from rvmon.report.printer import Printer
 
 SPEC = """
 spec dials "Two dials"
@@ -135,7 +135,7 @@ def test_a_budget_ends_it_and_a_line_is_printed_that_calls_the_rest_unreachable(
     assert len(closed.tests) == 3
     assert closed.ended == "after 3 tests"
     assert len(closed.open) == closed.goals - closed.met > 0
-    print_closed(closed, Terminal(width=100))
+    print_closed(closed, Printer(width=100))
     told = capsys.readouterr().out
     (line,) = (one for one in told.splitlines() if "cdv.Unreachable" in one)
     assert eval(line) == cdv.Unreachable(*next(iter(closed.open)), "…")  # noqa: S307 - our own line

@@ -6,10 +6,11 @@ import pytest
 
 from rvmon.cdv.mutation.baseline import Difference
 from rvmon.cdv.mutation.python_mutants import HELD_OUT, Mutant
-from rvmon.cdv.mutation.report import MutationReport, SuiteTried, mutation_page, report_text
+from rvmon.cdv.mutation.report import MutationReport, SuiteTried, mutation_page, print_mutation
 from rvmon.cdv.mutation.survivors import Finding, How, Tried, equivalents, readers
 from rvmon.cdv.tables import to_json
 from rvmon.errors import RvmonError
+from rvmon.report.printer import text_of
 from rvmon.session import loads
 
 SPEC = loads("event go, stop\nrequirement R1\n  upon go\n  then within 3 s stop\n").checked
@@ -32,6 +33,11 @@ def report(*tried, equivalent=(), shows=False):
     return MutationReport("c", "robot", {"s": suite}, known, readers(SPEC), shows_held_out=shows)
 
 
+def as_text(found, **how):
+    """What the terminal shows, without colour."""
+    return text_of(lambda printer: print_mutation(found, printer, **how))
+
+
 @pytest.mark.parametrize(
     ("tried", "asked"),
     [
@@ -52,7 +58,7 @@ def report(*tried, equivalent=(), shows=False):
     ],
 )
 def test_questions(tried, asked):
-    text = report_text(report(tried))
+    text = as_text(report(tried))
     assert f"m.py:{tried.mutant.line}" in text
     assert "- a < b" in text
     assert "+ a <= b" in text
@@ -66,7 +72,7 @@ def test_what_is_held_out_is_counted_and_not_shown():
     shown = report(*alive, shows=True)
     assert hidden.scores("s") == shown.scores("s")
     assert hidden.scores("s")[HELD_OUT].mutants == len(HIDDEN)
-    for form in (report_text, mutation_page, lambda one: to_json(one.document()).decode()):
+    for form in (as_text, mutation_page, lambda one: to_json(one.document()).decode()):
         for one in HIDDEN:
             assert f"{one.identity}<" not in form(hidden).replace("\n", "<").replace('"', "<")
             assert one.identity in form(shown)
@@ -75,10 +81,10 @@ def test_what_is_held_out_is_counted_and_not_shown():
 def test_what_kills_stands_beside_each_mutant():
     found = report(Tried(SHOWN[0], 1, 1, (KILLED,)), Tried(HIDDEN[0], 1, 1, (KILLED,)))
     line = f"{SHOWN[0].identity}  a < b => a <= b  requirement (R1) in t"
-    text = report_text(found)
+    text = as_text(found)
     assert line.split() in [one.split() for one in text.splitlines()]
     assert HIDDEN[0].identity not in text
-    assert SHOWN[0].identity not in report_text(found, most=3)
+    assert SHOWN[0].identity not in as_text(found, most=3)
     assert "requirement (R1) in t" in mutation_page(found)
 
 
