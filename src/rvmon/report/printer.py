@@ -65,10 +65,12 @@ class Printer:
         self._file = sys.stdout if file is None else file
         self._has_colour = wants_colour(self._file) if has_colour is None else has_colour
         self.width = _terminal_width() if width is None else width
+        self._is_below_table = False
 
     def line(self, *pieces: Piece) -> None:
         """Print pieces, which may be of several lines, and end the line."""
         self._file.write("".join(map(self._drawn, pieces)) + "\n")
+        self._is_below_table = False
 
     def sentences(self, text: str, style: str = "") -> None:
         """Print a text in lines that fit; its own line breaks are kept."""
@@ -86,7 +88,7 @@ class Printer:
         wraps: Collection[int] | None = None,
         is_cut: bool = False,
     ) -> None:
-        """Print a table between blank lines.
+        """Print a table between blank lines, of which two tables share one.
 
         Args:
             heads: of its columns.
@@ -106,7 +108,9 @@ class Printer:
         if foot:
             blocks.insert(-1, [""])
         blocks.insert(len(head), [" " + "─" * width])
-        self._file.write("\n".join(["", *chain.from_iterable(blocks), "", ""]))
+        blank = [] if self._is_below_table else [""]
+        self._file.write("\n".join([*blank, *chain.from_iterable(blocks), "", ""]))
+        self._is_below_table = True
 
     def columns(
         self,
@@ -117,8 +121,9 @@ class Printer:
     ) -> None:
         """Print rows without heads, in columns."""
         cells = [[_cell(cell) for cell in row] for row in rows]
-        for block in self._lines(cells, _GAP[1:], right, wraps)[0]:
-            self._file.write("\n".join([*block, ""]))
+        for line in chain.from_iterable(self._lines(cells, _GAP[1:], right, wraps)[0]):
+            self._file.write(f"{line}\n")
+        self._is_below_table = False
 
     def fits(self, rows: Sequence[Sequence[Cell]]) -> bool:
         """Whether a table of rows fits without wrapping."""

@@ -129,7 +129,8 @@ def print_table(
     width = _width(table, *further.values())
     abreast = max(1, ABREAST // width)
     widths = (width - 1, *[width] * (len(Verdict) - 1))  # a gap stands before the first
-    printer.sentences(table.title, "bold")
+    if table.title:
+        printer.sentences(table.title, "bold")
     for first in range(0, len(table.groups), abreast):
         groups = table.groups[first : first + abreast]
         _print_groups(table, further, groups, widths, printer, with_checked=not first)
