@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import pickle
 import signal
@@ -42,6 +43,7 @@ def serve(
         parent: the process whose death Linux is to report; `None`: nobody's.
     """
     other.close()
+    gc.freeze()  # what a fork has of its parent is not looked through, and so not copied
     _leave_signals(parent)
     chunks: SimpleQueue[list[bytes]] = SimpleQueue()
     threading.Thread(target=_receive, args=(connection, chunks), daemon=True).start()

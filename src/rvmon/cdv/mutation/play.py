@@ -42,7 +42,7 @@ def plant(mutant: Mutant, source: str) -> None:
         return
     known = _codes_of(compile(source, path, "exec"), mutant.function)
     if known:
-        _change_functions(path, known, _codes_of(changed, mutant.function))
+        _change_functions(path, modules, known, _codes_of(changed, mutant.function))
     else:
         for module in modules:
             _change_constants(module, mutant)
@@ -74,9 +74,15 @@ def _all_codes(code: CodeType) -> Iterator[CodeType]:
             yield from _all_codes(const)
 
 
-def _change_functions(path: str, known: list[CodeType], changed: list[CodeType]) -> None:
+def _change_functions(
+    path: str, modules: list[ModuleType], known: list[CodeType], changed: list[CodeType]
+) -> None:
     by_line = {old.co_firstlineno: new for old, new in zip(known, changed, strict=True)}
-    for function in gc.get_objects():
+    gc.unfreeze()  # the parent's functions are looked for, too
+    # By their globals: what else there is is not counted as held, and so not copied after a fork.
+    found = gc.get_referrers(*map(vars, modules))
+    gc.freeze()
+    for function in found:
         if not isinstance(function, FunctionType):
             continue
         code = function.__code__
