@@ -15,7 +15,7 @@ from __future__ import annotations
 import sys
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import fields, replace
 from functools import partial
 from typing import Any, get_type_hints
@@ -24,6 +24,7 @@ import msgspec
 from benchmarks.comparisons import doors, models, monitors, peers
 from benchmarks.comparisons.comparison import Comparison
 from benchmarks.program import program
+from tests.tools.differential import Campaign
 
 from rvmon.execute.parallel import execute
 
@@ -76,11 +77,11 @@ def main(
         one, began = COMPARISONS[name], time.perf_counter()
         last = from_ + count
         parts = [range(at, min(at + one.part, last)) for at in range(from_, last, one.part)]
-        begin = partial(partial, one.judge, seed, *settings[name])
+        begin = partial(partial, _part, one.judge, seed, settings[name])
         counts, texts = Counter[str](), list[str]()
-        for counted, found in execute(parts, begin, jobs=jobs, what="part"):
-            counts += counted
-            texts += found
+        for found in execute(parts, begin, jobs=jobs, what="part"):
+            counts += found.counts
+            texts += found.disagreements
         seconds = time.perf_counter() - began
         print(f"{name}: {one.about}")
         print(f"  {count} {one.unit} from {from_} on, seed {seed}, {seconds:.0f} s")
@@ -91,6 +92,12 @@ def main(
             print(f"\n{'=' * 72}\n{text}\n")
         wrong += len(texts)
     return int(wrong > 0)
+
+
+def _part(judge: Callable[..., None], seed: int, settings: list[Any], numbers: range) -> Campaign:
+    found = Campaign()
+    judge(found, seed, *settings, numbers)
+    return found
 
 
 LISTED = "\n".join(f"    {name:16} {one.about}" for name, one in COMPARISONS.items())

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import random
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from itertools import product
 
+from tests.tools.differential import Campaign
 from tests.tools.random_specs import with_random_coverage
 
 from rvmon.coverage import combination
@@ -117,18 +118,29 @@ def by_monitor(case: Case, coverage: SpecCoverage) -> Counted:
     }
 
 
-def judge_hits(seed: int, numbers: range) -> tuple[Counter[str], list[str]]:
+def judge_hits(found: Campaign, seed: int, numbers: range) -> None:
     """What coverpoints and crosses are hit, on the traces of some specifications."""
-    counts, texts = Counter[str](), list[str]()
-    for number in numbers:
-        rng = random.Random(f"{seed}/{number}")
+    coverage: SpecCoverage | None = None
+
+    def drawn(place: object) -> Iterator[Case]:
+        rng = place if isinstance(place, random.Random) else random.Random(str(place))
         spec = with_random_coverage(rng, Profile(requirements=1, captures=False, for_each=False))
-        coverage = SpecCoverage(spec)
-        for place in range(EACH):
-            case = random_trace(rng, spec, TraceProfile(long=10))
-            law, found = by_law(case), by_monitor(case, coverage)
-            counts["pairs"] += 1
-            counts["hits"] += sum(count for own in law.values() for count, _ in own.values())
-            if law != found:
-                texts.append(f"number {number}, trace {place}: law {law}, monitor {found}")
-    return counts, texts
+        yield from (random_trace(rng, spec, TraceProfile(long=10)) for _ in range(EACH))
+
+    def ways(place: int, case: Case) -> Iterator[tuple[str, Callable[[Case], list[str]]]]:
+        nonlocal coverage
+        if coverage is None or place == 0:
+            coverage = SpecCoverage(case.spec)
+        found.counts["pairs"] += 1
+        hits = (count for own in by_law(case).values() for count, _ in own.values())
+        found.counts["hits"] += sum(hits)
+        yield "coverage", partial(_differs, coverage)
+
+    for number in numbers:
+        found.compare(drawn, f"{seed}/{number}", ways, 1)
+
+
+def _differs(coverage: SpecCoverage, case: Case) -> list[str]:
+    same = case.spec.coverpoints is coverage.spec.coverpoints  # else the case is a smaller one
+    law, ours = by_law(case), by_monitor(case, coverage if same else SpecCoverage(case.spec))
+    return [] if law == ours else [f"law {law}, monitor {ours}"]

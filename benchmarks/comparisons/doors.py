@@ -7,17 +7,16 @@ import os
 import random
 import tempfile
 import traceback
-from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from benchmarks.comparisons.comparison import Comparison, Found
+from benchmarks.comparisons.comparison import Comparison
 from fuzz.damage import damaged
 from fuzz.targets import TARGETS, run, seeds
-from tests.tools.differential import cases_of
+from tests.tools.differential import Campaign, cases_of
 from tests.tools.doors import Content, content_of, doors, whole
 from tests.tools.lossy_doors import DOORS, outcomes
 
@@ -30,9 +29,8 @@ EACH = 5
 """Recordings of a specification."""
 
 
-def judge_doors(seed: int, numbers: range) -> Found:
+def judge_doors(found: Campaign, seed: int, numbers: range) -> None:
     """The reports have to be those of the first door, byte by byte; none may refuse."""
-    counts, texts = Counter[str](), list[str]()
     with tempfile.TemporaryDirectory() as name:
         for number in numbers:
             for place, spec, content in _contents(f"{seed}/{number}"):
@@ -40,10 +38,11 @@ def judge_doors(seed: int, numbers: range) -> Found:
                 for door, write in doors().items():
                     text = _told(spec, *write(content, Path(name)))
                     expected = text if expected is None else expected
-                    counts[door] += 1
+                    found.counts[door] += 1
                     if text != expected or text.isidentifier():
-                        texts.append(f"{place}, {door}:\n  {text}\n  first door: {expected}")
-    return counts, texts
+                        found.disagreements.append(
+                            f"{place}, {door}:\n  {text}\n  first door: {expected}"
+                        )
 
 
 def _contents(seed: str) -> Iterator[tuple[str, Spec, Content]]:
@@ -72,35 +71,33 @@ class Lossy:
     doors: str = ""
 
 
-def judge_lost(seed: int, own: Lossy, numbers: range) -> Found:
+def judge_lost(found: Campaign, seed: int, own: Lossy, numbers: range) -> None:
     """In each run what is lost changes a letter that a requirement reads."""
-    counts, texts = Counter[str](), list[str]()
     logging.disable(logging.ERROR)
     for door in own.doors.split(",") if own.doors else DOORS:
         with tempfile.TemporaryDirectory() as folder:
             place, how = f"{seed}/{numbers.start}", DOORS[door]
             for one in outcomes(door, how, len(numbers), place, Path(folder)):
-                counts[f"{door}: runs"] += 1
-                counts[f"{door}: turned by a filling that may"] += one.is_split
+                found.counts[f"{door}: runs"] += 1
+                found.counts[f"{door}: turned by a filling that may"] += one.is_split
                 if one.overturned:
-                    texts.append(f"{one.name} overturns {', '.join(one.overturned)}")
+                    found.disagreements.append(f"{one.name} overturns {', '.join(one.overturned)}")
     logging.disable(logging.NOTSET)
-    return counts, texts
 
 
-def judge_damage(seed: int, numbers: range) -> Found:
+def judge_damage(found: Campaign, seed: int, numbers: range) -> None:
     """Each input that is damaged is read, or refused; nothing else comes out."""
-    counts, texts = Counter[str](), list[str]()
     os.environ["RVMON_CACHE"] = "off"
     for number in numbers:
         rng = random.Random(f"{seed}/{number}")
         name = rng.choice(sorted(TARGETS))
         data = damaged(rng.choice(_kept(name)), rng, _kept(name))
         try:
-            counts[f"{name}: {run(name, data)}"] += 1
+            found.counts[f"{name}: {run(name, data)}"] += 1
         except Exception:  # noqa: BLE001 - this is what is looked for
-            texts.append(f"number {number}, {name} {data!r}:\n{traceback.format_exc(limit=-3)}")
-    return counts, texts
+            found.disagreements.append(
+                f"number {number}, {name} {data!r}:\n{traceback.format_exc(limit=-3)}"
+            )
 
 
 @cache

@@ -11,15 +11,14 @@ decides, stepped and by rows.
 from __future__ import annotations
 
 import random
-from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from benchmarks.comparisons.comparison import Found
 from numpy.typing import NDArray
 from tests.tools.build import scaled
 from tests.tools.common_fragment import EVER, to_core
+from tests.tools.differential import Campaign
 from tests.tools.drive import drive
 from tests.tools.forms import FORMS, Compiler, Maker
 from tests.tools.random_specs import random_mtl
@@ -204,24 +203,22 @@ def _samples(rng: random.Random, count: int) -> Iterator[Sample]:
         t += rng.choice((1, 1, 1, 2, 3, 8, 41))
 
 
-def judge_long(seed: int, own: Long, numbers: range) -> Found:
-    counts, texts = Counter[str](), list[str]()
+def judge_long(found: Campaign, seed: int, own: Long, numbers: range) -> None:
     for number in numbers:
         case = _case(seed, number, own.samples)
         wanted = by_law(case)
-        counts.update(traces=1, samples=len(case.samples))
+        found.counts.update(traces=1, samples=len(case.samples))
         for _, _, verdict in wanted.values():
-            counts[f"attempts {'open' if verdict is None else verdict.value}"] += 1
+            found.counts[f"attempts {'open' if verdict is None else verdict.value}"] += 1
         compiler = Compiler()
         automaton = compiler(case.spec).requirements["R"].automaton
-        counts[f"judged by {'a network' if automaton is None else 'an automaton'}"] += 1
+        found.counts[f"judged by {'a network' if automaton is None else 'an automaton'}"] += 1
         for form in FORMS:
             got = of_report(drive(Maker(form, compiler)(case), case)[0])
             wrong = [k for k in sorted(wanted.keys() | got.keys()) if wanted.get(k) != got.get(k)]
             if wrong:
                 text = format_formula(case.spec.requirements["R"].consequent)
-                texts.append(
+                found.disagreements.append(
                     f"number {number}, {case.spec.time.value}, {text}: attempt {wrong[0]}: "
                     f"{wanted.get(wrong[0])}, {form} {got.get(wrong[0])}"
                 )
-    return counts, texts

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Iterator
 from random import Random
 
-from benchmarks.comparisons.comparison import Comparison, Found
+from benchmarks.comparisons.comparison import Comparison
 from benchmarks.comparisons.timed_ltl import LinearTruth, random_linear, satisfied_by
+from tests.tools.differential import Campaign
 from tests.tools.timed_ctl import holds_at_start
 from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import Steps, TooManyRegionsError, shows
@@ -41,32 +41,31 @@ def _network(seed: int, number: int) -> Network:
     return loads_network(random_model(drawn), name=f"random-{number}")
 
 
-def judge_queries(seed: int, numbers: range) -> Found:
+def judge_queries(found: Campaign, seed: int, numbers: range) -> None:
     """The truth of the queries of networks; runs that are shown are checked as concrete runs."""
-    counts, texts = Counter[str](), list[str]()
     for number in numbers:
         network, policy = _network(seed, number), tuple(Policy)[number % 3]
         steps: Steps = {}
         for kind, query in zip(KINDS, network.queries, strict=True):
             outcome = verify(network, query, policy=policy)
             if outcome.run is not None:
-                counts["runs checked as concrete runs"] += 1
+                found.counts["runs checked as concrete runs"] += 1
                 if not shows(network, outcome):
-                    texts.append(f"network {number}: the run does not show that {query.text}")
+                    found.disagreements.append(
+                        f"network {number}: the run does not show that {query.text}"
+                    )
             try:
                 expected = holds_at_start(network, query, MOST_REGIONS, steps)
             except TooManyRegionsError:
-                counts["left out: too many regions"] += 1
+                found.counts["left out: too many regions"] += 1
                 continue
-            counts[f"{kind}: {str(expected).lower()}"] += 1
+            found.counts[f"{kind}: {str(expected).lower()}"] += 1
             if outcome.holds != expected:
                 told = f"zones {outcome.holds}, regions {expected}"
-                texts.append(f"network {number}: {query.text}: {told}")
-    return counts, texts
+                found.disagreements.append(f"network {number}: {query.text}: {told}")
 
 
-def judge_logics(seed: int, numbers: range) -> Found:
-    counts, texts = Counter[str](), list[str]()
+def judge_logics(found: Campaign, seed: int, numbers: range) -> None:
     for number in numbers:
         network, random = _network(seed, number), Random(number)
         states = [f"({query.text.partition(' ')[2]})" for query in network.queries[:4]]
@@ -74,33 +73,32 @@ def judge_logics(seed: int, numbers: range) -> Found:
         formulas += [random_linear(random, states, 3) for _ in range(FORMULAS)]
         for text in formulas:
             try:
-                agrees = _agrees(network, text, counts)
+                agrees = _agrees(network, text, found)
             except TooManyRegionsError:
-                counts["left out: too many regions"] += 1
+                found.counts["left out: too many regions"] += 1
             except ModelError:
-                counts["left out: the network cannot start"] += 1
+                found.counts["left out: the network cannot start"] += 1
             else:
-                texts += [] if agrees else [f"network {number}: {text}"]
-    return counts, texts
+                found.disagreements += [] if agrees else [f"network {number}: {text}"]
 
 
-def _agrees(network: Network, text: str, counts: Counter[str]) -> bool:
+def _agrees(network: Network, text: str, found: Campaign) -> bool:
     query = asked_on(network, text)[1]
     formula, outcome = query.formula, verify(network, query)
     if isinstance(formula, LeadsToFormula | Asked) or not is_linear(formula):
-        counts[f"CTL: {str(outcome.holds).lower()}"] += 1
+        found.counts[f"CTL: {str(outcome.holds).lower()}"] += 1
         return outcome.holds == holds_at_start(network, query, 300)
     denied = UnaryOperation(UnaryOp.NOT, formula)
     agrees = outcome.holds != LinearTruth(network, denied, False, 3_000).some_run()
-    counts[f"LTL: {str(outcome.holds).lower()}"] += 1
+    found.counts[f"LTL: {str(outcome.holds).lower()}"] += 1
     if outcome.run is not None:
         Rules(network).replay(outcome.run)
-        counts["LTL: runs replayed"] += 1
+        found.counts["LTL: runs replayed"] += 1
         if not list(compares_of(denied)):
             agrees = agrees and satisfied_by(network, outcome.run, denied)
-            counts["LTL: runs that refute the formula by its own meaning"] += 1
+            found.counts["LTL: runs that refute the formula by its own meaning"] += 1
         stops = outcome.run.ending in (Ending.ZENO_LOOP, Ending.TIME_LOCK)
-        counts["LTL: only by time that stops"] += stops
+        found.counts["LTL: only by time that stops"] += stops
         agrees = agrees and stops != LinearTruth(network, denied, True, 6_000).some_run()
     return agrees
 

@@ -3,22 +3,20 @@
 from __future__ import annotations
 
 import random
-from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import numpy as np
-from benchmarks.comparisons.comparison import Comparison, Found
+from benchmarks.comparisons.comparison import Comparison
 from benchmarks.comparisons.coverage import judge_hits
 from benchmarks.comparisons.long_traces import Long, judge_long
 from tests.tools.common_fragment import unrolled
 from tests.tools.compare import Key
-from tests.tools.differential import campaign, case_of, cases_of, shrunk_case
+from tests.tools.differential import Campaign, campaign, case_of, cases_of
 from tests.tools.doors import content_of, whole
-from tests.tools.drive import Found as Gained
-from tests.tools.drive import Lost, Told, told
+from tests.tools.drive import drive
 from tests.tools.forms import Compiler, Maker
 from tests.tools.judgement import Judgement
 from tests.tools.law import judge as oracle
@@ -37,7 +35,7 @@ from rvmon.language.checked.specification import (
     Type,
 )
 from rvmon.language.print import format_formula
-from rvmon.monitor.robustness import Measured, Robustness, RobustnessMonitor
+from rvmon.monitor.robustness import Robustness, RobustnessMonitor
 from rvmon.session import Spec
 from rvmon.testing.generate import BOOLS, Rng, chance
 from rvmon.testing.generate.spec import Profile
@@ -78,10 +76,15 @@ class Verdicts:
 
 
 def judge_verdicts(
-    seed: int, own: Verdicts, profile: Profile, traces: TraceProfile, numbers: range
-) -> Found:
+    found: Campaign,
+    seed: int,
+    own: Verdicts,
+    profile: Profile,
+    traces: TraceProfile,
+    numbers: range,
+) -> None:
     """Verdicts, instants and records."""
-    found = campaign(
+    own_found = campaign(
         own.makers(),
         [f"{seed}/{number}" for number in numbers],
         profile,
@@ -91,27 +94,16 @@ def judge_verdicts(
         windows=own.windows,
         letters=own.letters,
     )
-    return found.counts, found.disagreements
+    found.counts += own_found.counts
+    found.disagreements += own_found.disagreements
 
 
 def by_samples(case: Case) -> Figures:
     """Robustness by a monitor that is stepped."""
     monitor = RobustnessMonitor(Spec(case.spec)._compiled, sources=case.names)
-    found = [one for action in told(case) for one in _tell(monitor, action)]
-    found += monitor.finish_ns(case.end)
-    return _bounds({(o.requirement, o.in_doubt, o.number or 0): o.robustness for o in found})
-
-
-def _tell(monitor: RobustnessMonitor, action: Told) -> Sequence[Measured]:
-    match action:
-        case Lost(names, t):
-            return monitor.lose_ns(names, t)
-        case Gained(names, t):
-            return monitor.found_ns(names, t)
-        case Sample(t, values):
-            return monitor.step_ns(t, values)
-        case int():
-            return monitor.advance_ns(action)
+    last, returned = drive(monitor, case)
+    told = [one for several in (*returned, last) for one in several or ()]
+    return _bounds({(o.requirement, o.in_doubt, o.number or 0): o.robustness for o in told})
 
 
 def by_arrays(case: Case) -> Figures:
@@ -136,23 +128,13 @@ def _in_columns(case: Case) -> Case:
     return replace(case, actions=samples, names=frozenset(content.columns), outages=())
 
 
-WAYS: Mapping[str, tuple[Callable[[Case], Figures], Callable[[Case], Case]]] = {
-    "samples": (by_samples, lambda case: case),
-    "arrays": (by_arrays, _in_columns),
-}
-"""How robustness is measured, and of which form of a case."""
-
-
-def _robustness_differs(
-    measured: tuple[Callable[[Case], Figures], Callable[[Case], Case]], case: Case
-) -> list[str]:
+def _figures_differ(ours: Callable[[Case], Figures], case: Case) -> list[str]:
     """How the figures of a way depart from the oracle's."""
-    figures, form = measured
-    case = form(case)
+    case = _in_columns(case) if ours is by_arrays else case
     if not case.samples:
         return []
     try:
-        found = figures(case)
+        found = ours(case)
     except Exception as error:  # noqa: BLE001 - whatever it raises is a finding
         return [f"raised {type(error).__name__}: {error}"]
     judgement = Judgement(case)
@@ -164,21 +146,19 @@ def _robustness_differs(
     ]
 
 
-def judge_robustness(seed: int, profile: Profile, traces: TraceProfile, numbers: range) -> Found:
-    """Robustness of each attempt."""
-    counts, texts = Counter[str](), list[str]()
+def judge_robustness(
+    found: Campaign, seed: int, profile: Profile, traces: TraceProfile, numbers: range
+) -> None:
+    """Robustness of each attempt; the first disagreement of a part is shrunk."""
+
+    def ways(_: int, case: Case) -> Iterator[tuple[str, Callable[[Case], list[str]]]]:
+        for name, ours in {"samples": by_samples, "arrays": by_arrays}.items():
+            found.counts[f"measured by {name}"] += bool(case.samples)
+            yield name, partial(_figures_differ, ours)
+
+    drawn = partial(cases_of, profile=profile, traces=traces, number=8)
     for number in numbers:
-        drawn = partial(cases_of, profile=profile, traces=traces, number=8)
-        place = f"margins {seed}/{number}"
-        for trace, case in enumerate(drawn(place)):
-            for way, measured in WAYS.items():
-                differs = partial(_robustness_differs, measured)
-                counts[f"measured by {way}"] += bool(case.samples)
-                if wrong := differs(case):
-                    # The first of a part is shrunk, the others are shown as they are.
-                    shown = wrong if texts else shrunk_case(drawn, trace, place, differs)
-                    texts.append("\n".join([f"{way}, number {number}", *shown]))
-    return counts, texts
+        found.compare(drawn, f"margins {seed}/{number}", ways, 1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,25 +170,25 @@ class Fillings:
     stretches: bool = False
 
 
-def judge_fillings(seed: int, own: Fillings, profile: Profile, numbers: range) -> Found:
+def judge_fillings(
+    found: Campaign, seed: int, own: Fillings, profile: Profile, numbers: range
+) -> None:
     """Whether a filling turns a run's P or NT to F, or its F to anything else."""
-    counts, texts = Counter[str](), list[str]()
     for number in numbers:
         alone = own.stretches and number % 2 == 1
         traces = TraceProfile(unknowns=not alone, outages=100 if own.stretches else 0)
         drawn = case_of(f"{seed}/{number}", replace(profile, stale=not alone), traces)
         case = narrowed(drawn)
         if not (alone or is_spoken_of(case.spec)):
-            counts["not spoken of"] += 1
+            found.counts["not spoken of"] += 1
             continue
         rng = random.Random(f"{seed}/{number}")
         tried = overturned(rng, case, own.fillings, oracle, whole=not alone)
-        counts.update(f"verdict {verdict}" for verdict in tried.verdicts.values())
-        counts["turned by a filling that may"] += tried.is_split
+        found.counts.update(f"verdict {verdict}" for verdict in tried.verdicts.values())
+        found.counts["turned by a filling that may"] += tried.is_split
         if tried.overturning is not None:
             lines = [f"number {number}: {tried.verdicts}", show_case(case), "filled in:"]
-            texts.append("\n".join([*lines, show_case(tried.overturning)]))
-    return counts, texts
+            found.disagreements.append("\n".join([*lines, show_case(tried.overturning)]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,33 +201,31 @@ class Forecasts:
     timed: bool = False
 
 
-def judge_forecasts(seed: int, own: Forecasts, numbers: range) -> Found:
+def judge_forecasts(found: Campaign, seed: int, own: Forecasts, numbers: range) -> None:
     """After every position of random words, the verdict or the forecast."""
-    counts, texts = Counter[str](), list[str]()
     for number in numbers:
         rng = random.Random(f"{seed}/{number}")
         formula = (random_mtl if own.timed else random_ltl)(rng, rng.randint(1, 4))
         tableau = Tableau.of(unrolled(formula), TABLEAU_MOST)
         if tableau is None:
-            counts[f"passed over: more than {TABLEAU_MOST} temporal operators"] += 1
+            found.counts[f"passed over: more than {TABLEAU_MOST} temporal operators"] += 1
             continue
-        counts["formulas"] += 1
+        found.counts["formulas"] += 1
         spec = _spec(formula, TimeModel.HELD if own.timed else TimeModel.SAMPLED)
         for _ in range(own.words):
             word = _word(rng)
             for length, (decided, ours) in enumerate(_said(spec, word), 1):
                 possible = tableau.possible(word[:length])
                 wanted = next(iter(possible)) if len(possible) == 1 else None
-                counts[f"{'decided' if decided else 'forecast'} {_SIGNS[ours]}"] += 1
+                found.counts[f"{'decided' if decided else 'forecast'} {_SIGNS[ours]}"] += 1
                 if own.timed and ours is None and wanted is not None:
-                    counts["missed"] += 1
+                    found.counts["missed"] += 1
                 elif ours is not wanted:
                     letters = " ".join("".join(sorted(x)) or "-" for x in word[:length])
-                    texts.append(
+                    found.disagreements.append(
                         f"number {number}: {format_formula(formula)} on {letters}: "
                         f"tableau {_SIGNS[wanted]}, monitor {_SIGNS[ours]}"
                     )
-    return counts, texts
 
 
 _SIGNS = {True: "P", False: "F", None: "either"}

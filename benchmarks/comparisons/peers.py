@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import random
-from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from benchmarks.comparisons.comparison import Comparison, Found
+from benchmarks.comparisons.comparison import Comparison
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.ways import WAYS, Question, Way, answers, ask_oracle
 from tests.tools.build import with_operands
 from tests.tools.common_fragment import UntranslatableError
+from tests.tools.differential import Campaign
 
 from rvmon.errors import RvmonError
 from rvmon.language.checked.formula import (
@@ -38,7 +38,7 @@ from rvmon.trace.schema import Kind
 
 ORDERS = (CompareOp.LT, CompareOp.LE, CompareOp.GE, CompareOp.GT)
 Values = Sequence[float | None]
-Ask = Callable[[Question], tuple[Values, Values]]
+Both = Callable[[Way, Peer, Question], tuple[Values, Values]]
 """What we and the peer say at every tick."""
 
 
@@ -49,53 +49,52 @@ class Asked:
     ways: str
 
 
-def judge_verdicts(seed: int, own: Asked, numbers: range) -> Found:
+def judge_verdicts(found: Campaign, seed: int, own: Asked, numbers: range) -> None:
     """The peer's verdict wherever it has one and ours is decided by the trace."""
 
-    def asked(way: Way, peer: Peer) -> Ask:
-        return lambda one: (answers(one, ask_oracle), way.truths(peer, one))
+    def both(way: Way, peer: Peer, one: Question) -> tuple[Values, Values]:
+        return answers(one, ask_oracle), way.truths(peer, one)
 
-    return _judge(f"{seed}", own.ways, numbers, 50, asked)
+    _judge(found, f"{seed}", own.ways, numbers, 50, both)
 
 
-def judge_robustness(seed: int, own: Asked, numbers: range) -> Found:
+def judge_robustness(found: Campaign, seed: int, own: Asked, numbers: range) -> None:
     """Robustness, number for number, wherever ours is one: no window reaches beyond the end."""
 
-    def asked(way: Way, peer: Peer) -> Ask:
-        return lambda one: (_robustness(one), way.says(peer, one))
+    def both(way: Way, peer: Peer, one: Question) -> tuple[Values, Values]:
+        return _robustness(one), way.says(peer, one)
 
-    return _judge(f"robustness {seed}", own.ways, numbers, 100, asked)
+    _judge(found, f"robustness {seed}", own.ways, numbers, 100, both)
 
 
 def _judge(
-    seed: str, ways: str, numbers: range, compared: int, asked: Callable[[Way, Peer], Ask]
-) -> Found:
+    found: Campaign, seed: str, ways: str, numbers: range, compared: int, both: Both
+) -> None:
     """Both on random questions, of whose propositions so many per cent are comparisons."""
-    counts, texts = Counter[str](), list[str]()
     environment = prepare()
     for name in ways.split(","):
         way = WAYS[name]
         if way.package in environment.missing:
-            counts[f"{name}: left out, {way.package} is missing"] += 1
+            found.counts[f"{name}: left out, {way.package} is missing"] += 1
             continue
         with Peer(environment.python, way.adapter) as peer:
-            ask = asked(way, peer)
             for number in numbers:
                 question = random_question(random.Random(f"{seed}/{name}/{number}"), way, compared)
                 try:
-                    ours, theirs = ask(question)
+                    ours, theirs = both(way, peer, question)
                 except UntranslatableError:
-                    counts[f"{name}: not to be said to it"] += 1
+                    found.counts[f"{name}: not to be said to it"] += 1
                     continue
                 except (PeerError, RvmonError) as error:
-                    counts[f"{name}: no answer, {str(error)[:60]}"] += 1
+                    found.counts[f"{name}: no answer, {str(error)[:60]}"] += 1
                     continue
-                counts[f"{name}: pairs"] += 1
-                for pair in zip(ours, theirs, strict=True):
-                    counts[f"{name}: ticks, {' / '.join(map(_word, pair))}"] += 1
-                if _disagree(ours, theirs):
-                    texts.append(f"{name}, number {number}\n{_show(way, question, ours, theirs)}")
-    return counts, texts
+                found.counts[f"{name}: pairs"] += 1
+                pairs = [*zip(ours, theirs, strict=True)]
+                for pair in pairs:
+                    found.counts[f"{name}: ticks, {' / '.join(map(_word, pair))}"] += 1
+                if any(None not in pair and pair[0] != pair[1] for pair in pairs):
+                    text = _show(way, question, ours, theirs)
+                    found.disagreements.append(f"{name}, number {number}\n{text}")
 
 
 def random_question(rng: random.Random, way: Way, compared: int) -> Question:
@@ -133,11 +132,6 @@ def _robustness(question: Question) -> Values:
     stream = Spec(spec).robustness(trace).streams["R"]
     found = [one.low if one.low == one.high else None for _, one in stream]
     return [None if value is None or abs(value) == float("inf") else value for value in found]
-
-
-def _disagree(ours: Values, theirs: Values) -> bool:
-    pairs = zip(ours, theirs, strict=True)
-    return any(None not in pair and pair[0] != pair[1] for pair in pairs)
 
 
 def _word(value: float | None) -> str:

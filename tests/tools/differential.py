@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import random
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -49,10 +50,29 @@ class Campaign:
     counts: Counter[str] = field(default_factory=Counter)
     disagreements: list[str] = field(default_factory=list)
 
-    def add(self, other: Campaign) -> None:
-        """Take in another part."""
-        self.counts += other.counts
-        self.disagreements += other.disagreements
+    def compare(
+        self,
+        drawn: Callable[[object], Iterator[Case]],
+        seed: object,
+        differs: Callable[[int, Case], Iterator[tuple[str, Callable[[Case], list[str]]]]],
+        shrunk: int,
+    ) -> None:
+        """Hold what several ways say of the cases of a seed against what is right.
+
+        Args:
+            drawn: draws the cases of the seed.
+            seed: whatever tells cases apart.
+            differs: given a place and the case there, the name of each way with what says how it
+                departs from what is right on a case; it is asked of others to shrink that one.
+            shrunk: so many disagreements in all are shrunk and shown, the others only told.
+        """
+        for place, case in enumerate(drawn(seed)):
+            for name, departs in differs(place, case):
+                if wrong := departs(case):
+                    lines = [f"{name}, seed {seed}", *wrong]
+                    if len(self.disagreements) < shrunk:
+                        lines += _shrunk_case(drawn, place, seed, departs)
+                    self.disagreements.append("\n".join(lines))
 
     def count(self, judgement: Judgement) -> None:
         """Take in what a case is made of, by what the law says of it."""
@@ -182,44 +202,41 @@ def campaign(
         windows: see `cases_of`.
         letters: see there, too.
     """
-    found, index = Campaign(), 0
+    found, asked = Campaign(), itertools.cycle([True, *[False] * (online_every - 1)])
     drawn = partial(
         cases_of, profile=profile, traces=traces, number=each, windows=windows, letters=letters
     )
+
+    def differs(_: int, case: Case) -> Iterator[tuple[str, Callable[[Case], list[str]]]]:
+        judgement, online = Judgement(case), online_every > 0 and next(asked)
+        found.count(judgement)
+        for name, make in engines.items():
+            wrong = _found(judgement, make, online)
+            found.counts[f"{'refused' if wrong is None else 'judged'} by {name}"] += 1
+            if wrong:
+                yield name, partial(disagreements, make=make, online=online)
+
     for seed in seeds:
-        for place, case in enumerate(drawn(seed)):
-            asked = online_every > 0 and index % online_every == 0
-            index += 1
-            judgement = Judgement(case)
-            found.count(judgement)
-            for name, make in engines.items():
-                wrong = _found(judgement, make, asked)
-                found.counts[f"{'refused' if wrong is None else 'judged'} by {name}"] += 1
-                if wrong:
-                    lines = [f"{name}, seed {seed}", *wrong]
-                    if len(found.disagreements) < shrunk:
-                        judged = partial(disagreements, make=make, online=asked)
-                        lines += shrunk_case(drawn, place, seed, judged)
-                    found.disagreements.append("\n".join(lines))
+        found.compare(drawn, seed, differs, shrunk)
     return found
 
 
-def shrunk_case(
+def _shrunk_case(
     drawn: Callable[[object], Iterator[Case]],
     place: int,
     seed: object,
-    differs: Callable[[Case], list[str]],
+    departs: Callable[[Case], list[str]],
 ) -> list[str]:
     """What still differs on a small case, which is made of the one that a seed draws there."""
 
     def shows(smaller: Case) -> bool:
         try:
-            return bool(differs(smaller))
+            return bool(departs(smaller))
         except (RvmonError, KeyError):  # the law, or columns, do not speak of the smaller case
             return False
 
     small = shrink(lambda rng: next(islice(drawn(rng), place, None)), seed, shows)
-    return ["shrunk:", *differs(small), show_case(small)]
+    return ["shrunk:", *departs(small), show_case(small)]
 
 
 def decided_on_bound(spec: CheckedSpec, attempt: Attempt) -> bool:

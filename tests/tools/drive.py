@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Protocol
+from typing import Any, Protocol
 
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Sample, Value
@@ -20,15 +20,15 @@ class Monitored(Protocol):
 
     def advance_ns(self, t_ns: int, /) -> Sequence[Attempt]: ...
 
-    def lose_ns(self, names: Iterable[str], since: int, /) -> object: ...
+    def lose_ns(self, names: Iterable[str], since: int, /) -> Any: ...
 
-    def found_ns(self, names: Iterable[str], at: int, /) -> object: ...
+    def found_ns(self, names: Iterable[str], at: int, /) -> Any: ...
 
     def finish_ns(self, t_ns: int | None = None, /) -> Report: ...
 
 
-def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt]]]:
-    """Tell a monitor a case to its end; the report, and what its actions returned.
+def drive(monitor: Any, case: Case) -> tuple[Any, list[Any]]:
+    """Tell a `Monitored`, or one of robustness, a case to its end; the report, what calls returned.
 
     Now and then nobody says that what was lost was found.
     """
@@ -37,9 +37,9 @@ def drive(monitor: Monitored, case: Case) -> tuple[Report, list[Sequence[Attempt
     for action in told(case):
         match action:
             case Lost(names, t):
-                monitor.lose_ns(names, t)
+                returned.append(monitor.lose_ns(names, t))
             case Found(names, t) if t != end:
-                monitor.found_ns(names, t)
+                returned.append(monitor.found_ns(names, t))
             case Sample() | int():
                 returned.append(feed(monitor, action))
     return monitor.finish_ns(case.end if end is None else end), returned

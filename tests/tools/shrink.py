@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from random import Random
 from typing import TypeVar
 
@@ -28,22 +28,22 @@ class _Choices(Random):
         self.made: list[int] = []
 
     def getrandbits(self, k: int, /) -> int:
-        drawn = super().getrandbits(k) if self._wanted is None else self._next() & ((1 << k) - 1)
-        self.made.append(drawn)
-        return drawn
+        return self._made(k, lambda: super(_Choices, self).getrandbits(k))
 
     def random(self) -> float:
-        drawn = (
-            int(super().random() * 2**_BITS) if self._wanted is None else self._next() % 2**_BITS
-        )
-        self.made.append(drawn)
+        drawn = self._made(_BITS, lambda: int(super(_Choices, self).random() * 2**_BITS))
         return float(drawn / 2**_BITS)
 
-    def _next(self) -> int:
-        assert self._wanted is not None
-        if len(self.made) > _MOST_CHOICES:
+    def _made(self, bits: int, of_seed: Callable[[], int]) -> int:
+        place = len(self.made)
+        if place > _MOST_CHOICES:
             raise OverflowError
-        return self._wanted[len(self.made)] if len(self.made) < len(self._wanted) else 0
+        if self._wanted is None:
+            drawn = of_seed()
+        else:
+            drawn = (self._wanted[place] if place < len(self._wanted) else 0) & ((1 << bits) - 1)
+        self.made.append(drawn)
+        return drawn
 
 
 def shrink(
@@ -93,14 +93,7 @@ def shrink(
             size //= 2
         at = 0
         while at < len(choices):
-            at += not any(map(helps, _lessened(choices, at)))
+            head, one, tail = choices[:at], choices[at], choices[at + 1 :]
+            less = [(one // 2, 0), *((one - 1, skipped) for skipped in range(40))] if one else []
+            at += not any(helps([*head, value, *tail[skipped:]]) for value, skipped in less)
     return best
-
-
-def _lessened(choices: list[int], at: int) -> Iterator[list[int]]:
-    """One choice lessened; then some of those behind it may be needless, too."""
-    one = choices[at]
-    for less in (one // 2, one - 1) if one else ():
-        yield [*choices[:at], less, *choices[at + 1 :]]
-    for end in range(at + 2, min(at + 40, len(choices))) if one else ():
-        yield [*choices[:at], one - 1, *choices[end:]]
