@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from msgspec import structs
 from tests.tools.common_fragment import EVER, UntranslatableError, both, either, to_core
 
 from rvmon.language.checked.formula import (
@@ -120,7 +121,7 @@ def _opened(formula: Unary | Binary, window: Interval) -> Formula:
     """
     rest = Interval(0, None if window.high is None else window.high - window.low)
     at, before = Interval(window.low, window.low), Interval(0, window.low - 1)
-    inner = replace(formula, interval=rest)
+    inner = structs.replace(formula, interval=rest)
     if isinstance(formula, Unary):
         return Unary(formula.op, inner, at)
     if formula.op is BinaryOp.UNTIL:

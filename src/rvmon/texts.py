@@ -13,9 +13,9 @@ import sys
 import unicodedata
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import islice, takewhile
 from pathlib import Path
+from typing import NamedTuple
 
 MOST_NAMES = 1_000
 """Names that a misspelt one is compared with."""
@@ -281,8 +281,7 @@ _MARKS = (".git", "pyproject.toml")
 """The files that mark the root of a project."""
 
 
-@dataclass(frozen=True, slots=True)
-class ImportTree:
+class ImportTree(NamedTuple):
     """The folders that imports may lead into.
 
     Attributes:

@@ -19,6 +19,7 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+from msgspec import structs
 from tests.tools.hostile import STEERING, hostile_names
 
 import rvmon
@@ -76,7 +77,7 @@ class Documents:
         judged = base.evaluate([(0.0, {"b": True}), (1.0, {"b": False})])
         attempt, requirement = judged.attempts[0], base.requirements["R"]
         self.names = names
-        self.spec: CheckedSpec = replace(
+        self.spec: CheckedSpec = structs.replace(
             base.checked,
             name=names[0],
             requirements={n: replace(requirement, id=n, text=n) for n in names},

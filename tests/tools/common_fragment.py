@@ -6,7 +6,8 @@ For who knows no bounds they can be taken away.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+
+from msgspec.structs import replace
 
 from rvmon.language.checked.formula import (
     Amount,

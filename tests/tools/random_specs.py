@@ -8,6 +8,8 @@ from __future__ import annotations
 import random
 from dataclasses import replace
 
+from msgspec import structs
+
 import rvmon
 from rvmon.language.checked.formula import (
     Binary,
@@ -50,7 +52,7 @@ def _over_signals(rng: Rng, made: Formula, *, is_timed: bool) -> Formula:
     if isinstance(made, BoundAtom):
         return SignalAtom(pick(rng, BOOLS))
     if isinstance(made, Unary | Binary) and made.interval is not None and not is_timed:
-        made = replace(made, interval=Interval())
+        made = structs.replace(made, interval=Interval())
     return with_operands(made, lambda operand: _over_signals(rng, operand, is_timed=is_timed))
 
 
@@ -138,7 +140,7 @@ def with_random_coverage(rng: Rng, profile: Profile) -> CheckedSpec:
         name: Requirement(name, Mode.UPON, BoundAtom(Bound.START), wanted)
         for name, wanted in asked.items()
     }
-    return replace(spec, requirements=requirements, coverpoints=points, crosses=crosses)
+    return structs.replace(spec, requirements=requirements, coverpoints=points, crosses=crosses)
 
 
 def _bins(rng: Rng, shape: Shape) -> tuple[Bin, ...]:

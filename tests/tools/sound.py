@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
+from msgspec import structs
+
 from rvmon.language.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
 from rvmon.language.checked.specification import CheckedSpec, Event, Type
 from rvmon.testing.generate import Rng, chance, pick
@@ -217,7 +219,7 @@ def narrowed(case: Case) -> Case:
     outages = tuple(replace(outage, names=outage.names & read) for outage in case.outages)
     return replace(
         case,
-        spec=replace(spec, signals=signals, events=events),
+        spec=structs.replace(spec, signals=signals, events=events),
         actions=actions,
         outages=outages,
     )

@@ -8,11 +8,11 @@ section 5, Table 1 (there the requirements are numbered 1 to 5).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import msgspec
+from msgspec.structs import replace
 
 from rvmon.cdv import tables
 from rvmon.cdv.campaign_summary import CampaignSummary

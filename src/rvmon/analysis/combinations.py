@@ -11,12 +11,12 @@ from __future__ import annotations
 import operator
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import reduce
 from itertools import product
 from typing import Generic, TypeVar, assert_never
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from rvmon.analysis.representative_inputs import Silence, is_solved, truths_tried, values_of
@@ -46,8 +46,7 @@ def combinations_of(spec: CheckedSpec, states: Sequence[State]) -> frozenset[Tru
     return None if table is None else frozenset(table.rows.values())
 
 
-@dataclass(frozen=True, slots=True)
-class Table(Generic[T]):
+class Table(Struct, Generic[T], frozen=True):
     """The possible values of a group of formulas, by the cases of its sources.
 
     Attributes:
@@ -144,8 +143,7 @@ class Letters:
         return self._seen[source, leaves]
 
 
-@dataclass(frozen=True, slots=True)
-class _Part(Generic[T]):
+class _Part(Struct, Generic[T], frozen=True):
     """A table projected onto the cases of the sources that it shares with others."""
 
     sources: tuple[Source, ...]

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import combinations
+
+from msgspec import Struct
 
 from rvmon.analysis.product import Aim, Together
 from rvmon.analysis.vacuity import Subject
@@ -26,16 +27,14 @@ MOST_SETS = 2000
 """If there are more sets of one size above three, that size is skipped."""
 
 
-@dataclass(frozen=True, slots=True)
-class Member:
+class Member(Struct, frozen=True):
     """A requirement of a set, triggered `offset` ticks after the first trigger of the set."""
 
     subject: Subject
     offset: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Conflict:
+class Conflict(Struct, frozen=True):
     """Requirements that cannot all hold.
 
     Attributes:
@@ -47,8 +46,7 @@ class Conflict:
     offsets: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Implication:
+class Implication(Struct, frozen=True):
     """A requirement that fails only where one of `by` fails; `by` is minimal."""
 
     implied: str

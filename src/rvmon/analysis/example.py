@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from rvmon.language.checked.classify import subformulas
 from rvmon.language.checked.formula import Binary, Formula, Interval, Unary
@@ -14,8 +15,7 @@ from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt
 
 
-@dataclass(frozen=True, slots=True)
-class Example:
+class Example(Struct, frozen=True):
     """A short run with its verdicts.
 
     Attributes:
@@ -31,8 +31,7 @@ class Example:
     attempts: Sequence[Attempt]
 
 
-@dataclass(frozen=True, slots=True)
-class Budget:
+class Budget(Struct, frozen=True):
     """Limits of a search for examples.
 
     Attributes:
@@ -47,8 +46,7 @@ class Budget:
     step: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
+class Found(Struct, frozen=True):
     """The result of a search for examples.
 
     Attributes:

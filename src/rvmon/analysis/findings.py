@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from rvmon.analysis.conflicts import Conflict, ConflictSearch, Implication, implications_among
 from rvmon.analysis.product import Together
@@ -18,8 +19,7 @@ from rvmon.language.rules import Rule, finding
 from rvmon.texts import listed
 
 
-@dataclass(frozen=True, slots=True)
-class Examination:
+class Examination(Struct, frozen=True):
     """The results of all analyses.
 
     Attributes:

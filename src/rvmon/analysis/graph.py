@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
 from itertools import product
+
+from msgspec import Struct
 
 from rvmon.analysis.combinations import combinations_of
 from rvmon.language.checked.formula import Binary, BinaryOp, Constant
@@ -74,8 +75,7 @@ MOST_PROPOSITIONS = 8
 CLOCKS = "xyzuvwabcd"
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
+class Place(Struct, frozen=True):
     """A location.
 
     Attributes:
@@ -89,8 +89,7 @@ class Place:
     location: int
 
 
-@dataclass(frozen=True, slots=True)
-class Edge:
+class Edge(Struct, frozen=True):
     """An edge.
 
     Attributes:
@@ -108,8 +107,7 @@ class Edge:
     sets: str
 
 
-@dataclass(frozen=True, slots=True)
-class Graph:
+class Graph(Struct, frozen=True):
     """An automaton to be drawn; the first place is where an attempt starts."""
 
     places: tuple[Place, ...]

@@ -10,8 +10,9 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import product
+
+from msgspec import Struct
 
 from rvmon.analysis.combinations import Letters, Table, Truths
 from rvmon.analysis.vacuity import Regions, Subject, automaton_letter
@@ -33,8 +34,7 @@ Letter = tuple[tuple[int, bool], ...]
 """A joint letter: per requirement, the class of letters, and whether its trigger is true."""
 
 
-@dataclass(frozen=True, slots=True)
-class Aim:
+class Aim(Struct, frozen=True):
     """The goal of a search.
 
     Attributes:

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from itertools import combinations, islice, pairwise, product
 from typing import TypeVar, assert_never
+
+from msgspec import Struct
 
 from rvmon.language.checked.formula import (
     Arithmetic,
@@ -219,8 +220,7 @@ Valuation = Mapping[str, Value | Silence]
 """By name read, its value in a sample; of an event `False` if it does not occur."""
 
 
-@dataclass(frozen=True, slots=True)
-class Choices:
+class Choices(Struct, frozen=True):
     """The samples to choose from at every instant.
 
     Attributes:

@@ -6,10 +6,11 @@ Examples are found by best-first search over relevant samples, instants and valu
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import count
 from operator import itemgetter
+
+from msgspec import Struct
 
 from rvmon.analysis.conflicts import Conflict
 from rvmon.analysis.example import Budget, Example, Found, small_step
@@ -34,8 +35,7 @@ NEVER = (1 << 63) - 1
 """Later than any instant."""
 
 
-@dataclass(frozen=True, slots=True)
-class Played:
+class Played(Struct, frozen=True):
     """A short run, judged.
 
     Attributes:
@@ -108,8 +108,7 @@ def difference_of(first: str, second: str) -> Goal:
     return differs
 
 
-@dataclass(frozen=True, slots=True)
-class _Node:
+class _Node(Struct, frozen=True):
     """A run to be judged.
 
     Attributes:
@@ -329,8 +328,7 @@ CONFLICT_RUNS = 400
 _OPEN, _MET = "open", "met"
 
 
-@dataclass(frozen=True, slots=True)
-class Analysis:
+class Analysis(Struct, frozen=True):
     """The result of an analysis.
 
     Attributes:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import chain
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
 
 from rvmon.analysis.example import small_step
 from rvmon.analysis.interval_sets import distinct, hold, outside, within
@@ -43,8 +43,7 @@ if TYPE_CHECKING:
     from rvmon.analysis.truths import Plans
 
 
-@dataclass(frozen=True, slots=True)
-class PartTruth:
+class PartTruth(Struct, frozen=True):
     """The truth of one subformula over a stretch of time.
 
     Attributes:
@@ -62,8 +61,7 @@ class PartTruth:
     false: tuple[tuple[int, int], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Breakdown:
+class Breakdown(Struct, frozen=True):
     """The dissection of an attempt.
 
     Attributes:
@@ -136,8 +134,7 @@ def part_truths_of(
     return tuple(part_truths)
 
 
-@dataclass(frozen=True, slots=True)
-class _Part:
+class _Part(Struct, frozen=True):
     """An operand of a trigger.
 
     Attributes:
@@ -153,8 +150,7 @@ class _Part:
     reads: frozenset[str]
 
 
-@dataclass(frozen=True, slots=True)
-class _Miss:
+class _Miss(Struct, frozen=True):
     """The moment at which most parts of a conjunction were true.
 
     Attributes:

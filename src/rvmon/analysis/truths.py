@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, assert_never
 
 import numpy as np
+from msgspec import Struct, field
 
 from rvmon.analysis.interval_sets import FOREVER, distinct, joined, outside, within
 from rvmon.language.checked.classify import is_end
@@ -47,16 +47,14 @@ if TYPE_CHECKING:
     """Instants of positions, ascending; `None` where every tick is one."""
 
 
-@dataclass(frozen=True, slots=True)
-class Truth:
+class Truth(Struct, frozen=True):
     """The ticks at which a formula is TRUE, and those at which it is TRUE or UNKNOWN (`may`)."""
 
     sure: NDArray[np.int64]
     may: NDArray[np.int64]
 
 
-@dataclass(frozen=True)
-class Question:
+class Question(Struct, frozen=True, dict=True):
     """Formulas to be evaluated, with their captured values.
 
     Attributes:
@@ -86,8 +84,7 @@ class Question:
         return tuple(map(format_formula, self.formulas))
 
 
-@dataclass(frozen=True, slots=True)
-class RecordedTruths:
+class RecordedTruths(Struct, frozen=True):
     """The truths of formulas over a recording; after its end they are unknown.
 
     In clocked and sampled time, a truth value is extended from its position to the next.

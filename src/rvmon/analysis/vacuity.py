@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from itertools import product
+
+from msgspec import Struct
 
 from rvmon.analysis.combinations import combinations_of
 from rvmon.language.checked.formula import BoundAtom, Constant
@@ -21,8 +22,7 @@ Regions = tuple[int, ...]
 """For each clock of a location, the number of its cuts that its age has reached."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Subject:
+class Subject(Struct, frozen=True, eq=False):
     """A requirement to be analysed.
 
     Attributes:
@@ -60,8 +60,7 @@ class Subject:
         return self.requirement.pulse and self.requirement.mode is Mode.UPON
 
 
-@dataclass(frozen=True, slots=True)
-class Possible:
+class Possible(Struct, frozen=True):
     """The possible behaviour of a requirement; `False` is proved, `None` was not decided.
 
     Attributes:

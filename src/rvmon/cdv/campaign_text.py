@@ -11,6 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from msgspec import structs
+
 from rvmon.cdv.campaign_plan import Results
 from rvmon.cdv.campaign_summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary
 from rvmon.cdv.tables import (
@@ -97,13 +99,13 @@ def _print_in_short(
         for name, verdicts in counts.items()
         if name not in foremost and not (verdicts[Verdict.FAIL] or verdicts[Verdict.INCONCLUSIVE])
     }
-    shown = replace(
+    shown = structs.replace(
         tables.own,
         requirements={name: "" for name in counts if name not in rest},
         notes=(),
         shows_intervals=False,
     )
-    control = tables.control and replace(tables.control, shows_intervals=False)
+    control = tables.control and structs.replace(tables.control, shows_intervals=False)
     _print_verdicts(replace(tables, own=shown, control=control), printer)
     if rest:
         passed = sum(bool(verdicts[Verdict.PASS]) for verdicts in rest.values())

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 import msgspec
+from msgspec import Struct, field
 
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_plan import Job, Outcome, Plan, Played
@@ -29,8 +29,7 @@ _PACKAGES = ("coverage", "msgspec", "numpy")
 """The packages that can affect any outcome."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Entry:
+class _Entry(Struct, frozen=True):
     """One test that was played, and the seconds that the campaign had taken by then."""
 
     test: str
@@ -40,16 +39,14 @@ class _Entry:
     seconds: float
 
 
-@dataclass(frozen=True, slots=True)
-class _Heading:
+class _Heading(Struct, frozen=True):
     """The first entry: a checksum of what outcomes depend on, and what a person can type."""
 
     inputs: str
     command: str
 
 
-@dataclass(frozen=True, slots=True)
-class Unfinished(journal.Journal):
+class Unfinished(journal.Journal, frozen=True):
     """A campaign that goes on.
 
     Attributes:

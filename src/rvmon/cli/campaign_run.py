@@ -7,9 +7,10 @@ import sys
 from argparse import Namespace
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+
+from msgspec import Struct
 
 from rvmon.cdv import tables
 from rvmon.cdv.campaign import Campaign
@@ -46,8 +47,7 @@ from rvmon.session import Spec
 from rvmon.verdicts import Verdict
 
 
-@dataclass(frozen=True, slots=True)
-class Conducted:
+class Conducted(Struct, frozen=True):
     """A campaign that was run."""
 
     results: Results

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field, structs
 
 from rvmon.cli.options import asked_ids, constants_of
 from rvmon.cli.output import bar, shown_while_reading, warn
@@ -36,8 +38,7 @@ if TYPE_CHECKING:
     from rvmon.verdicts.report import Report
 
 
-@dataclass(frozen=True, slots=True)
-class Options:
+class Options(Struct, frozen=True):
     """The options of judging.
 
     Attributes:
@@ -146,8 +147,7 @@ class RecordingCoverage:
         return replace(report, illegal=wrong, coverage=covered_groups(found, model))
 
 
-@dataclass(frozen=True, slots=True)
-class Judged:
+class Judged(Struct, frozen=True):
     """One recording with what is known of it.
 
     Attributes:
@@ -206,7 +206,9 @@ def judge_all(
                 if not is_alone:  # that one shows how far it is read
                     show(done)
                 if is_apart and one.report is not None:
-                    one = replace(one, report=with_plan(one.report, spec.planned(options.only)))
+                    one = structs.replace(
+                        one, report=with_plan(one.report, spec.planned(options.only))
+                    )
                 yield one
     except WorkerLostError as error:
         for trace in traces[done:]:
@@ -221,7 +223,7 @@ def _judge_apart(spec: Spec, trace: str, options: Options, *, writes_json: bool)
     if found.report is None:
         return found
     text = found.report.to_json(spec.requirements) if writes_json else ""
-    return replace(found, report=with_plan(found.report, None), text=text)
+    return structs.replace(found, report=with_plan(found.report, None), text=text)
 
 
 @without_copies()
@@ -283,7 +285,7 @@ def as_known(judged: Judged, case: Case) -> Judged:
     """The judged reproducer, with the name by which people know its recording."""
     name = shown_name(case.recording)
     report = None if judged.report is None else replace(judged.report, trace=name)
-    return replace(
+    return structs.replace(
         judged, trace=name, report=report, error=judged.error.replace(case.recording, name)
     )
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rvmon.cli.parser import TIME_FORMS, instant_s, positive, span_s
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.trace.schema import READINGS_OF_NAN
+from rvmon.trace import READINGS_OF_NAN
 
 if TYPE_CHECKING:
     from rvmon.models.search.budget import Budget

@@ -13,7 +13,6 @@ from shutil import get_terminal_size
 from typing import TYPE_CHECKING, TypeVar
 
 from rvmon.texts import shown, shown_json
-from rvmon.trace.sample import Sample
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -131,6 +130,8 @@ def shown_while_reading(recording: FileRecording, parts: Iterator[T]) -> Iterato
         recording: knows the progress.
         parts: its samples, or pieces of it with many rows each.
     """
+    from rvmon.trace.sample import Sample  # which help has no need of
+
     with bar(recording.path, 1.0) as show:
         for one in parts:
             yield one

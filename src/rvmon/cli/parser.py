@@ -87,7 +87,7 @@ def shard(text: str) -> Shard:
         argparse.ArgumentTypeError: it is none.
 
     >>> shard("2/4")
-    Shard(number=2, count=4)
+    Shard(number=2, total=4)
     """
     number, slash, count = text.partition("/")
     if slash and positive(number) <= positive(count):

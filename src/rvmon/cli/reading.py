@@ -6,7 +6,6 @@ import argparse
 import re
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -146,6 +145,8 @@ def opened(spec: Spec, trace: str, *, only: Collection[str] | None = None) -> Fi
 
     schema = spec.schema
     if only is not None:
+        from dataclasses import replace  # which help has no need of
+
         schema = replace(
             schema,
             signals={name: kind for name, kind in schema.signals.items() if name in only},

@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import pickle
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import msgspec
+from msgspec import field
+from msgspec.structs import asdict
 
 from rvmon.cli.evaluation import Judged, Options
 from rvmon.coverage import Hit
@@ -36,8 +37,7 @@ class _Entry(msgspec.Struct, frozen=True):
     seconds: float
 
 
-@dataclass(frozen=True, slots=True)
-class Unfinished(journal.Journal):
+class Unfinished(journal.Journal, frozen=True):
     """A run that goes on.
 
     Attributes:

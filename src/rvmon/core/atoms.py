@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from enum import IntEnum, auto
 from typing import assert_never
+
+from msgspec import Struct
 
 from rvmon.core.sections import Numbering, Section, Sections, numbered
 from rvmon.errors import RvmonError
@@ -224,8 +225,7 @@ class AtomOp(IntEnum):
     START = auto()
 
 
-@dataclass(frozen=True, slots=True)
-class Atom:
+class Atom(Struct, frozen=True):
     """An atom; names are given by their numbers in the part.
 
     Attributes:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from enum import IntEnum, auto
+
+from msgspec import Struct
 
 from rvmon.core.atoms import Atoms, Names
 from rvmon.core.obligations import is_followed
@@ -87,8 +88,7 @@ _PLAIN = {
 }
 
 
-@dataclass(slots=True)
-class Node:
+class Node(Struct):
     """A state formula; see `node_plan` in plan.h.
 
     Attributes:

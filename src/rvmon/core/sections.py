@@ -8,16 +8,16 @@ from __future__ import annotations
 import struct
 from array import array
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from enum import IntEnum
 from itertools import accumulate
+
+from msgspec import Struct
 
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.trace.schema import Kind
 
 
-@dataclass(frozen=True, slots=True)
-class Packed:
+class Packed(Struct, frozen=True):
     """A plan as bytes, with the names that its numbers stand for.
 
     Attributes:

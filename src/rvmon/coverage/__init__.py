@@ -6,10 +6,12 @@ The other modules find hits, store them in databases, and answer questions about
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from fractions import Fraction
 from typing import TYPE_CHECKING, ClassVar
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from rvmon.language.checked.properties import BinKind
 from rvmon.verdicts import Verdict
@@ -38,8 +40,7 @@ class Subject(StrEnum):
     BRANCHES = "branches"
 
 
-@dataclass(frozen=True, slots=True)
-class Item:
+class Item(Struct, frozen=True):
     """One coverage item: a bin, a combination of bins, a state, a line and so on.
 
     Attributes:
@@ -55,8 +56,7 @@ class Item:
     text: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Group:
+class Group(Struct, frozen=True):
     """The items of one subject.
 
     Attributes:
@@ -77,8 +77,7 @@ class Group:
     title: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Model:
+class Model(Struct, frozen=True):
     """A coverage model: all groups of items, by name."""
 
     groups: Mapping[str, Group]
@@ -144,8 +143,7 @@ def without(model: Model, items: Collection[tuple[str, str]]) -> Model:
     return Model(groups)
 
 
-@dataclass(frozen=True, slots=True)
-class Hit:
+class Hit(Struct, frozen=True):
     """The hits of an item in one run, or in several.
 
     Attributes:
@@ -165,8 +163,7 @@ Hits = Mapping[str, Mapping[str, Hit]]
 """By group and item; items without hits are left out. All groups and items must be in the model."""
 
 
-@dataclass(frozen=True, slots=True)
-class Score:
+class Score(Struct, frozen=True):
     """The coverage of a group.
 
     Attributes:
@@ -283,8 +280,7 @@ class Ending(StrEnum):
     LOST = "lost"
 
 
-@dataclass(frozen=True, slots=True)
-class TestRecord:
+class TestRecord(Struct, frozen=True):
     """A test of a campaign with its result, without its hits.
 
     Attributes:
@@ -336,8 +332,7 @@ class TestRecord:
         return [name for name, verdict in self.verdicts.items() if verdict is Verdict.FAIL]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Row:
+class Row(Struct, frozen=True, eq=False):
     """The hits of a test, as parallel columns.
 
     Attributes:
@@ -355,8 +350,7 @@ UNKNOWN = -(1 << 63)
 """Stands for an unknown instant; earlier than all instants."""
 
 
-@dataclass(frozen=True, slots=True)
-class Entry:
+class Entry(Struct, frozen=True):
     """A test with its hits.
 
     Attributes:
@@ -370,8 +364,7 @@ class Entry:
     row: Row
 
 
-@dataclass(frozen=True, slots=True)
-class Coverage:
+class Coverage(Struct, frozen=True):
     """The contents of a coverage database.
 
     Attributes:

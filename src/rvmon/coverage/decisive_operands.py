@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum, auto
+
+from msgspec import Struct, structs
 
 from rvmon.language.checked.classify import has_future, is_pulse, is_timeless
 from rvmon.language.checked.formula import Binary, BinaryOp, Formula, Unary, UnaryOp
@@ -35,8 +37,7 @@ class _Change(Enum):
         return self
 
 
-@dataclass(frozen=True, slots=True)
-class Variant:
+class Variant(Struct, frozen=True):
     """A requirement without one operand of `and`, `or` or `->`.
 
     Attributes:
@@ -99,15 +100,15 @@ def _without_one(formula: Formula) -> Iterator[tuple[Formula, Formula, _Change]]
                     yield part, _with(formula, side, without), outer
         case Unary(op=op, operand=operand):
             for part, without, change in _without_one(operand):
-                yield part, replace(formula, operand=without), change.within(op)
+                yield part, structs.replace(formula, operand=without), change.within(op)
         case _:
             return
 
 
 def _with(formula: Binary, side: str, operand: Formula) -> Formula:
     if side == "left":
-        return replace(formula, left=operand)
-    return replace(formula, right=operand)
+        return structs.replace(formula, left=operand)
+    return structs.replace(formula, right=operand)
 
 
 def _rest(formula: Binary, side: str) -> Formula:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
+
+from msgspec import Struct
 
 from rvmon.coverage import PAIRS, STATES, TRANSITIONS, Group, Hits, Model, Subject, count_of
 from rvmon.coverage.requirements import AT, JUST_BEFORE, PASSED, TRIGGERED, locations_of
@@ -104,8 +105,7 @@ def _near_code(goal: Goal, hits: Hits) -> float:
 _DECIDES = " decides"
 
 
-@dataclass(frozen=True, slots=True)
-class Hole:
+class Hole(Struct, frozen=True):
     """An uncovered item in words.
 
     Attributes:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from msgspec import Struct
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from rvmon.coverage import UNKNOWN, Coverage, Score, TestRecord, weighted
@@ -18,8 +19,7 @@ if TYPE_CHECKING:
     import numpy as np
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Goals:
+class Goals(Struct, frozen=True, eq=False):
     """The goals of all items, as arrays by item.
 
     Attributes:
@@ -37,8 +37,7 @@ class Goals:
     group: NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Totals:
+class Totals(Struct, frozen=True, eq=False):
     """The hits of all items over all tests, as arrays by item.
 
     Attributes:
@@ -54,8 +53,7 @@ class Totals:
     instants: NDArray[np.int64]
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
+class Step(Struct, frozen=True):
     """The contribution of a test after those before it.
 
     Attributes:
@@ -69,8 +67,7 @@ class Step:
     share: float
 
 
-@dataclass(frozen=True, slots=True)
-class VerdictChange:
+class VerdictChange(Struct, frozen=True):
     """A changed verdict of a requirement on the same test.
 
     Attributes:
@@ -86,8 +83,7 @@ class VerdictChange:
     after: Verdict | None
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
+class Comparison(Struct, frozen=True):
     """The differences from an earlier campaign.
 
     Attributes:

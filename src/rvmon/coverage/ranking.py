@@ -5,9 +5,9 @@ from __future__ import annotations
 import heapq
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
+from msgspec import Struct
 from numpy.typing import NDArray
 
 from rvmon.coverage import Coverage
@@ -20,8 +20,7 @@ MOST_COMPARED = 500
 """The most tests for which all pairs are compared for dominance."""
 
 
-@dataclass(frozen=True, slots=True)
-class Smallest:
+class Smallest(Struct, frozen=True):
     """A small set of tests.
 
     Attributes:

@@ -9,6 +9,7 @@ from struct import iter_unpack
 from typing import NamedTuple
 
 import numpy as np
+from msgspec import structs
 
 from rvmon import native
 from rvmon.analysis.graph import Graph, graph_of
@@ -81,7 +82,9 @@ def goals_as_requirements(spec: CheckedSpec) -> CheckedSpec:
         name: Requirement(name, Mode.UPON, BoundAtom(Bound.START), cover.formula, span=cover.span)
         for name, cover in spec.covers.items()
     }
-    return replace(spec, requirements=requirements, properties={}, covers={}, max_delay=None)
+    return structs.replace(
+        spec, requirements=requirements, properties={}, covers={}, max_delay=None
+    )
 
 
 def goal_verdicts(report: Report) -> Mapping[str, Verdict]:
@@ -203,7 +206,7 @@ class WatchedRequirements:
     """The requirements and cover goals of a specification, compiled for any number of runs."""
 
     def __init__(self, spec: CheckedSpec) -> None:
-        plain = replace(spec, properties={}, covers={})
+        plain = structs.replace(spec, properties={}, covers={})
         self._goals = goals_as_requirements(spec).requirements
         self._own = CompiledSpec(plain, is_kept=True)
         self._watched = {
@@ -223,7 +226,7 @@ class WatchedRequirements:
             for key, variant in variants.items()
         }
         self._others = CompiledSpec(
-            replace(plain, requirements={**others, **self._goals}), is_kept=True
+            structs.replace(plain, requirements={**others, **self._goals}), is_kept=True
         )
         self.groups = [
             group for requirement in self._watched.values() for group in requirement.groups

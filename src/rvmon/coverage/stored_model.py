@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
+from msgspec import Struct
 
 from rvmon.coverage import Group, Item, Model, Subject
 from rvmon.coverage.database_file import damaged, name_of
@@ -15,8 +15,7 @@ from rvmon.errors import CoverageError
 from rvmon.language.checked.properties import BinKind
 
 
-@dataclass(frozen=True, slots=True)
-class StoredItem:
+class StoredItem(Struct, frozen=True):
     """An item with its position in its group, and its id in the table (0: none yet)."""
 
     kind: BinKind
@@ -26,8 +25,7 @@ class StoredItem:
     id: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class StoredGroup:
+class StoredGroup(Struct, frozen=True):
     """A group with its position in its model.
 
     Positions make merging commutative: each part of the merged model gets the least of its

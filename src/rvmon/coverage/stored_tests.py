@@ -7,12 +7,12 @@ import sqlite3
 import time
 import zlib
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from rvmon.coverage import UNKNOWN, Ending, Entry, Hits, Row, TestRecord

@@ -14,7 +14,6 @@ import signal
 import threading
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
@@ -22,8 +21,7 @@ if TYPE_CHECKING:
     import subprocess
 
 
-@dataclass(frozen=True, slots=True)
-class Ended:
+class Ended(NamedTuple):
     """The end of a task's process that did not finish.
 
     Attributes:
@@ -66,15 +64,14 @@ def interrupted_by_sigterm() -> Iterator[None]:
 _Task = TypeVar("_Task")
 
 
-@dataclass(frozen=True, slots=True)
-class Shard:
+class Shard(NamedTuple):
     """One of several shares that are as large as each other."""
 
     number: int
-    count: int
+    total: int
 
     def __str__(self) -> str:
-        return f"{self.number}/{self.count}"
+        return f"{self.number}/{self.total}"
 
     def of(self, tasks: Sequence[_Task]) -> list[_Task]:
         """The tasks of this share; all shares together have each task once.
@@ -82,7 +79,7 @@ class Shard:
         >>> [Shard(number, 2).of("abcde") for number in (1, 2)]
         [['a', 'c', 'e'], ['b', 'd']]
         """
-        return list(tasks[self.number - 1 :: self.count])
+        return list(tasks[self.number - 1 :: self.total])
 
     def name(self, path: Path) -> Path:
         """The file of this shard in place of the file `path` of the whole.
@@ -90,7 +87,7 @@ class Shard:
         >>> Shard(2, 4).name(Path("out/verdicts.csv")).name
         'verdicts.shard-2-of-4.csv'
         """
-        return path.with_name(f"{path.stem}.shard-{self.number}-of-{self.count}{path.suffix}")
+        return path.with_name(f"{path.stem}.shard-{self.number}-of-{self.total}{path.suffix}")
 
 
 def shards_beside(path: Path) -> list[Path]:

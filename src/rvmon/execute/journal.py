@@ -20,10 +20,10 @@ import json
 import sys
 import zlib
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import msgspec
+from msgspec import Struct
 
 from rvmon.files import contents, place_whole
 
@@ -79,8 +79,7 @@ def add(path: Path, entry: bytes) -> None:
         file.write(_line(entry))
 
 
-@dataclass(frozen=True, slots=True)
-class Journal:
+class Journal(Struct, frozen=True):
     """Work that goes on from where it was ended.
 
     Attributes:

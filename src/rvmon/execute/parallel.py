@@ -10,12 +10,13 @@ import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, field
 from heapq import heappop, heappush
 from itertools import islice
 from math import inf
 from operator import length_hint
 from typing import TYPE_CHECKING, Any, TypeVar
+
+from msgspec import Struct, field
 
 from rvmon.errors import RvmonError, WorkerLostError
 from rvmon.execute import Ended, Work
@@ -92,8 +93,7 @@ def execute(
         yield work(task)
 
 
-@dataclass(eq=False, slots=True)
-class _Worker:
+class _Worker(Struct, eq=False):
     """A process that works, seen from here.
 
     Attributes:

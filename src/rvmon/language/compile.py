@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
+
+from msgspec import Struct
 
 from rvmon.diagnostics import Diagnostic, Severity, Source, Span, render_full
 from rvmon.errors import SpecError
@@ -19,8 +20,7 @@ from rvmon.language.syntax.parse import load_files
 from rvmon.texts import text_of_file
 
 
-@dataclass(frozen=True, slots=True)
-class Compilation:
+class Compilation(Struct, frozen=True):
     """The results of all passes over a text, right or wrong.
 
     Attributes:

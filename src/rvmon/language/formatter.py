@@ -7,9 +7,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from rvmon.diagnostics import Source, render_full
 from rvmon.errors import SpecError
@@ -65,8 +67,7 @@ _CLAUSES = {
 """Terminals that start a line inside an item."""
 
 
-@dataclass(slots=True)
-class Block:
+class Block(Struct):
     """An item ready for print.
 
     Attributes:
@@ -206,8 +207,7 @@ _OPENING = ("LPAR", "LSQB", "LBRACE", "CALL")
 _CLOSING = ("RPAR", "RSQB", "RBRACE")
 
 
-@dataclass(frozen=True, slots=True)
-class Piece:
+class Piece(Struct, frozen=True):
     """A token in canonical spelling.
 
     Attributes:

@@ -8,9 +8,11 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TypeVar
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.language.checked.functions import FUNCTIONS
@@ -24,8 +26,7 @@ from rvmon.language.syntax.expressions import Call, Expression, Ident, Name, exp
 from rvmon.language.syntax.parse import parse_expression
 
 
-@dataclass(frozen=True, slots=True)
-class DeclaredSignal:
+class DeclaredSignal(Struct, frozen=True):
     """One signal of an item."""
 
     name: Ident
@@ -35,8 +36,7 @@ class DeclaredSignal:
     stale_after: Expression | None
 
 
-@dataclass(frozen=True, slots=True)
-class DeclaredEvent:
+class DeclaredEvent(Struct, frozen=True):
     """One event of an item."""
 
     name: Ident
@@ -47,8 +47,7 @@ class DeclaredEvent:
 Declared = DeclaredSignal | DeclaredEvent | items.DefineItem | items.ConstItem
 
 
-@dataclass(frozen=True, slots=True)
-class ResolvedSpec:
+class ResolvedSpec(Struct, frozen=True):
     """All items of a specification, each under its name.
 
     Attributes:

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from typing import TypeAlias
+
+from msgspec import Struct
 
 from rvmon.logic.formula import Core, Literal, Sense, literals
 from rvmon.logic.residual import FAILS, HOLDS, Atom, Residual, substitute
@@ -39,8 +40,7 @@ def holds(sense: Sense, truth: TruthValue) -> bool:
     return truth in _TRUE_IN[sense]
 
 
-@dataclass(frozen=True, slots=True)
-class Alphabet:
+class Alphabet(Struct, frozen=True):
     """Encodes the values of the propositions at a position as a letter, a number below `size`.
 
     A letter is the sum of one entry per proposition of `pessimistic` (or `optimistic`), taken at
@@ -120,8 +120,7 @@ Tree = int | tuple[int, tuple["Tree", ...]]
 """A class; or the stride of a digit, and a tree for each value of it."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class LetterDiagram:
+class LetterDiagram(Struct, frozen=True, eq=False):
     """A decision diagram from letters to classes; it tests only the digits that matter.
 
     Attributes:
@@ -171,8 +170,7 @@ MOST_TABLED = 1 << 16
 """Letters of which the classes stand in a table; of more, in a diagram."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Node:
+class Node(Struct, frozen=True, eq=False):
     """A decision; equal ones are the same object.
 
     Attributes:

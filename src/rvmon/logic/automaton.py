@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import permutations
+
+from msgspec import Struct
 
 from rvmon.logic.alphabet import Alphabet, LetterClasses
 from rvmon.logic.formula import Release, Until
@@ -25,8 +26,7 @@ Token = tuple[int, tuple[int, ...]]
 """The state of an attempt: its location, and the start instant (ticks) of each of its clocks."""
 
 
-@dataclass(frozen=True, slots=True)
-class Location:
+class Location(Struct, frozen=True):
     """A location: the residual formula of the attempts there, for all ages of its clocks.
 
     Attributes:
@@ -75,8 +75,7 @@ def location_of(residual: Residual) -> Location:
     return Location(residual, tuple(tuple(sorted(cuts[clock])) for clock in sorted(cuts)))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Automaton:
+class Automaton(Struct, frozen=True, eq=False):
     """A monitor automaton: locations, clocks and edges. Built by `construct`, then immutable.
 
     A *row* is a location with a region for each of its clocks: `bases[location]` plus, for each

@@ -11,9 +11,10 @@ that, hundreds of requirements with deadlines of their own take seven times as l
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from itertools import pairwise
 from typing import Any, TypeAlias, cast
+
+from msgspec.structs import replace
 
 from rvmon.logic.alphabet import Alphabet
 from rvmon.logic.automaton import Automaton, Location

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from array import array
-from dataclasses import dataclass
 from itertools import product
+
+from msgspec import Struct
 
 from rvmon.logic.alphabet import Alphabet, Diagrams, Node, TooManyClassesError
 from rvmon.logic.automaton import NOW, Automaton, Location, layout_of, location_of, normalise
@@ -13,8 +14,7 @@ from rvmon.logic.progress import after, holds_at_end, step, value
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClausesError
 
 
-@dataclass(frozen=True, slots=True)
-class Budget:
+class Budget(Struct, frozen=True):
     """Limits beyond which the construction of an automaton is given up.
 
     Attributes:

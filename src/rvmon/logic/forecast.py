@@ -13,8 +13,9 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Hashable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import product
+
+from msgspec import Struct
 
 from rvmon.logic.automaton import location_of, normalise
 from rvmon.logic.clock_regions import (
@@ -142,8 +143,7 @@ class TooLargeError(Exception):
     """The search exceeds its limits."""
 
 
-@dataclass(frozen=True, slots=True)
-class _State:
+class _State(Struct, frozen=True):
     """A state of the search: one clause of a residual, with a zone of its clock ages.
 
     Ages are in ticks; in clocked time, in multiples of the gap between positions.
@@ -153,8 +153,7 @@ class _State:
     ages: Ages
 
 
-@dataclass(frozen=True, slots=True)
-class _Move:
+class _Move(Struct, frozen=True):
     """An edge of the search; `fair` unless the oldest clock stays in a bounded region."""
 
     source: int

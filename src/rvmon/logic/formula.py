@@ -11,9 +11,11 @@ trace: `p or not p` stays (Kleene), and so does `G[0,3] true` (decided when its 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
 from enum import Enum
 from typing import Any, assert_never, cast
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from rvmon.language.checked.formula import Amount, Compare, Passed, WindowValue
 from rvmon.language.checked.formula import Constant as ConstantLeaf
@@ -31,16 +33,14 @@ class Sense(Enum):
     """Two-valued: false of an unknown proposition, in the pessimistic and the optimistic run."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Constant:
+class Constant(Struct, frozen=True, eq=False):
     """True or false."""
 
     id: int
     value: bool
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Literal:
+class Literal(Struct, frozen=True, eq=False):
     """A proposition, read in one sense."""
 
     id: int
@@ -48,32 +48,28 @@ class Literal:
     sense: Sense
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class And:
+class And(Struct, frozen=True, eq=False):
     """All of its operands; at least two, in order of `id`."""
 
     id: int
     args: tuple[Core, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Or:
+class Or(Struct, frozen=True, eq=False):
     """One of its operands; at least two, in order of `id`."""
 
     id: int
     args: tuple[Core, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Next:
+class Next(Struct, frozen=True, eq=False):
     """The operand at the next position."""
 
     id: int
     operand: Core
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Until:
+class Until(Struct, frozen=True, eq=False):
     """`left U[low, high] right`; `opened` is what remains inside the window: the same, `low` 0."""
 
     id: int
@@ -84,8 +80,7 @@ class Until:
     opened: Until | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Release:
+class Release(Struct, frozen=True, eq=False):
     """`left R[low, high] right`; `opened` is what remains inside the window: the same, `low` 0."""
 
     id: int
@@ -96,8 +91,7 @@ class Release:
     opened: Release | None
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Since:
+class Since(Struct, frozen=True, eq=False):
     """`left S[low, high] right`; if `dual`, `!(!left S[low, high] !right)`."""
 
     id: int
@@ -108,8 +102,7 @@ class Since:
     dual: bool
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Previous:
+class Previous(Struct, frozen=True, eq=False):
     """The operand at the position before; at the first one `first`."""
 
     id: int

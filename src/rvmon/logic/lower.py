@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import partial
 from typing import assert_never
+
+from msgspec import Struct
 
 from rvmon.errors import RvmonError
 from rvmon.language.checked.classify import has_future, looks_back_at_future, subformulas
@@ -42,8 +43,7 @@ class UnmonitorableError(RvmonError):
     """A formula cannot be monitored; the message names the part."""
 
 
-@dataclass(frozen=True, slots=True)
-class Obligation:
+class Obligation(Struct, frozen=True):
     """A requirement in core form.
 
     Attributes:

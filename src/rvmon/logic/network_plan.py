@@ -8,8 +8,9 @@ each node can be evaluated on its own.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import assert_never
+
+from msgspec import Struct
 
 from rvmon.logic.formula import (
     And,
@@ -25,23 +26,20 @@ from rvmon.logic.formula import (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Leaf:
+class Leaf(Struct, frozen=True):
     """A literal or constant, evaluated on the letter of a position."""
 
     core: Literal | Constant
 
 
-@dataclass(frozen=True, slots=True)
-class Junction:
+class Junction(Struct, frozen=True):
     """A conjunction (`every`) or disjunction of nodes."""
 
     operands: tuple[int, ...]
     every: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Window:
+class Window(Struct, frozen=True):
     """`G[a,b]` (`every`) or `F[a,b]` of a node, or `H` or `O` in the past.
 
     Offsets count units of `gap`: positions in clocked time, else ticks.
@@ -61,8 +59,7 @@ class Window:
     over: int | None
 
 
-@dataclass(frozen=True, slots=True)
-class Sweep:
+class Sweep(Struct, frozen=True):
     """An unbounded `until` or `since`, or the dual of one.
 
     Attributes:
@@ -80,8 +77,7 @@ class Sweep:
     kept: bool
 
 
-@dataclass(frozen=True, slots=True)
-class Shift:
+class Shift(Struct, frozen=True):
     """The value of a sweep at a fixed offset.
 
     Attributes:
@@ -98,8 +94,7 @@ class Shift:
 Node = Leaf | Junction | Window | Sweep | Shift
 
 
-@dataclass(frozen=True, slots=True)
-class NetworkPlan:
+class NetworkPlan(Struct, frozen=True):
     """The static structure of a network.
 
     Attributes:

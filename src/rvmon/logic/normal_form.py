@@ -6,8 +6,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import assert_never
+
+from msgspec import Struct
 
 from rvmon.language.checked.classify import has_future
 from rvmon.language.checked.formula import (
@@ -41,8 +42,7 @@ from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Elapsed, State, Stat
 from rvmon.logic.three_valued import Reader
 
 
-@dataclass(frozen=True, slots=True)
-class Origin:
+class Origin(Struct, frozen=True):
     """The source of a core formula: a formula of the specification, or its negation."""
 
     formula: Formula

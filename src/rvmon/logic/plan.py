@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import NamedTuple
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from rvmon.language.checked.formula import (
     Compare,
@@ -24,8 +26,7 @@ from rvmon.logic.state_graph import Graph, graph_of
 from rvmon.trace.sample import Scalar
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PlannedRule:
+class PlannedRule(Struct, frozen=True, eq=False):
     """One requirement, lowered and ready to be packed.
 
     Attributes:
@@ -100,8 +101,7 @@ class PlannedRule:
         return bool(self.captured)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Uses:
+class Uses(Struct, frozen=True, eq=False):
     """The uses of a signal or event in addition to its present value.
 
     Attributes:
@@ -125,8 +125,7 @@ class Watch(NamedTuple):
     is_pulse: bool
 
 
-@dataclass(frozen=True, slots=True)
-class WatchGroup:
+class WatchGroup(Struct, frozen=True):
     """A coverpoint, or a cross of several; an item is a combination of one watch of each axis.
 
     Attributes:
@@ -143,8 +142,7 @@ class WatchGroup:
         return chain.from_iterable(self.axes) if self.occasion is None else (self.occasion,)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Plan:
+class Plan(Struct, frozen=True, eq=False):
     """Some requirements of a specification, for one run of the core.
 
     Attributes:

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Hashable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import product
+
+from msgspec import Struct
 
 from rvmon.logic.alphabet import LetterClasses, LetterDiagram
 from rvmon.logic.automaton import PASSED, Automaton, Location, end_clauses, layout_of
@@ -24,8 +25,7 @@ Row = tuple[tuple[Edge | None, ...], int, int]
 Regions = tuple[int, ...]
 
 
-@dataclass(slots=True)
-class _DraftLocation:
+class _DraftLocation(Struct):
     """A location under minimisation: its residual, clock regions and outgoing edges."""
 
     residual: Residual

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import Enum
+
+from msgspec import Struct
 
 from rvmon.language.checked.formula import (
     Amount,
@@ -79,15 +80,13 @@ FALSE, UNKNOWN, TRUE = 0, 1, 2
 """Kleene's truth values: `and` is the minimum, `or` the maximum, `not` is 2 − x."""
 
 
-@dataclass(frozen=True, slots=True)
-class Elapsed:
+class Elapsed(Struct, frozen=True):
     """At least `duration` ticks lie between the first position and this one."""
 
     duration: int
 
 
-@dataclass(frozen=True, slots=True)
-class Unborn:
+class Unborn(Struct, frozen=True):
     """Some signal has had no known value yet; two-valued.
 
     Attributes:
@@ -97,13 +96,11 @@ class Unborn:
     signals: tuple[tuple[str, bool], ...]
 
 
-@dataclass(frozen=True, slots=True)
-class Lost:
+class Lost(Struct, frozen=True):
     """Unknown, whatever the input."""
 
 
-@dataclass(frozen=True, slots=True)
-class Lapsed:
+class Lapsed(Struct, frozen=True):
     """The captured values of the attempt have become uncertain; two-valued."""
 
 
@@ -137,8 +134,7 @@ class StateOp(Enum):
     starts, TRUE at the other positions of that stretch from its first such one, else FALSE."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class State:
+class State(Struct, frozen=True, eq=False):
     """A state formula, interned by `Factory`: equal ones are the same object.
 
     Attributes:

@@ -7,8 +7,9 @@ depend.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import assert_never
+
+from msgspec import Struct
 
 from rvmon.language.checked.formula import (
     Amount,
@@ -66,8 +67,7 @@ def captured_names(leaf: Leaf) -> frozenset[str]:
     return frozenset()
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Graph:
+class Graph(Struct, frozen=True, eq=False):
     """State formulas as a directed acyclic graph; a place is an index into `nodes`.
 
     Attributes:
@@ -196,7 +196,9 @@ def _settled(state: State, operands: Sequence[int | None]) -> int | None:
         case StateOp.LEAF:
             if isinstance(state.leaf, Constant):
                 return TRUE if state.leaf.value else FALSE
-            return {Unborn: FALSE, Lost: UNKNOWN}.get(type(state.leaf))
+            if isinstance(state.leaf, Lost):
+                return UNKNOWN
+            return FALSE if isinstance(state.leaf, Unborn) else None
         case StateOp.NOT if known:
             return TRUE - known[0]
         case StateOp.SURE if known:
@@ -264,8 +266,7 @@ def graph_of(roots: Iterable[State]) -> Graph:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class Reach:
+class Reach(Struct, frozen=True):
     """The dependencies of the instances of a `for each` requirement; a key is an instance's value.
 
     Attributes:

@@ -9,14 +9,14 @@ chain (`whenever`, `always`): the first position at which it fails is the first 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from rvmon.logic.formula import Constant, Sense
 from rvmon.logic.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, Sweep, Window
 
 
-@dataclass(frozen=True, slots=True)
-class Chain:
+class Chain(Struct, frozen=True):
     """The chain of a network plan; places are indices of its nodes.
 
     Attributes:

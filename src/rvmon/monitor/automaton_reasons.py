@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from rvmon.logic.automaton import FAILED, PASSED, Token, location_of
 from rvmon.logic.progress import after, value
@@ -24,8 +25,7 @@ from rvmon.monitor.obligation_words import deadline, settled_alone
 from rvmon.verdicts import Verdict
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(Struct, frozen=True):
     """The explanation shared by decisions that differ only in instants.
 
     Attributes:
@@ -128,8 +128,7 @@ def explained(
     )
 
 
-@dataclass(frozen=True, slots=True)
-class MachineRuns:
+class MachineRuns(Struct, frozen=True):
     """The two runs of an automaton for one attempt, as `rvmon.monitor.explanation.Judged`.
 
     Attributes:

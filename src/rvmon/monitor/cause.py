@@ -6,9 +6,10 @@ Decisions that differ only in instants share one sentence, a template with place
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple, assert_never
+
+from msgspec import Struct
 
 from rvmon.logic.alphabet import TruthValue, holds
 from rvmon.logic.formula import (
@@ -32,8 +33,7 @@ AT_DECISION = -2
 """The `start` of an obligation that was instantiated at the decision; not a clock number."""
 
 
-@dataclass(frozen=True, slots=True)
-class Cause:
+class Cause(Struct, frozen=True):
     """The cause of a decision.
 
     Attributes:
@@ -154,8 +154,7 @@ class Base(Enum):
     """A duration: the time from `START` to `DECISION`."""
 
 
-@dataclass(frozen=True, slots=True)
-class Place:
+class Place(Struct, frozen=True):
     """A placeholder for an instant or a duration in a sentence.
 
     Attributes:
@@ -184,8 +183,7 @@ class Place:
                 assert_never(self.base)
 
 
-@dataclass(frozen=True, slots=True)
-class Turned:
+class Turned(Struct, frozen=True):
     """A placeholder: whether a proposition `was` or `became` true or false at the decision.
 
     The history of the proposition is not enough: `whenever` may merge it with the trigger, and the
@@ -202,13 +200,11 @@ class Turned:
     seen: str
 
 
-@dataclass(frozen=True, slots=True)
-class AfterTrigger:
+class AfterTrigger(Struct, frozen=True):
     """A placeholder: the delay from trigger to decision, if the deciding obligation began there."""
 
 
-@dataclass(frozen=True, slots=True)
-class LastWith:
+class LastWith(Struct, frozen=True):
     """A placeholder: when a proposition last had a truth value.
 
     Attributes:

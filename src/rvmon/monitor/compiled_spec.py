@@ -8,9 +8,10 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct, field
 
 from rvmon.files import cache_folder, keep, read_kept, this_rvmon
 from rvmon.language.checked.serialise import identity_text
@@ -68,8 +69,7 @@ def compile_spec(checked: CheckedSpec) -> CompiledSpec:
     return compiled
 
 
-@dataclass(frozen=True, slots=True)
-class Kept:
+class Kept(Struct, frozen=True):
     """A packed plan, as it is cached.
 
     Attributes:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import NamedTuple, Protocol
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from rvmon.language.checked.specification import EndPolicy
 from rvmon.language.print import format_duration
@@ -19,8 +21,7 @@ from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Blame, Decision
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Outage:
+class Outage(Struct, frozen=True, eq=False):
     """A stretch over which a signal or event was unknown; the next value ends it.
 
     Attributes:
@@ -38,8 +39,7 @@ class Outage:
     bound: int = 0
 
 
-@dataclass(frozen=True, slots=True)
-class Doubt:
+class Doubt(Struct, frozen=True):
     """Why the pessimistic and the optimistic run of an attempt diverged: what was unknown.
 
     Attributes:
@@ -162,8 +162,7 @@ def truths_shown(texts: tuple[str, ...], seen: tuple[int, ...]) -> Mapping[str, 
     return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}
 
 
-@dataclass(frozen=True, slots=True)
-class Undecided:
+class Undecided(Struct, frozen=True):
     """The state of an undecided attempt.
 
     Attributes:

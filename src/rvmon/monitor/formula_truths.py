@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from rvmon.core.pack import pack
 from rvmon.language.checked.specification import CheckedSpec
@@ -23,8 +24,7 @@ if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
 
 
-@dataclass(frozen=True, slots=True)
-class Known:
+class Known(Struct, frozen=True):
     """The positions at which a formula is decided.
 
     Attributes:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from heapq import heappop, heappush
 from typing import Any
+
+from msgspec import Struct
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.language.checked.specification import CheckedSpec, Type
@@ -19,8 +20,7 @@ MOST_HELD = 65_536
 """The most samples held back for late ones; beyond it, the oldest are judged early."""
 
 
-@dataclass(frozen=True, slots=True)
-class Turn:
+class Turn(Struct, frozen=True):
     """The beginning or end of an outage of names: at `t` ticks, its first or last instant."""
 
     t: int

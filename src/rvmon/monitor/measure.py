@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import structs
 
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.evaluate import Decided, RecordingRun, judge_source, open_trace
@@ -66,7 +67,7 @@ def judge_and_measure(
             _take_to_end(run, source, piece)  # before the yield: the last one may not be resumed
             yield piece
 
-    report = judge_source(compiled, replace(source, shown=shown), only, decided)
+    report = judge_source(compiled, structs.replace(source, shown=shown), only, decided)
     margins = run.margins()
     return replace(report, attempts=tuple(map(margins.of, report.attempts)))
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import assert_never
+
+from msgspec import Struct
 
 from rvmon.logic.automaton import FAILED, PASSED, Token
 from rvmon.logic.formula import (
@@ -233,8 +234,7 @@ def _settled_before(network: Network, position: int, at: int) -> int | None:
     return None if alone is None else alone[0]
 
 
-@dataclass(frozen=True, slots=True)
-class NetworkRuns:
+class NetworkRuns(Struct, frozen=True):
     """Both networks of an open attempt at a stamp, as `rvmon.monitor.explanation.Judged`.
 
     Attributes:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from struct import Struct
+
+import msgspec
 
 from rvmon.logic.formula import Constant, Sense
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN
@@ -15,8 +16,7 @@ from rvmon.monitor.network_reasons import NetworkRuns
 _IN_WORD = 32
 
 
-@dataclass(frozen=True, slots=True)
-class Letters:
+class Letters(msgspec.Struct, frozen=True):
     """The recorded truth values of propositions, position by position.
 
     Attributes:

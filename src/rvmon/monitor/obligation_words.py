@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from rvmon.language.checked.classify import has_future, is_pulse
 from rvmon.language.checked.formula import Amount, EventAtom, Formula, Unary, UnaryOp
@@ -30,8 +31,7 @@ _APART = 50
 """Shift that keeps the anchors of different clocks, and so their deadlines, distinct in labels."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Atom:
+class _Atom(Struct, frozen=True):
     """A required proposition, with the phrases for it in sentences.
 
     Attributes:

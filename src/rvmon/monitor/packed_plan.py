@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
+
+from msgspec import Struct
 
 from rvmon import native
 from rvmon.core.sections import packed
@@ -99,8 +100,7 @@ Noted = tuple[Sequence[float | None] | None, bytes, bytes | None, Any, bytes | N
 the letters but for their last piece, and that piece; see `module_notes.h`."""
 
 
-@dataclass(frozen=True, slots=True)
-class PlannedCore:
+class PlannedCore(Struct, frozen=True):
     """A packed plan; makes monitors.
 
     Attributes:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable
-from dataclasses import replace
 from functools import cache
+
+from msgspec.structs import replace
 
 from rvmon.language.checked.names_read import requirements_asked
 from rvmon.logic.alphabet import Alphabet, alphabet_of

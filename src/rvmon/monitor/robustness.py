@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, overload
 
+from msgspec import Struct
+
 from rvmon.errors import TraceError
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.feed import FedMonitor, Feed
@@ -113,8 +115,7 @@ Key = tuple[str, int]
 """Requirement and number of an attempt."""
 
 
-@dataclass(frozen=True, slots=True)
-class Margins:
+class Margins(Struct, frozen=True):
     """The robustness of all attempts of a run.
 
     Attributes:

@@ -10,9 +10,10 @@ import hashlib
 import json
 from base64 import b64decode, b64encode
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any
+
+from msgspec import Struct
 
 from rvmon import native
 from rvmon.errors import SnapshotError
@@ -30,8 +31,7 @@ _LEFT_OUT = ("text", "title", "doc")
 """Fields of a specification that do not affect verdicts, left out of its hash."""
 
 
-@dataclass(frozen=True, slots=True)
-class Options:
+class Options(Struct, frozen=True):
     """The options of a monitor; see `rvmon.monitor.monitor.build_monitor`."""
 
     settle: str

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass, field, replace
 from itertools import repeat
 from math import isnan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from rvmon.recordings.coalesce import Alternations, Conflicts, coalesce
 from rvmon.trace.sample import Sample, Value
@@ -25,8 +26,7 @@ class NotPlainError(Exception):
     """The recording has to be read row by row; the message says why."""
 
 
-@dataclass(frozen=True, slots=True)
-class Cells:
+class Cells(Struct, frozen=True):
     """The values of a signal or of a field.
 
     Attributes:
@@ -78,8 +78,7 @@ class Cells:
                 yield value if self.labels is None else self.labels[value]
 
 
-@dataclass(frozen=True, slots=True)
-class Occurrences:
+class Occurrences(Struct, frozen=True):
     """The occurrences of an event.
 
     Attributes:
@@ -130,8 +129,7 @@ _NOTHING = object()
 _SAID = {NO: False, UNKNOWN: None, NO_UPDATE: _NOTHING}
 
 
-@dataclass(frozen=True, slots=True)
-class Batch:
+class Batch(Struct, frozen=True):
     """Some rows of a recording.
 
     Attributes:

@@ -8,11 +8,12 @@ import json
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
 from datetime import UTC, datetime, timedelta
 from fractions import Fraction
 from io import TextIOWrapper
 from pathlib import Path
+
+from msgspec import Struct, field
 
 from rvmon.recordings.csv_rows import Layout, csv_samples, read_layout, split_lines
 from rvmon.recordings.jsonl_rows import jsonl_samples
@@ -23,8 +24,7 @@ from rvmon.trace.stamps import stamps_of, ticks_of_stamp
 from rvmon.trace.time import TICKS_PER_SECOND, TICKS_PER_UNIT, TIME_LIMIT
 
 
-@dataclass(frozen=True, slots=True)
-class Piece:
+class Piece(Struct, frozen=True):
     """A stretch of a recording.
 
     Attributes:
@@ -46,8 +46,7 @@ class Piece:
         return self.start <= t <= self.stop
 
 
-@dataclass(slots=True)
-class Copied:
+class Copied(Struct):
     """The part of a recording that is in a piece, without the values carried in from before it."""
 
     count: int = 0

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Container, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
+
+from msgspec import Struct
 
 from rvmon.trace.sample import Health, HealthKind, Payload, Sample, Value
 from rvmon.trace.schema import is_unknown
@@ -139,8 +141,7 @@ _LONGEST = 4
 """Known values of a stretch, on average, at most."""
 
 
-@dataclass(slots=True)
-class Alternation:
+class Alternation(Struct):
     """Known and unknown values of a name."""
 
     known: int = 0

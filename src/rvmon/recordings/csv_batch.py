@@ -5,10 +5,10 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Callable, Generator, Iterator, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct
 
 from rvmon.errors import TraceError
 from rvmon.recordings.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells
@@ -82,8 +82,7 @@ def csv_batches(
             yield iter([(line, t, values)])
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
+class Found(Struct, frozen=True):
     """The results of a call on a text: see `csv.h`; the arrays have room for more.
 
     Attributes:

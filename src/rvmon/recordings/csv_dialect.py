@@ -8,12 +8,14 @@ import re
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import datetime
 from itertools import islice
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, BinaryIO
+
+from msgspec import Struct, structs
 
 from rvmon.errors import TraceError
 from rvmon.recordings.csv_rows import split_lines
@@ -48,8 +50,7 @@ _PARTS |= {"us": 1_000, "usec": 1_000, "microseconds": 1_000, "ms": 1_000_000, "
 """Nanoseconds by what the second of two columns of a stamp is called."""
 
 
-@dataclass(frozen=True, slots=True)
-class Dialect:
+class Dialect(Struct, frozen=True):
     """The dialect of a text.
 
     Attributes:
@@ -123,7 +124,8 @@ def dialect_of(head: bytes) -> Dialect:
     if len(head) == _LOOKED_AT:
         lines = lines[:-1]
     if lines and any(cell.strip(' "') in DEFAULT_COLUMNS for cell in lines[0].split(",")[:-1]):
-        return replace(PLAIN, encoding=encoding) if is_wide else PLAIN  # what is odd is told later
+        # What is odd is told later.
+        return structs.replace(PLAIN, encoding=encoding) if is_wide else PLAIN
     above, separators = 0, _SEPARATORS
     if lines and (said := _SEPARATOR_SAID.fullmatch(lines[0])):
         above, separators = 1, (said[1],)
@@ -133,8 +135,8 @@ def dialect_of(head: bytes) -> Dialect:
         for separator in separators:
             found = _dialect_at(lines, first, separator)
             if found is not None:
-                return replace(found, encoding=encoding)
-    return replace(PLAIN, encoding=encoding) if is_wide else PLAIN
+                return structs.replace(found, encoding=encoding)
+    return structs.replace(PLAIN, encoding=encoding) if is_wide else PLAIN
 
 
 def _dialect_at(lines: Sequence[str], first: int, separator: str) -> Dialect | None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
+
+from msgspec import Struct
 
 from rvmon.errors import TraceError
 from rvmon.recordings.places import LONGEST_LINE
@@ -16,8 +17,7 @@ from rvmon.trace.schema import Gaps, Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_among, ticks_of_cell
 
 
-@dataclass(frozen=True, slots=True)
-class Column:
+class Column(Struct, frozen=True):
     """One column that the spec reads: a signal, an event, or a payload field of an event."""
 
     index: int
@@ -31,8 +31,7 @@ class Column:
         return self.name if self.field is None else f"{self.name}.{self.field}"
 
 
-@dataclass(frozen=True, slots=True)
-class Layout:
+class Layout(Struct, frozen=True):
     """The columns of a header, and the way to read its rows.
 
     Attributes:

@@ -6,9 +6,10 @@ Needs pyarrow, the extra `arrow`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from msgspec.structs import replace
 
 from rvmon.errors import TraceError, needed
 from rvmon.recordings.batch import NotPlainError

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
-from dataclasses import dataclass
 from itertools import pairwise, takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
+
+from msgspec import Struct
 
 from rvmon.errors import TraceError
 from rvmon.recordings.joined import Joined
@@ -25,8 +26,7 @@ if TYPE_CHECKING:
     from rvmon.recordings.table_recording import TableRecording
 
 
-@dataclass(frozen=True, slots=True)
-class Source:
+class Source(Struct, frozen=True):
     """A finished trace, and how it is to be taken.
 
     Attributes:
@@ -108,8 +108,7 @@ class ReadingArguments(SchemaArguments, total=False):
     allow_missing: bool | Iterable[str]
 
 
-@dataclass(frozen=True, slots=True)
-class Reading:
+class Reading(Struct, frozen=True):
     """The options of `Spec.evaluate` and its kin about a trace.
 
     Attributes:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import islice
 from typing import TypeGuard
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from rvmon.analysis.late_arrival import late_in, waits_of
 from rvmon.analysis.subformulas import PartTruth, TriggerParts, part_truths_of
@@ -23,8 +25,7 @@ from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.report import Report
 
 
-@dataclass(frozen=True, slots=True)
-class JudgedRun:
+class JudgedRun(Struct, frozen=True):
     """A run with its verdicts.
 
     Attributes:
@@ -38,8 +39,7 @@ class JudgedRun:
     samples: Sequence[Sample]
 
 
-@dataclass(frozen=True, slots=True)
-class RunPage:
+class RunPage(Struct, frozen=True):
     """The content of a run's page.
 
     Attributes:
@@ -63,8 +63,7 @@ class RunPage:
     back_to: str = "all tests"
 
 
-@dataclass(frozen=True, slots=True)
-class Panel:
+class Panel(Struct, frozen=True):
     """The part of a page about one attempt, or about a requirement without any.
 
     Attributes:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict
 from functools import cached_property
 from math import prod
 from typing import Any
 
 import numpy as np
+from msgspec.structs import asdict
 
 from rvmon.coverage import UNKNOWN, Coverage, Ending, Group, Hit, Hits, Item, TestRecord
 from rvmon.coverage.holes import Hole, hole_of, nearest_tests

@@ -6,9 +6,10 @@ import os.path
 import re
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
+
+from msgspec import Struct
 
 from rvmon.files import output_folder, write_whole
 from rvmon.language.checked.specification import CheckedSpec, Requirement
@@ -37,8 +38,7 @@ _GROUPS = {
 """The groups of the index, in order: a recording belongs to that of its worst verdict."""
 
 
-@dataclass(frozen=True, slots=True)
-class Listed:
+class Listed(Struct, frozen=True):
     """A recording in the index.
 
     Attributes:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+
+from msgspec import Struct, field
 
 from rvmon.confidence import interval, interval_text
 from rvmon.report.printer import Cell, Line, Piece, Printer
@@ -17,8 +18,7 @@ Counts = Mapping[Verdict, int]
 """By verdict, the number of runs."""
 
 
-@dataclass(frozen=True, slots=True)
-class RunGroup:
+class RunGroup(Struct, frozen=True):
     """Runs that are counted together, such as those of one test generation strategy."""
 
     name: str
@@ -26,8 +26,7 @@ class RunGroup:
     counts: Mapping[str, Counts]
 
 
-@dataclass(frozen=True, slots=True)
-class VerdictTable:
+class VerdictTable(Struct, frozen=True):
     """Requirements down, groups of runs across, each with its counts of P, F, NT and I.
 
     Attributes:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks, ticks_of_text
 from rvmon.verdicts.attempt import Attempt
@@ -24,8 +25,7 @@ SHOWN_DIGITS = 4
 """Digits of an instant: its last one is 1/1000 to 1/10000 of the view."""
 
 
-@dataclass(frozen=True, slots=True)
-class View:
+class View(Struct, frozen=True):
     """The stretch `[start, end]` in ticks, `start < end`."""
 
     start: int

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from rvmon.report.html import Child, e
 from rvmon.report.time_axis import View, moment, round_instants, with_moments
@@ -191,8 +192,7 @@ LABEL = 0.44
 """The share of the width that a label takes on a phone; overlapping ones get own rows."""
 
 
-@dataclass(frozen=True, slots=True)
-class ReferenceAttempt:
+class ReferenceAttempt(Struct, frozen=True):
     """The nearest passing attempt, aligned with the failed one at the trigger.
 
     Attributes:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from enum import StrEnum
 from itertools import groupby, pairwise
+
+from msgspec import Struct
 
 from rvmon.language.checked.classify import subformulas
 from rvmon.language.checked.formula import Amount, Binary, Compare, Literal, SignalValue, Unary
@@ -19,8 +20,7 @@ from rvmon.trace.schema import Kind
 from rvmon.verdicts.attempt import Blame
 
 
-@dataclass(frozen=True, slots=True)
-class Outline:
+class Outline(Struct, frozen=True):
     """The outline of a body: a convex polygon in the body's coordinates, metres.
 
     Attributes:
@@ -36,8 +36,7 @@ class Outline:
     role: str
 
 
-@dataclass(frozen=True, slots=True)
-class Scene:
+class Scene(Struct, frozen=True):
     """The motion of bodies in a vertical plane; between frames they stand still.
 
     Attributes:
@@ -109,16 +108,14 @@ class TrackKind(StrEnum):
     LABEL = "label"
 
 
-@dataclass(frozen=True, slots=True)
-class Threshold:
+class Threshold(Struct, frozen=True):
     """A comparison of the signal with a constant, in the signal's unit."""
 
     op: str
     value: float
 
 
-@dataclass(frozen=True, slots=True)
-class Track:
+class Track(Struct, frozen=True):
     """One signal or event over a run.
 
     Attributes:
@@ -169,8 +166,7 @@ Point = tuple[float, float]
 """x and y as fractions of a track, y downwards."""
 
 
-@dataclass(frozen=True, slots=True)
-class Stretch:
+class Stretch(Struct, frozen=True):
     """A stretch of a view over which a signal has one value.
 
     Attributes:

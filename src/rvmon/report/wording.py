@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from types import MappingProxyType
+
+from msgspec import Struct
 
 from rvmon.language.print import format_duration
 from rvmon.trace.sample import Health, HealthKind, Scalar
@@ -171,8 +172,7 @@ def forecast_sentence(forecast: Verdict) -> str:
     return "forecast F: no continuation can fulfil it"
 
 
-@dataclass(frozen=True, slots=True)
-class Mark:
+class Mark(Struct, frozen=True):
     """The look of one verdict.
 
     Attributes:

@@ -5,13 +5,16 @@ It also binds names to topics and fields of recorded messages, and defines value
 
 from __future__ import annotations
 
+import dataclasses
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+from msgspec import Struct, field
+
 from rvmon.errors import UnknownNameError
+from rvmon.trace import READINGS_OF_NAN
 
 
 class Clock(StrEnum):
@@ -21,8 +24,7 @@ class Clock(StrEnum):
     HEADER = "header"
 
 
-@dataclass(frozen=True, slots=True)
-class Named:
+class Named(Struct, frozen=True):
     """An element of an array by its name, which is in a parallel array or in the element."""
 
     name: str
@@ -34,8 +36,7 @@ class Named:
 Step = str | int | Named
 
 
-@dataclass(frozen=True, slots=True)
-class Field:
+class Field(Struct, frozen=True):
     """A field of a message.
 
     Attributes:
@@ -52,8 +53,7 @@ class Field:
         return "".join(steps).removeprefix(".")
 
 
-@dataclass(frozen=True, slots=True)
-class Elements:
+class Elements(Struct, frozen=True):
     """All elements of an array.
 
     >>> str(Elements(Field(("ranges",))))
@@ -66,8 +66,7 @@ class Elements:
         return f"{self.array}[]"
 
 
-@dataclass(frozen=True, slots=True)
-class Constant:
+class Constant(Struct, frozen=True):
     """A constant number or truth value."""
 
     value: float | int | bool
@@ -76,8 +75,7 @@ class Constant:
         return str(self.value).lower()
 
 
-@dataclass(frozen=True, slots=True)
-class Applied:
+class Applied(Struct, frozen=True):
     """An operation on terms; `Elements` can only be its sole argument. Non-numbers are unknown.
 
     Attributes:
@@ -107,8 +105,7 @@ TURNS = ("yaw", "pitch", "roll")
 Term = Field | Elements | Constant | Applied
 
 
-@dataclass(frozen=True, slots=True)
-class Bound:
+class Bound(Struct, frozen=True):
     """The source of a signal or event in recorded messages.
 
     Attributes:
@@ -133,8 +130,7 @@ class Bound:
     unit: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Binding:
+class Binding(Struct, frozen=True):
     """The sources of declared names in recorded messages.
 
     Attributes:
@@ -154,12 +150,7 @@ BY_NAME = Binding()
 """The default binding: names are matched with topics and fields, log stamps count."""
 
 
-READINGS_OF_NAN = ("unknown", "no update")
-"""The meanings of NaN: the name became unknown, or was not updated."""
-
-
-@dataclass(frozen=True, slots=True)
-class Gaps:
+class Gaps(Struct, frozen=True):
     """Values that mean "no update".
 
     Attributes:
@@ -234,8 +225,7 @@ class Kind(StrEnum):
     LABEL = "label"
 
 
-@dataclass(frozen=True, slots=True)
-class Stamps:
+class Stamps(Struct, frozen=True):
     """The source of the stamps of a recording.
 
     Attributes:
@@ -251,7 +241,7 @@ class Stamps:
     pattern: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclasses.dataclass(frozen=True, slots=True)
 class Schema:
     """The declared names with their kinds, and how recordings provide them.
 
@@ -271,11 +261,11 @@ class Schema:
     events: Mapping[str, Mapping[str, Kind]]
     ignoring: frozenset[str] = frozenset()
     stamps: Stamps | None = None
-    columns: Mapping[str, str] = field(default_factory=dict)
+    columns: Mapping[str, str] = dataclasses.field(default_factory=dict)
     gaps: Gaps = NO_GAPS
     binding: Binding = BY_NAME
-    units: Mapping[str, str] = field(default_factory=dict)
-    layouts: dict[tuple[str, ...], Any] = field(
+    units: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    layouts: dict[tuple[str, ...], Any] = dataclasses.field(
         default_factory=dict, init=False, repr=False, compare=False
     )
 

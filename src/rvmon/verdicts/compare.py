@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
 from enum import StrEnum
+
+from msgspec import Struct, field
 
 from rvmon.verdicts import Verdict, fold
 from rvmon.verdicts.rows import VerdictRow
@@ -34,8 +35,7 @@ class Change(StrEnum):
         return self in (Change.FIXED, Change.NEWLY_SHOWN, Change.READABLE)
 
 
-@dataclass(frozen=True, slots=True)
-class Difference:
+class Difference(Struct, frozen=True):
     """A changed verdict of a requirement in a recording, or a change of the whole recording.
 
     Attributes:
@@ -57,8 +57,7 @@ class Difference:
     reason: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
+class Comparison(Struct, frozen=True):
     """The comparison of two files of verdicts.
 
     Attributes:
@@ -76,8 +75,7 @@ class Comparison:
     same: int = 0
 
 
-@dataclass(slots=True)
-class _Run:
+class _Run(Struct):
     """The verdicts on one recording in a file."""
 
     error: str = ""

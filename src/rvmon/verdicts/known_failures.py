@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import datetime
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path, PurePath
 
 import msgspec
+from msgspec import Struct, field
 
 from rvmon.errors import RvmonError
 from rvmon.texts import did_you_mean
@@ -46,8 +46,7 @@ class KnownFailure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return any(fnmatchcase(name, self.recording) for name in (recording, *ends))
 
 
-@dataclass(frozen=True, slots=True)
-class KnownFailures:
+class KnownFailures(Struct, frozen=True):
     """The failures accepted on a day.
 
     Attributes:

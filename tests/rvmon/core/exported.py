@@ -5,11 +5,11 @@ from __future__ import annotations
 import struct
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from msgspec.structs import replace
 
 from rvmon.core.c_files import core_files, plan_files, prefix_of
 from rvmon.monitor.compiled_spec import compile_spec

@@ -2,9 +2,9 @@
 
 import random
 import struct
-from dataclasses import replace
 
 import pytest
+from msgspec.structs import replace
 from tests.rvmon.core.plan_reader import Plan, layouts, with_numbers
 from tests.tools.random_specs import truths_plan, with_random_coverage
 

@@ -1,8 +1,7 @@
 """Databases of coverage: what is written is read back, whole, once, and by name."""
 
-from dataclasses import replace
-
 import pytest
+from msgspec.structs import replace
 from tests.tools.covered import door_model, dump, fill, hits_of
 from tests.tools.hostile import hostile_names
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import Any
 
@@ -90,8 +89,8 @@ def _bare(node: Any) -> Hashable:
             return "a place"
         case tuple():
             return tuple(map(_bare, node))
-        case _ if is_dataclass(node):
-            kept = (_bare(getattr(node, field.name)) for field in fields(node))
+        case _ if hasattr(type(node), "__match_args__"):
+            kept = (_bare(getattr(node, name)) for name in type(node).__match_args__)
             return (type(node).__name__, *kept)
         case _:
             hashable: Hashable = node

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec import structs
 from tests.rvmon.laws.tried import judge
 from tests.tools.build import e, requirement, spec_of
 from tests.tools.compare import differences
@@ -47,7 +48,7 @@ def test_the_order_within_the_delay(data: st.DataObject) -> None:
     case = data.draw(cases(Profile(mixed=False)))
     case = replace(case, actions=case.samples)
     late = [(s.t + data.draw(st.integers(0, DELAY)), s) for s in case.samples]
-    spec = replace(case.spec, max_delay=DELAY)
+    spec = structs.replace(case.spec, max_delay=DELAY)
     monitor = Spec(spec).monitor(sources=case.names)
     told = [sample for _, sample in sorted(late, key=lambda entry: entry[0])]
     for sample in told:
@@ -63,7 +64,7 @@ def test_the_order_within_the_delay(data: st.DataObject) -> None:
 
 
 def test_what_comes_after_the_delay_is_left_out() -> None:
-    spec = replace(spec_of(requirement(e, upon=e)), max_delay=3)
+    spec = structs.replace(spec_of(requirement(e, upon=e)), max_delay=3)
     monitor = Spec(spec).monitor()
     for t in (10, 6, 7, 20, 17, 16):
         monitor.step_ns(t, {"e": True})

@@ -9,6 +9,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from msgspec import structs
 from tests.rvmon.laws.tried import (
     ONE,
     TRIED,
@@ -90,7 +91,7 @@ def in_ticks(a: Formula) -> Iterator[Pair]:
 def with_consequent(spec: CheckedSpec, consequent: Formula) -> CheckedSpec:
     [first, *_] = spec.requirements.values()
     changed = replace(first, consequent=consequent, captures=(), for_each=None)
-    return replace(spec, requirements={first.id: changed})
+    return structs.replace(spec, requirements={first.id: changed})
 
 
 TRACES = TraceProfile(outages=35)
@@ -132,7 +133,7 @@ def test_negation_exchanges_verdicts(spec: CheckedSpec, data: st.DataObject) -> 
             [required] = changed.requirements.values()
             upon = requirement(consequent, upon=required.trigger, at_end=at_end)
             one = spec_of(upon, time=spec.time, period=spec.period)
-            reports.append(judge(replace(case, spec=replace(one, signals=spec.signals))))
+            reports.append(judge(replace(case, spec=structs.replace(one, signals=spec.signals))))
         exchange = {"P": "F", "F": "P", "I": "I"}
         # What is in doubt can only be met.
         sure = [[a for a in report.attempts if not a.in_doubt] for report in reports]

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import pytest
 from hypothesis import assume, given
+from msgspec import structs
 from tests.rvmon.laws.tried import TRIED, judge
 from tests.tools.build import scaled
 
@@ -49,7 +50,7 @@ def _numbers(formula: Formula) -> list[UpdateFunction]:
 def longer(case: Case, factor: int) -> Case:
     spec = case.spec
     signals = {
-        name: replace(one, stale_after=one.stale_after and one.stale_after * factor)
+        name: structs.replace(one, stale_after=one.stale_after and one.stale_after * factor)
         for name, one in spec.signals.items()
     }
     requirements = {
@@ -65,7 +66,7 @@ def longer(case: Case, factor: int) -> Case:
     )
     return replace(
         case,
-        spec=replace(spec, period=period, signals=signals, requirements=requirements),
+        spec=structs.replace(spec, period=period, signals=signals, requirements=requirements),
         actions=actions,
         end=case.end and case.end * factor,
     )

@@ -8,6 +8,7 @@ from random import Random
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from msgspec import structs
 from tests.rvmon.laws.tried import ONE, TRIED, judge, known_from_the_first
 from tests.tools.build import start
 from tests.tools.compare import outcomes
@@ -31,7 +32,7 @@ def test_resolving_unknowns(spec: CheckedSpec, data: st.DataObject, rng: Random)
     assume(is_spoken_of(spec))
     assume(first.at_end not in (EndPolicy.PASS, EndPolicy.FAIL))
     required = replace(first, trigger=start, mode=Mode.UPON, pulse=False)
-    spec = replace(spec, requirements={required.id: required})
+    spec = structs.replace(spec, requirements={required.id: required})
     case = known_from_the_first(data.draw(traces(spec)))
     before = outcomes(judge(case))
     after = outcomes(judge(refilled(rng, case)))

@@ -7,6 +7,7 @@ from dataclasses import replace
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from msgspec import structs
 from tests.rvmon.laws.tried import ONE, TRIED, judge, known_from_the_first
 from tests.tools.build import always, end, no, p, requirement, two
 from tests.tools.compare import Outcome, outcomes
@@ -37,10 +38,12 @@ def test_whenever_is_weak_until(spec: CheckedSpec, data: st.DataObject) -> None:
     weak = two(first.consequent, "W", no(level))
     upon = replace(whenever, mode=Mode.UPON, consequent=weak)
     # Every signal has a value from the first sample on and none is ever lost.
-    spec = replace(spec, signals=signals())
+    spec = structs.replace(spec, signals=signals())
     case = known_from_the_first(data.draw(traces(spec, TraceProfile(unknowns=False))))
     # A trigger over payloads, `prev` and the like may be unknown all the same.
-    told = [replace(case, spec=replace(spec, requirements={r.id: r})) for r in (whenever, upon)]
+    told = [
+        replace(case, spec=structs.replace(spec, requirements={r.id: r})) for r in (whenever, upon)
+    ]
     assume(_known(told[0]))
     assert up_to_failure(judge(told[0])) == up_to_failure(judge(told[1]))
 
@@ -62,5 +65,5 @@ def _known(case: Case) -> bool:
     """Whether the trigger has a value at every position: then `θ or not θ` holds throughout."""
     [required] = case.spec.requirements.values()
     asked = requirement(always(two(required.trigger, "or", no(required.trigger))))
-    spec = replace(case.spec, requirements={asked.id: asked})
+    spec = structs.replace(case.spec, requirements={asked.id: asked})
     return all(a.decided is not None for a in judge(replace(case, spec=spec)).attempts)

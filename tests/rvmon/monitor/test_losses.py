@@ -4,6 +4,7 @@ import random
 from dataclasses import replace
 
 import pytest
+from msgspec import structs
 from tests.tools.drive import Found, Lost, told
 from tests.tools.judgement import Judgement
 
@@ -99,7 +100,7 @@ def test_a_stretch_is_wider_by_the_delay_that_samples_may_have():
         case = in_order(drawn(f"delay {seed}"))
         rng = random.Random(seed)
         delay = rng.randint(1, 5)
-        case = replace(case, spec=replace(case.spec, max_delay=delay))
+        case = replace(case, spec=structs.replace(case.spec, max_delay=delay))
         monitor = build_monitor(compile_spec(case.spec), sources=case.names)
         arrivals = [(one.t + rng.randint(0, delay), one.t, one) for one in case.actions]
         wider = [

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+from msgspec import structs
 from tests.rvmon.report.test_run_page import content, door, scene
 from tests.tools.covered import fill
 from tests.tools.looked_at import faults
@@ -34,7 +35,7 @@ def test_pages_are_fit_for_everybody(chromium, tmp_path):
     pages = {
         "run": run_page(content((spec, run), scene=scene(), others=[door(answer=1.0)[1]])),
         "passed": run_page(content(door(answer=1.0))),
-        "index": run_index(replace(spec.checked, requirements=severe), listed, NONE_KNOWN),
+        "index": run_index(structs.replace(spec.checked, requirements=severe), listed, NONE_KNOWN),
         "matrix": matrix_page("door", {"judged by": "rvmon"}, shown).decode(),
         "coverage": covered,
         "bad": '<p style="color:#999;width:500px">pale <input> <i tabindex=-1></i></p>',

@@ -7,6 +7,7 @@ from dataclasses import replace
 from html.parser import HTMLParser
 
 import pytest
+from msgspec import structs
 from tests.tools.hostile import FORGERIES, STEERING
 
 import rvmon
@@ -116,7 +117,7 @@ def test_hostile_names_steer_nothing_and_scripts_find_them():
                 replace(a, requirement=names[a.requirement]) for a in tuple(run.report.attempts)
             ),
         )
-        checked = replace(
+        checked = structs.replace(
             spec.checked,
             requirements={
                 names[n]: replace(r, id=names[n], text=hostile)
@@ -125,7 +126,7 @@ def test_hostile_names_steer_nothing_and_scripts_find_them():
         )
         page = run_page(
             RunPage(
-                replace(run, report=report),
+                structs.replace(run, report=report),
                 checked,
                 hostile,
                 back=hostile,
@@ -167,7 +168,7 @@ def test_page_and_text_say_the_same_of_the_input(capsys):
         Health(HealthKind.DROPPED, "knock", remark="the pipe broke"),
         *(Health(HealthKind.IGNORED, f"x{n}", remark="not declared") for n in range(14)),
     )
-    run = replace(run, report=replace(run.report, health=found))
+    run = structs.replace(run, report=replace(run.report, health=found))
     print_reports([run.report], spec.checked)
     text = capsys.readouterr().out.partition("input health:")[2]
     page = run_page(content((spec, run)))

@@ -1,9 +1,9 @@
 """Tables of verdicts in all their forms."""
 
 import io
-from dataclasses import replace
 
 import pytest
+from msgspec.structs import replace
 
 from rvmon.report.html import table_html
 from rvmon.report.printer import Printer

@@ -13,6 +13,8 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from msgspec import structs
+
 from rvmon.analysis.conflicts import starts_with
 from rvmon.analysis.product import Aim, Together
 from rvmon.analysis.vacuity import Subject
@@ -71,7 +73,7 @@ _BOUNDARIES = {
 def _connective(formula: Formula) -> Iterator[Formula]:
     match formula:
         case Binary(op=op) if op in _CONNECTIVES:
-            yield replace(formula, op=_CONNECTIVES[op])
+            yield structs.replace(formula, op=_CONNECTIVES[op])
 
 
 def _dropped_operand(formula: Formula) -> Iterator[Formula]:
@@ -98,7 +100,7 @@ def _comparison(formula: Formula) -> Iterator[Formula]:
         case Compare(op=op, right=Literal(value=bool() | str())) if op not in _EQUALITIES:
             return
         case Compare(op=op):
-            yield replace(formula, op=_BOUNDARIES[op])
+            yield structs.replace(formula, op=_BOUNDARIES[op])
 
 
 _EQUALITIES = (CompareOp.EQ, CompareOp.NE)
@@ -108,9 +110,9 @@ def _threshold(formula: Formula) -> Iterator[Formula]:
     match formula:
         case Compare(left=left, right=right):
             for other in _moved(right):
-                yield replace(formula, right=other)
+                yield structs.replace(formula, right=other)
             for other in _moved(left):
-                yield replace(formula, left=other)
+                yield structs.replace(formula, left=other)
 
 
 def _moved(numeric: Numeric) -> Iterator[Numeric]:
@@ -129,7 +131,7 @@ def _moved(numeric: Numeric) -> Iterator[Numeric]:
 def _temporal(formula: Formula) -> Iterator[Formula]:
     match formula:
         case Unary(op=op) if op in _TEMPORAL:
-            yield replace(formula, op=_TEMPORAL[op])
+            yield structs.replace(formula, op=_TEMPORAL[op])
 
 
 def _bound(formula: Formula) -> Iterator[Formula]:
@@ -142,11 +144,11 @@ def _bound(formula: Formula) -> Iterator[Formula]:
             if high is not None:
                 for other in (high + _unit(high), high - _unit(high)):
                     if other >= low:
-                        yield replace(formula, interval=Interval(low, other))
+                        yield structs.replace(formula, interval=Interval(low, other))
             if low:
                 for other in (low + _unit(low), low - _unit(low)):
                     if high is None or other <= high:
-                        yield replace(formula, interval=Interval(other, high))
+                        yield structs.replace(formula, interval=Interval(other, high))
 
 
 def _unit(ticks: int) -> int:
@@ -156,7 +158,7 @@ def _unit(ticks: int) -> int:
 def _no_deadline(formula: Formula) -> Iterator[Formula]:
     match formula:
         case Unary(op=op, interval=Interval(low=low, high=int())) if op in _TEMPORAL:
-            yield replace(formula, interval=Interval(low))
+            yield structs.replace(formula, interval=Interval(low))
 
 
 SPEC_OPERATORS: Mapping[str, Callable[[Formula], Iterator[Formula]]] = {
@@ -187,15 +189,15 @@ def changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
     match formula:
         case Unary(operand=operand):
             for name, changed in changes(operand):
-                yield name, replace(formula, operand=changed)
+                yield name, structs.replace(formula, operand=changed)
         case Amount(of=WindowValue(value=None, operand=operand) as window):
             for name, changed in changes(operand):
-                yield name, replace(formula, of=replace(window, operand=changed))
+                yield name, structs.replace(formula, of=structs.replace(window, operand=changed))
         case Binary(left=left, right=right):
             for name, changed in changes(left):
-                yield name, replace(formula, left=changed)
+                yield name, structs.replace(formula, left=changed)
             for name, changed in changes(right):
-                yield name, replace(formula, right=changed)
+                yield name, structs.replace(formula, right=changed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -314,7 +316,7 @@ def try_spec_mutants(
         What became of each; of what no run tells apart it is tried to prove that none can.
     """
     named = {mutant.identity: mutant for mutant in mutants}
-    every = replace(
+    every = structs.replace(
         spec.checked,
         requirements={name: replace(mutant.changed, id=name) for name, mutant in named.items()},
         properties={},
@@ -344,7 +346,7 @@ def _is_equivalent(spec: CheckedSpec, mutant: SpecMutant, together: Together) ->
     """
     pair = {"before": mutant.requirement, "after": mutant.changed}
     compiled = CompiledSpec(
-        replace(
+        structs.replace(
             spec,
             requirements={
                 name: replace(requirement, id=name) for name, requirement in pair.items()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields, is_dataclass
 from functools import cache
 
 from rvmon.diagnostics import Span
@@ -278,6 +277,8 @@ def _nodes(whole: object) -> Iterator[object]:
         node = waiting.pop()
         if isinstance(node, tuple):
             waiting += reversed(node)
-        elif is_dataclass(node) and not isinstance(node, Span):
-            yield node
-            waiting += [getattr(node, field.name) for field in reversed(fields(node))]
+        elif not isinstance(node, Span):
+            names: tuple[str, ...] | None = getattr(type(node), "__match_args__", None)
+            if names is not None:
+                yield node
+                waiting += [getattr(node, name) for name in reversed(names)]

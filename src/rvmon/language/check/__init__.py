@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from msgspec.structs import replace
 
 from rvmon.diagnostics import Span
 from rvmon.language.check.coverage import checked_cover, checked_coverpoint, checked_cross

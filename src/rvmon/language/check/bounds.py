@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from rvmon.diagnostics import Span
 from rvmon.language.check.moving_windows import refuse_moving
@@ -29,8 +30,7 @@ _BOUNDED = (UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, BinaryOp.UNTIL, BinaryOp.WEAK_UN
 """The operators whose window may end where data says."""
 
 
-@dataclass(frozen=True, slots=True)
-class Bounded:
+class Bounded(Struct, frozen=True):
     """A window from now on whose end comes from data; what it bounds is required at the trigger."""
 
     seconds: Numeric

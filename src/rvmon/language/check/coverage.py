@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
 from itertools import pairwise, product
 from math import ceil, floor, inf, prod
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from rvmon.diagnostics import Span
 from rvmon.language.check.comparisons import compared
@@ -179,8 +181,7 @@ def _ends(op: CompareOp, bound: float, *, whole: bool) -> tuple[float, float]:
             return -inf, inf
 
 
-@dataclass(frozen=True, slots=True)
-class _Point:
+class _Point(Struct, frozen=True):
     """A coverpoint, whose bins are formulas.
 
     Attributes:

@@ -5,8 +5,9 @@ Source: Maidl, The common fragment of CTL and LTL, FOCS 2000: ACTL^det.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import assert_never
+
+from msgspec import Struct
 
 from rvmon.diagnostics import Span
 from rvmon.language.check.expressions import Checker
@@ -230,8 +231,7 @@ def _foreign(checker: Checker, expression: expressions.Expression) -> list[expre
     ]
 
 
-@dataclass(frozen=True, slots=True)
-class _States:
+class _States(Struct, frozen=True):
     """Makes state formulas of expressions.
 
     Attributes:

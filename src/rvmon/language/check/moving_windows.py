@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from msgspec import structs
+
 from rvmon.diagnostics import Span
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.formula import (
@@ -48,7 +50,7 @@ def by_limits(op: CompareOp, make: Callable[[bool], Formula], span: Span) -> For
 def above(of: WindowValue, limit: Numeric, strict: bool, span: Span) -> Amount:
     """A comparison of a window with a number; a duration is the integral of 1."""
     if of.measured is Measured.DURATION:
-        of = replace(of, measured=Measured.INTEGRAL, value=Literal(1))
+        of = structs.replace(of, measured=Measured.INTEGRAL, value=Literal(1))
     known = None if isinstance(limit, Literal) else itself(limit, span)
     return Amount(of, limit, strict, span, known)
 

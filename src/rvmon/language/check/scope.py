@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Protocol
+
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from rvmon.diagnostics import Span
 from rvmon.language.checked.arithmetic import NumericOp
@@ -26,8 +28,7 @@ from rvmon.texts import nearest
 from rvmon.units import PLAIN, Unit, unit_table
 
 
-@dataclass(frozen=True, slots=True)
-class Quantity:
+class Quantity(Struct, frozen=True):
     """A number or label with its unit.
 
     Attributes:
@@ -49,15 +50,13 @@ class Quantity:
     lone: Lone | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Age:
+class Age(Struct, frozen=True):
     """`age(x)`: the time since the last update; only compared with durations."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class Chosen:
+class Chosen(Struct, frozen=True):
     """`if φ then x else y` of numbers; a comparison of it becomes one of each, with φ."""
 
     condition: Formula
@@ -65,8 +64,7 @@ class Chosen:
     otherwise: Value
 
 
-@dataclass(frozen=True, slots=True)
-class Now:
+class Now(Struct, frozen=True):
     """`now`, `now - t0`: the time since an instant; only compared, or captured by `let`.
 
     Attributes:
@@ -76,8 +74,7 @@ class Now:
     since: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Moment:
+class Moment(Struct, frozen=True):
     """An instant that was captured, or some time behind it; `now` is compared with it.
 
     Attributes:
@@ -89,8 +86,7 @@ class Moment:
     later: Quantity | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Lone:
+class Lone(Struct, frozen=True):
     """A number that is just a window; with a limit it has a comparison of its own.
 
     Attributes:
@@ -112,16 +108,14 @@ TimeValue = Age | Now | Moment
 Value = Formula | Quantity | TimeValue | Chosen
 
 
-@dataclass(frozen=True, slots=True)
-class Closure:
+class Closure(Struct, frozen=True):
     """A macro's argument: an expression that keeps the names of the place it was written at."""
 
     expression: Expression
     scope: Scope
 
 
-@dataclass(frozen=True, slots=True)
-class AtTrigger:
+class AtTrigger(Struct, frozen=True):
     """Values captured at the trigger besides `let`, as far as the consequent reads them."""
 
     captures: list[Capture] = field(default_factory=list)
@@ -143,8 +137,7 @@ class AtTrigger:
         return self.captures[-1].name
 
 
-@dataclass(frozen=True, slots=True)
-class Scope:
+class Scope(Struct, frozen=True):
     """The names that hold inside a macro or requirement, besides those of the file.
 
     Attributes:
@@ -172,8 +165,7 @@ EVERYWHERE = Scope()
 Declaration = Signal | Event | DefineItem | ConstItem
 
 
-@dataclass(frozen=True, slots=True)
-class FieldOf:
+class FieldOf(Struct, frozen=True):
     """A payload field that a dotted name stands for."""
 
     event: str
@@ -216,8 +208,7 @@ _LONG_NAMES = {
 """By what people write for a unit, in lower case and without a last `s`: its symbol."""
 
 
-@dataclass(frozen=True, slots=True)
-class Table:
+class Table(Struct, frozen=True):
     """The declarations of a file, by name.
 
     Attributes:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import TypeGuard
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from rvmon.diagnostics import Span
 from rvmon.language.check.comparisons import number_of
@@ -45,8 +47,7 @@ MOST_LAST = 1_000_000
 """The most updates that a window may hold."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Window:
+class _Window(Struct, frozen=True):
     """The window of a call: its members and its extent.
 
     Attributes:

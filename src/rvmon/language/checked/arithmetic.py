@@ -8,8 +8,9 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import Enum, StrEnum
+
+from msgspec import Struct
 
 EARTH = 6_371_008.8
 """The mean radius of the Earth, m.
@@ -111,8 +112,7 @@ class Exactness(StrEnum):
     LIBRARY = "as the C library rounds it"
 
 
-@dataclass(frozen=True, slots=True)
-class Operation:
+class Operation(Struct, frozen=True):
     """The entry of an operation: arity, units, evaluation, documentation.
 
     Attributes:

@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
 
+from msgspec import Struct
+
 from rvmon.diagnostics import Span
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.operators import BinaryOp as BinaryOp
@@ -37,23 +39,20 @@ class Literal:
     unit: str = field(default="", compare=False)
 
 
-@dataclass(frozen=True, slots=True)
-class SignalValue:
+class SignalValue(Struct, frozen=True):
     """The held value of an int, real or label signal (bool: False is 0, True is 1)."""
 
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class FieldValue:
+class FieldValue(Struct, frozen=True):
     """A payload field of an event; only meaningful where the event occurs."""
 
     event: str
     field: str
 
 
-@dataclass(frozen=True, slots=True)
-class Captured:
+class Captured(Struct, frozen=True):
     """A value captured by `let` at the trigger, or the instance value of `for each`."""
 
     name: str
@@ -67,29 +66,25 @@ class UpdateFunction(StrEnum):
     RATE = "rate"
 
 
-@dataclass(frozen=True, slots=True)
-class UpdateValue:
+class UpdateValue(Struct, frozen=True):
     """`prev(x)`, `delta(x)` or `rate(x)` (per second); unknown before the second update."""
 
     function: UpdateFunction
     name: str
 
 
-@dataclass(frozen=True, slots=True)
-class Arithmetic:
+class Arithmetic(Struct, frozen=True):
     """An operation on numbers; a result that is no number (0/0, sqrt(-1), overflow) is unknown."""
 
     op: NumericOp
     args: tuple[Numeric, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class NowValue:
+class NowValue(Struct, frozen=True):
     """`now`: ticks since the first instant; unknown if an outage hides which that was."""
 
 
-@dataclass(frozen=True, slots=True)
-class WindowValue:
+class WindowValue(Struct, frozen=True):
     """`count(φ, D)`, `sum(x, D)` and their kin: what the members of a window come to.
 
     A member is a position at which φ is true, with the number x there; where φ is not born there is
@@ -209,32 +204,28 @@ _DENIED = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Constant:
+class Constant(Struct, frozen=True):
     """`true` or `false`."""
 
     value: bool
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class SignalAtom:
+class SignalAtom(Struct, frozen=True):
     """A bool signal as a proposition."""
 
     name: str
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class EventAtom:
+class EventAtom(Struct, frozen=True):
     """An event: true at the ticks at which it was published."""
 
     name: str
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Compare:
+class Compare(Struct, frozen=True):
     """A comparison; one that reads fields of an event `e` means `e and comparison`."""
 
     op: CompareOp
@@ -251,8 +242,7 @@ class Probe(StrEnum):
     CHANGED = "changed"
 
 
-@dataclass(frozen=True, slots=True)
-class ProbeAtom:
+class ProbeAtom(Struct, frozen=True):
     """`known(x)`, `updated(x)` (two-valued) or `changed(x)` (an update with another value)."""
 
     probe: Probe
@@ -267,16 +257,14 @@ class Bound(StrEnum):
     END = "end"
 
 
-@dataclass(frozen=True, slots=True)
-class BoundAtom:
+class BoundAtom(Struct, frozen=True):
     """`start` is true at the first position; `end` when the trace is finished."""
 
     bound: Bound
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Unary:
+class Unary(Struct, frozen=True):
     """An operator on one formula; `interval` is `None` exactly where the operator has none."""
 
     op: UnaryOp
@@ -285,8 +273,7 @@ class Unary:
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Binary:
+class Binary(Struct, frozen=True):
     """An operator on two formulas; `interval` is `None` exactly where the operator has none."""
 
     op: BinaryOp
@@ -296,8 +283,7 @@ class Binary:
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Amount:
+class Amount(Struct, frozen=True):
     """`count(φ, D) >= n`, `sum(x, D) > c` and their kin: a window compared with a limit, exactly.
 
     Attributes:
@@ -342,8 +328,7 @@ class Amount:
         return (*(() if self.known is None else (self.known,)), *self.of.born_with)
 
 
-@dataclass(frozen=True, slots=True)
-class Passed:
+class Passed(Struct, frozen=True):
     """`now - t0 >= x`: at least so long has passed since an instant that was captured.
 
     Attributes:

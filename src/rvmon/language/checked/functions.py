@@ -6,8 +6,9 @@ Those that are operators of formulas or operations on numbers have the rest in t
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import Enum
+
+from msgspec import Struct
 
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.formula import Measured, Probe, UpdateFunction
@@ -25,8 +26,7 @@ class Argument(Enum):
     SOURCE = "the name of a signal or event"
 
 
-@dataclass(frozen=True, slots=True)
-class Function:
+class Function(Struct, frozen=True):
     """A function.
 
     Attributes:

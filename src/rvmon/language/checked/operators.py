@@ -9,15 +9,15 @@ is one entry here. `rise`, `fall` and `held` mean a little more where something 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from enum import Enum, StrEnum, auto
 from typing import Any, Protocol, Self, TypeVar
+
+from msgspec import Struct
 
 T = TypeVar("T")
 
 
-@dataclass(frozen=True, slots=True)
-class Interval:
+class Interval(Struct, frozen=True):
     """The closed interval `[low, high]` of durations in ticks; `high` is `None` if unbounded."""
 
     low: int = 0
@@ -80,8 +80,7 @@ PREFIXED, CALLED = 6, 7
 """The precedence of prefixes, and of calls."""
 
 
-@dataclass(frozen=True, slots=True)
-class Operator:
+class Operator(Struct, frozen=True):
     """The entry of an operator.
 
     Attributes:

@@ -3,39 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from enum import StrEnum
+
+from msgspec import Struct
 
 from rvmon.diagnostics import Span
 from rvmon.language.checked.formula import BinaryOp, Formula, Interval, UnaryOp
 
 
-@dataclass(frozen=True, slots=True)
-class StateAtom:
+class StateAtom(Struct, frozen=True):
     """A formula about one instant, without path quantifiers, over the names of the spec."""
 
     formula: Formula
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class ModelAtom:
+class ModelAtom(Struct, frozen=True):
     """A proposition that reads clocks or locations of a model; its text as written."""
 
     text: str
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class StateNot:
+class StateNot(Struct, frozen=True):
     """The negation of a state formula with path quantifiers."""
 
     operand: StateFormula
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class StateBinary:
+class StateBinary(Struct, frozen=True):
     """A connective of state formulas, one of them at least with path quantifiers."""
 
     op: BinaryOp
@@ -44,8 +41,7 @@ class StateBinary:
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class PathUnary:
+class PathUnary(Struct, frozen=True):
     """On all (`universal`) or some paths: next, eventually, always.
 
     Attributes:
@@ -63,8 +59,7 @@ class PathUnary:
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class PathBinary:
+class PathBinary(Struct, frozen=True):
     """On all (`universal`) or some paths: `U`, `W`, `R` or `M` with an interval."""
 
     universal: bool
@@ -89,8 +84,7 @@ def state_formulas(formula: StateFormula) -> Iterator[StateFormula]:
             yield from state_formulas(right)
 
 
-@dataclass(frozen=True, slots=True)
-class Property:
+class Property(Struct, frozen=True):
     """A CTL property; `p --> q` is `AG (p -> AF q)`."""
 
     id: str
@@ -99,8 +93,7 @@ class Property:
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Cover:
+class Cover(Struct, frozen=True):
     """`cover ID = formula`: some run should show the formula at some instant.
 
     Attributes:
@@ -124,8 +117,7 @@ class BinKind(StrEnum):
     ILLEGAL = "illegal"
 
 
-@dataclass(frozen=True, slots=True)
-class Bin:
+class Bin(Struct, frozen=True):
     """A bin of a coverpoint: hit wherever its formula is true."""
 
     name: str
@@ -134,8 +126,7 @@ class Bin:
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Coverpoint:
+class Coverpoint(Struct, frozen=True):
     """`coverpoint NAME = expression {bins}`.
 
     Attributes:
@@ -155,8 +146,7 @@ class Coverpoint:
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Cross:
+class Cross(Struct, frozen=True):
     """`cross NAME = points`: the bins of several coverpoints at the same instant.
 
     Attributes:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import Any, TypeVar
+
+from msgspec import Struct
 
 from rvmon.diagnostics import Span
 from rvmon.language.checked.formula import Binary, Constant, Formula, Numeric, Unary
@@ -28,8 +29,7 @@ def read(formula: Unary | Binary, of: Callable[[Formula], T], reading: Connectiv
     return result
 
 
-@dataclass(frozen=True, slots=True)
-class Formulas:
+class Formulas(Struct, frozen=True):
     """The reading of operators as formulas of `not and or X U Y S`."""
 
     span: Span | None = None
@@ -101,11 +101,11 @@ def without_spans(part: Part) -> Part:
     Constant(value=True, span=None)
     """
     values: list[Any] = []
-    for name in part.__match_args__:
+    for name in type(part).__match_args__:
         value = getattr(part, name)
         if isinstance(value, tuple):
             value = tuple(map(without_spans, value))
-        elif hasattr(value, "__match_args__"):
+        elif hasattr(type(value), "__match_args__"):
             value = None if name == "span" else without_spans(value)
         values.append(value)
     return type(part)(*values)

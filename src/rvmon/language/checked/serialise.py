@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import cache, partial
 from types import ModuleType
@@ -147,6 +146,5 @@ def _parts(without: Collection[str], value: Any) -> Any:
 @cache
 def _attributes(class_: type) -> tuple[str, ...] | None:
     """The attributes of objects of a class of a specification; `None`: it is no such class."""
-    if is_dataclass(class_) and _class_named(class_.__name__) is class_:
-        return tuple(field.name for field in fields(class_))
-    return None
+    names: tuple[str, ...] | None = getattr(class_, "__match_args__", None)
+    return names if _class_named(class_.__name__) is class_ else None

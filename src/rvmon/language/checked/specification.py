@@ -6,9 +6,11 @@ Bare formulas are split into trigger and consequent (SEMANTICS 3).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import TYPE_CHECKING
+
+from msgspec import Struct, field
 
 from rvmon.diagnostics import Source, Span
 from rvmon.language.checked.formula import FieldValue, Formula, Numeric
@@ -25,8 +27,7 @@ class Role(StrEnum):
     OUTPUT = "output"
 
 
-@dataclass(frozen=True, slots=True)
-class Type:
+class Type(Struct, frozen=True):
     """The type of a signal or field: `unit` as written for reals ("" if none), labels in order."""
 
     kind: Kind
@@ -34,8 +35,7 @@ class Type:
     labels: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
-class Signal:
+class Signal(Struct, frozen=True):
     """A declared signal.
 
     Attributes:
@@ -55,8 +55,7 @@ class Signal:
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Event:
+class Event(Struct, frozen=True):
     """A declared event with the types of its payload's fields."""
 
     name: str
@@ -83,24 +82,21 @@ class EndPolicy(StrEnum):
     FAIL = "fail"
 
 
-@dataclass(frozen=True, slots=True)
-class Capture:
+class Capture(Struct, frozen=True):
     """`let name = expression`."""
 
     name: str
     value: Numeric
 
 
-@dataclass(frozen=True, slots=True)
-class ForEach:
+class ForEach(Struct, frozen=True):
     """`for each name in event.field`: one instance of the requirement per value."""
 
     name: str
     value: FieldValue
 
 
-@dataclass(frozen=True, slots=True)
-class RunShare:
+class RunShare(Struct, frozen=True):
     """`in at least 95 % of runs`: single runs are judged as always, campaigns decide by all.
 
     Attributes:
@@ -161,8 +157,7 @@ class TimeModel(StrEnum):
     CLOCKED = "sampled every"
 
 
-@dataclass(frozen=True, slots=True)
-class CheckedSpec:
+class CheckedSpec(Struct, frozen=True):
     """A whole specification, ready for lowering.
 
     Attributes:

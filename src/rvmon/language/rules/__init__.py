@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+
+from msgspec import Struct, field
 
 from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
+class Rule(Struct, frozen=True):
     """A rule; `rvmon/analysis/pages` says why it matters, with an example.
 
     Attributes:
@@ -58,8 +58,7 @@ def short(text: str, most: int = 60) -> str:
     return line if len(line) <= most else f"{line[: most - 12]} … {line[-9:]}"
 
 
-@dataclass(frozen=True, slots=True)
-class Breach:
+class Breach(Struct, frozen=True):
     """One way to break a rule; called with the place of it, it makes the finding.
 
     Attributes:
@@ -92,8 +91,7 @@ class Enough(Exception):  # noqa: N818 - never leaves this package
     """There are so many findings already that the rest of the file is not looked at."""
 
 
-@dataclass(slots=True)
-class Findings:
+class Findings(Struct):
     """Findings in the order in which they were made, none twice.
 
     Attributes:

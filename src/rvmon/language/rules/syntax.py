@@ -5,7 +5,9 @@ Depth, size and cost are those of expressions with their macros expanded.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+
+from msgspec import Struct
 
 from rvmon.diagnostics import Diagnostic, Severity, Span
 from rvmon.language.rules import Breach, Refusal, Reported, Rule, finding, short
@@ -116,8 +118,7 @@ BUDGET = 20_000
 PER_CHARACTER = 5
 
 
-@dataclass(frozen=True, slots=True)
-class Cost:
+class Cost(Struct, frozen=True):
     """Levels and operators of an expression."""
 
     depth: int

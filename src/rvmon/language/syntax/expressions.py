@@ -3,24 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from fractions import Fraction
+
+from msgspec import Struct
 
 from rvmon.diagnostics import Span
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.formula import BinaryOp, Bound, CompareOp, UnaryOp
 
 
-@dataclass(frozen=True, slots=True)
-class Ident:
+class Ident(Struct, frozen=True):
     """A name where it is written; quotes are taken off."""
 
     text: str
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Number:
+class Number(Struct, frozen=True):
     """A number with its unit, "" if it has none; `value` is `None` if it is out of range."""
 
     value: Fraction | None
@@ -28,32 +27,28 @@ class Number:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Name:
+class Name(Struct, frozen=True):
     """A name of a signal, event, payload field, label, constant, macro or parameter."""
 
     text: str
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Truth:
+class Truth(Struct, frozen=True):
     """`true` or `false`."""
 
     value: bool
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Edge:
+class Edge(Struct, frozen=True):
     """`start` or `end`."""
 
     bound: Bound
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Call:
+class Call(Struct, frozen=True):
     """A built-in function or a macro with its arguments."""
 
     function: Ident
@@ -61,16 +56,14 @@ class Call:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Group:
+class Group(Struct, frozen=True):
     """An expression in round brackets."""
 
     inner: Expression
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Window:
+class Window(Struct, frozen=True):
     """An interval of durations; `high` is `None` if it has no end."""
 
     low: Expression | None
@@ -80,8 +73,7 @@ class Window:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Prefix:
+class Prefix(Struct, frozen=True):
     """`not` or a temporal operator before a formula.
 
     `within D` is `eventually` and `for D` is `always` with a window from 0.
@@ -94,16 +86,14 @@ class Prefix:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Immediately:
+class Immediately(Struct, frozen=True):
     """`immediately φ`: φ itself, stated on purpose."""
 
     operand: Expression
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Infix:
+class Infix(Struct, frozen=True):
     """A connective or temporal operator between two formulas."""
 
     op: BinaryOp
@@ -114,8 +104,7 @@ class Infix:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
+class Comparison(Struct, frozen=True):
     """A comparison of two expressions."""
 
     op: CompareOp
@@ -125,8 +114,7 @@ class Comparison:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Choice:
+class Choice(Struct, frozen=True):
     """`if φ then x else y`."""
 
     condition: Expression
@@ -135,8 +123,7 @@ class Choice:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Operation:
+class Operation(Struct, frozen=True):
     """Arithmetic on one or two expressions."""
 
     op: NumericOp
@@ -144,8 +131,7 @@ class Operation:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Path:
+class Path(Struct, frozen=True):
     """A path quantifier with a temporal operator: `AG p`, `E<> p`.
 
     Attributes:
@@ -162,8 +148,7 @@ class Path:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Quantified:
+class Quantified(Struct, frozen=True):
     """`A[φ U ψ]`, `E[φ U ψ]`; `path` is what stands in the brackets."""
 
     universal: bool
@@ -171,8 +156,7 @@ class Quantified:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class LeadsTo:
+class LeadsTo(Struct, frozen=True):
     """`φ --> ψ`: on all paths φ is always followed by ψ."""
 
     left: Expression

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from rvmon.diagnostics import Source, Span
 from rvmon.language.checked.properties import BinKind
@@ -10,8 +10,7 @@ from rvmon.language.checked.specification import Mode, Role, TimeModel
 from rvmon.language.syntax.expressions import Expression, Ident, Name, Number, Window
 
 
-@dataclass(frozen=True, slots=True)
-class TypeSyntax:
+class TypeSyntax(Struct, frozen=True):
     """A type as written: `name` is `bool`, `int`, `real` or `label`."""
 
     name: str
@@ -20,8 +19,7 @@ class TypeSyntax:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Header:
+class Header(Struct, frozen=True):
     """`spec NAME "title"`."""
 
     name: Ident
@@ -29,8 +27,7 @@ class Header:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class TimeItem:
+class TimeItem(Struct, frozen=True):
     """`time held`, `time sampled` or `time sampled every D`."""
 
     model: TimeModel
@@ -38,16 +35,14 @@ class TimeItem:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class DelayItem:
+class DelayItem(Struct, frozen=True):
     """`max delay D`."""
 
     delay: Expression
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class ImportItem:
+class ImportItem(Struct, frozen=True):
     """`import "file.rv"` or `import library`."""
 
     target: str
@@ -55,8 +50,7 @@ class ImportItem:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class SignalItem:
+class SignalItem(Struct, frozen=True):
     """`signal a, b : TYPE ROLE ignore NaN stale after D`; `ignored` is where the words are."""
 
     names: tuple[Ident, ...]
@@ -67,24 +61,21 @@ class SignalItem:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class FieldSyntax:
+class FieldSyntax(Struct, frozen=True):
     """A field of a payload."""
 
     name: Ident
     type: TypeSyntax
 
 
-@dataclass(frozen=True, slots=True)
-class EventSyntax:
+class EventSyntax(Struct, frozen=True):
     """One event of an item, with its payload's fields."""
 
     name: Ident
     fields: tuple[FieldSyntax, ...]
 
 
-@dataclass(frozen=True, slots=True)
-class EventItem:
+class EventItem(Struct, frozen=True):
     """`event a, pick(id: int) ROLE`."""
 
     events: tuple[EventSyntax, ...]
@@ -92,8 +83,7 @@ class EventItem:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class DefineItem:
+class DefineItem(Struct, frozen=True):
     """`define name = body`, `define name(p, d) = body`; no parameters is `None`."""
 
     name: Ident
@@ -102,8 +92,7 @@ class DefineItem:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class ConstItem:
+class ConstItem(Struct, frozen=True):
     """`const NAME = value`."""
 
     name: Ident
@@ -111,8 +100,7 @@ class ConstItem:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class PropertyItem:
+class PropertyItem(Struct, frozen=True):
     """`property ID: CTL` alone."""
 
     name: Ident
@@ -120,15 +108,13 @@ class PropertyItem:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Bare:
+class Bare(Struct, frozen=True):
     """A requirement that is one formula."""
 
     formula: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class Triggered:
+class Triggered(Struct, frozen=True):
     """`upon θ then ψ` or `whenever θ then ψ`."""
 
     mode: Mode
@@ -136,30 +122,26 @@ class Triggered:
     consequent: Expression
 
 
-@dataclass(frozen=True, slots=True)
-class ResponseMonitor:
+class ResponseMonitor(Struct, frozen=True):
     """`monitor as response within D`."""
 
     within: Expression
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class WrittenMonitor:
+class WrittenMonitor(Struct, frozen=True):
     """`monitor as written`."""
 
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class CoverMonitor:
+class CoverMonitor(Struct, frozen=True):
     """`monitor as cover`."""
 
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class TextClause:
+class TextClause(Struct, frozen=True):
     """`source`, `rationale` or `severity` with its text."""
 
     word: str
@@ -167,16 +149,14 @@ class TextClause:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class TagsClause:
+class TagsClause(Struct, frozen=True):
     """`tags a, b`."""
 
     tags: tuple[str, ...]
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class LetClause:
+class LetClause(Struct, frozen=True):
     """`let v = expression`."""
 
     name: Ident
@@ -184,8 +164,7 @@ class LetClause:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class ForEachClause:
+class ForEachClause(Struct, frozen=True):
     """`for each x in event.field`."""
 
     name: Ident
@@ -193,24 +172,21 @@ class ForEachClause:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class AtEndClause:
+class AtEndClause(Struct, frozen=True):
     """`at end: policy`."""
 
     policy: Ident
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class PropertyClause:
+class PropertyClause(Struct, frozen=True):
     """`property CTL` of a requirement."""
 
     formula: Expression
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class ScopeClause:
+class ScopeClause(Struct, frozen=True):
     """`scope before (φ)`, `after (φ)`, `between (φ) and (ψ)`, `after (φ) until (ψ)`.
 
     Attributes:
@@ -226,8 +202,7 @@ class ScopeClause:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class RunShareClause:
+class RunShareClause(Struct, frozen=True):
     """`in at least 95 % of runs`, `in at most 5 % of runs`."""
 
     at_least: bool
@@ -247,8 +222,7 @@ Clause = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class RequirementItem:
+class RequirementItem(Struct, frozen=True):
     """A requirement with its clauses in the order of the file."""
 
     name: Ident
@@ -258,8 +232,7 @@ class RequirementItem:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class CoverItem:
+class CoverItem(Struct, frozen=True):
     """`cover ID = formula`."""
 
     name: Ident
@@ -267,16 +240,14 @@ class CoverItem:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class StepsSyntax:
+class StepsSyntax(Struct, frozen=True):
     """`value => value => …`: the values that a coverpoint's expression takes in turn."""
 
     values: tuple[Expression, ...]
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class BinSyntax:
+class BinSyntax(Struct, frozen=True):
     """A bin: its values are those of a window, steps, an expression, or a label of its own name."""
 
     name: Ident
@@ -285,16 +256,14 @@ class BinSyntax:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class SampledClause:
+class SampledClause(Struct, frozen=True):
     """`upon φ` of a coverpoint or cross."""
 
     trigger: Expression
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class CountClause:
+class CountClause(Struct, frozen=True):
     """`goal N`, `weight N`."""
 
     word: str
@@ -302,8 +271,7 @@ class CountClause:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class UnwantedClause:
+class UnwantedClause(Struct, frozen=True):
     """`ignore φ` or `illegal φ` of a cross, over its coverpoints."""
 
     kind: BinKind
@@ -314,8 +282,7 @@ class UnwantedClause:
 GoalClauses = SampledClause | CountClause | UnwantedClause
 
 
-@dataclass(frozen=True, slots=True)
-class CoverpointItem:
+class CoverpointItem(Struct, frozen=True):
     """`coverpoint NAME = expression {bins}`."""
 
     name: Ident
@@ -325,8 +292,7 @@ class CoverpointItem:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class CrossItem:
+class CrossItem(Struct, frozen=True):
     """`cross NAME = points`."""
 
     name: Ident
@@ -352,8 +318,7 @@ Item = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class ParsedSpec:
+class ParsedSpec(Struct, frozen=True):
     """One file, item by item; its names are not looked at yet.
 
     Attributes:

@@ -10,6 +10,8 @@ from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
+from msgspec import structs
+
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.specification import CheckedSpec
@@ -256,5 +258,5 @@ def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaAr
             schema.gaps.reading_of_nan if nan is None else nan,
             schema.gaps.no_update if no_update is None else no_update,
         ),
-        binding=bound if clock is None else replace(bound, clock=Clock(clock)),
+        binding=bound if clock is None else structs.replace(bound, clock=Clock(clock)),
     )

@@ -6,8 +6,9 @@ import re
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, field
 from typing import Any
+
+from msgspec import Struct, field
 
 from rvmon.errors import TraceError
 from rvmon.recordings.binding.expression import number, term_of
@@ -60,8 +61,7 @@ _COMMANDING = re.compile(r"Ackermann|Trajectory|Setpoint|Command|Target|Goal|Jog
 """In names of types: their messages say what should be."""
 
 
-@dataclass(frozen=True, slots=True)
-class Candidate:
+class Candidate(Struct, frozen=True):
     """A candidate to feed a declared name.
 
     Attributes:
@@ -228,8 +228,7 @@ _FIRST = 3
 """Values that are shown."""
 
 
-@dataclass(slots=True)
-class Range:
+class Range(Struct):
     """The range of the values seen.
 
     Attributes:

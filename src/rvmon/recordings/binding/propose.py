@@ -6,8 +6,9 @@ import json
 import re
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from math import inf
+
+from msgspec import Struct
 
 from rvmon.language.checked.specification import CheckedSpec, Type
 from rvmon.recordings.binding.candidates import (
@@ -39,8 +40,7 @@ Found = list[tuple[float, Candidate]]
 Ranges = Mapping[tuple[str, str], Range]
 
 
-@dataclass(frozen=True, slots=True)
-class Proposal:
+class Proposal(Struct, frozen=True):
     """The binding proposed for a specification and a recording.
 
     Attributes:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+
+from msgspec import Struct
 
 from rvmon.language.checked.specification import Type
 from rvmon.recordings.binding.candidates import ALONG, Candidate, foreign_words, modifiers_of
@@ -48,8 +49,7 @@ _A_WORD = 0.05
 _MOVING = "nav_msgs/msg/Odometry"
 
 
-@dataclass(frozen=True, slots=True)
-class Wanted:
+class Wanted(Struct, frozen=True):
     """A declared name for which a source is sought.
 
     Attributes:

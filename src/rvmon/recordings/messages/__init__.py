@@ -5,8 +5,9 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
 from typing import Any
+
+from msgspec import Struct, field
 
 from rvmon.errors import RvmonError, TraceError
 from rvmon.recordings.values import first_line
@@ -14,8 +15,7 @@ from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 
 
-@dataclass(frozen=True, slots=True)
-class Topic:
+class Topic(Struct, frozen=True):
     """A topic of a recording.
 
     Attributes:

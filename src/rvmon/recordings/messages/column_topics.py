@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from msgspec import Struct
 
 from rvmon.recordings.messages import Message, Messages, Topic, errors_as_damage
 from rvmon.trace.sample import Outage
@@ -17,8 +17,7 @@ Columns = Mapping[str, Any]
 """Arrays by the path of the field: of one value a row, or of several; masked where it has none."""
 
 
-@dataclass(frozen=True, slots=True)
-class ColumnTopic:
+class ColumnTopic(Struct, frozen=True):
     """A topic and what is in it.
 
     Attributes:

@@ -20,10 +20,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
 from enum import Enum
 from functools import cache, reduce
 from importlib import resources
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from rvmon.errors import TraceError
 from rvmon.recordings.messages import Topic
@@ -52,8 +54,7 @@ class Sort(Enum):
     ODD = "-"
 
 
-@dataclass(frozen=True, slots=True)
-class Meaning:
+class Meaning(Struct, frozen=True):
     """The known meaning of a field.
 
     Attributes:
@@ -169,8 +170,7 @@ _ALIKE = frozenset({"+", "-", "min", "max", "hypot", "<", "<=", ">", ">=", "==",
 _TRUTHS = frozenset({"<", "<=", ">", ">=", "==", "!=", "and", "or", "xor", "not", "any", "all"})
 
 
-@dataclass(frozen=True, slots=True)
-class Measure:
+class Measure(Struct, frozen=True):
     """A unit of a value.
 
     Attributes:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
 from typing import Any
+
+from msgspec import Struct, field
 
 from rvmon.errors import TraceError
 from rvmon.recordings.messages.fields import arrays_of_names, field_of, getter, part_of
@@ -22,8 +23,7 @@ _FIRST_OF_MANY = 300
 _FRAMES = ("header.frame_id", "child_frame_id")
 
 
-@dataclass(frozen=True, slots=True)
-class Looked:
+class Looked(Struct, frozen=True):
     """The names in the first messages of a topic.
 
     Attributes:

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from struct import Struct
 from typing import Any
 
+import msgspec
 import numpy as np
 
 from rvmon.trace.schema import Kind
@@ -23,8 +23,7 @@ _BOOL, _REALS, _STRING, _VECTOR, _TABLE, _ARRAY = 2, (11, 12), 13, 14, 15, 17
 _I32, _U32, _U16 = Struct("<i"), Struct("<I"), Struct("<H")
 
 
-@dataclass(frozen=True, slots=True)
-class _Field:
+class _Field(msgspec.Struct, frozen=True):
     """A field of a table, or of a struct.
 
     Attributes:
@@ -46,8 +45,7 @@ class _Field:
     default: float
 
 
-@dataclass(frozen=True, slots=True)
-class _Type:
+class _Type(msgspec.Struct, frozen=True):
     """A table or a struct: its name, fields, and bytes, which only a struct has."""
 
     name: str

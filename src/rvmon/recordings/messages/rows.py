@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import Any
+
+from msgspec import Struct, field
 
 from rvmon.errors import TraceError
 from rvmon.recordings.messages import Messages, Topic
@@ -191,8 +192,7 @@ ENOUGH = 10
 """Messages that say something about a clock."""
 
 
-@dataclass(slots=True)
-class Differences:
+class Differences(Struct):
     """The delays between the headers of a topic's messages and their recording, in ticks.
 
     Attributes:
@@ -231,8 +231,7 @@ class Differences:
         return self.lots[-2 if is_begun else -1] - self.lots[0]
 
 
-@dataclass(slots=True)
-class Skew:
+class Skew(Struct):
     """The differences of all topics that are read.
 
     A header says when its sender stamped a message, the log when it arrived: the difference is the

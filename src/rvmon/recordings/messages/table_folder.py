@@ -10,12 +10,14 @@ import re
 import tomllib
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
 from heapq import merge
 from io import TextIOWrapper
 from itertools import islice
 from pathlib import Path
 from typing import Any
+
+from msgspec import Struct
+from msgspec.structs import replace
 
 from rvmon.errors import TraceError
 from rvmon.recordings import TOPICS
@@ -36,8 +38,7 @@ _WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _PATH = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*(\[\d{1,4}\])?")
 
 
-@dataclass(frozen=True, slots=True)
-class _Table:
+class _Table(Struct, frozen=True):
     """A file: what it holds, and of which kind the columns are that are no stamps, if known."""
 
     path: Path

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
+
+from msgspec import Struct
 
 from rvmon.recordings.messages import Message, Messages, Topic
 from rvmon.trace.schema import Kind
@@ -22,8 +23,7 @@ _Vector = tuple[float, float, float]
 _Quaternion = tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
-class Transform:
+class Transform(Struct, frozen=True):
     """A turn, then a shift.
 
     Attributes:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
 from math import inf, isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from msgspec import Struct, field
+from msgspec.structs import replace
 
 from rvmon.recordings.batch import NO_UPDATE, YES, Cells
 from rvmon.trace.sample import Outage
@@ -30,8 +31,7 @@ EVENT_SHARE = 0.1
 """Truth values that are true in single samples only, and in at most this share, are events."""
 
 
-@dataclass(frozen=True, slots=True)
-class Shape:
+class Shape(Struct, frozen=True):
     """The shape of the values of one name, whatever their times.
 
     Attributes:
@@ -51,8 +51,7 @@ class Shape:
     is_part: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Shapes:
+class Shapes(Struct, frozen=True):
     """The names of a recording that a specification can declare, and those that it cannot."""
 
     declared: Mapping[str, Shape]
@@ -77,8 +76,7 @@ MOST = 160
 """Stretches of a course."""
 
 
-@dataclass(frozen=True, slots=True)
-class Stretch:
+class Stretch(Struct, frozen=True):
     """The updates in a stretch of time.
 
     Attributes:
@@ -159,8 +157,7 @@ Updates = tuple["NDArray[np.int64]", "NDArray[Any]", "NDArray[np.bool_]"]
 """As `Column.take` has them."""
 
 
-@dataclass(slots=True)
-class Column:
+class Column(Struct):
     """One name of a recording, followed over time.
 
     Attributes:
@@ -306,8 +303,7 @@ class Column:
         return silent > self._trues and not keeps_coming
 
 
-@dataclass(frozen=True, slots=True)
-class Profile:
+class Profile(Struct, frozen=True):
     """A recording, looked over.
 
     Attributes:

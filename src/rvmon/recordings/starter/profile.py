@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from io import TextIOWrapper
 from itertools import islice
 from typing import TYPE_CHECKING, Any
 
 import msgspec
 import numpy as np
+from msgspec.structs import replace
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.recordings import MESSAGE_FORMS

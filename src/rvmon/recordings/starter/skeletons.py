@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from itertools import islice
 from pathlib import Path
+
+from msgspec import Struct
 
 from rvmon.language.checked.formula import Literal, SignalAtom
 from rvmon.language.formatter import format_text
@@ -30,8 +31,7 @@ _OFTEN = 3
 """An event that comes so many times as often as another does not answer it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Skeleton:
+class Skeleton(Struct, frozen=True):
     """A requirement as text."""
 
     title: str

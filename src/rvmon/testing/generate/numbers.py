@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from msgspec import structs
+
 from rvmon.language.checked.arithmetic import NumericOp, UnitRule
 from rvmon.language.checked.formula import (
     Amount,
@@ -223,7 +225,7 @@ def _compared(rng: Rng, shape: Shape, draw: Draw, mode: str) -> Formula:
     if chance(rng, 20):
         alone = _window(rng, shape, draw, pick(rng, ALONE), mode)
         if alone.measured is Measured.DURATION:
-            alone = replace(alone, measured=Measured.INTEGRAL, value=Literal(1))
+            alone = structs.replace(alone, measured=Measured.INTEGRAL, value=Literal(1))
         return _above(alone, side(2), chance(rng, 50))
     while True:
         compared = Compare(pick(rng, tuple(CompareOp)), side(3), side(1))

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+
+from msgspec.structs import replace
 
 from rvmon.errors import RvmonError
 from rvmon.language.checked.formula import Binary, BinaryOp, Formula, Interval, Unary, UnaryOp

@@ -1,9 +1,9 @@
 """What the fields of messages mean, by the tables."""
 
-from dataclasses import replace
 from importlib import resources
 
 import pytest
+from msgspec.structs import replace
 
 from rvmon.errors import TraceError
 from rvmon.recordings.messages import Topic
