@@ -116,18 +116,22 @@ def sources() -> list[Path]:
 
 
 class Trial:
-    """The objects of the core, of which one after the other is replaced by that of a mutant.
+    """Objects of files of the core, one after the other replaced by a mutant's; one of the rest.
 
     Args:
         folder: empty.
         cases: as `recorded` gives them.
+        changed: the files that mutants are of.
     """
 
-    def __init__(self, folder: Path, cases: bytes) -> None:
+    def __init__(self, folder: Path, cases: bytes, changed: Sequence[Path]) -> None:
         self._folder = folder
         self._cases = folder / "cases"
         self._cases.write_bytes(cases)
-        self._objects = {path: folder / f"{path.stem}.o" for path in (*sources(), REPLAY)}
+        rest = folder / "rest.c"
+        others = [path for path in sources() if path not in changed]
+        rest.write_text("".join(f'#include "{path}"\n' for path in others))
+        self._objects = {path: folder / f"{path.stem}.o" for path in (*changed, rest, REPLAY)}
         for path, made in self._objects.items():
             if not self._compiled(path, made):
                 raise SystemExit(f"{path} does not compile")
@@ -136,7 +140,7 @@ class Trial:
         self._seconds = time.perf_counter() - began
         if self._expected is None:
             raise SystemExit("without a change, the core crashes or hangs")
-        path = sources()[0]
+        path = changed[0]
         if self.outcome(Mutant(path, 0, "", "", "", path.read_text("utf-8"))) != "same":
             raise SystemExit(f"{path.name} without a change is not the same")
 
@@ -242,10 +246,9 @@ def main(files: Sequence[str] = (), *, count: int = 30, seed: int = 1, pairs: in
         raise SystemExit(f"no file of the core is called {', '.join(sorted(unknown))}")
     total: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as directory:
-        trial = Trial(Path(directory), recorded(pairs, seed))
-        for path in sources():
-            if files and path.name not in files:
-                continue
+        chosen = [path for path in sources() if not files or path.name in files]
+        trial = Trial(Path(directory), recorded(pairs, seed), chosen)
+        for path in chosen:
             found: Counter[str] = Counter()
             possible = [*c_mutants(path)]
             for mutant in draw(possible, count, seed):

@@ -76,8 +76,8 @@ def test_machines_say_the_same(cases: Path, tmp_path: Path) -> None:
 def test_mutants_are_seen(cases: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Most small changes of the core are told from it by some dozens of cases."""
     monkeypatch.setattr(core_mutants, "FLAGS", FLAGS)
-    trial = Trial(tmp_path, cases.read_bytes())
     path = CORE / "formulas" / "graph.c"
+    trial = Trial(tmp_path, cases.read_bytes(), [path])
     (mutant,) = draw(c_mutants(path), count=1, seed=1)
     assert trial.outcome(mutant) == "killed"
 

@@ -9,6 +9,8 @@ from benchmarks.timing.workload import formula
 
 from rvmon.language.checked.specification import TimeModel
 
+pytestmark = pytest.mark.slow
+
 HIGH = 6
 
 

@@ -25,6 +25,7 @@ def made(monkeypatch):
     return import_module
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["grammar", "model_grammar"])
 def test_every_name_of_the_grammar_has_a_production(made, name):
     """None is left of the names that Lark needs, and each can be looked up."""

@@ -50,6 +50,7 @@ def test_a_loop_of_asyncio(play):
     assert line.startswith("B2#1 F `for 1 s speed <= 0.001 m/s` had to come true")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("wind", "verdicts"), [(3, "P NT NT"), (5, "F F F")])
 def test_a_fence_of_a_drone(play, wind, verdicts):
     """It is left where the wind is stronger than the drone, and by how much is told."""

@@ -51,6 +51,7 @@ def clip(data, *words):
 READING = ["--time", "stamp:ms", "--map", "speed=v", "--const", "T=2 s"]
 
 
+@pytest.mark.slow
 def test_it_is_judged_and_explained_anywhere(base, tmp_path_factory, monkeypatch, says):
     assert clip("a.csv", *READING) == 0
     monkeypatch.chdir(tmp_path_factory.mktemp("elsewhere"))

@@ -73,11 +73,12 @@ def facts(run: Run) -> list[tuple[int, dict[str, object]]]:
 @pytest.mark.parametrize("robot", ["correct", "legacy"])
 def test_jumps_change_no_event(robot: str) -> None:
     gripped = 0
-    for test in pseudorandom(1, seed=5) + constrained(3, seed=5):
+    for whole in pseudorandom(1, seed=5) + constrained(3, seed=5):
+        test = structs.replace(whole, horizon_s=80.0)  # what comes then is nothing
         jumped = run_test(test, robot=robot)
         stepped = run_test(test, robot=robot, jump=False)
         assert facts(jumped) == facts(stepped)
-        assert stepped.stepped_s == pytest.approx(200.0)
+        assert stepped.stepped_s == pytest.approx(80.0)
         assert jumped.stepped_s < 40.0
         closings = [
             (a["hand_distance"], b["hand_distance"])

@@ -29,6 +29,7 @@ def test_path_from_rest_is_the_min_jerk_profile(share: float) -> None:
     assert evaluate(quintic(0.0, 0.0, 1.0, 1.0), share) == pytest.approx(min_jerk(share), abs=1e-12)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.floats(-0.2, 0.25), st.floats(0.05, 0.4))
 def test_inverse_kinematics_inverts(x: float, z: float) -> None:

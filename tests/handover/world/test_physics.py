@@ -201,6 +201,7 @@ def test_unheld_piece_falls() -> None:
     assert stage.piece[1] < p.FLOOR_Z + p.PIECE_SIZE[1]
 
 
+@pytest.mark.slow
 def test_gripped_piece_stays_where_it_is() -> None:
     """A held piece does not creep: within 0.1 mm over 20 s, stepped throughout."""
     stage = Stage(World(random.Random(1), jump=False))

@@ -62,6 +62,7 @@ def _shown(sure, may, t):
     return Truth.UNKNOWN if any(low <= t <= high for low, high in may) else Truth.FALSE
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_spans_are_sets(seed):
     rng = random.Random(seed)

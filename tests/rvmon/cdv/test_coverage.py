@@ -15,6 +15,8 @@ from rvmon.coverage.database import read
 from rvmon.errors import RvmonError
 from rvmon.session import load
 
+pytestmark = pytest.mark.slow
+
 SPEC = """signal speed : real
 requirement L1
   always speed <= 5
@@ -87,7 +89,6 @@ def test_states_give_transitions_by_themselves(campaign):
     assert not coverage_model(replace(three, transitions=()), "new").groups["transitions"].items
 
 
-@pytest.mark.slow
 def test_a_database_and_a_page_each(campaign, tmp_path):
     results = execute(plan(campaign, tests=3), jobs=1)
     pages = {("new", "lift-1"): "runs/new-lift-1.html"}

@@ -141,6 +141,7 @@ def test_a_bag_is_not_replaced(base, says):
     assert "cannot write b: it is there, and a bag is a new folder" in says(2, *words).err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "second"), [("datetime64[ms]", 1000), ("timedelta64[ms]", 1000), ("timedelta64[s]", 1)]
 )

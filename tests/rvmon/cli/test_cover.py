@@ -163,6 +163,7 @@ def test_a_cross_that_nobody_could_look_at_is_a_list(tmp_path, capsys):
     assert f"{name} 0" in lines
 
 
+@pytest.mark.slow
 def test_tests_with_what_they_added(door, capsys, monkeypatch):
     _, lines = shown(capsys, door, "--tests")
     assert "calm-2 random completed 1 33 % near: touch," in lines

@@ -14,6 +14,8 @@ from rvmon.cli import main
 from rvmon.evidence import About, derived_entries, pack, unpack
 from rvmon.report.trace_matrix import rows_by_item
 
+pytestmark = pytest.mark.slow
+
 COMMON = "signal speed : real\nevent go\n"
 SPEC = """
 spec base
@@ -75,7 +77,6 @@ def rewritten(path, change):
         file.write(pack(entries))
 
 
-@pytest.mark.slow
 def test_the_same_run_gives_the_same_bytes(base):
     assert run(*TRACES) == 2
     assert run(*TRACES, "--jobs", "2", "--out", "v.csv", out="f.zip") == 2
@@ -112,7 +113,6 @@ def test_it_holds_what_verdicts_follow_from(base, capsys):
     assert (code, told.splitlines()[-1]) == (0, "It holds.")
 
 
-@pytest.mark.slow
 def test_a_bag_with_a_binding_is_judged_again(base, capsys):
     pytest.importorskip("rosbags")
     from tests.tools.bags import DEFINITIONS, START, write_ros2
@@ -140,7 +140,6 @@ def loosened(entries):
     return {"spec/specs/base.rv": SPEC.replace("speed < 9", "speed < 1").encode()}
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(("change", "told"), [(forged, "R1#1"), (loosened, "R2#1")])
 def test_verdicts_or_requirements_that_were_changed_are_found_by_judging_again(
     base, capsys, change, told
@@ -160,7 +159,6 @@ def test_a_matrix_follows_from_the_verdicts(base, capsys, entry):
     assert (code, "does not follow" in told) == (1, True)
 
 
-@pytest.mark.slow
 def test_recordings_that_are_others_or_gone_are_told(base, capsys):
     run(*TRACES)
     kept = (base / "b.csv").read_bytes()
@@ -176,7 +174,6 @@ def test_recordings_that_are_others_or_gone_are_told(base, capsys):
     assert verify(capsys)[0] == 0
 
 
-@pytest.mark.slow
 def test_a_sample_follows_from_its_seed(base, capsys):
     """The same seed takes the same recordings; which, is seen by what differs."""
     run(*TRACES)

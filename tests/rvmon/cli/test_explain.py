@@ -44,6 +44,7 @@ def test_words_facts_automaton_and_runs(door, says):
     assert "2 s⁺" in text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("measured", "said"),
     [

@@ -73,6 +73,7 @@ def test_c_takes_samples_in_order(spec, tmp_path, capsys):
     assert not (tmp_path / "made").exists()
 
 
+@pytest.mark.slow
 def test_c_is_the_core_and_a_plan(spec, tmp_path, capsys):
     """The files are named; the core's are the same for each plan, whose requirements are chosen."""
     folder = tmp_path / "made"
@@ -101,6 +102,7 @@ def test_a_spec_without_requirements_has_no_automata(tmp_path, says, form):
 MODELS = Path(__file__).parents[3] / "examples" / "models"
 
 
+@pytest.mark.slow
 def test_a_model_for_uppaal_comes_back(tmp_path):
     path = tmp_path / "fischer.xml"
     assert main(["export", str(MODELS / "fischer.ta"), "--to", "uppaal", "-o", str(path)]) == 0

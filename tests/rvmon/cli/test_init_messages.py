@@ -5,6 +5,8 @@ from tests.tools.bags import START, write_json_mcap, write_ros1, write_ros2
 
 from rvmon.cli import main
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("rosbags")
 pytest.importorskip("mcap")
 
@@ -47,7 +49,6 @@ def written(tmp_path, bag, capsys):
     return " ".join(made.read_text().split())
 
 
-@pytest.mark.slow
 def test_joints_go_by_their_names_and_what_is_always_true_is_no_event(tmp_path, capsys):
     """With units where messages say them; also where a message has only some of the joints."""
     text = written(tmp_path, write_ros1(tmp_path / "a.bag", [*arm()], TYPES), capsys)
@@ -85,7 +86,6 @@ def test_a_joint_whose_name_is_no_word_is_said_to_be_left_out(tmp_path, capsys):
     assert ": its name is no word: bind it" in text
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
 def test_topics_on_which_nothing_was_said_are_left_out(tmp_path, capsys, plugin):
     from rosbags.rosbag2 import StoragePlugin, Writer

@@ -104,6 +104,7 @@ def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
     assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("held", "times"), [(10, 1), (90, 0)])
 def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch, held, times):
     """However many failed or were silent, a file is read once more; a small one is remembered."""

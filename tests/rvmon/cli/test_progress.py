@@ -7,6 +7,8 @@ import pytest
 
 from rvmon.cli import main, output
 
+pytestmark = pytest.mark.slow
+
 
 class Screen(io.StringIO):
     """A terminal."""
@@ -37,7 +39,6 @@ def test_recordings_are_counted(screen, jobs):
     assert "one.jsonl" not in screen.getvalue()
 
 
-@pytest.mark.slow
 def test_a_single_recording_shows_how_far_it_is_read(screen):
     with redirect_stderr(screen):
         assert main(["run", "s.rv", "one.jsonl"]) == 0

@@ -95,6 +95,7 @@ def test_a_place_that_is_none_is_told_before_anything_is_judged(files, capsys, s
     assert not (files / "j.xml").exists()
 
 
+@pytest.mark.slow
 def test_a_report_names_the_page_to_open(files, capsys):
     for traces, page in (["P.csv"], "P.html"), (["P.csv", "F.csv"], "index.html"):
         words = ["run", "door.rv", *traces, "--report", "rep"]
@@ -105,6 +106,7 @@ def test_a_report_names_the_page_to_open(files, capsys):
         json.loads(capsys.readouterr().out)
 
 
+@pytest.mark.slow
 def test_many_recordings_are_counted_in_text_and_junit(files, says):
     """The same with two processes; a case of JUnit is failed or skipped as judged."""
     words = ["run", "door.rv", "P.csv", "F.csv", "NT.csv", "--junit", "out.xml"]
@@ -116,6 +118,7 @@ def test_many_recordings_are_counted_in_text_and_junit(files, says):
     assert says(1, *words, "--jobs", "2").out == alone
 
 
+@pytest.mark.slow
 def test_two_processes_print_the_same_json(files, says):
     """Each writes the reports of what it judged: they are those of one process, in their order."""
     words = ["run", "door.rv", "P.csv", "F.csv", "NT.csv", "I.csv", "--format", "json"]
@@ -124,6 +127,7 @@ def test_two_processes_print_the_same_json(files, says):
     assert says(1, *words, "--jobs", "2").out == alone
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(
     multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
 )

@@ -14,6 +14,8 @@ from rvmon.cli import main
 from rvmon.coverage.database import read
 from rvmon.verdicts.report import Report
 
+pytestmark = pytest.mark.slow
+
 SPEC = """
 spec arm "An arm"
 signal near : bool

@@ -44,6 +44,7 @@ def interrupted(monkeypatch, words):
         assert main(words) == 130
 
 
+@pytest.mark.slow
 def test_verdicts_are_written_also_of_what_breaks_off(folder, capsys):
     assert main(["run", "s.rv", "good.csv", "--out", "v.csv"]) == 0
     assert main(["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]) == 1
@@ -127,6 +128,7 @@ def test_a_share_of_nothing_is_refused(folder, says, words, told):
     assert told in says(2, "run", "s.rv", "good.csv", "bad.csv", *words).err
 
 
+@pytest.mark.slow
 def test_shards_of_another_specification_are_refused(folder, says):
     words = ["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]
     assert main([*words, "--shard", "2/2"]) == 1
@@ -153,6 +155,7 @@ def test_many_attempts_have_the_rows_that_few_have(folder):
     assert [*report.rows()] == [*replace(report, attempts=tuple(report.attempts)).rows()]
 
 
+@pytest.mark.slow
 def test_another_run_does_not_go_on_with_it(folder, says):
     words = ["run", "s.rv", "good.csv", "good.csv", "--out", "v.csv", "--resume"]
     journal.begin(folder / "v.csv.unfinished", [b"another"])
@@ -163,6 +166,7 @@ def test_another_run_does_not_go_on_with_it(folder, says):
     assert main(["run", "s.rv", "good.csv", "--out", "none/v.csv"]) == 2
 
 
+@pytest.mark.slow
 def test_known_failures_fail_no_run(folder, capsys, says):
     known = folder / "known.toml"
     known.write_text(

@@ -99,6 +99,7 @@ def lamp(tmp_path):
     return str(model), str(spec)
 
 
+@pytest.mark.slow
 def test_requirements_on_all_runs(lamp, says):
     """Each is decided, with runs that trigger, pass and fail it, drawn as a recording would be."""
     model, spec = lamp

@@ -285,6 +285,7 @@ def test_open_attempts_beyond_any_number():
     assert decided == [("R1", n, t, 300 * S, "P") for n, t in enumerate(starts, 1)]
 
 
+@pytest.mark.slow
 def test_decided_at_once_by_several_requirements():
     texts = [f"requirement R{n}\n  upon p\n  then within {n} s q\n" for n in range(1, 10)]
     spec = rvmon.loads("spec gap\nsignal p, q : bool\n" + "".join(texts))
@@ -293,6 +294,7 @@ def test_decided_at_once_by_several_requirements():
     assert len(decided) == 9 * 40
 
 
+@pytest.mark.slow
 def test_a_monitor_is_freed(spec):
     """The monitor and its run refer to each other; both go once nobody else does."""
     monitor = spec.monitor()

@@ -89,6 +89,7 @@ def test_names_come_as_numbers():
         run.lose(["p"], 1)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled"])
 @pytest.mark.parametrize(
     ("requirement", "expected"),
@@ -112,6 +113,7 @@ def test_long_outages_are_as_short_ones(time, requirement, expected):
         assert found.verdicts["R"].value == ("I" if in_doubt else expected), unit
 
 
+@pytest.mark.slow
 def test_of_many_ticks_a_network_says_nothing():
     """Better than something wrong, also of what looks back at them later."""
     text = "requirement R\n  upon e\n  then once[0 s, 4 {0}] (eventually[0 s, 1 {0}] p)"

@@ -322,7 +322,7 @@ def long_case(time: str, required: str, seed: int, many: int) -> Make:
 
 
 MANY["what is over of windows within windows is dropped from the rings, which go round"] = [
-    long_case(time, required, seed, 60)
+    long_case(time, required, seed, 40)
     for seed, time in enumerate(("held", "sampled", "sampled every 2 ns"))
     for required in (
         "upon e then F[0 ns, 4 ns] G[0 ns, 3 ns] p",

@@ -202,6 +202,7 @@ def test_names_without_a_source_are_part_of_it():
         assert one.counts() == [(0, 0, 1, 1)]
 
 
+@pytest.mark.slow
 def test_a_head_says_what_it_is():
     plan = planned(REQUIREMENTS)
     data = plan.monitor(frozenset()).save()

@@ -129,6 +129,7 @@ def is_taken(data):
     return True
 
 
+@pytest.mark.slow
 def test_all_that_is_counted_is_packed():
     for seed in range(20):
         profile = Profile(requirements=1, captures=False, for_each=False)

@@ -41,6 +41,7 @@ def test_windows_are_numbers_in_every_expression(text, time):
     assert found == ["P", "F"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("measured", "text"),
     [

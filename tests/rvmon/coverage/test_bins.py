@@ -28,6 +28,7 @@ def states(*names):
     return [(t, {"state": name}) for t, name in enumerate(names)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("bins", "samples", "expected"),
     [

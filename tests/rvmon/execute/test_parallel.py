@@ -17,12 +17,14 @@ from rvmon.errors import RvmonError, SpecError, TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.records import with_plan
 
-pytestmark = pytest.mark.skipif(
-    multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
-)
+pytestmark = [
+    pytest.mark.process,
+    pytest.mark.skipif(
+        multiprocessing.get_start_method() != "fork", reason="needs processes that are forked"
+    ),
+]
 
-FIVE = pytest.param(5, marks=pytest.mark.slow)
-JOBS = pytest.mark.parametrize("jobs", [1, 2, FIVE])
+JOBS = pytest.mark.parametrize("jobs", [1, 2, 5])
 
 PARENT = """
 import multiprocessing, os, sys, time
@@ -90,7 +92,6 @@ def test_results_come_in_the_order_of_the_tasks(jobs, size):
     assert list(execute(range(size), doing(str), jobs=jobs)) == [*map(str, range(size))]
 
 
-@pytest.mark.slow
 @JOBS
 def test_slow_and_quick_tasks_keep_their_order(jobs):
     """Where many quick ones are followed by a slow one, what it was given goes to others."""
@@ -104,7 +105,6 @@ def test_slow_and_quick_tasks_keep_their_order(jobs):
     assert list(execute(enumerate(tasks), lambda: slept, jobs=jobs)) == numbers
 
 
-@pytest.mark.slow
 @JOBS
 def test_work_begins_once_in_each_process(tmp_path, jobs):
     def begin():
@@ -118,7 +118,6 @@ def test_work_begins_once_in_each_process(tmp_path, jobs):
     assert 1 <= len(begun) <= jobs
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_each_task_can_have_a_process_of_its_own(jobs):
     """Nothing that one leaves behind is there for the next; what was lost is replaced."""
@@ -180,7 +179,7 @@ def test_a_task_that_cannot_be_sent_is_named():
     assert "use one process (jobs)" in str(error)
 
 
-@pytest.mark.parametrize("jobs", [2, FIVE])
+@pytest.mark.parametrize("jobs", [2, 5])
 def test_a_worker_that_is_lost_is_told_with_its_task(jobs):
     found, error = given(execute([*range(0, 200, 2), 13, 8], doing(halved), jobs=jobs, what="run"))
     assert found == [*range(100)]
@@ -196,7 +195,6 @@ def test_tasks_without_end_are_taken_as_they_are_needed():
     assert next(done, None) is None
 
 
-@pytest.mark.slow
 def test_two_executions_at_a_time_do_not_disturb_each_other():
     one, other = (execute(range(50), doing(str), jobs=2) for _ in range(2))
     pairs = [*islice(zip(one, other, strict=True), 20)]
@@ -205,14 +203,12 @@ def test_two_executions_at_a_time_do_not_disturb_each_other():
     assert [*other] == [str(k) for k in range(20, 50)]
 
 
-@pytest.mark.process
 @pytest.mark.parametrize("method", ["fork", "spawn", "forkserver"])
 @pytest.mark.parametrize("kind", [signal.SIGKILL, signal.SIGTERM, signal.SIGINT])
 def test_no_worker_outlives_a_parent_that_is_killed(ends_with_its_parent, method, kind):
     ends_with_its_parent(PARENT, [method], kind)
 
 
-@pytest.mark.process
 def test_many_traces_are_judged_alike_by_processes(tmp_path: Path):
     spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  always p\n")
     paths = []
@@ -234,7 +230,6 @@ def told(task, ended):
     return task, ended.timed_out, ended.why
 
 
-@pytest.mark.process
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_a_task_whose_process_ends_can_have_a_result(jobs):
     def work(number):
@@ -257,7 +252,6 @@ def test_a_task_whose_process_ends_can_have_a_result(jobs):
     ]
 
 
-@pytest.mark.process
 def test_an_error_is_no_result(tmp_path):
     """A task that raises ends the work, whatever stands for those whose process ended."""
     found, error = given(execute([2, 7, 8], doing(halved), jobs=2, instead=told))
@@ -265,7 +259,6 @@ def test_an_error_is_no_result(tmp_path):
     assert isinstance(error, TraceError)
 
 
-@pytest.mark.process
 def test_to_begin_takes_no_time_of_a_task(tmp_path):
     def begin():
         time.sleep(0.6)
@@ -275,7 +268,6 @@ def test_to_begin_takes_no_time_of_a_task(tmp_path):
     assert found == ["1", "2"]
 
 
-@pytest.mark.slow
 def test_a_report_is_handed_over_without_the_plan(tmp_path):
     """What goes from process to process grows with the attempts, not with the specification."""
     many = "".join(f"requirement N{n}\n  always x < {n + 10}\n" for n in range(200))

@@ -77,6 +77,7 @@ def test_robots_are_judged_apart():
     assert found == {"left": "F", "right": "P"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "verdicts"), [("real", "F P"), ("real stale after 1 s", "I I")])
 def test_a_publisher_that_dies_in_mid_attempt(kind, verdicts):
     """Its last value is held and the deadline missed; or, by `stale after`, nothing is known."""
@@ -124,6 +125,7 @@ def test_what_finds_no_room_leaves_no_verdict_that_needs_it():
     assert [(one.name, *one.requirements) for one in dropped] == [("opened", "D1"), ("speed", "D2")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["real", "real ignore NaN"])
 def test_a_first_value_that_is_lost_is_not_excused(kind):
     """Before a signal is born nothing is required; nobody knows that it was not."""

@@ -27,6 +27,7 @@ def judged(path, fed, cuts, told, every=25):
             continue
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(2))
 def test_a_run_that_is_cut_tells_what_a_whole_one_does(tmp_path, seed):
     """Wherever it is cut, also behind refused samples: numbers, records, reasons are the same."""

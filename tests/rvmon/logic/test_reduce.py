@@ -128,6 +128,7 @@ SMALLER = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SMALLER)
 def test_equivalent_locations_are_one(name):
     """Locations that only their text tells apart are merged where no text is asked for."""

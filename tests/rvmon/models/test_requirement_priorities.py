@@ -69,6 +69,7 @@ def test_no_priority_makes_time_wait(ranks):
     assert answer("upon start then within 2 s (quick or slow)", ranks, stay="").holds is False
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ranks", [*EQUAL, *RANKED, *REVERSED])
 def test_no_deadline_comes_before_a_step_at_its_instant(ranks):
     assert answer("upon start then within 2 s (quick or slow)", ranks).holds is True

@@ -51,6 +51,7 @@ def test_templates_and_arrays_come_back_flat(model):
     assert there.statistics.visited == here.statistics.visited
 
 
+@pytest.mark.slow
 def test_the_handover_network_keeps_unit_weights_and_labels():
     """What UPPAAL has no place for survives in comments, queries beyond it as their text."""
     network = handover_network()

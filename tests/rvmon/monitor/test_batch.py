@@ -19,6 +19,7 @@ def told(spec: rvmon.Spec, trace: object, time: str) -> str:
     return str(error.value)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("stamps", BEYOND)
 def test_ticks_beyond_the_limits_are_refused(stamps, tmp_path):
     spec = rvmon.loads(BOUND)

@@ -58,6 +58,7 @@ def records(report):
     ]
 
 
+@pytest.mark.slow
 def test_it_is_unknown_a_while_after_its_last_good_value(spec):
     """Not at the first NaN, and not counted from one; until then the value stays."""
     report = spec.evaluate(ROWS)

@@ -162,6 +162,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_the_command_line_refuses_and_maps(folder, capsys):
     """Exit code 2 with the file, 1 where it may be lacking, 0 where it is mapped."""
     assert main(["run", "base.rv", "less.csv"]) == 2

@@ -111,6 +111,7 @@ requirement K
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("keep", [pytest.param(None, marks=pytest.mark.slow), 3])
 def test_what_is_decided_together_is_made_as_it_is_read(keep):
     spec = rvmon.loads(MANY)

@@ -10,6 +10,8 @@ import pytest
 import rvmon
 import rvmon.core.pack
 
+pytestmark = pytest.mark.slow
+
 TEXT = """
 const T = 2 s
 signal x : real
@@ -122,7 +124,6 @@ def damages(path, other):
         yield content[: len(content) - len(data)] + changed
 
 
-@pytest.mark.slow
 def test_a_damaged_file_is_of_no_account(folder):
     decided, report, _ = judged()
     [path] = kept_in(folder)

@@ -151,6 +151,7 @@ def test_callbacks_may_call_their_monitor() -> None:
     assert monitor.finish_ns(5).counts["R1"]["F"] == 2
 
 
+@pytest.mark.slow
 def test_a_monitor_is_handed_from_thread_to_thread() -> None:
     monitor = _monitor()
     turns: queue.SimpleQueue[int] = queue.SimpleQueue()

@@ -146,6 +146,7 @@ def test_tags(hook, monkeypatch):
     assert hook.file_name() == f"_core{importlib.machinery.EXTENSION_SUFFIXES[0]}"
 
 
+@pytest.mark.slow
 def test_free_threaded_needs_headers(hook, monkeypatch, tmp_path):
     """A Python without GIL has another layout of objects, for which we declare nothing."""
     monkeypatch.setattr(hook, "free_threaded", lambda: True)

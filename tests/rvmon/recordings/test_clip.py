@@ -178,6 +178,7 @@ def test_what_serves_late_subscribers_is_brought_along(tmp_path, name):
     assert b"new" in found[0][5]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["a.bag", "sqlite3", "mcap", "b.mcap"])
 def test_topics_without_messages_stay(tmp_path, name):
     """What was not sent in the piece is not missing in it: it did not occur."""
@@ -214,6 +215,7 @@ def test_a_part_of_what_there_should_be_is_cut(tmp_path, write):
     assert rvmon.loads(FAST.format(2)).evaluate(out).end == START + 5 * 10**9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("late", [0, 3])
 def test_stamps_of_headers_are_cut_by_what_was_recorded(tmp_path, late):
     sent = []

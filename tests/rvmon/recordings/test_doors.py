@@ -184,6 +184,7 @@ def test_a_merge_of_topics_is_told(tmp_path):
         assert {one.remark for one in health if one.name == "speed"} == {""}
 
 
+@pytest.mark.slow
 def test_a_value_may_stand_for_no_update(tmp_path):
     for gap in (-1, -1.0, np.float64(-1)):
         for column in ([1.0, -1.0, 2.0], np.array([1.0, -1.0, 2.0])):

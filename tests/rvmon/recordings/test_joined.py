@@ -9,6 +9,8 @@ from rvmon.cli import main
 from rvmon.errors import MissingNameError
 from rvmon.recordings import places
 
+pytestmark = pytest.mark.slow
+
 SPEC = """
 spec flight
 signal speed : real  stale after 700 ms

@@ -64,6 +64,7 @@ def test_a_damaged_file_is_refused_with_its_name(part, tmp_path):
         rvmon.loads(SPEC).evaluate(path)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("most", [b"\xfe" + b"\xff" * 8 + b"\x01", b"\xfe\xff\xff\xff\x0f"])
 def test_sizes_and_offsets_that_overflow_are_refused(most, tmp_path):
     expected = judged(tmp_path)

@@ -50,6 +50,7 @@ def test_a_packed_recording_gives_the_records_of_the_plain_one(tmp_path, spec, n
     assert list(spec.recording(packed)) == list(spec.recording(plain))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", PACKERS)
 def test_a_packed_file_that_was_cut_off_is_told(tmp_path, ending, says):
     good, bad = tmp_path / "good.csv", tmp_path / f"bad.csv{ending}"

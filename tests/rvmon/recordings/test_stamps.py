@@ -87,6 +87,7 @@ def doubts(spec, trace, time=None):
     return [one.remark for one in spec.evaluate(trace, time=time).health if one.kind == "unit"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("stamps", "doubtful"),
     [

@@ -49,6 +49,7 @@ def page_of(database, earlier=None):
     return coverage_page(Summary("door.cov", database.coverage(), before, "old.cov"))
 
 
+@pytest.mark.slow
 def test_what_is_wrong_stands_first(door):
     read = Reader(page_of(door))
     parts = [

@@ -255,6 +255,7 @@ def test_the_scene_stands_where_the_cursor_is():
     assert len(data["scene"]["times"]) == 11
 
 
+@pytest.mark.slow
 def test_several_recordings_get_a_list(tmp_path):
     spec = rvmon.loads(SPEC)
     runs = {

@@ -118,6 +118,7 @@ def test_policies(judge: Any, policy: str, formula: Formula, told: Any, expected
     assert judge(requirement(formula, at_end=EndPolicy(policy)), **told) == [expected]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("formula", "told", "expected"),
     [

@@ -30,6 +30,8 @@ from rvmon.language.checked.formula import Captured, Formula, UpdateFunction, Up
 from rvmon.language.checked.specification import Capture, EndPolicy, ForEach, TimeModel
 from rvmon.testing.law.word import Outage
 
+pytestmark = pytest.mark.slow
+
 SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_4 = {"time": TimeModel.CLOCKED, "period": 4}
 
@@ -87,7 +89,6 @@ def test_what_is_asked_of_updates(judge: Any, what: str) -> None:
     assert found == [f"0 {one}" for one in expected[what]]
 
 
-@pytest.mark.slow
 def test_what_looks_at_two_updates(judge: Any) -> None:
     """`prev`, `delta` and `rate` are unknown until the second update behind it."""
     told = {"x": "11...2.3", "lost": [("x", 2, 3)], "end": 8}
@@ -96,7 +97,6 @@ def test_what_looks_at_two_updates(judge: Any) -> None:
         assert [judge(at(t, grew), **told)[0][2] for t in range(1, 8)] == list("PIIIIIP")
 
 
-@pytest.mark.slow
 def test_an_age_is_an_interval(judge: Any) -> None:
     """It lies between the time since the outage and that since the last update read."""
     told = {"p": "1", "lost": [("p", 4, 6)], "end": 11}

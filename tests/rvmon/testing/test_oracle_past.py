@@ -151,6 +151,7 @@ def test_past_and_future(judge: Any, formula: Formula, rows: Any, expected: str 
     assert judge(formula, **rows) == [expected or "0 I"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("op", "table"),
     [

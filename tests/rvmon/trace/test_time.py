@@ -40,6 +40,7 @@ def test_very_many_digits_are_refused(read):
         read(10**5000)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(
     st.one_of(

@@ -19,6 +19,8 @@ from rvmon.errors import ModelError, UnknownNameError
 from rvmon.models.language.load import loads_network
 from rvmon.report.printer import Printer
 
+pytestmark = pytest.mark.slow
+
 SPEC = """
 spec dials "Two dials"
 signal left, right : int
@@ -103,7 +105,6 @@ def test_tests_are_changed_until_all_is_covered(dials):
     assert sum(len(one.goals) for one in closed.tests) == closed.met == closed.tests[-1].met
 
 
-@pytest.mark.slow
 def test_the_suite_keeps_a_margin(dials):
     """Each goal is shown by two of its tests, where two were found; what fewer would do is told."""
     closed = close(dials(), "machine", jobs=1, margin=2)
@@ -121,7 +122,6 @@ def test_the_suite_keeps_a_margin(dials):
         assert shown(closed.suite, goal) >= min(2, shown(played, goal))
 
 
-@pytest.mark.slow
 def test_the_seed_decides_whatever_the_number_of_processes(dials):
     one, two = (close(dials(), "machine", jobs=jobs, seed=3) for jobs in (1, 2))
     other = close(dials(), "machine", jobs=1, seed=4)
@@ -143,7 +143,6 @@ def test_a_budget_ends_it_and_a_line_is_printed_that_calls_the_rest_unreachable(
     assert closed.ended == "after 0 s"
 
 
-@pytest.mark.slow
 def test_tests_that_end_their_process_do_not_end_the_search(dials):
     closed = close(dials(fixed=()), "machine", jobs=1, margin=1, budget=Budget(tests=400))
     assert closed.open == {}
@@ -156,7 +155,6 @@ def test_tests_that_end_their_process_do_not_end_the_search(dials):
     assert closed.needed == 9
 
 
-@pytest.mark.slow
 def test_what_is_called_unreachable_is_not_sought_and_must_not_be_met(dials):
     """It is no goal; a test that meets it all the same is an error, told with its name."""
     out = Unreachable("both", "two × two", "the dials touch each other")
@@ -180,7 +178,6 @@ def test_unknown_items_are_refused(dials):
         assert fix in str(caught.value)
 
 
-@pytest.mark.slow
 def test_lines_go_by_their_text(dials, code):
     """The statement of a line and the branches to it; a block or one branch can be named."""
     campaign = replace(dials(), code=cdv.Code(cdv.blocks_of(code)))
@@ -225,7 +222,6 @@ def model(query=lambda *_: "", **more):
     )
 
 
-@pytest.mark.slow
 def test_runs_of_the_model_become_tests_and_its_answers_proofs(dials):
     def query(group, item):
         if group == "both":
@@ -293,14 +289,12 @@ def test_what_a_test_does_is_for_one_edge(dials, edge, wrong):
     assert turned["a run of the model that shows the edge person: choosing → done"] == 0
 
 
-@pytest.mark.slow
 def test_a_model_proves_nothing_of_robots_that_it_does_not_describe(dials):
     impossible = model(lambda *_: "E<> left == 3", robots=("another",))
     closed = close(dials(model=impossible), "machine", jobs=1)
     assert (closed.proved, closed.open, closed.groups) == ({}, {}, [])
 
 
-@pytest.mark.slow
 def test_choices_are_biased_towards_what_is_open(dials):
     def biased(choose, seed):
         left, right = choose("left", (0, 1, 2)), choose("right", (0, 1, 2))
@@ -312,7 +306,6 @@ def test_choices_are_biased_towards_what_is_open(dials):
     assert any(one.origin.startswith("choices biased towards") for one in closed.tests)
 
 
-@pytest.mark.slow
 def test_written_tests_come_first(dials):
     def written(count, seed):
         return [Dials(name=f"w{n}", strategy="written", seed=1, left=n) for n in (2, 1)]

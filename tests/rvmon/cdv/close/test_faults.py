@@ -82,6 +82,7 @@ def test_what_the_suite_lets_live_is_killed_by_tests_that_are_added(limited):
     assert b'"trade"' in to_json(closed_document(found))
 
 
+@pytest.mark.slow
 def test_no_code_no_mutants(limited):
     from dataclasses import replace
 

@@ -187,6 +187,7 @@ def test_findings_of_other_files():
 FIXED = {"RV012", "RV013", "RV014", "RV023", "RV030", "RV032", "RV045", "RV052"}
 
 
+@pytest.mark.slow
 def test_fixes_mend():
     """Where a fix is offered, what was found is gone with it; the usual slips have one."""
     mended = set()

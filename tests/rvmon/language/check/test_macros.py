@@ -83,6 +83,7 @@ def test_override():
         compile_text(text, constants={"T": "2"})
 
 
+@pytest.mark.slow
 def test_expansion_is_limited(codes):
     doubling = "define m0 = a\n" + "".join(f"define m{i + 1} = m{i} and m{i}\n" for i in range(60))
     assert set(codes(f"{doubling}requirement R always m60")) == {"RV005"}

@@ -294,6 +294,7 @@ def test_byte_order_mark_is_ignored():
     assert compile_text("\ufeff# comment\r\nspec demo\r\n")[0].name == "demo"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("sign", ["and", "or", "&&", "+"])
 def test_a_chain_beyond_all_limits_is_refused_before_it_is_read(sign):
     chain = f" {sign} ".join(["p"] * 100_000)

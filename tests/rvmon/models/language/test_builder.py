@@ -20,6 +20,7 @@ def lamp():
     return net.query("E<> Light.on and count == 2", id="q", remark="it can")
 
 
+@pytest.mark.slow
 def test_it_equals_its_text():
     text = """
     network lamp "A lamp"

@@ -174,6 +174,7 @@ def test_edges_that_set_the_same_clock_may_synchronise():
     assert verify(network, network.queries[0]).holds
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "query",
     ["E<> x - y > 3", "A[] x - y <= 3", "E<> A.c and y - x == 2", "E<> x - y > 3 and y - x >= -4"],

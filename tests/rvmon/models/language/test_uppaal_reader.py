@@ -225,6 +225,7 @@ def branching(*weights):
     )
 
 
+@pytest.mark.slow
 def test_a_branch_point_is_a_choice_with_weights():
     network = loads_network(branching("N - 3", 3, 0))
     assert [edge.weight for edge in network.automata[0].edges] == [0.25, 0.75]

@@ -57,6 +57,7 @@ def test_a_gate_without_urgency_may_dawdle():
     assert answers(network) == {"exclusion": True, "crossing": False, "alive": True}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("delays", "minutes"), [("5, 10, 20, 25", 60), ("1, 2, 5, 10", 17)])
 def test_bridge_is_crossed_in_the_known_time(delays, minutes):
     text = (MODELS / "bridge.ta").read_text().replace("5, 10, 20, 25", delays)

@@ -72,6 +72,7 @@ def test_what_is_not_decided_says_why(query, message):
         verify(loads_network(RETRY), query)
 
 
+@pytest.mark.slow
 def test_a_formula_of_too_many_cases_is_refused_with_its_place():
     parts = " and ".join(f"(F v == {number})" for number in range(8))
     model = loads_network(f"int[0,9] v {RETRY}query q: E ({parts})")

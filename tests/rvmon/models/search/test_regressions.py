@@ -8,6 +8,8 @@ from tests.tools.timed_regions import shows
 from rvmon.models.language.load import loads_network
 from rvmon.models.search.verify import verify
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.mark.parametrize(
     ("seed", "query"),

@@ -94,6 +94,7 @@ def test_what_is_no_bag_is_told(tmp_path, spec, name, data):
         spec.evaluate(tmp_path / name)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("is_folder", [True, False])
 def test_a_bag_whose_recorder_was_killed_is_told(tmp_path, spec, is_folder):
     """What it wrote last is in a file beside, which no reader of bags looks at."""
@@ -147,6 +148,7 @@ def test_a_topic_that_is_missing_is_told_with_the_nearest(tmp_path, name, says):
     assert main([*words, "--allow-missing"]) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("declared", "column", "message"),
     [
@@ -247,6 +249,7 @@ def test_a_summary_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):
         spec.evaluate(path)
 
 
+@pytest.mark.slow
 def test_a_bag_that_counts_more_messages_than_it_has_is_told(tmp_path, spec):
     """A database of ROS 2 does not see that rows are gone; `metadata.yaml` has their number."""
     path, file = written(tmp_path, "sqlite3")

@@ -171,6 +171,7 @@ def test_a_folder_is_read_as_the_command_reads_it(tmp_path, capsys, plugin):
         spec.evaluate(folder)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("distribution", ["ROS2_DASHING", "ROS2_FOXY", "ROS2_HUMBLE", "LATEST"])
 def test_a_bag_without_definitions_is_read_by_those_of_its_distribution(tmp_path, distribution):
     """`sensor_msgs/Range` got a field after Humble; older bags hold no definitions."""

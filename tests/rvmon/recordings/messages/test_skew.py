@@ -6,6 +6,8 @@ from tests.tools.bags import START, write_ros1, write_ros2
 import rvmon
 from rvmon.trace.sample import HealthKind
 
+pytestmark = pytest.mark.slow
+
 pytest.importorskip("rosbags")
 
 SPEC = """spec s
@@ -49,7 +51,6 @@ def test_clocks_that_agree_are_not_spoken_of(tmp_path):
     assert doubts(path, tmp_path) == {}
 
 
-@pytest.mark.slow
 def test_a_clock_that_is_behind_another(tmp_path):
     path = recording(tmp_path / "a", lambda n: 1500 + n % 7, lambda n: 2 + n % 5, write=ros2)
     expected = (

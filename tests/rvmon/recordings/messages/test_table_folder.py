@@ -156,6 +156,7 @@ def test_what_is_wrong_is_told_with_its_place(tmp_path, files, toml, message):
         rvmon.loads(SPEC).evaluate(place, allow_missing=True)
 
 
+@pytest.mark.slow
 def test_commands_take_such_a_folder_for_one_recording(tmp_path, monkeypatch, capsys, says):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "s.rv").write_text(ONE)
