@@ -30,7 +30,9 @@ def _run(folder, test, *words):
 
 
 @pytest.mark.process
-def test_a_requirement_that_fails_fails_the_test_with_the_explanation(folder):
+def test_requirements_fail_their_test_unless_their_verdict_is_wanted(folder):
+    """With the explanation; recordings are checked alike."""
+    (folder.path / "run.csv").write_text("t,closed,knock\n0,1,1\n3,,\n")
     told = _run(
         folder,
         """
@@ -41,21 +43,7 @@ def test_a_requirement_that_fails_fails_the_test_with_the_explanation(folder):
 
         def test_passes(rv):
             rv("door.rv", only=["D1"]).step(0, {"closed": False, "knock": True})
-        """,
-    )
-    told.assert_outcomes(failed=1, passed=1)
-    told.stdout.fnmatch_lines(
-        ["*not as wanted: D1*", "*had to become false between 0 s and 2 s*", "*then within 2 s*"]
-    )
-    told.stdout.re_match_lines([r".* requirements .*", r" +P +F +NT +I", r"D1 +1 +1"])
 
-
-@pytest.mark.process
-def test_verdicts_can_be_wanted_and_recordings_checked(folder):
-    (folder.path / "run.csv").write_text("t,closed,knock\n0,1,1\n3,,\n")
-    told = _run(
-        folder,
-        """
         def test_expected(rv):
             assert rv("door.rv", expect={"D1": "F", "D2": "F"}).check("run.csv").end == 3 * 10**9
 
@@ -70,8 +58,12 @@ def test_verdicts_can_be_wanted_and_recordings_checked(folder):
             rv("door.rv", only=["D1"], expect={"D1": "P"})
         """,
     )
-    told.assert_outcomes(failed=3, passed=1)
+    told.assert_outcomes(failed=4, passed=2)
+    told.stdout.fnmatch_lines(
+        ["*not as wanted: D1*", "*had to become false between 0 s and 2 s*", "*then within 2 s*"]
+    )
     told.stdout.fnmatch_lines(["*not as wanted: D1*", "*its own*", "*not as wanted: D1*"])
+    told.stdout.re_match_lines([r".* requirements .*", r" +P +F +NT +I", r"D1 +1 +2"])
 
 
 @pytest.mark.process
@@ -90,10 +82,6 @@ def test_specifications_are_tests_of_recordings(folder):
 def test_wrong_specifications_and_recordings_are_told(folder):
     folder.makefile(".csv", run="t,closed\n0,maybe\n")
     folder.makeini("[pytest]\nrv_recordings = *.csv\n")
-    told = folder.runpytest_subprocess("-p", "no:cacheprovider")
-    told.assert_outcomes(failed=2)
-    told.stdout.fnmatch_lines(["*maybe*"])
-    assert "Traceback" not in told.stdout.str()
     (folder.path / "bad.rv").write_text("requirement")
     told = _run(
         folder,
@@ -114,6 +102,8 @@ def test_wrong_specifications_and_recordings_are_told(folder):
     )
     told.assert_outcomes(failed=6, errors=1)
     told.stdout.no_fnmatch_line("*src/rvmon*")
+    assert "Traceback" not in told.stdout.str()
+    told.stdout.fnmatch_lines(["*maybe*"])
     causes = ["*ERROR collecting bad.rv*", "*RV001*", "*none.csv: No such file*", "*RV001*"]
     told.stdout.fnmatch_lines([*causes, "*`close`*", "*'pass'*"])
 
