@@ -1,11 +1,9 @@
 """Nanoseconds of the processor per sample, a step for each: by form, kind of input and number.
 
     python -m benchmarks.online [--quick] [--only SECTION …] [--r2u2 FOLDER]
-    python -m benchmarks.online --kinds [WORD …] [--rows 4000]
 
 Beside all peers that install, in an environment of their own, made from the package index at first;
-and R2U2, of which FOLDER holds a clone. A ratio counts only where verdicts agree. `--kinds` takes
-every kind of requirement that people write, published ones, windows of many lengths, ours alone.
+and R2U2, of which FOLDER holds a clone. A ratio counts only where verdicts agree.
 """
 
 from __future__ import annotations
@@ -16,7 +14,6 @@ from pathlib import Path
 
 from benchmarks.program import program
 from benchmarks.results import ONLINE, show
-from benchmarks.timing.kinds import measure
 
 
 def main(
@@ -25,14 +22,9 @@ def main(
     only: Sequence[str] = ONLINE,
     r2u2: Path | None = None,
     out: Path | None = None,
-    kinds: Sequence[str] | None = None,
-    rows: int = 4000,
 ) -> None:
-    """Some sections, or ours alone by requirement; `--quick` takes a few minutes."""
-    if kinds is None:
-        show("online", quick=quick, only=only, r2u2=r2u2, out=out)
-    else:
-        measure(kinds, rows)
+    """Some sections; `--quick` takes a few minutes."""
+    show("online", quick=quick, only=only, r2u2=r2u2, out=out)
 
 
 if __name__ == "__main__":
