@@ -6,15 +6,14 @@ Exit codes: those of `rvmon.cli.campaign`.
 from __future__ import annotations
 
 import sys
-from argparse import ArgumentParser, Namespace
+from argparse import Namespace
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon import __version__
 from rvmon.cli import guarded
-from rvmon.cli.campaign import add_commands, run_tests
-from rvmon.cli.campaign_options import add_run_options
+from rvmon.cli.campaign import add_commands, add_run_options, run_tests
 from rvmon.cli.parser import Parser, positive
 
 if TYPE_CHECKING:
@@ -36,8 +35,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     return guarded(lambda: _parser().parse_args(arguments))
 
 
-def _parser() -> ArgumentParser:
-    parser: ArgumentParser = Parser(
+def _parser() -> Parser:
+    parser = Parser(
         prog="handover",
         description="Simulated robot-to-human handovers, checked against requirements.",
         epilog="example: handover run --strategy constrained --tests 50 --out out/mine",
@@ -72,18 +71,15 @@ def _parser() -> ArgumentParser:
             const="legacy",
             help="as --robot legacy: the robot of the paper's testbench",
         )
-    own["run"].add_argument(
-        "--no-monitors", action="store_true", help="evaluate nothing: only play"
-    )
+    own["run"].option("--no-monitors", "evaluate nothing: only play")
     own["run"].set_defaults(again=("no_monitors", "conform"))
     for argument_parser, count in ((demo, 3), (own["run"], 0)):
-        argument_parser.add_argument(
-            "--conform",
-            metavar="N",
+        argument_parser.option(
+            "--conform N",
+            "with --out, compare the first N runs of each strategy with the model, and check its "
+            "claims about all runs (%(default)s)",
             type=positive,
             default=count,
-            help="with --out, compare the first N runs of each strategy with the model, and check "
-            "its claims about all runs (%(default)s)",
         )
     return parser
 

@@ -7,32 +7,28 @@ not, 2 wrong input, 3 internal error, 130 interrupted (Ctrl-C, SIGTERM).
 
 from __future__ import annotations
 
-from argparse import ArgumentParser, Namespace, _SubParsersAction
+from argparse import Namespace
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 from rvmon.cdv.campaign import Campaign
-from rvmon.cdv.gate import CampaignJudgement, junit_xml
 from rvmon.cli import evidence, guarded
-from rvmon.cli.campaign_options import (
-    add_closing_options,
-    add_judging_options,
-    add_mutate_options,
-    add_replay_options,
-    add_run_options,
-    add_shrink_options,
-)
 from rvmon.cli.evaluate_commands import add_evidence
-from rvmon.cli.output import warn
-from rvmon.cli.parser import Parser
+from rvmon.cli.options import declare
+from rvmon.cli.parser import (
+    TIME_FORMS,
+    Parser,
+    Subparsers,
+    number_or_folder,
+    positive,
+    shard,
+    span_s,
+)
 from rvmon.errors import UnknownNameError
-from rvmon.files import refuse_no_file, write_file
-from rvmon.texts import counted
-
-SHOWN = 20
-"""Lines about what is wrong; `--junit` has all of them."""
+from rvmon.files import refuse_no_file
 
 INTERRUPTED = 130
 """The exit code of a campaign that was interrupted."""
@@ -47,9 +43,7 @@ def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
     """
 
     def parsed() -> Namespace:
-        parser: ArgumentParser = Parser(
-            description=f"{campaign.name}: generate, play and evaluate tests."
-        )
+        parser = Parser(description=f"{campaign.name}: generate, play and evaluate tests.")
         commands = parser.add_subparsers(metavar="COMMAND", required=True)
         robots, strategies = ", ".join(campaign.robots), ", ".join(campaign.strategies)
         add_commands(commands, lambda _: campaign, robots=robots, strategies=strategies)
@@ -59,13 +53,13 @@ def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
 
 
 def add_commands(
-    commands: _SubParsersAction[ArgumentParser],
+    commands: Subparsers,
     campaign: Callable[[Namespace], Campaign],
     *,
     robots: str,
     strategies: str,
     defaults: Mapping[str, Mapping[str, str]] | None = None,
-) -> dict[str, ArgumentParser]:
+) -> dict[str, Parser]:
     """Declare the commands of a campaign; a program may add options of its own to their parsers.
 
     Args:
@@ -79,67 +73,30 @@ def add_commands(
         The parsers by command. `again`, if a program sets it, names further options that belong to
         the command which does the same again.
     """
-    parsers = {
-        "run": commands.add_parser(
-            "run",
-            help="play the tests of a campaign",
-            description="Generate tests, play them on all cores, evaluate them, and write the "
-            "table of verdicts.",
-            epilog="example: %(prog)s --tests 20 --out out/mine",
-        ),
-        "close": commands.add_parser(
-            "close",
-            help="generate tests until coverage has no holes",
-            description="Generate tests aimed at uncovered items: from runs of a model if there "
-            "is one, by biased choices, and by mutating the nearest test. Play and evaluate them "
-            "until everything that can be covered is; keep a smallest set of tests with the same "
-            "coverage.",
-            epilog="example: %(prog)s --out out/closed",
-        ),
-        "replay": commands.add_parser(
-            "replay",
-            help="play one test again",
-            description="Play a test file alone and evaluate it; the same test gives the same run.",
-            epilog="example: %(prog)s out/mine/tests/pseudorandom-001.json --out out/replay",
-        ),
-        "shrink": commands.add_parser(
-            "shrink",
-            help="reduce a failing test to the smallest one that still fails",
-            description="Remove from a failing test everything that its failure does not need, "
-            "print the rest, and write it as a regression test.",
-            epilog="example: %(prog)s out/mine/tests/pseudorandom-001.json --out out/small",
-        ),
-        "mutate": commands.add_parser(
-            "mutate",
-            help="measure which small faults in code and requirements the tests detect",
-            description="Plant one small fault at a time, play the tests of each strategy, and "
-            "show which test kills the mutant, or the question that a survivor raises.",
-            epilog="example: %(prog)s --list",
-        ),
-    }
-    handlers = (_run, _close, _replay, _shrink, _mutate)
-    first = ("all", "the first", "the test's", "the test's", "the first")
-    for (name, parser), handler, robot in zip(parsers.items(), handlers, first, strict=True):
-        parser.set_defaults(run=handler, campaign=campaign, command=name, again=())
+    parsers = {}
+    for name, command in _COMMANDS.items():
+        parser = commands.add_parser(
+            name,
+            help=command.help,
+            description=command.description,
+            epilog=f"example: %(prog)s {command.example}",
+        )
+        parser.set_defaults(run=command.run, campaign=campaign, command=name, again=())
         preset = (defaults or {}).get(name, {})
-        metavar = "NAMES" if name == "run" else "NAME"
-        about = f"of {robots} (default: {preset.get('robot', robot)})"
-        parser.add_argument("--robot", metavar=metavar, default=preset.get("robot"), help=about)
-        if name not in ("replay", "shrink"):
+        about = f"of {robots} (default: {preset.get('robot', command.robot)})"
+        value = "NAMES" if name == "run" else "NAME"
+        parser.option(f"--robot {value}", about, default=preset.get("robot"))
+        if name in ("replay", "shrink"):
+            parser.add_argument("test", metavar="TEST", help="a test, a .json file")
+        else:
             drawn = preset.get("strategy", "those of the campaign" if name == "close" else "all")
             about = f"of {strategies} (default: {drawn})"
-            parser.add_argument(
-                "--strategy", metavar="NAMES", default=preset.get("strategy"), help=about
-            )
-    add_run_options(parsers["run"])
-    add_closing_options(parsers["close"])
-    for name in ("replay", "shrink"):
-        parsers[name].add_argument("test", metavar="TEST", help="a test, a .json file")
-    add_replay_options(parsers["replay"])
-    add_shrink_options(parsers["shrink"])
-    add_mutate_options(parsers["mutate"])
-    for name in ("run", "close", "replay", "mutate"):
-        add_judging_options(parsers[name])
+            parser.option("--strategy NAMES", about, default=preset.get("strategy"))
+        command.add_options(parser)
+        if name != "shrink":
+            parser.option("--spec FILE", "evaluate these requirements")
+            declare(parser, "--format")
+        parsers[name] = parser
     add_evidence(commands)
     commands.choices["evidence"].set_defaults(run=evidence.run, campaign=campaign)
     return parsers
@@ -157,7 +114,7 @@ def run_tests(campaign: Campaign, arguments: Namespace) -> int:
         arguments: the options of `add_run_options`; perhaps `strategy`, `robot`, `spec` and
             `format`.
     """
-    from rvmon.cli.campaign_run import conduct, show
+    from rvmon.cli.campaign_run import conduct, is_as_expected, show
 
     given = vars(arguments)
     robots = names_of(given.get("robot"), tuple(campaign.robots), "robot")
@@ -167,13 +124,14 @@ def run_tests(campaign: Campaign, arguments: Namespace) -> int:
         words = _words(arguments, "strategy")
         conducted = conduct(campaign, strategies, arguments, words, stack)
     show(campaign, conducted, given.get("format", "text"))
-    is_fine = _held(campaign, conducted.judged(strict=arguments.strict), arguments)
+    is_fine = is_as_expected(campaign, conducted.judged(strict=arguments.strict), arguments)
     return INTERRUPTED if conducted.interrupted else int(not is_fine)
 
 
 def _close(arguments: Namespace) -> int:
     from rvmon.cdv.play import INTERRUPTED as BY_HAND
     from rvmon.cli.campaign_close import conduct_closing
+    from rvmon.cli.campaign_run import is_as_expected
 
     campaign = _as_asked(arguments)
     robot = _one_robot(campaign, arguments)
@@ -182,22 +140,17 @@ def _close(arguments: Namespace) -> int:
         strategies = names_of(arguments.strategy, tuple(campaign.strategies), "strategy")
     words = _words(arguments)
     closed, judgement = conduct_closing(campaign, robot, strategies, arguments, words)
-    is_fine = _held(campaign, judgement, arguments)
+    is_fine = is_as_expected(campaign, judgement, arguments)
     if closed.ended == BY_HAND:
         return INTERRUPTED
     return int(bool(closed.open or closed.wrong) or not is_fine)
 
 
-def _replay(arguments: Namespace) -> int:
-    from rvmon.cli.campaign_run import replay
+def _one_test(arguments: Namespace) -> int:
+    from rvmon.cli.campaign_run import replay, shrink_file
 
-    return replay(_judged_by(arguments), arguments)
-
-
-def _shrink(arguments: Namespace) -> int:
-    from rvmon.cli.campaign_run import shrink_file
-
-    return shrink_file(_judged_by(arguments), arguments)
+    work = replay if arguments.command == "replay" else shrink_file
+    return work(_judged_by(arguments), arguments)
 
 
 def _mutate(arguments: Namespace) -> int:
@@ -269,15 +222,172 @@ def _words(arguments: Namespace, *options: str) -> list[object]:
     return words
 
 
-def _held(campaign: Campaign, judgement: CampaignJudgement, arguments: Namespace) -> bool:
-    """Print, and write as JUnit XML, what a campaign came to; return whether all is as expected."""
-    if arguments.junit is not None:
-        write_file(arguments.junit, junit_xml(campaign.name, judgement))
-    for what, count in judgement.known.items():
-        warn(f"{what} ({counted(count, 'test')})")
-    wrong = judgement.wrong
-    for what in wrong[:SHOWN]:
-        warn(f"not as expected: {what}")
-    if len(wrong) > SHOWN:
-        warn(f"not as expected: … and {len(wrong) - SHOWN:,} more: --junit FILE has all")
-    return not wrong
+def add_run_options(parser: Parser) -> None:
+    """Declare how many tests are played, and where their results go."""
+    parser.option(
+        "--tests N",
+        "number of tests of each random strategy (100)",
+        type=positive,
+        default=100,
+    )
+    parser.option("--suite DIR", "play the tests of this folder instead of generated ones")
+    parser.option("--evidence FILE", "keep tests, verdicts and specifications in one archive")
+    parser.option(
+        "--shard I/N",
+        "with --out: play one share of the tests, such as 2/4; the same command without --shard "
+        "joins the shares",
+        type=shard,
+    )
+    parser.option(
+        "--strict",
+        "exit with 1 also if a requirement is inconclusive, if one was never triggered by a "
+        "strategy that must trigger it, or if coverage is too low",
+    )
+    _add_playing_options(parser)
+
+
+def _add_playing_options(parser: Parser) -> None:
+    _add_seed_and_jobs(parser)
+    declare(parser, "--dask")
+    _add_timeout(parser)
+    parser.option("--junit FILE", "write expected and actual verdicts as JUnit XML")
+    parser.option(
+        "--out DIR",
+        "write tables, tests and pages into this folder; an interrupted campaign is continued",
+    )
+    parser.option(
+        "--pages",
+        "runs to write pages of: an example of each verdict, or all (%(default)s)",
+        choices=("examples", "all"),
+        default="examples",
+    )
+
+
+def _add_closing_options(parser: Parser) -> None:
+    """Declare when closing gives up, and where the suite goes."""
+    parser.option("--tests N", "play at most N tests (400)", type=positive, default=400)
+    parser.option(
+        "--seconds TIME",
+        f"begin no test after TIME ({TIME_FORMS}; default: any)",
+        type=span_s,
+    )
+    parser.option(
+        "--margin N",
+        "keep up to N tests for each goal (2): one covers it, more detect more faults",
+        type=positive,
+        default=2,
+    )
+    parser.option(
+        "--mutants N",
+        "also keep a smallest set of tests that kills further mutants, out of N mutants of the "
+        "code, and show how many of these and of the held-out mutants each selection of tests "
+        "kills",
+        type=positive,
+    )
+    _add_playing_options(parser)
+
+
+def _add_replay_options(parser: Parser) -> None:
+    """Declare where the run of a test goes."""
+    parser.option("--out DIR", "write the recording and a page into this folder")
+    parser.option("--mcap FILE", "write verdicts, values and the scene for Foxglove")
+    parser.option("--expected", "exit with 0 if all verdicts are as the test expects")
+
+
+def _add_shrink_options(parser: Parser) -> None:
+    """Declare by which failure a test is shrunk, and where it goes."""
+    parser.option(
+        "--requirement ID",
+        "the requirement that has to fail (default: the first that does)",
+    )
+    _add_timeout(parser)
+    parser.option("--out DIR", "write it into this folder, with a pytest test that replays it")
+
+
+def _add_mutate_options(parser: Parser) -> None:
+    """Declare which mutants are played by which tests, and where results go."""
+    parser.option(
+        "--tests N|DIR",
+        "number of tests of each random strategy (100), or a folder of tests",
+        type=number_or_folder,
+        default=100,
+    )
+    _add_seed_and_jobs(parser)
+    _add_timeout(parser)
+    parser.option(
+        "--of",
+        "mutate the code, its requirements, or %(default)s (default)",
+        choices=("code", "spec", "both"),
+        default="both",
+    )
+    parser.option("--only TEXT", "only mutants whose name contains this", default="")
+    parser.option("--all", "play all tests, even after a requirement has failed")
+    parser.option("--held-out", "also list the held-out mutants one by one")
+    parser.option("--list", "list the mutants without playing tests")
+    parser.option("--strict", "exit with 1 unless all mutants are killed")
+    parser.option(
+        "--out DIR",
+        "write mutation.html, mutation.json and mutation.txt into this folder",
+    )
+
+
+def _add_seed_and_jobs(parser: Parser) -> None:
+    parser.option("--seed N", "random seed of everything (1)", type=int, default=1)
+    parser.option("--jobs N", "number of processes (default: all cores)", type=positive)
+
+
+def _add_timeout(parser: Parser) -> None:
+    parser.option(
+        "--timeout TIME",
+        f"end a test that takes longer ({TIME_FORMS}; default: 600)",
+        type=span_s,
+    )
+
+
+class _Command(NamedTuple):
+    add_options: Callable[[Parser], None]
+    run: Callable[[Namespace], int]
+    robot: str  # that it takes by default
+    help: str
+    description: str
+    example: str
+
+
+_FAILING = "out/mine/tests/pseudorandom-001.json"
+
+_COMMANDS = {
+    "run": _Command(
+        *(add_run_options, _run, "all"),
+        "play the tests of a campaign",
+        "Generate tests, play them on all cores, evaluate them, and write the table of verdicts.",
+        "--tests 20 --out out/mine",
+    ),
+    "close": _Command(
+        *(_add_closing_options, _close, "the first"),
+        "generate tests until coverage has no holes",
+        "Generate tests aimed at uncovered items: from runs of a model if there is one, by biased "
+        "choices, and by mutating the nearest test. Play and evaluate them until everything that "
+        "can be covered is; keep a smallest set of tests with the same coverage.",
+        "--out out/closed",
+    ),
+    "replay": _Command(
+        *(_add_replay_options, _one_test, "the test's"),
+        "play one test again",
+        "Play a test file alone and evaluate it; the same test gives the same run.",
+        f"{_FAILING} --out out/replay",
+    ),
+    "shrink": _Command(
+        *(_add_shrink_options, _one_test, "the test's"),
+        "reduce a failing test to the smallest one that still fails",
+        "Remove from a failing test everything that its failure does not need, print the rest, and "
+        "write it as a regression test.",
+        f"{_FAILING} --out out/small",
+    ),
+    "mutate": _Command(
+        *(_add_mutate_options, _mutate, "the first"),
+        "measure which small faults in code and requirements the tests detect",
+        "Plant one small fault at a time, play the tests of each strategy, and show which test "
+        "kills the mutant, or the question that a survivor raises.",
+        "--list",
+    ),
+}

@@ -26,7 +26,13 @@ from rvmon.cdv.campaign_text import (
     write_tests,
 )
 from rvmon.cdv.coverage import coverage_model
-from rvmon.cdv.gate import CampaignJudgement, RobotRequirement, judge_campaign, judge_test
+from rvmon.cdv.gate import (
+    CampaignJudgement,
+    RobotRequirement,
+    judge_campaign,
+    judge_test,
+    junit_xml,
+)
 from rvmon.cdv.outcome_counts import summarise
 from rvmon.cdv.play import INTERRUPTED, Bench, PlayerApart, execute, outcome_of
 from rvmon.cdv.replay_pages import Replay, play_again, replay_page, write_pages
@@ -39,11 +45,12 @@ from rvmon.cdv.test import load as load_test
 from rvmon.cli.campaign_evidence import begun, write_campaign
 from rvmon.cli.output import bar, busy, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.files import output_folder, refuse_no_file, write_whole
+from rvmon.files import output_folder, refuse_no_file, write_file, write_whole
 from rvmon.report.printer import TEXT_WIDTH, Printer
 from rvmon.report.run_text import print_report
 from rvmon.report.verdicts_mcap import refuse_mcap, write_verdicts
 from rvmon.session import Spec
+from rvmon.texts import counted
 from rvmon.verdicts import Verdict
 
 
@@ -235,6 +242,24 @@ def show(campaign: Campaign, conducted: Conducted, form: str) -> None:
 def page_printer() -> Printer:
     """Prints to the terminal; elsewhere as wide as the files of a campaign are."""
     return Printer(width=None if sys.stdout.isatty() else TEXT_WIDTH)
+
+
+SHOWN = 20
+"""Lines about what is wrong; `--junit` has all of them."""
+
+
+def is_as_expected(campaign: Campaign, judgement: CampaignJudgement, arguments: Namespace) -> bool:
+    """Print, and write as JUnit XML, what a campaign came to; return whether all is as expected."""
+    if arguments.junit is not None:
+        write_file(arguments.junit, junit_xml(campaign.name, judgement))
+    for what, count in judgement.known.items():
+        warn(f"{what} ({counted(count, 'test')})")
+    wrong = judgement.wrong
+    for what in wrong[:SHOWN]:
+        warn(f"not as expected: {what}")
+    if len(wrong) > SHOWN:
+        warn(f"not as expected: … and {len(wrong) - SHOWN:,} more: --junit FILE has all")
+    return not wrong
 
 
 def replay(campaign: Campaign, arguments: Namespace) -> int:

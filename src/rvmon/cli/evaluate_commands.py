@@ -29,72 +29,61 @@ def add_run(subparsers: Subparsers) -> None:
     add(
         "traces", metavar="TRACE", nargs="+", help="recordings: files, folders, patterns, addresses"
     )
-    add("--only", metavar="IDS", help="evaluate only these requirements: R1,R3")
+    parser.option("--only IDS", "evaluate only these requirements: R1,R3")
     declare(parser, *ONLY[1:], *EVALUATED)
-    add(
+    parser.option(
         "--join",
-        action="store_true",
-        help="join the files, or those of the folder, by time into one recording; names are "
-        "COLUMN or FILE.COLUMN",
+        "join the files, or those of the folder, by time into one recording; names are COLUMN or "
+        "FILE.COLUMN",
     )
-    add("--jobs", metavar="N", type=positive, default=1, help="number of processes (default: 1)")
+    parser.option("--jobs N", "number of processes (default: 1)", type=positive, default=1)
     declare(parser, "--dask")
-    add(
+    parser.option(
         "--robustness",
-        action="store_true",
-        help="add the robustness of each attempt: by how much it passed or, if negative, failed "
-        "(SI units)",
+        "add the robustness of each attempt: by how much it passed or, if negative, failed (SI "
+        "units)",
     )
     declare(parser, "--format")
-    add("--quiet", action="store_true", help="print only the number of recordings for each verdict")
-    add(
-        "--coverage",
-        metavar="DB",
-        help="add the coverage of the recordings to a database, which is created if needed; "
-        "`rvmon cover DB` shows it",
+    parser.option("--quiet", "print only the number of recordings for each verdict")
+    parser.option(
+        "--coverage DB",
+        "add the coverage of the recordings to a database, which is created if needed; `rvmon "
+        "cover DB` shows it",
     )
-    add(
-        "--out",
-        metavar="FILE",
-        help="write the verdicts as a table, a row per attempt: .csv, .parquet, .sqlite",
+    parser.option(
+        "--out FILE",
+        "write the verdicts as a table, a row per attempt: .csv, .parquet, .sqlite",
     )
-    add(
+    parser.option(
         "--resume",
-        action="store_true",
-        help="with --out: continue the same command where it was interrupted, or join its shards",
+        "with --out: continue the same command where it was interrupted, or join its shards",
     )
-    add(
-        "--shard",
-        metavar="I/N",
+    parser.option(
+        "--shard I/N",
+        "with --out: evaluate one share of the recordings, such as 2/4, into a file of its own; "
+        "the same command with --resume instead joins all shares",
         type=shard,
-        help="with --out: evaluate one share of the recordings, such as 2/4, into a file of its "
-        "own; the same command with --resume instead joins all shares",
     )
-    add(
-        "--known",
-        metavar="FILE",
-        help="TOML file of accepted failures, each with a reason and an expiry date",
+    parser.option(
+        "--known FILE",
+        "TOML file of accepted failures, each with a reason and an expiry date",
     )
-    add(
-        "--mcap",
-        metavar="FILE",
-        help="for one recording: write states, attempts and values over time as MCAP, with "
+    parser.option(
+        "--mcap FILE",
+        "for one recording: write states, attempts and values over time as MCAP, with "
         "FILE.layout.json for Foxglove",
     )
-    add("--report", metavar="DIR", help="write an HTML page per recording")
-    add("--junit", metavar="FILE", help="write JUnit XML for CI")
-    add(
-        "--evidence",
-        metavar="FILE",
-        help="keep recordings, specification and verdicts in one archive; `rvmon evidence FILE` "
-        "checks it",
+    parser.option("--report DIR", "write an HTML page per recording")
+    parser.option("--junit FILE", "write JUnit XML for CI")
+    parser.option(
+        "--evidence FILE",
+        "keep recordings, specification and verdicts in one archive; `rvmon evidence FILE` checks "
+        "it",
     )
-    add("--strict", action="store_true", help="exit with 1 also if a requirement is I or NT")
-    add(
-        "--require-triggered",
-        metavar="[=IDS]",
-        help="exit with 1 if one of these requirements (default: any) was triggered in no "
-        "recording",
+    parser.option("--strict", "exit with 1 also if a requirement is I or NT")
+    parser.option(
+        "--require-triggered [=IDS]",
+        "exit with 1 if one of these requirements (default: any) was triggered in no recording",
     )
     declare(parser, "--max-memory")
 
@@ -127,50 +116,43 @@ def add_watch(subparsers: Subparsers) -> None:
         "they arrive",
     )
     declare(parser, *ONLY, "--const", "--time", "--map", "--binding")
-    add(
-        "--robot",
-        metavar="FIELD",
-        help="the field that names the robot; each robot has its own monitors",
+    parser.option(
+        "--robot FIELD",
+        "the field that names the robot; each robot has its own monitors",
     )
-    add(
-        "--publish",
-        metavar="TOPIC",
-        help="publish each verdict as JSON: over MQTT under TOPIC/REQUIREMENT, over ROS on TOPIC",
+    parser.option(
+        "--publish TOPIC",
+        "publish each verdict as JSON: over MQTT under TOPIC/REQUIREMENT, over ROS on TOPIC",
     )
-    add(
-        "--realtime",
-        metavar="TIME",
+    parser.option(
+        "--realtime TIME",
+        "the stamps of the lines are the time of day since 1970, and lines arrive at most "
+        f"TIME later ({TIME_FORMS}; default: 500ms): deadlines pass while no line comes, too",
         nargs="?",
         type=span,
         const=_LAG_NS,
-        help="the stamps of the lines are the time of day since 1970, and lines arrive at most "
-        f"TIME later ({TIME_FORMS}; default: 500ms): deadlines pass while no line comes, too",
     )
-    add(
+    parser.option(
         "--sim-time",
-        action="store_true",
-        help="take the time from the topic /clock (`use_sim_time`); the default of ros1: if the "
+        "take the time from the topic /clock (`use_sim_time`); the default of ros1: if the "
         "parameter of that name is true",
     )
-    add(
-        "--room",
-        metavar="N",
+    parser.option(
+        "--room N",
+        "length of the input queue in lines (default: 10000); further lines are counted as lost",
         type=positive,
         default=10_000,
-        help="length of the input queue in lines (default: 10000); further lines are counted as "
-        "lost",
     )
-    add(
-        "--state",
-        metavar="FILE",
-        help="keep the run in a file: after a crash the same command continues it. Verdicts are "
+    parser.option(
+        "--state FILE",
+        "keep the run in a file: after a crash the same command continues it. Verdicts are "
         "numbered; the latest may be reported twice",
     )
-    add("--failures", action="store_true", help="report failures only")
-    add(
+    parser.option("--failures", "report failures only")
+    parser.option(
         "--format",
+        "a live table (default on a terminal), a line for each verdict, or JSON lines",
         choices=("view", "text", "json"),
-        help="a live table (default on a terminal), a line for each verdict, or JSON lines",
     )
 
 
@@ -206,29 +188,36 @@ def add_clip(subparsers: Subparsers) -> None:
     add("spec", metavar="SPEC", help="a .rv file")
     add("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
     add("attempt", metavar="ID#N", nargs="?", help=ATTEMPT_HELP)
-    add(
-        "--before",
-        metavar="TIME",
+    parser.option(
+        "--before TIME",
+        f"start TIME ({TIME_FORMS}; default: 10s) before the trigger, or before the failure "
+        "within an episode",
         type=span,
         default=10 * TICKS_PER_SECOND,
-        help=f"start TIME ({TIME_FORMS}; default: 10s) before the trigger, or before the failure "
-        "within an episode",
     )
-    add(
-        "--after",
-        metavar="TIME",
+    parser.option(
+        "--after TIME",
+        f"end TIME ({TIME_FORMS}; default: 5s) after the decision, or at the next sample if "
+        "that is later",
         type=span,
         default=5 * TICKS_PER_SECOND,
-        help=f"end TIME ({TIME_FORMS}; default: 5s) after the decision, or at the next sample if "
-        "that is later",
     )
-    add("--from", metavar="TIME", type=ticks, dest="start", help=f"first instant ({TIME_FORMS})")
-    add("--to", metavar="TIME", type=ticks, dest="stop", help=f"last instant ({TIME_FORMS})")
-    add("-o", "--out", metavar="FILE", help="the cut recording; a folder for a bag of ROS 2")
-    add(
-        "--reproducer",
-        metavar="FILE",
-        help="one file (.rvcase) with the cut recording and the specification: `rvmon why FILE` "
+    parser.option(
+        "--from TIME",
+        f"first instant ({TIME_FORMS})",
+        type=ticks,
+        dest="start",
+    )
+    parser.option(
+        "--to TIME",
+        f"last instant ({TIME_FORMS})",
+        type=ticks,
+        dest="stop",
+    )
+    parser.option("-o --out FILE", "the cut recording; a folder for a bag of ROS 2")
+    parser.option(
+        "--reproducer FILE",
+        "one file (.rvcase) with the cut recording and the specification: `rvmon why FILE` "
         "explains the attempt, `rvmon run FILE` evaluates it; -o FILE.rvcase is the same",
     )
     declare(parser, "--const", *READING, "--allow-missing")
@@ -248,7 +237,7 @@ def add_compare(subparsers: Subparsers) -> None:
     add = parser.add_argument
     add("before", metavar="OLD", help="the earlier verdicts")
     add("after", metavar="NEW", help="the later verdicts")
-    add("--all", action="store_true", help="list all differences")
+    parser.option("--all", "list all differences")
     declare(parser, "--format")
 
 
@@ -263,45 +252,36 @@ def add_cover(subparsers: Subparsers) -> None:
     )
     add = parser.add_argument
     add("databases", metavar="DB", nargs="+", help="coverage databases, written by run --coverage")
-    add("--campaign", metavar="NAME", help="show the tests of this campaign only")
-    add(
-        "--holes",
-        action="store_true",
-        help="list the items that are missing or cannot be hit, with the reasons",
+    parser.option("--campaign NAME", "show the tests of this campaign only")
+    parser.option("--holes", "list the items that are missing or cannot be hit, with the reasons")
+    parser.option(
+        "--bins [=GROUP]",
+        "list the items of a group (default: of all), with hits and the first test that hit them; "
+        "a cross is shown as a grid",
     )
-    add(
-        "--bins",
-        metavar="[=GROUP]",
-        help="list the items of a group (default: of all), with hits and the first test that hit "
-        "them; a cross is shown as a grid",
-    )
-    add(
+    parser.option(
         "--tests",
-        action="store_true",
-        help="list the tests with their contributions, and a short order that covers as much",
+        "list the tests with their contributions, and a short order that covers as much",
     )
-    add(
-        "--compare",
-        metavar="OLD",
-        help="show items and verdicts that changed since an earlier database, or an earlier "
-        "campaign in this one",
+    parser.option(
+        "--compare OLD",
+        "show items and verdicts that changed since an earlier database, or an earlier campaign "
+        "in this one",
     )
     declare(parser, "--format")
-    add("--report", metavar="FILE", help="write an HTML page")
-    add("--ucis", metavar="FILE", help="write the coverage as UCIS XML, for other tools")
-    add("--merge", metavar="OUT", help="merge the databases into this one")
-    add(
-        "--require",
-        metavar="PERCENT",
+    parser.option("--report FILE", "write an HTML page")
+    parser.option("--ucis FILE", "write the coverage as UCIS XML, for other tools")
+    parser.option("--merge OUT", "merge the databases into this one")
+    parser.option(
+        "--require PERCENT",
+        "exit with 1 if less is covered, or if an illegal item, or one declared unreachable, was "
+        "hit",
         type=percentage,
-        help="exit with 1 if less is covered, or if an illegal item, or one declared "
-        "unreachable, was hit",
     )
-    add(
+    parser.option(
         "--strict",
-        action="store_true",
-        help="exit with 1 if an illegal item, or one declared unreachable, was hit, if a test "
-        "failed or did not complete, or if --compare shows a loss",
+        "exit with 1 if an illegal item, or one declared unreachable, was hit, if a test failed "
+        "or did not complete, or if --compare shows a loss",
     )
     declare(parser, "--max-memory")
 
@@ -318,13 +298,12 @@ def add_evidence(subparsers: Subparsers) -> None:
     )
     add = parser.add_argument
     add("file", metavar="FILE", help="the archive")
-    add(
-        "--sample",
-        metavar="N",
+    parser.option(
+        "--sample N",
+        "number of recordings or tests to evaluate again, or all (%(default)s)",
         type=lambda text: None if text == "all" else positive(text),
         default=10,
-        help="number of recordings or tests to evaluate again, or all (%(default)s)",
     )
-    add("--seed", metavar="N", type=int, default=1, help="random seed of the sample (1)")
-    add("--jobs", metavar="N", type=positive, default=1, help="number of processes (1)")
+    parser.option("--seed N", "random seed of the sample (1)", type=int, default=1)
+    parser.option("--jobs N", "number of processes (1)", type=positive, default=1)
     parser.set_defaults(campaign=None)

@@ -42,12 +42,12 @@ def add_verify(subparsers: Subparsers) -> None:
         choices=("locations", "edges", "edge-pairs"),
         help="show a small set of runs that covers all of these instead",
     )
-    add("--seed", metavar="N", type=int, default=1, help="random seed of simulated runs")
-    add(
+    parser.option("--seed N", "random seed of simulated runs", type=int, default=1)
+    parser.option(
         "--trace",
+        "which of several runs to show (default: shortest)",
         choices=("shortest", "fastest", "likely"),
         default="shortest",
-        help="which of several runs to show (default: shortest)",
     )
     add(
         "--const", metavar="NAME=N", action="append", default=[], help="set a constant of the model"
@@ -70,24 +70,21 @@ def add_conform(subparsers: Subparsers) -> None:
     add("model", metavar="MODEL", help="a .ta or .xml file")
     add("traces", metavar="TRACE", nargs="+", help="recordings, or folders of recordings")
     declare(parser, "--time")
-    add(
-        "--observe",
-        metavar="LABELS",
-        help="labels that are observed (default: those that have a column, or that occur)",
+    parser.option(
+        "--observe LABELS",
+        "labels that are observed (default: those that have a column, or that occur)",
     )
-    add(
-        "--tolerance",
-        metavar="TIME",
+    parser.option(
+        "--tolerance TIME",
+        f"by how much an action may be early or late ({TIME_FORMS}; default: 0)",
         type=span,
         default=0,
-        help=f"by how much an action may be early or late ({TIME_FORMS}; default: 0)",
     )
-    add(
-        "--until",
-        metavar="TIME",
-        type=span,
-        help=f"compare up to TIME ({TIME_FORMS}) after the first sample, whether or not the "
+    parser.option(
+        "--until TIME",
+        f"compare up to TIME ({TIME_FORMS}) after the first sample, whether or not the "
         "recording goes on that long",
+        type=span,
     )
     declare(parser, "--format")
     add_budget(parser)
@@ -108,10 +105,5 @@ def add_export(subparsers: Subparsers) -> None:
     add = parser.add_argument
     add("subject", metavar="SPEC|MODEL", help="a .rv file; or a .ta or .xml file")
     add("--to", choices=("c", "dot", "json", "hoa", "uppaal"), required=True)
-    add(
-        "-o",
-        "--output",
-        metavar="PATH",
-        help="output folder (c) or file (default: standard output)",
-    )
+    parser.option("-o --output PATH", "output folder (c) or file (default: standard output)")
     declare(parser, *ONLY, "--const")

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from rvmon.cli.parser import TIME_FORMS, instant_s, positive, span_s
+from rvmon.cli.parser import TIME_FORMS, Parser, instant_s, positive, span_s
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.trace import READINGS_OF_NAN
 
@@ -109,7 +109,7 @@ EVALUATED = ("--const", "--until", *READING, "--allow-missing")
 """The constants, how far and how recordings are evaluated, and what they may lack."""
 
 
-def declare(parser: argparse.ArgumentParser, *names: str) -> None:
+def declare(parser: Parser, *names: str) -> None:
     """Declare options that several commands take."""
     for name in names:
         parser.add_argument(name, **_SHARED[name])
@@ -150,23 +150,15 @@ def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
     return requirements_asked(spec.checked, ids)
 
 
-def add_budget(parser: argparse.ArgumentParser) -> None:
+def add_budget(parser: Parser) -> None:
     """Declare `--max-states`, `--max-seconds` and `--max-memory`."""
-    add = parser.add_argument
-    add("--max-states", metavar="N", type=positive, help="stop the search after N states")
-    add(
-        "--max-seconds",
-        metavar="TIME",
+    parser.option("--max-states N", "stop the search after N states", type=positive)
+    parser.option(
+        "--max-seconds TIME",
+        f"stop the search after TIME ({TIME_FORMS})",
         type=span_s,
-        help=f"stop the search after TIME ({TIME_FORMS})",
     )
-    add(
-        "--max-memory",
-        metavar="MB",
-        type=positive,
-        default=2048,
-        help="memory limit (default: 2048)",
-    )
+    parser.option("--max-memory MB", "memory limit (default: 2048)", type=positive, default=2048)
 
 
 def budget_of(arguments: argparse.Namespace) -> Budget:

@@ -15,7 +15,7 @@ from rvmon.execute import Shard
 from rvmon.texts import did_you_mean, shown
 from rvmon.trace.time import TICKS_PER_SECOND, TICKS_PER_UNIT, ticks_of_text
 
-Subparsers: TypeAlias = "argparse._SubParsersAction[argparse.ArgumentParser]"
+Subparsers: TypeAlias = "argparse._SubParsersAction[Parser]"
 """The commands that a program takes."""
 
 _CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)", re.DOTALL)
@@ -50,6 +50,24 @@ class Parser(argparse.ArgumentParser):
             meant = did_you_mean(rest[0].partition("=")[0], self._option_string_actions)
             self.error(f"unrecognized arguments: {' '.join(rest)}{meant and f': {meant}'}")
         return parsed, rest
+
+    def option(self, words: str, about: str, **how: Any) -> None:
+        """Declare an option.
+
+        Args:
+            words: its names, and the word for its value, as in `-o --out FILE`; without one it is
+                a flag, or one of some `choices`.
+            about: for its help.
+            how: more for `add_argument`.
+        """
+        *names, last = words.split(" ")
+        if not last.startswith("-"):
+            how["metavar"] = last
+        else:
+            names.append(last)
+            if "choices" not in how:
+                how["action"] = "store_true"
+        self.add_argument(*names, help=about, **how)
 
     def error(self, message: str) -> NoReturn:
         """Say what is wrong and how it is done, and leave with code 2."""

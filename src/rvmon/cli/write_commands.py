@@ -19,7 +19,7 @@ def add_look(subparsers: Subparsers) -> None:
     add = parser.add_argument
     add("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
     add("spec", metavar="SPEC", nargs="?", help="a .rv file")
-    add("-o", "--output", metavar="FILE", help="write an HTML page instead")
+    parser.option("-o --output FILE", "write an HTML page instead")
     declare(parser, "--const", *READING)
 
 
@@ -40,22 +40,19 @@ def add_init(subparsers: Subparsers) -> None:
     )
     add = parser.add_argument
     add("data", metavar="DATA", nargs="?", help="a recording, as `rvmon run` takes it")
-    add("--for", metavar="SPEC", dest="spec", help="propose a binding for this specification")
+    parser.option("--for SPEC", "propose a binding for this specification", dest="spec")
     declare(parser, "--const")
-    add(
-        "--campaign",
-        metavar="DIR",
-        help="write a campaign into this folder: code under test, its environment, requirements, "
+    parser.option(
+        "--campaign DIR",
+        "write a campaign into this folder: code under test, its environment, requirements, "
         "strategies",
     )
-    add(
-        "-o",
-        "--output",
-        metavar="FILE",
-        help="output file, - for standard output (default: the name of DATA, with .rv)",
+    parser.option(
+        "-o --output FILE",
+        "output file, - for standard output (default: the name of DATA, with .rv)",
     )
     declare(parser, "--time")
-    add("--force", action="store_true", help="overwrite an existing file")
+    parser.option("--force", "overwrite an existing file")
 
 
 def add_check(subparsers: Subparsers) -> None:
@@ -68,26 +65,24 @@ def add_check(subparsers: Subparsers) -> None:
     add = parser.add_argument
     add("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
     declare(parser, "--const", "--binding")
-    add(
+    parser.option(
         "--format",
+        "how to print findings: in full, one line each, or as JSON, which has a line for each as "
+        "well (default: text)",
         choices=("text", "concise", "json"),
         default="text",
-        help="how to print findings: in full, one line each, or as JSON, which has a line for each "
-        "as well (default: text)",
     )
-    add("--strict", action="store_true", help="exit with 1 if there are warnings")
-    add(
+    parser.option("--strict", "exit with 1 if there are warnings")
+    parser.option(
         "--analyse",
-        action="store_true",
-        help="look for requirements that can never trigger, fail or pass, that conflict, or that "
+        "look for requirements that can never trigger, fail or pass, that conflict, or that "
         "others imply",
     )
-    add(
-        "--seconds",
-        metavar="TIME",
+    parser.option(
+        "--seconds TIME",
+        f"budget of --analyse per file ({TIME_FORMS}; default: 8)",
         type=span_s,
         default=8.0,
-        help=f"budget of --analyse per file ({TIME_FORMS}; default: 8)",
     )
     declare(parser, "--max-memory")
 
@@ -106,12 +101,11 @@ def add_explain(subparsers: Subparsers) -> None:
     add("subject", metavar="SPEC|CODE", help="a .rv file, or a code such as RV012")
     add("ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)")
     declare(parser, "--const")
-    add(
-        "--runs",
-        metavar="N",
+    parser.option(
+        "--runs N",
+        "number of short runs to try (default: 4000)",
         type=positive,
         default=4000,
-        help="number of short runs to try (default: 4000)",
     )
     declare(parser, "--max-memory")
 
@@ -125,9 +119,7 @@ def add_format(subparsers: Subparsers) -> None:
         epilog="example: rvmon format --check specs/*.rv",
     )
     parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files")
-    parser.add_argument(
-        "--check", action="store_true", help="do not write; exit with 1 if a file would change"
-    )
+    parser.option("--check", "do not write; exit with 1 if a file would change")
 
 
 def add_lsp(subparsers: Subparsers) -> None:
@@ -139,6 +131,4 @@ def add_lsp(subparsers: Subparsers) -> None:
         "editor does.",
         epilog="example: rvmon lsp --stdio",
     )
-    parser.add_argument(
-        "--stdio", action="store_true", help="accepted for editors that pass it; it is the default"
-    )
+    parser.option("--stdio", "accepted for editors that pass it; it is the default")
