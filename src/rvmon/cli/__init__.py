@@ -1,4 +1,4 @@
-"""The command `rvmon`: a file per subcommand with `run`, one per group with their arguments.
+"""The command `rvmon`: a file per subcommand, or for a few; one per group with their arguments.
 
 Exit codes: 0 fine, 1 a requirement failed or could not be judged, 2 wrong input or spec,
 3 internal error, 130 interrupted (Ctrl-C, SIGTERM), 141 nobody reads the output any more.
@@ -64,6 +64,9 @@ _MODULES = {
 """By command, the module of its arguments."""
 
 COMMANDS = tuple(_MODULES)
+
+_BESIDE = {"format": "check", "init": "look"}
+"""The commands whose work stands in the file of another."""
 
 
 _READER_LEFT = 128 + 13
@@ -197,5 +200,6 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
 
 def _run(command: str, namespace: argparse.Namespace) -> int:
     """Import what the command needs, of which its help needs nothing, and run it."""
-    code: int = import_module(f"rvmon.cli.{command}").run(namespace)
+    module = import_module(f"rvmon.cli.{_BESIDE.get(command, command)}")
+    code: int = getattr(module, f"run_{command}")(namespace)
     return code

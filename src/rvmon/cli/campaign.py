@@ -98,7 +98,7 @@ def add_commands(
             declare(parser, "--format")
         parsers[name] = parser
     add_evidence(commands)
-    commands.choices["evidence"].set_defaults(run=evidence.run, campaign=campaign)
+    commands.choices["evidence"].set_defaults(run=evidence.run_evidence, campaign=campaign)
     return parsers
 
 

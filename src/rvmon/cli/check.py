@@ -1,4 +1,4 @@
-"""`rvmon check`: find what is wrong in specifications."""
+"""`rvmon check` and `format`: what is wrong in specifications, and their canonical layout."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from rvmon.cli.options import constants_of
 from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.diagnostics import Diagnostic, coloured, render_concise, render_json, wants_colour
 from rvmon.errors import SpecError
+from rvmon.files import write_whole
 from rvmon.language.checked.classify import windows_of
 from rvmon.language.checked.formula import WindowValue
 from rvmon.language.checked.specification import CheckedSpec, Requirement
@@ -19,7 +20,7 @@ from rvmon.language.print import format_duration, format_window
 from rvmon.texts import cannot_read, counted, text_of_file, text_of_input
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_check(arguments: argparse.Namespace) -> int:
     """Check, print the findings, and return the exit code."""
     constants = constants_of(arguments.const)
     findings: list[Diagnostic] = []
@@ -164,3 +165,33 @@ def _of(window: WindowValue) -> str:
     if not window.measured.steady:
         return f"{_fixed(window):,} bytes, {each} of another value"
     return f"{_fixed(window):,} bytes, however long the run"
+
+
+def run_format(arguments: argparse.Namespace) -> int:
+    """Lay out, and return the exit code."""
+    from rvmon.language.formatter import format_text
+
+    changed = wrong = 0
+    for name in arguments.specs:
+        try:
+            text = text_of_input() if name == "-" else text_of_file(name)
+            laid_out = format_text(text, name=name)
+            if name != "-" and laid_out != text and not arguments.check:
+                write_whole(name, laid_out)
+        except SpecError as error:
+            warn(str(error))
+            wrong += 1
+            continue
+        except (OSError, UnicodeDecodeError) as error:
+            reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
+            warn(f"error: {name}: {reason}")
+            wrong += 1
+            continue
+        if name == "-" and not arguments.check:
+            sys.stdout.write(laid_out)
+        elif laid_out != text:
+            say(f"{'would change' if arguments.check else 'changed'}: {name}")
+        changed += laid_out != text
+    if wrong:
+        return 2
+    return int(arguments.check and changed > 0)

@@ -32,7 +32,7 @@ from rvmon.verdicts.attempt import Attempt, Decision
 from rvmon.verdicts.report import Report, report_of
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_clip(arguments: argparse.Namespace) -> int:
     """Find the attempt, cut the recording, judge the piece, and return the exit code."""
     data = arguments.data
     out, case = _places(arguments)

@@ -15,7 +15,7 @@ LISTED = 20
 """Differences of one kind that the text lists."""
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_compare(arguments: argparse.Namespace) -> int:
     """Read, compare, show, and return the exit code."""
     with busy("comparing verdicts"):
         comparison = compare(read_results(arguments.before), read_results(arguments.after))

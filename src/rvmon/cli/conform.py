@@ -19,7 +19,7 @@ from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_conform(arguments: argparse.Namespace) -> int:
     """Compare, show, and return the exit code."""
     network = load_network(arguments.model)
     labels = labels_of(network)

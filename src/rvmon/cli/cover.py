@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rvmon.report.coverage_summary import Summary
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_cover(arguments: argparse.Namespace) -> int:
     """Read, show, and return the exit code."""
     from rvmon.coverage.database import merge, read
     from rvmon.report.coverage_summary import Summary

@@ -7,7 +7,6 @@ import random
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import msgspec
 
@@ -40,15 +39,11 @@ from rvmon.verdicts import LAW
 from rvmon.verdicts.rows import VerdictRow
 from rvmon.verdicts.table_file import csv_bytes
 
-if TYPE_CHECKING:
-    pass
-
-
 Again = Callable[[Kept, Sequence[str], int], Iterable[VerdictRow]]
 """Judges recordings, or plays tests, again, on so many processes."""
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_evidence(arguments: argparse.Namespace) -> int:
     """Verify, say what was found, and return the exit code.
 
     Raises:

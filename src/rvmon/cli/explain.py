@@ -19,7 +19,7 @@ _CODE = re.compile(r"(RV|TA)\d+|codes|[a-z]+(-[a-z]+)+", re.IGNORECASE)
 """A diagnostic's code, in words, or the word for all."""
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_explain(arguments: argparse.Namespace) -> int:
     """Explain, and return the exit code."""
     if not Path(arguments.subject).exists() and _CODE.fullmatch(arguments.subject):
         from rvmon.analysis.diagnostic_codes import code_list, page_of

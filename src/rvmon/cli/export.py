@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 _OF_MODELS = ("dot", "uppaal")
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_export(arguments: argparse.Namespace) -> int:
     """Make the texts, write or print them, and return the exit code."""
     if Path(arguments.subject).suffix in (".ta", ".xml"):
         text = _model_text(arguments)

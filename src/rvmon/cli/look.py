@@ -1,25 +1,29 @@
-"""`rvmon look`: what a recording holds, before a requirement is written."""
+"""`rvmon look` and `init`: what a recording holds, and files that begin with it."""
 
 from __future__ import annotations
 
 import argparse
+import shlex
+import sys
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import constants_of
-from rvmon.cli.output import busy, say
-from rvmon.cli.reading import reading_spec
-from rvmon.files import write_file
-from rvmon.recordings.starter.observed_values import Profile
-from rvmon.recordings.starter.profile import bound_profile, profile_of
-from rvmon.report.look_page import look_page, print_look
-from rvmon.report.printer import Printer
+from rvmon.cli.output import busy, say, warn
+from rvmon.cli.reading import reading_spec, time_words
+from rvmon.errors import RvmonError
+from rvmon.files import write_file, write_whole
+from rvmon.texts import counted
 
 if TYPE_CHECKING:
+    from rvmon.recordings.starter.observed_values import Profile
     from rvmon.session import Spec
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_look(arguments: argparse.Namespace) -> int:
     """Look, show or write, and return the exit code."""
+    from rvmon.report.look_page import look_page, print_look
+    from rvmon.report.printer import Printer
     from rvmon.session import load
 
     spec = None
@@ -39,6 +43,99 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _looked(arguments: argparse.Namespace, spec: Spec | None) -> Profile:
     """The recording, looked over; what a specification reads as it reads it."""
+    from rvmon.recordings.starter.profile import bound_profile, profile_of
+
     if spec is None:
         return profile_of(arguments.data, arguments.time)
     return bound_profile(arguments.data, spec.schema)
+
+
+def run_init(arguments: argparse.Namespace) -> int:
+    """Look the recording over, write, and return the exit code."""
+    if (arguments.data is None) == (arguments.campaign is None):
+        raise RvmonError("error: name a recording, or --campaign with a folder")
+    if arguments.campaign is not None:
+        return _write_campaign(Path(arguments.campaign), force=arguments.force)
+    if arguments.spec is not None:
+        return _print_binding(arguments)
+    from rvmon.recordings.starter.profile import profile_of
+    from rvmon.recordings.starter.skeletons import starter_text
+
+    output = arguments.output or Path(arguments.data).with_suffix(".rv").name
+    if output != "-" and Path(output).exists() and not arguments.force:
+        raise RvmonError(
+            f"error: {output} is there already: give another place with -o, or --force to overwrite"
+        )
+    with busy(f"reading {arguments.data}"):
+        profile = profile_of(arguments.data, arguments.time)
+    text = starter_text(profile)
+    if output == "-":
+        sys.stdout.write(text)
+        return 0
+    try:
+        write_whole(output, text)
+    except OSError as error:
+        raise RvmonError(f"error: {output}: {error.strerror or error}") from None
+    say(f"wrote {output}: {_contents(profile, text)}")
+    words = ["rvmon", "run", output, arguments.data, *time_words(arguments)]
+    say(f"try:   {shlex.join(words)}")
+    return 0
+
+
+def _print_binding(arguments: argparse.Namespace) -> int:
+    """Propose which topics feed a specification; 1 if something is left open."""
+    from rvmon.recordings.binding.propose import propose
+    from rvmon.recordings.recording import messages_of
+    from rvmon.session import load
+
+    spec = load(arguments.spec, const=constants_of(arguments.const))
+    with busy(f"reading {arguments.data}"):
+        proposal = propose(spec.checked, messages_of(arguments.data))
+    words = shlex.join(["rvmon", "run", arguments.spec, arguments.data, "--binding"])
+    say(f"# Proposed: look it over. {words} THIS_FILE")
+    say(proposal.text, end="")
+    if proposal.unmatched:
+        names = ", ".join(f"`{name}`" for name in proposal.unmatched)
+        warn(f"warning: what feeds {names} is left open: nothing in {arguments.data} is clearly it")
+    for name in proposal.unlabelled:
+        warn(
+            f"warning: `{name}` is a number in {arguments.data}: say which `labels` stand for which"
+        )
+    for group in proposal.shared:
+        names = " and ".join(f"`{name}`" for name in group)
+        warn(f"warning: {names} are fed by one and the same field: is that meant?")
+    return int(bool(proposal.unmatched or proposal.unlabelled))
+
+
+def _write_campaign(folder: Path, *, force: bool) -> int:
+    from rvmon.recordings.starter import campaign_files
+
+    files = campaign_files()
+    existing = [name for name in files if (folder / name).exists()]
+    if existing and not force:
+        raise RvmonError(
+            f"error: {folder / existing[0]} is there already: name another folder, or --force to "
+            "overwrite"
+        )
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, text in files.items():
+            write_whole(folder / name, text)
+    except OSError as error:
+        raise RvmonError(f"error: {folder}: {error.strerror or error}") from None
+    say(f"wrote {folder}: {', '.join(files)}")
+    say(f"try:   python {shlex.quote(str(folder / 'campaign.py'))} run --tests 20")
+    return 0
+
+
+def _contents(profile: Profile, text: str) -> str:
+    events = sum(column.is_event for column in profile.columns)
+    signals = len(profile.columns) - events
+    parts = [
+        counted(signals, "signal"),
+        counted(events, "event"),
+        counted(text.count("\nrequirement "), "requirement"),
+    ]
+    if profile.left_out:
+        parts.append(f"{len(profile.left_out)} left out")
+    return ", ".join(parts)

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from rvmon.reproducer import Case
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_run(arguments: argparse.Namespace) -> int:
     """Judge, show, and return the exit code."""
     given = arguments.spec
     with unpacked(arguments) as case:

@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from rvmon.session import Spec
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_verify(arguments: argparse.Namespace) -> int:
     """Decide, show, and return the exit code."""
     _refuse_unused(arguments)
     constants = dict(_constant(text) for text in arguments.const)

@@ -37,7 +37,7 @@ _LAST_DOMAIN = 232
 """The last domain of DDS that has ports."""
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_watch(arguments: argparse.Namespace) -> int:
     """Judge until the stream ends or somebody ends it, and return the exit code."""
     arguments.age = _age(arguments.spec)  # before it is read: no change is missed
     spec = _loaded(arguments)

@@ -37,7 +37,7 @@ from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.report import Report
 
 
-def run(arguments: argparse.Namespace) -> int:
+def run_why(arguments: argparse.Namespace) -> int:
     """Judge the recording, take the attempt apart, show it, and return the exit code."""
     with unpacked(arguments) as case:
         if case is not None:

@@ -10,7 +10,7 @@ import sys
 from rvmon.errors import needed
 
 
-def run(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - it has one way to serve
+def run_lsp(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - it has one way to serve
     """Serve until the editor ends it, and return the exit code."""
     with needed("the language server", "pygls"):
         from rvmon.cli.lsp.server import Server
