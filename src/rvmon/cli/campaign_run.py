@@ -94,7 +94,7 @@ def conduct(
     Args:
         campaign: the campaign.
         strategies: the strategies that make tests.
-        arguments: the options of `add_campaign_options`.
+        arguments: the options of `add_run_options`.
         words: the command that runs it again, and its other options.
         stack: closes what was needed meanwhile.
 
