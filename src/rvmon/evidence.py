@@ -32,7 +32,7 @@ from rvmon.reproducer import (
 )
 from rvmon.session import Spec
 from rvmon.verdicts import LAW
-from rvmon.verdicts.rows import VerdictRow
+from rvmon.verdicts.serialise import VerdictRow
 from rvmon.verdicts.table_file import csv_bytes
 
 SUMS = "SHA256SUMS"

@@ -51,15 +51,15 @@ GROUPS = {
 """The purpose of each command, as `rvmon --help` lists them."""
 
 _ARGUMENTS = {
-    "write requirements": "write_commands",
+    "write requirements": "specification_commands",
     "evaluate": "evaluate_commands",
-    "models and export": "model_commands",
+    "models and export": "specification_commands",
 }
 """By group, the module that declares the arguments of its commands."""
 
 _MODULES = {
     **{name: _ARGUMENTS[heading] for heading, group in GROUPS.items() for name in group},
-    "lsp": "write_commands",  # editors start it
+    "lsp": "specification_commands",  # editors start it
 }
 """By command, the module of its arguments."""
 

@@ -30,7 +30,7 @@ from rvmon.evidence import (
 )
 from rvmon.files import refuse_no_file
 from rvmon.session import Spec
-from rvmon.verdicts.rows import VerdictRow
+from rvmon.verdicts.serialise import VerdictRow
 
 
 def begun(campaign: Campaign, path: str) -> tuple[dict[str, bytes], list[str]]:

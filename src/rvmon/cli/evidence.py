@@ -36,7 +36,7 @@ from rvmon.report.trace_matrix import Row, rows_by_item
 from rvmon.session import Spec, load
 from rvmon.texts import shown_path
 from rvmon.verdicts import LAW
-from rvmon.verdicts.rows import VerdictRow
+from rvmon.verdicts.serialise import VerdictRow
 from rvmon.verdicts.table_file import csv_bytes
 
 Again = Callable[[Kept, Sequence[str], int], Iterable[VerdictRow]]

@@ -249,7 +249,7 @@ def _show_doubts(judged: Sequence[Judged]) -> None:
 def _json(judged: Judged, spec: Spec) -> str:
     if judged.report is not None:
         return judged.text or judged.report.to_json(spec.requirements)
-    from rvmon.verdicts.report_json import encode_broken
+    from rvmon.verdicts.serialise import encode_broken
 
     return encode_broken(judged.trace, judged.error, judged.before)
 

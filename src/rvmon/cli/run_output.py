@@ -14,7 +14,7 @@ from rvmon.cli.reading import reading_words
 from rvmon.files import write_file
 from rvmon.recordings.source import HeldRecording, Source
 from rvmon.session import Spec
-from rvmon.verdicts.rows import VerdictRow, broken_rows
+from rvmon.verdicts.serialise import VerdictRow, broken_rows
 
 if TYPE_CHECKING:
     from rvmon.trace.sample import Sample

@@ -15,7 +15,7 @@ from rvmon.live.sample_queue import Dropped, Gap, OutageReport, Values
 from rvmon.trace.sample import Health, HealthKind
 from rvmon.verdicts import Verdict, fold
 from rvmon.verdicts.attempt import Attempt
-from rvmon.verdicts.report_json import seconds
+from rvmon.verdicts.serialise import seconds
 
 if TYPE_CHECKING:
     from rvmon.monitor.monitor import Monitor

@@ -13,7 +13,7 @@ from rvmon.report.html import render
 from rvmon.report.table import plain
 from rvmon.report.wording import MARKS, in_short
 from rvmon.verdicts import Verdict, fold
-from rvmon.verdicts.rows import VerdictRow
+from rvmon.verdicts.serialise import VerdictRow
 from rvmon.verdicts.table_file import csv_table
 
 LISTED = 100

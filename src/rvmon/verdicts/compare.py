@@ -9,7 +9,7 @@ from enum import StrEnum
 from msgspec import Struct, field
 
 from rvmon.verdicts import Verdict, fold
-from rvmon.verdicts.rows import VerdictRow
+from rvmon.verdicts.serialise import VerdictRow
 
 
 class Change(StrEnum):

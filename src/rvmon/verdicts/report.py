@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     import pyarrow
 
     from rvmon.language.checked.specification import Requirement
-    from rvmon.verdicts.rows import VerdictRow
+    from rvmon.verdicts.serialise import VerdictRow
 
 _ATTEMPT_VERDICTS = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 
@@ -118,7 +118,7 @@ class Report:
         a.csv R1 R1#1 P
         a.csv R2 None NT
         """
-        from rvmon.verdicts.rows import VerdictRow, attempt_row
+        from rvmon.verdicts.serialise import VerdictRow, attempt_row
 
         for attempt in self.attempts:
             yield attempt_row(self.trace, attempt)
@@ -138,7 +138,7 @@ class Report:
         >>> report.to_arrow().select(["attempt", "verdict", "decided"]).to_pylist()
         [{'attempt': 'R1#1', 'verdict': 'P', 'decided': 5}]
         """
-        from rvmon.verdicts.rows import arrow_table
+        from rvmon.verdicts.serialise import arrow_table
 
         return arrow_table(self.rows(), {"law": str(self.law)})
 
@@ -148,7 +148,7 @@ class Report:
         Raises:
             RvmonError: pyarrow or pandas is needed.
         """
-        from rvmon.verdicts.rows import pandas_frame
+        from rvmon.verdicts.serialise import pandas_frame
 
         return pandas_frame(self.to_arrow())
 
@@ -158,7 +158,7 @@ class Report:
         Raises:
             RvmonError: pyarrow or polars is needed.
         """
-        from rvmon.verdicts.rows import polars_frame
+        from rvmon.verdicts.serialise import polars_frame
 
         return polars_frame(self.to_arrow())
 
@@ -170,7 +170,7 @@ class Report:
         Args:
             requirements: `Spec.requirements`, to include severity and tags.
         """
-        from rvmon.verdicts.report_json import encoded, labels, packed
+        from rvmon.verdicts.serialise import encoded, labels, packed
 
         attempts: dict[str, list[object]] = {name: [] for name in self.verdicts}
         for attempt in self.attempts:
@@ -220,7 +220,7 @@ class Report:
         Raises:
             TraceError: the text is no report.
         """
-        from rvmon.verdicts.report_json import decode
+        from rvmon.verdicts.serialise import decode
 
         document, attempts = decode(text)
         entries = document.requirements.items()

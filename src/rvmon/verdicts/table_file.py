@@ -15,7 +15,7 @@ from rvmon.errors import RvmonError, TraceError, needed, not_installed, writing
 from rvmon.files import write_whole
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.report import Report
-from rvmon.verdicts.rows import VerdictRow, arrow_table, broken_rows, column_types
+from rvmon.verdicts.serialise import VerdictRow, arrow_table, broken_rows, column_types
 
 TABLE = "verdicts"
 """The name of the table in a database; the table `about` has the metadata."""

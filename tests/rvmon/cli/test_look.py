@@ -41,7 +41,7 @@ def recording(tmp_path):
 def test_each_name_has_its_kind_rate_gap_and_values(recording, says):
     told = says(0, "look", recording / "base.csv").out
     lines = {line.split()[0]: line for line in told.splitlines() if line.split()}
-    assert "400 samples in 39.9 s" in told.replace("\n", "")
+    assert "400 samples in 39.9 s" in " ".join(told.split())
     assert "real [m/s]" in lines["speed"]
     assert "gap 10.1 s" in lines["speed"]
     assert "idle, busy" in lines["mode"]

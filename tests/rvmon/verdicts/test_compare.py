@@ -3,7 +3,7 @@
 import pytest
 
 from rvmon.verdicts.compare import Change, compare
-from rvmon.verdicts.rows import VerdictRow
+from rvmon.verdicts.serialise import VerdictRow
 
 
 def rows(*verdicts, recording="a.csv", requirement="R1", error=""):

@@ -9,7 +9,7 @@ from tests.tools.hostile import hostile_names
 
 import rvmon
 from rvmon.errors import RvmonError
-from rvmon.verdicts.rows import VerdictRow, broken_rows
+from rvmon.verdicts.serialise import VerdictRow, broken_rows
 from rvmon.verdicts.table_file import read_results, refuse_format, write_results
 
 SPEC = """signal speed : real

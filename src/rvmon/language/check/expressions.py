@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from typing import ParamSpec, TypeVar, assert_never
 
 from rvmon.diagnostics import Diagnostic, Span
-from rvmon.language.check.bounds import bound_of, bounded
 from rvmon.language.check.comparisons import compared, formula_of, moved, number_of
 from rvmon.language.check.function_calls import applied
+from rvmon.language.check.moving_windows import bound_of, bounded
 from rvmon.language.check.quantities import arithmetic, closed_interval, spread, ticks_of
 from rvmon.language.check.scope import (
     EVERYWHERE,

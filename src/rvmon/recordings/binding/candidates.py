@@ -27,8 +27,7 @@ from rvmon.recordings.binding.vocabulary import (
 from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.field_meanings import UNKNOWN, Meaning, Sort, is_listed, meaning_of
 from rvmon.recordings.messages.fields import Get, arrays_with_names, getter
-from rvmon.recordings.messages.file import MessageFile
-from rvmon.recordings.messages.first_messages import MOST, Looked
+from rvmon.recordings.messages.file import MOST, Looked, MessageFile
 from rvmon.recordings.values import plain
 from rvmon.texts import shorten
 from rvmon.trace.schema import TURNS, Kind

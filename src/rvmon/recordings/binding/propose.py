@@ -19,8 +19,7 @@ from rvmon.recordings.binding.candidates import (
     ranges_of,
 )
 from rvmon.recordings.binding.rank import fitting, in_such_a_unit, is_clear, wanted_of
-from rvmon.recordings.messages.file import MessageFile
-from rvmon.recordings.messages.first_messages import Looked, names_in
+from rvmon.recordings.messages.file import Looked, MessageFile, names_in
 from rvmon.trace.schema import Kind
 from rvmon.units import base_unit, parse_unit, unit_table
 

@@ -11,8 +11,7 @@ from rvmon.errors import TraceError
 from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.field_meanings import Sort, meaning_of
 from rvmon.recordings.messages.fields import Get, arrays_with_names, field_of, getter
-from rvmon.recordings.messages.file import MessageFile
-from rvmon.recordings.messages.first_messages import Looked, names_in
+from rvmon.recordings.messages.file import Looked, MessageFile, names_in
 from rvmon.recordings.messages.topic_matching import dotted
 from rvmon.recordings.starter.observed_values import Shape, Shapes
 from rvmon.recordings.values import FALSE_WORDS, TRUE_WORDS
