@@ -190,7 +190,7 @@ def write_tables(
     folder.mkdir(parents=True, exist_ok=True)
     text = text_of(lambda printer: print_summary(summary, tables, printer))
     write_whole(folder / "table.txt", text)
-    write_whole(folder / "table.csv", tables_csv(named, key="robot"))
+    write_whole(folder / "table.csv", tables_csv(named))
     write_whole(folder / "table.tex", latex)
     write_whole(folder / "table.json", to_json(presentation.document(summary)))
 

@@ -286,8 +286,4 @@ class Checker:
 
     def illegal(self, hits: Hits) -> list[IllegalHit]:
         """Those of some hits that must not be."""
-        return [
-            IllegalHit(group.name, item.name, hit.count, hit.first or 0)
-            for coverage in self._coverages
-            for group, item, hit in illegal(hits, coverage.bin_model)
-        ]
+        return [hit for coverage in self._coverages for hit in illegal(hits, coverage.bin_model)]

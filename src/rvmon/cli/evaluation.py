@@ -25,7 +25,6 @@ from rvmon.session import Spec, load
 from rvmon.texts import shown_path
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
-from rvmon.verdicts.run_coverage import IllegalHit
 
 if TYPE_CHECKING:
     import argparse
@@ -140,10 +139,7 @@ class RecordingCoverage:
         if self._options.coverage:
             self.hits = found
         model = self._spec.coverage_model.bin_model
-        wrong = tuple(
-            IllegalHit(group.name, item.name, hit.count, hit.first or 0)
-            for group, item, hit in illegal(found, model)
-        )
+        wrong = tuple(illegal(found, model))
         return replace(report, illegal=wrong, coverage=covered_groups(found, model))
 
 

@@ -15,7 +15,7 @@ from msgspec.structs import replace
 
 from rvmon.language.checked.properties import BinKind
 from rvmon.verdicts import Verdict
-from rvmon.verdicts.run_coverage import CoveredBin, CoveredGroup
+from rvmon.verdicts.run_coverage import CoveredBin, CoveredGroup, IllegalHit
 
 if TYPE_CHECKING:
     import numpy as np
@@ -243,13 +243,13 @@ def weighted(scores: Iterable[tuple[Group, Score]]) -> float:
     return float(sum(means) / len(means)) if means else 1.0
 
 
-def illegal(hits: Hits, model: Model) -> list[tuple[Group, Item, Hit]]:
+def illegal(hits: Hits, model: Model) -> list[IllegalHit]:
     """The illegal items that were hit."""
     return [
-        (group, item, hits[group.name][item.name])
+        IllegalHit(group.name, item.name, hit.count, hit.first or 0)
         for group in model.groups.values()
         for item in group.items.values()
-        if item.kind is BinKind.ILLEGAL and count_of(hits, group.name, item.name)
+        if item.kind is BinKind.ILLEGAL and (hit := hits.get(group.name, {}).get(item.name))
     ]
 
 

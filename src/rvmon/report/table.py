@@ -56,14 +56,13 @@ def checked_text(holds: bool | None) -> str:
 _FORMULA = ("=", "+", "-", "@")
 
 
-def tables_csv(tables: Mapping[str, VerdictTable], *, key: str = "table") -> str:
+def tables_csv(tables: Mapping[str, VerdictTable]) -> str:
     """Several tables as one CSV text; names are escaped by `plain`.
 
     Bounds of intervals are shares from 0 to 1, empty for a table that shows none.
 
     Args:
         tables: by their names in the first column.
-        key: heading of the first column.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -71,7 +70,7 @@ def tables_csv(tables: Mapping[str, VerdictTable], *, key: str = "table") -> str
     if any(table.shows_intervals for table in tables.values()):
         bounds = [f"{verdict.value} {end}" for verdict in Verdict for end in ("low", "high")]
     letters = [verdict.value for verdict in Verdict]
-    writer.writerow([key, "strategy", "requirement", "tests", *letters, *bounds])
+    writer.writerow(["robot", "strategy", "requirement", "tests", *letters, *bounds])
     for name, table in tables.items():
         for group in table.groups:
             for requirement, counts in group.counts.items():

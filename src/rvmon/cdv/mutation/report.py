@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import partial
+from typing import TypeVar
 
 from rvmon.cdv.mutation.python_mutants import HELD_OUT, THIRDS, Mutant
 from rvmon.cdv.mutation.spec_mutants import SpecMutant, SpecTried, spec_scored
@@ -60,25 +61,11 @@ class MutationReport:
 
     def scores(self, suite: str) -> dict[str, Score]:
         """The score of each third, and of all."""
-        tried = self.suites[suite].tried
-        thirds = {
-            third: scored(
-                (trial for trial in tried if trial.mutant.third == third), self.equivalent
-            )
-            for third in THIRDS
-        }
-        return {**thirds, ALL: scored(tried, self.equivalent)}
+        return _by_third(self.suites[suite].tried, partial(scored, equivalent=self.equivalent))
 
     def spec_scores(self, suite: str) -> dict[str, Score]:
         """The score on mutants of the requirements; what is equivalent is proved to be."""
-        tried = self.suites[suite].spec_tried
-        thirds = {
-            third: spec_scored(
-                spec_tried for spec_tried in tried if spec_tried.mutant.third == third
-            )
-            for third in THIRDS
-        }
-        return {**thirds, ALL: spec_scored(tried)}
+        return _by_third(self.suites[suite].spec_tried, spec_scored)
 
     def spec_survivors(self, suite: str) -> list[SpecTried]:
         """The mutants of requirements that are shown, and that no run tells apart."""
@@ -155,9 +142,7 @@ class MutationReport:
             "mutants": [self._mutant(tried) for tried in self.shown(name)],
             "spec_scores": self.spec_scores(name),
             "spec_mutants": [
-                _spec_mutant(tried)
-                for tried in suite.spec_tried
-                if self.shows_held_out or tried.mutant.third != HELD_OUT
+                _spec_mutant(tried) for tried in suite.spec_tried if self._shows(tried)
             ],
         }
 
@@ -182,6 +167,16 @@ class MutationReport:
         else:
             document |= {"missing": missing(tried).value, "question": question(tried, self.reading)}
         return document
+
+
+_Tried = TypeVar("_Tried", Tried, SpecTried)
+
+
+def _by_third(
+    tried: Sequence[_Tried], score: Callable[[Iterable[_Tried]], Score]
+) -> dict[str, Score]:
+    thirds = {third: score(one for one in tried if one.mutant.third == third) for third in THIRDS}
+    return {**thirds, ALL: score(tried)}
 
 
 def killer(tried: Tried) -> str:
@@ -229,17 +224,14 @@ def print_mutation(report: MutationReport, printer: Printer, *, most: int | None
         printer: prints it.
         most: survivors of each kind that are listed; `None`: all, and each mutant that is killed.
     """
-    if any(suite.tried for suite in report.suites.values()):
-        printer.line("Mutants of the code")
-        printer.table(HEAD, [*score_rows(report)], range(2, len(HEAD)), wraps=())
-        for name, suite in report.suites.items():
+    for title, head, rows in _score_tables(report):
+        printer.line(f"Mutants of {title}")
+        printer.table(head, rows, range(2, len(head)), wraps=())
+        for name, suite in report.suites.items() if head is HEAD else ():
             printer.line(f"{name}: {_killers(suite)}.")
             for test, why in suite.left_out.items():
                 printer.line(f"  left out: {test}: {why}")
-        printer.line()
-    if any(suite.spec_tried for suite in report.suites.values()):
-        printer.line("Mutants of the requirements")
-        printer.table(SPEC_HEAD, [*spec_score_rows(report)], range(2, len(SPEC_HEAD)), wraps=())
+    printer.line()
     for name in report.suites:
         for title, blocks in _survivors(report, name):
             printer.line(f"{name}: {counted(len(blocks), 'survivor')}. {title}\n")
@@ -268,15 +260,28 @@ def _survivors(report: MutationReport, suite: str) -> Iterator[tuple[str, list[l
         yield SPEC_TITLE, blocks
 
 
-def score_rows(report: MutationReport) -> Iterator[tuple[str, ...]]:
-    """The scores of each suite, of each third and of all."""
+def _score_tables(
+    report: MutationReport,
+) -> Iterator[tuple[str, Sequence[str], list[Sequence[str]]]]:
+    """Of the code, and of the requirements, a head and the scores of each suite and third."""
+    suites = report.suites.values()
+    if any(suite.tried for suite in suites):
+        yield "the code", HEAD, [*_score_rows(report, report.scores)]
+    if any(suite.spec_tried for suite in suites):
+        rows = [(*row[:5], row[-1]) for row in _score_rows(report, report.spec_scores)]
+        yield "the requirements", SPEC_HEAD, [*rows]
+
+
+def _score_rows(
+    report: MutationReport, scores: Callable[[str], Mapping[str, Score]]
+) -> Iterator[Sequence[str]]:
     for name in report.suites:
-        for third, score in report.scores(name).items():
-            yield (
-                *(name, third, str(score.mutants), str(score.equivalent), str(score.killed)),
-                *(str(score.by_requirement), str(score.unreached)),
-                *(percent_text(part, score.rest) for part in (score.killed, score.by_requirement)),
-            )
+        for third, score in scores(name).items():
+            counts = (score.mutants, score.equivalent, score.killed)
+            more = (score.by_requirement, score.unreached)
+            parts = (score.killed, score.by_requirement)
+            shares = (percent_text(part, score.rest) for part in parts)
+            yield (name, third, *map(str, (*counts, *more)), *shares)
             name = ""
 
 
@@ -286,15 +291,6 @@ def survivor_lines(tried: Tried, report: MutationReport) -> Iterator[str]:
     yield f"  {mutant.path.name}:{mutant.line}  {mutant.identity}"
     yield from _difference(mutant.before, mutant.after)
     yield f"    {question(tried, report.reading)}"
-
-
-def spec_score_rows(report: MutationReport) -> Iterator[tuple[str, ...]]:
-    """The scores on mutants of requirements, likewise."""
-    for name in report.suites:
-        for third, score in report.spec_scores(name).items():
-            counts = (score.mutants, score.equivalent, score.killed)
-            yield name, third, *map(str, counts), percent_text(score.killed, score.rest)
-            name = ""
 
 
 def _difference(before: str, after: str) -> Iterator[str]:
@@ -346,19 +342,13 @@ ABOUT = (
 
 def mutation_page(report: MutationReport) -> str:
     """Write the page; it needs no script and nothing but itself."""
-    suites = report.suites.values()
     hidden = "" if report.shows_held_out else f"Those {HELD_OUT} are counted, and not shown."
-    code = any(suite.tried for suite in suites)
-    requirements = any(suite.spec_tried for suite in suites)
-    scores: list[tuple[str, Sequence[str], Iterable[Sequence[str]]]] = []
-    scores += [("The code", HEAD, score_rows(report))] if code else []
-    scores += [("The requirements", SPEC_HEAD, spec_score_rows(report))] if requirements else []
     return render(
         "mutation.html",
         title=f"Mutants: {report.campaign}",
         report=report,
         about=ABOUT + hidden,
-        scores=scores,
+        scores=_score_tables(report),
         titles=TITLES,
         spec_title=SPEC_TITLE,
         kills_head=KILLS_HEAD,
