@@ -265,7 +265,7 @@ def test_a_fault_in_the_robot_is_told(capsys, monkeypatch):
     monkeypatch.setitem(behaviour.BEHAVIOURS, "correct", late)
     assert main(["run", "--strategy", "model-based", "--jobs", "1"]) == 1
     told = capsys.readouterr()
-    assert re.search(r"^T43 ", told.out, re.MULTILINE)
+    assert re.search(r"^ T43 ", told.out, re.MULTILINE)
     assert re.search(r"not as expected: model-based-R1 \(correct\): T43#1 F ", told.err)
 
 
