@@ -5,12 +5,12 @@ from __future__ import annotations
 import ast
 import hashlib
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType
 
-from rvmon.cdv.mutation.python_operators import OPERATORS, Operator, Scope, Strings
+from rvmon.cdv.mutation.python_operators import Scope, Strings, changes_of
 from rvmon.cdv.system import Code
 from rvmon.errors import RvmonError
 from rvmon.texts import text_of_file
@@ -118,7 +118,6 @@ def mutants(
         raise RvmonError(f"{path}: {error.strerror}") from None
     except (SyntaxError, ValueError) as error:
         raise RvmonError(f"{path}: not Python: {error}") from None
-    chosen = {one: change for one, change in OPERATORS.items() if not operators or one in operators}
     strings = Strings(tree)
     ordinals: Counter[tuple[str, str]] = Counter()
     for name, body in _scopes(tree, "", constants):
@@ -128,7 +127,7 @@ def mutants(
             if not isinstance(node, ast.expr if is_constant else ast.expr | ast.stmt):
                 continue
             if is_constant or node.lineno in lines:
-                for kind, before, after, text in _changes(source, node, scope, chosen):
+                for kind, before, after, text in _changes(source, node, scope, operators):
                     ordinals[name, kind] += 1
                     yield Mutant(
                         path, node.lineno, kind, before, after, text, name, ordinals[name, kind]
@@ -169,21 +168,20 @@ def _executed(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def _changes(
-    source: str, node: ast.AST, scope: Scope, operators: Mapping[str, Operator]
+    source: str, node: ast.expr | ast.stmt, scope: Scope, operators: Collection[str]
 ) -> Iterator[tuple[str, str, str, str]]:
     """Kind, the code before and after, and the file after, of all changes to a node."""
-    for kind, operator in operators.items():
-        for target, text in operator(node, scope):
-            changed = _replaced(source, target, text)
-            before, after = ast.unparse(target), ast.unparse(ast.parse(text))
-            if before == after:
-                continue
-            if isinstance(target, ast.Constant | ast.Set):
-                # A constant says nothing by itself.
-                before, after = (
-                    code.splitlines()[target.lineno - 1].strip() for code in (source, changed)
-                )
-            yield kind, before, after, changed
+    for kind, target, text in changes_of(node, scope):
+        before, after = ast.unparse(target), ast.unparse(ast.parse(text))
+        if before == after or (operators and kind not in operators):
+            continue
+        changed = _replaced(source, target, text)
+        if isinstance(target, ast.Constant | ast.Set):
+            # A constant says nothing by itself.
+            before, after = (
+                code.splitlines()[target.lineno - 1].strip() for code in (source, changed)
+            )
+        yield kind, before, after, changed
 
 
 def _replaced(source: str, node: ast.expr | ast.stmt, text: str) -> str:

@@ -14,7 +14,7 @@ Sources of the operators, by the letters that the table cites:
 from __future__ import annotations
 
 import ast
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 
 _DEFINED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
@@ -101,8 +101,11 @@ class Scope:
 
     def holds_all_waits(self, node: ast.AST) -> bool:
         """Whether without a node it would be no generator any more."""
-        waits = {id(t) for t in self._nodes if isinstance(t, _WAITS)}
-        return bool(waits) and waits <= {id(t) for t in _below(node)}
+        return bool(self._waits) and self._waits <= {id(one) for one in _below(node)}
+
+    @cached_property
+    def _waits(self) -> set[int]:
+        return {id(one) for one in self._nodes if isinstance(one, _WAITS)}
 
     def is_top_level(self, node: ast.stmt) -> bool:
         """Whether it is one of its statements, and not part of another."""
@@ -128,11 +131,8 @@ def _below(node: ast.AST) -> Iterator[ast.AST]:
             yield from _below(child)
 
 
-Change = tuple["ast.expr | ast.stmt", str]
-"""The node to replace, and the code to put there."""
-
-Operator = Callable[[ast.AST, "Scope"], Iterator[Change]]
-"""A kind of change: those of a node."""
+Change = tuple[str, "ast.expr | ast.stmt", str]
+"""The operator, the node to replace, and the code to put there."""
 
 
 _COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
@@ -164,158 +164,95 @@ def _bracketed(new: ast.expr) -> str:
     return f"({ast.unparse(new)})"
 
 
-def _comparison(node: ast.AST, _: Scope) -> Iterator[Change]:
+def changes_of(node: ast.expr | ast.stmt, scope: Scope) -> Iterator[Change]:
+    """All changes of a node, in the order of `OPERATORS`."""
     match node:
         case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _COMPARISONS:
-            flipped = _COMPARISONS[type(op)]()
-            yield node, _bracketed(ast.Compare(left, [flipped], [right]))
-
-
-def _and_or(node: ast.AST, _: Scope) -> Iterator[Change]:
-    match node:
+            flipped = ast.Compare(left, [_COMPARISONS[type(op)]()], [right])
+            yield "comparison", node, _bracketed(flipped)
         case ast.BoolOp(op=op, values=values):
             other = ast.Or() if isinstance(op, ast.And) else ast.And()
-            yield node, _bracketed(ast.BoolOp(other, values))
-
-
-def _dropped_operand(node: ast.AST, _: Scope) -> Iterator[Change]:
-    match node:
-        case ast.BoolOp(op=op, values=values):
+            yield "and/or", node, _bracketed(ast.BoolOp(other, values))
             for index in range(len(values)):
                 kept = values[:index] + values[index + 1 :]
-                yield node, _bracketed(kept[0] if len(kept) == 1 else ast.BoolOp(op, kept))
-
-
-def _dropped_not(node: ast.AST, _: Scope) -> Iterator[Change]:
-    match node:
+                left = kept[0] if len(kept) == 1 else ast.BoolOp(op, kept)
+                yield "dropped operand", node, _bracketed(left)
         case ast.UnaryOp(op=ast.Not(), operand=operand):
-            yield node, _bracketed(operand)
-
-
-def _off_by_one(node: ast.AST, _: Scope) -> Iterator[Change]:
-    match node:
-        case ast.BinOp(left=left, right=ast.Constant(value=1)):
-            yield node, _bracketed(left)
-
-
-def _operator(node: ast.AST, _: Scope) -> Iterator[Change]:
-    match node:
-        case ast.BinOp(left=left, op=op, right=right) if type(op) in _ARITHMETIC:
-            yield node, _bracketed(ast.BinOp(left, _ARITHMETIC[type(op)](), right))
-
-
-def _constant(node: ast.AST, _: Scope) -> Iterator[Change]:
-    match node:
+            yield "dropped not", node, _bracketed(operand)
+        case ast.BinOp(left=left, op=op, right=right):
+            if isinstance(right, ast.Constant) and right.value == 1:
+                yield "off by one", node, _bracketed(left)
+            if type(op) in _ARITHMETIC:
+                yield "operator", node, _bracketed(ast.BinOp(left, _ARITHMETIC[type(op)](), right))
         case ast.Constant(value=bool() as value):
-            yield node, f"({not value})"
+            yield "constant", node, f"({not value})"
         case ast.Constant(value=int() as value):
-            yield node, f"({value + 1})"
-
-
-def _number(node: ast.AST, _: Scope) -> Iterator[Change]:
-    match node:
-        case ast.Constant(value=int() as value) if not isinstance(value, bool):
-            yield node, f"({value - 1})"
+            yield "constant", node, f"({value + 1})"
+            yield "number", node, f"({value - 1})"
         case ast.Constant(value=float() as value):
             step = abs(value) / 10 or 0.1
-            yield node, f"({value + step:.12g})"
-            yield node, f"({value - step:.12g})" if value else "1.0"
-
-
-def _string(node: ast.AST, scope: Scope) -> Iterator[Change]:
-    match node:
+            yield "number", node, f"({value + step:.12g})"
+            yield "number", node, f"({value - step:.12g})" if value else "1.0"
         case ast.Constant(value=str()):
-            for other in scope.alternatives(node):
-                yield node, repr(other)
+            for text in scope.alternatives(node):
+                yield "string", node, repr(text)
         case ast.Set(elts=elements):
-            for other in scope.further(elements):
-                yield node, f"{ast.unparse(node)[:-1]}, {other!r}}}"
-
-
-def _swapped_branches(node: ast.AST, _: Scope) -> Iterator[Change]:
-    match node:
+            for text in scope.further(elements):
+                yield "string", node, f"{ast.unparse(node)[:-1]}, {text!r}}}"
         case ast.IfExp(test=test, body=body, orelse=orelse):
-            yield node, _bracketed(ast.IfExp(test, orelse, body))
-
-
-def _negated_condition(node: ast.AST, _: Scope) -> Iterator[Change]:
-    match node:
-        case ast.If(test=test) | ast.While(test=test):
-            yield test, _bracketed(ast.UnaryOp(ast.Not(), test))
-
-
-def _function(node: ast.AST, _: Scope) -> Iterator[Change]:
-    match node:
+            yield "swapped branches", node, _bracketed(ast.IfExp(test, orelse, body))
         case ast.Call(func=ast.Name(id=name), args=args, keywords=keywords) if name in _FUNCTIONS:
-            yield node, _bracketed(ast.Call(ast.Name(_FUNCTIONS[name]), args, keywords))
+            call = ast.Call(ast.Name(_FUNCTIONS[name]), args, keywords)
+            yield "function", node, _bracketed(call)
+        case ast.stmt():
+            yield from _changes_of_statement(node, scope)
 
 
-def _dropped_statement(node: ast.AST, _: Scope) -> Iterator[Change]:
+def _changes_of_statement(node: ast.stmt, scope: Scope) -> Iterator[Change]:
+    if isinstance(node, ast.If | ast.While):
+        yield "negated condition", node.test, _bracketed(ast.UnaryOp(ast.Not(), node.test))
+    is_needed = scope.holds_all_waits(node)
     match node:
         case ast.Expr(value=ast.Call()) | ast.AugAssign() | ast.Break() | ast.Continue():
-            yield node, "pass"
-
-
-def _dropped_assignment(node: ast.AST, scope: Scope) -> Iterator[Change]:
-    match node:
+            yield "dropped statement", node, "pass"
         case ast.Assign(targets=[ast.Attribute() | ast.Subscript()]):
-            yield node, "pass"
+            yield "dropped assignment", node, "pass"
         case ast.Assign(targets=[ast.Name(id=name)]) if scope.bound_before(name, node):
-            yield node, "pass"
-
-
-def _dropped_block(node: ast.AST, scope: Scope) -> Iterator[Change]:
-    match node:
-        case ast.If() | ast.For() | ast.While() if not scope.holds_all_waits(node):
-            yield node, "pass"
-        case ast.Expr(value=ast.YieldFrom()) if not scope.holds_all_waits(node):
-            yield node, "pass"
-
-
-def _dropped_return(node: ast.AST, scope: Scope) -> Iterator[Change]:
-    match node:
+            yield "dropped assignment", node, "pass"
+        case ast.If() | ast.For() | ast.While() | ast.Expr(value=ast.YieldFrom()) if not is_needed:
+            yield "dropped block", node, "pass"
         case ast.Return() if not scope.is_top_level(node):
-            yield node, "pass"
-
-
-def _early_return(node: ast.AST, scope: Scope) -> Iterator[Change]:
-    if isinstance(node, ast.stmt) and scope.is_step(node) and not scope.holds_all_waits(node):
+            yield "dropped return", node, "pass"
+    if scope.is_step(node) and not is_needed:
         for value in scope.returned()[-1:]:
-            yield node, f"return {value}".strip()
-
-
-def _doubled_statement(node: ast.AST, _: Scope) -> Iterator[Change]:
+            yield "early return", node, f"return {value}".strip()
     match node:
         case ast.Expr(value=ast.Call()):
-            yield node, f"{ast.unparse(node)}; {ast.unparse(node)}"
-
-
-def _wait(node: ast.AST, _: Scope) -> Iterator[Change]:
-    match node:
+            yield "doubled statement", node, f"{ast.unparse(node)}; {ast.unparse(node)}"
         case ast.Expr(value=ast.Yield(value=ast.expr() as wait)):
-            yield wait, "0.0"
-            yield wait, f"2 * ({ast.unparse(wait)})"
+            yield "wait", wait, "0.0"
+            yield "wait", wait, f"2 * ({ast.unparse(wait)})"
 
 
-OPERATORS: Mapping[str, Operator] = {
-    "comparison": _comparison,  # ROR, relational operator replacement (KO, OLRUZ)
-    "and/or": _and_or,  # LCR, logical connector replacement (KO, OLRUZ)
-    "dropped operand": _dropped_operand,  # ODL, operator deletion (DOA)
-    "dropped not": _dropped_not,  # COD, conditional operator deletion (DH)
-    "off by one": _off_by_one,  # AOD, arithmetic operator deletion (DH)
-    "operator": _operator,  # AOR, arithmetic operator replacement (KO, OLRUZ)
-    "constant": _constant,  # CRP, constant replacement (KO)
-    "number": _number,  # CRP, constant replacement (KO)
-    "string": _string,  # CRP, constant replacement (KO)
-    "swapped branches": _swapped_branches,  # COI, conditional operator insertion (DH)
-    "negated condition": _negated_condition,  # COI, conditional operator insertion (DH)
-    "function": _function,
-    "dropped statement": _dropped_statement,  # SDL, statement deletion (KO, DOL)
-    "dropped assignment": _dropped_assignment,  # SDL, statement deletion (KO, DOL)
-    "dropped block": _dropped_block,  # SDL, statement deletion (KO, DOL)
-    "dropped return": _dropped_return,  # SDL, statement deletion (KO, DOL)
-    "early return": _early_return,  # RSR, return statement replacement (KO)
-    "doubled statement": _doubled_statement,
-    "wait": _wait,  # MXT, a wait's time is modified (BCD)
-}
+OPERATORS = (
+    "comparison",  # ROR, relational operator replacement (KO, OLRUZ)
+    "and/or",  # LCR, logical connector replacement (KO, OLRUZ)
+    "dropped operand",  # ODL, operator deletion (DOA)
+    "dropped not",  # COD, conditional operator deletion (DH)
+    "off by one",  # AOD, arithmetic operator deletion (DH)
+    "operator",  # AOR, arithmetic operator replacement (KO, OLRUZ)
+    "constant",  # CRP, constant replacement (KO)
+    "number",  # CRP, constant replacement (KO)
+    "string",  # CRP, constant replacement (KO)
+    "swapped branches",  # COI, conditional operator insertion (DH)
+    "negated condition",  # COI, conditional operator insertion (DH)
+    "function",
+    "dropped statement",  # SDL, statement deletion (KO, DOL)
+    "dropped assignment",  # SDL, statement deletion (KO, DOL)
+    "dropped block",  # SDL, statement deletion (KO, DOL)
+    "dropped return",  # SDL, statement deletion (KO, DOL)
+    "early return",  # RSR, return statement replacement (KO)
+    "doubled statement",
+    "wait",  # MXT, a wait's time is modified (BCD)
+)
 """In the order in which they are shown."""

@@ -10,7 +10,7 @@ Sources, by the letters that the table cites:
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from msgspec import structs
@@ -70,49 +70,37 @@ _BOUNDARIES = {
 }
 
 
-def _connective(formula: Formula) -> Iterator[Formula]:
-    match formula:
-        case Binary(op=op) if op in _CONNECTIVES:
-            yield structs.replace(formula, op=_CONNECTIVES[op])
-
-
-def _dropped_operand(formula: Formula) -> Iterator[Formula]:
-    match formula:
-        case Binary(op=op, left=left, right=right) if op in _CONNECTIVES:
-            yield left
-            yield right
-
-
-def _dropped_not(formula: Formula) -> Iterator[Formula]:
-    match formula:
-        case Unary(op=UnaryOp.NOT, operand=operand):
-            yield operand
-
-
-def _negated(formula: Formula) -> Iterator[Formula]:
-    match formula:
-        case SignalAtom() | EventAtom() | ProbeAtom():
-            yield Unary(UnaryOp.NOT, formula)
-
-
-def _comparison(formula: Formula) -> Iterator[Formula]:
-    match formula:
-        case Compare(op=op, right=Literal(value=bool() | str())) if op not in _EQUALITIES:
-            return
-        case Compare(op=op):
-            yield structs.replace(formula, op=_BOUNDARIES[op])
-
-
 _EQUALITIES = (CompareOp.EQ, CompareOp.NE)
 
 
-def _threshold(formula: Formula) -> Iterator[Formula]:
+def _own_changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
+    """The changes of a formula's own operator, in the order of `SPEC_OPERATORS`."""
     match formula:
-        case Compare(left=left, right=right):
-            for other in _moved(right):
-                yield structs.replace(formula, right=other)
-            for other in _moved(left):
-                yield structs.replace(formula, left=other)
+        case Binary(op=op, left=left, right=right):
+            if op in _CONNECTIVES:
+                yield "connective", structs.replace(formula, op=_CONNECTIVES[op])
+                yield "dropped operand", left
+                yield "dropped operand", right
+            yield from (("bound", other) for other in _bounds_moved(formula))
+        case Unary(op=UnaryOp.NOT, operand=operand):
+            yield "dropped not", operand
+        case Unary(op=op, interval=interval):
+            if op in _TEMPORAL:
+                yield "temporal operator", structs.replace(formula, op=_TEMPORAL[op])
+            yield from (("bound", other) for other in _bounds_moved(formula))
+            if op in _TEMPORAL and interval is not None and interval.high is not None:
+                unbounded = structs.replace(formula, interval=Interval(interval.low))
+                yield "no deadline", unbounded
+        case SignalAtom() | EventAtom() | ProbeAtom():
+            yield "negated", Unary(UnaryOp.NOT, formula)
+        case Compare(op=op, left=left, right=right):
+            is_label = isinstance(right, Literal) and isinstance(right.value, bool | str)
+            if not is_label or op in _EQUALITIES:
+                yield "comparison", structs.replace(formula, op=_BOUNDARIES[op])
+            for moved in _moved(right):
+                yield "threshold", structs.replace(formula, right=moved)
+            for moved in _moved(left):
+                yield "threshold", structs.replace(formula, left=moved)
 
 
 def _moved(numeric: Numeric) -> Iterator[Numeric]:
@@ -128,50 +116,36 @@ def _moved(numeric: Numeric) -> Iterator[Numeric]:
             yield replace(numeric, value=float(f"{value - step:.12g}"))
 
 
-def _temporal(formula: Formula) -> Iterator[Formula]:
-    match formula:
-        case Unary(op=op) if op in _TEMPORAL:
-            yield structs.replace(formula, op=_TEMPORAL[op])
-
-
-def _bound(formula: Formula) -> Iterator[Formula]:
+def _bounds_moved(formula: Unary | Binary) -> Iterator[Formula]:
     """One unit more and less: of that in which the bound is a whole number."""
-    match formula:
-        case (
-            Unary(interval=Interval(low=low, high=high))
-            | Binary(interval=Interval(low=low, high=high))
-        ):
-            if high is not None:
-                for other in (high + _unit(high), high - _unit(high)):
-                    if other >= low:
-                        yield structs.replace(formula, interval=Interval(low, other))
-            if low:
-                for other in (low + _unit(low), low - _unit(low)):
-                    if high is None or other <= high:
-                        yield structs.replace(formula, interval=Interval(other, high))
+    if formula.interval is None:
+        return
+    low, high = formula.interval.low, formula.interval.high
+    if high is not None:
+        for other in (high + _unit(high), high - _unit(high)):
+            if other >= low:
+                yield structs.replace(formula, interval=Interval(low, other))
+    if low:
+        for other in (low + _unit(low), low - _unit(low)):
+            if high is None or other <= high:
+                yield structs.replace(formula, interval=Interval(other, high))
 
 
 def _unit(ticks: int) -> int:
     return TICKS_PER_UNIT[format_duration(ticks).split()[1]]
 
 
-def _no_deadline(formula: Formula) -> Iterator[Formula]:
-    match formula:
-        case Unary(op=op, interval=Interval(low=low, high=int())) if op in _TEMPORAL:
-            yield structs.replace(formula, interval=Interval(low))
-
-
-SPEC_OPERATORS: Mapping[str, Callable[[Formula], Iterator[Formula]]] = {
-    "connective": _connective,  # LRO, logical operator reference (BOY)
-    "dropped operand": _dropped_operand,  # MCO, missing condition (BOY)
-    "dropped not": _dropped_not,  # ENO, expression negation (BOY)
-    "negated": _negated,  # SNO, simple expression negation (BOY)
-    "comparison": _comparison,  # RRO, relational operator reference (BOY)
-    "threshold": _threshold,
-    "temporal operator": _temporal,
-    "bound": _bound,  # change of a guard's constant (ALN)
-    "no deadline": _no_deadline,  # guard dropped (ALN)
-}
+SPEC_OPERATORS = (
+    "connective",  # LRO, logical operator reference (BOY)
+    "dropped operand",  # MCO, missing condition (BOY)
+    "dropped not",  # ENO, expression negation (BOY)
+    "negated",  # SNO, simple expression negation (BOY)
+    "comparison",  # RRO, relational operator reference (BOY)
+    "threshold",
+    "temporal operator",
+    "bound",  # change of a guard's constant (ALN)
+    "no deadline",  # guard dropped (ALN)
+)
 """In the order in which they are applied."""
 
 
@@ -183,9 +157,7 @@ def changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
     >>> [format_formula(changed) for name, changed in changes(within) if name == "bound"]
     ['within 4 s released', 'within 2 s released']
     """
-    for name, change in SPEC_OPERATORS.items():
-        for changed in change(formula):
-            yield name, changed
+    yield from _own_changes(formula)
     match formula:
         case Unary(operand=operand):
             for name, changed in changes(operand):
