@@ -186,7 +186,7 @@ class SpecCoverage:
         Raises:
             UnknownNameError: `settle` is neither `now` nor `next`.
         """
-        return CoverageMonitor(_Watched(self, requirements=requirements), settle, sources)
+        return CoverageMonitor(self, settle, sources, requirements=requirements)
 
     def of(
         self, recording: Recording, end: int | None = None, *, requirements: bool = True
@@ -212,18 +212,35 @@ class SpecCoverage:
 
     def run(self, source: Source, *, requirements: bool = True) -> CoverageRun:
         """A run over the pieces of a recording, which are given to it; `requirements`: as above."""
-        return CoverageRun(_Watched(self, requirements=requirements), source)
+        return CoverageRun(self, source, requirements=requirements)
+
+    def planned(self, *, requirements: bool) -> Mapping[CompiledSpec, PlannedCore]:
+        """The plans of the runs; the strictest in validating samples first, the bins last.
+
+        So a sample that the first run accepts is accepted by all.
+        """
+        plans = dict(self.requirements.planned) if requirements else {}
+        if self.bins.groups:
+            plans[CompiledSpec(self.spec)] = self.bins.planned
+        return plans
+
+    def hits(self, runs: Sequence[native.Monitor], *, requirements: bool) -> Hits:
+        """The hits of runs: of bins so far, of requirements if the runs are finished."""
+        hits = dict(self.bins.hits(runs[-1].hits())) if self.bins.groups else {}
+        if requirements:
+            own = runs[: len(self.requirements.planned)]
+            hits |= {name: items for name, items in self.requirements.hits(own) if items}
+        return hits
 
 
 class CoverageRun:
     """Measures the coverage of a recording, piece by piece; made by `SpecCoverage.run`."""
 
-    def __init__(self, watched: _Watched, source: Source) -> None:
-        spec = watched.spec
-        self._watched = watched
-        self._runs = [
-            RecordingRun(spec, core, source, finds=False) for core in watched.planned.values()
-        ]
+    def __init__(self, model: SpecCoverage, source: Source, *, requirements: bool) -> None:
+        self._model = model
+        self._requirements = requirements
+        plans = model.planned(requirements=requirements).values()
+        self._runs = [RecordingRun(model.spec, core, source, finds=False) for core in plans]
 
     def take(self, piece: Batch | Sample) -> None:
         """Take the next piece; none lies behind the end."""
@@ -234,41 +251,8 @@ class CoverageRun:
         """The hits, where the recording ends."""
         for run in self._runs:
             run.finish()
-        return self._watched.hits([run.core for run in self._runs])
-
-
-class _Watched:
-    """The parts of a coverage model that are watched in a run."""
-
-    def __init__(self, model: SpecCoverage, *, requirements: bool) -> None:
-        self.spec = model.spec
-        self._bins = model.bins
-        self._requirements = model.requirements if requirements else None
-
-    @cached_property
-    def planned(self) -> Mapping[CompiledSpec, PlannedCore]:
-        """The plans of the runs; the strictest in validating samples first, the bins last.
-
-        So a sample that the first run accepts is accepted by all.
-        """
-        plans = {} if self._requirements is None else dict(self._requirements.planned)
-        if self._bins.groups:
-            plans[CompiledSpec(self._bins.spec)] = self._bins.planned
-        return plans
-
-    def bin_hits(self, runs: Sequence[native.Monitor]) -> Hits:
-        """The bins and combinations hit so far."""
-        return self._bins.hits(runs[-1].hits()) if self._bins.groups else {}
-
-    def hits(self, runs: Sequence[native.Monitor]) -> Hits:
-        """All hits of finished runs."""
-        hits = dict(self.bin_hits(runs))
-        if self._requirements is not None:
-            requirement_runs = runs[: len(self._requirements.planned)]
-            hits |= {
-                name: items for name, items in self._requirements.hits(requirement_runs) if items
-            }
-        return hits
+        cores = [run.core for run in self._runs]
+        return self._model.hits(cores, requirements=self._requirements)
 
 
 class CoverageMonitor:
@@ -278,12 +262,20 @@ class CoverageMonitor:
     in `_ns`.
     """
 
-    def __init__(self, watched: _Watched, settle: str, sources: frozenset[str] | None) -> None:
+    def __init__(
+        self,
+        model: SpecCoverage,
+        settle: str,
+        sources: frozenset[str] | None,
+        *,
+        requirements: bool,
+    ) -> None:
         refuse_settle(settle)  # also where there is nothing to watch, and so no run that would
-        self._watched = watched
+        self._model = model
+        self._requirements = requirements
         self._runs = [
             _CoverageRun(planned, compiled, Options(settle, sources, None))
-            for compiled, planned in watched.planned.items()
+            for compiled, planned in model.planned(requirements=requirements).items()
         ]
 
     def step(self, t: float, values: Mapping[str, Any]) -> None:
@@ -313,7 +305,7 @@ class CoverageMonitor:
     @property
     def hits(self) -> Hits:
         """The bins and combinations hit so far; hits of requirements are known at the end."""
-        return self._watched.bin_hits([run.core for run in self._runs])
+        return self._model.hits([run.core for run in self._runs], requirements=False)
 
     def finish(self, t: float | None = None) -> Hits:
         """End the run at `t` seconds, if that is later than everything so far; see `finish_ns`."""
@@ -323,4 +315,5 @@ class CoverageMonitor:
         """End the run, at `t_ns` if that is later than everything so far; returns all hits."""
         for run in self._runs:
             run.finish_ns(t_ns)
-        return self._watched.hits([run.core for run in self._runs])
+        cores = [run.core for run in self._runs]
+        return self._model.hits(cores, requirements=self._requirements)
