@@ -204,7 +204,7 @@ class Spec:
             robustness: whether to compute the robustness of each attempt.
         """
         if robustness:
-            from rvmon.monitor.measure import judge_and_measure as judge
+            from rvmon.monitor.evaluate_robustness import judge_and_measure as judge
         else:
             from rvmon.monitor.evaluate import judge_source as judge
 
@@ -287,7 +287,7 @@ class Spec:
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
-        from rvmon.monitor.measure import margins_of
+        from rvmon.monitor.evaluate_robustness import margins_of
 
         given, asked = self._reading(**reading), requirements_asked(self.checked, only)
         end = None if until is None else ticks_of_seconds(until)

@@ -41,7 +41,7 @@ from rvmon.models.uppaal_xml import uppaal_xml
 from rvmon.report.html import component, data, e, table_html
 from rvmon.report.junit import junit_xml
 from rvmon.report.run_text import print_reports
-from rvmon.report.table import RunGroup, VerdictTable, table_latex, tables_csv
+from rvmon.report.verdict_table import RunGroup, VerdictTable, table_latex, tables_csv
 from rvmon.texts import quoted, shown, shown_json, shown_line
 from rvmon.trace.sample import Health, HealthKind
 from rvmon.verdicts import Verdict

@@ -24,7 +24,7 @@ from rvmon.cdv.tables import RobotTest
 from rvmon.confidence import interval_text
 from rvmon.execute import parallel
 from rvmon.report.html import component
-from rvmon.report.table import checked_text
+from rvmon.report.verdict_table import checked_text
 
 if TYPE_CHECKING:
     from rvmon.models.conform import Conformance

@@ -18,7 +18,7 @@ from rvmon.cdv import tables
 from rvmon.cdv.campaign_summary import CampaignSummary
 from rvmon.cdv.tables import RobotTables
 from rvmon.files import write_whole
-from rvmon.report.table import RunGroup, VerdictTable
+from rvmon.report.verdict_table import RunGroup, VerdictTable
 from rvmon.verdicts import Verdict
 
 SOURCE = "Araiza-Illan et al., Coverage-Driven Verification, HVC 2015, Table 1"

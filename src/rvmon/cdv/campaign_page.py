@@ -15,7 +15,7 @@ from rvmon.cdv.coverage import CoverageFigures
 from rvmon.cdv.tables import INTERVALS, Presentation, RobotTables
 from rvmon.coverage import Ending
 from rvmon.report.html import render, table_html
-from rvmon.report.table import VerdictTable
+from rvmon.report.verdict_table import VerdictTable
 from rvmon.verdicts import Verdict
 
 Cell = tuple[str, str, str, Verdict]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rvmon.cdv.sequential_test import Decision
 from rvmon.cdv.test import Test
 from rvmon.coverage import Ending, Hits
-from rvmon.report.table import Counts
+from rvmon.report.verdict_table import Counts
 from rvmon.texts import percent
 from rvmon.verdicts import Verdict
 

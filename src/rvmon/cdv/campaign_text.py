@@ -26,7 +26,7 @@ from rvmon.cdv.tables import (
 from rvmon.cdv.test import save
 from rvmon.files import write_whole
 from rvmon.report.printer import Cell, Printer, text_of
-from rvmon.report.table import print_table, table_latex, tables_csv
+from rvmon.report.verdict_table import print_table, table_latex, tables_csv
 from rvmon.texts import percent_text
 from rvmon.verdicts import Verdict
 

@@ -26,7 +26,7 @@ from rvmon.cdv.sequential_test import decide
 from rvmon.coverage import STATES, TRANSITIONS, Ending, Group, model_of, without
 from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import RunShare
-from rvmon.report.table import Counts
+from rvmon.report.verdict_table import Counts
 from rvmon.session import Spec
 from rvmon.verdicts import Verdict
 

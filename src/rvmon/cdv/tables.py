@@ -22,7 +22,7 @@ from rvmon.cdv.test import Test
 from rvmon.confidence import CONFIDENCE, interval
 from rvmon.coverage import Ending
 from rvmon.report.html import component
-from rvmon.report.table import Counts, RunGroup, VerdictTable
+from rvmon.report.verdict_table import Counts, RunGroup, VerdictTable
 from rvmon.texts import percent_text
 
 LEGEND = "Number of tests: P passed, F failed, NT not triggered, I inconclusive."

@@ -68,7 +68,7 @@ def _earlier(arguments: argparse.Namespace, coverage: Coverage) -> Coverage:
 
 
 def _campaign(coverage: Coverage, name: str) -> Coverage:
-    from rvmon.coverage.questions import only
+    from rvmon.coverage.analysis import only
 
     known = coverage.campaigns
     if name not in known:

@@ -11,7 +11,7 @@ from msgspec import Struct
 from numpy.typing import NDArray
 
 from rvmon.coverage import Coverage
-from rvmon.coverage.questions import Answers, Step
+from rvmon.coverage.analysis import Answers, Step
 
 MOST_NODES = 20_000
 """The most nodes of the search tree, about a second's worth."""

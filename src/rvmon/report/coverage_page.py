@@ -12,11 +12,11 @@ from itertools import product
 from markupsafe import Markup
 
 from rvmon.coverage import Group, Item, TestRecord, combination
-from rvmon.coverage.questions import Step
+from rvmon.coverage.analysis import Step
 from rvmon.language.checked.properties import BinKind
 from rvmon.report.coverage_summary import LISTED, Summary, cell_look, is_grid, strategy_name
 from rvmon.report.html import Child, e, render, table_html
-from rvmon.report.table import VerdictTable
+from rvmon.report.verdict_table import VerdictTable
 from rvmon.texts import counted, share_text
 from rvmon.verdicts import Verdict
 

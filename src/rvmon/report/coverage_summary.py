@@ -12,12 +12,12 @@ import numpy as np
 from msgspec.structs import asdict
 
 from rvmon.coverage import UNKNOWN, Coverage, Ending, Group, Hit, Hits, Item, TestRecord
+from rvmon.coverage.analysis import Answers, Comparison, Step, compare
 from rvmon.coverage.holes import Hole, hole_of, nearest_tests
-from rvmon.coverage.questions import Answers, Comparison, Step, compare
 from rvmon.coverage.ranking import Smallest, fewest, ranking
 from rvmon.language.checked.properties import BinKind
 from rvmon.language.rules.requirements import MOST_COMBINATIONS
-from rvmon.report.table import RunGroup, VerdictTable
+from rvmon.report.verdict_table import RunGroup, VerdictTable
 from rvmon.texts import counted
 from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from itertools import product
 
 from rvmon.coverage import Group, combination
-from rvmon.coverage.questions import Comparison
+from rvmon.coverage.analysis import Comparison
 from rvmon.language.checked.properties import BinKind
 from rvmon.report.coverage_summary import Summary, cell_look, is_grid, name_of, not_fine
 from rvmon.report.printer import Cell, Piece, Printer
-from rvmon.report.table import print_table
+from rvmon.report.verdict_table import print_table
 from rvmon.report.wording import first_of, wrapped
 from rvmon.texts import counted, percent_text, share_text
 from rvmon.verdicts import Verdict

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from rvmon.confidence import interval_text
-from rvmon.report.table import Counts, VerdictTable, checked_text
+from rvmon.report.verdict_table import Counts, VerdictTable, checked_text
 from rvmon.report.wording import MARKS, verdict_colours
 from rvmon.texts import counted, percent_text, share_text, shown
 from rvmon.verdicts import Verdict

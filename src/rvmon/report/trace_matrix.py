@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.report.html import render
-from rvmon.report.table import plain
+from rvmon.report.verdict_table import plain
 from rvmon.report.wording import MARKS, in_short
 from rvmon.verdicts import Verdict, fold
 from rvmon.verdicts.serialise import VerdictRow

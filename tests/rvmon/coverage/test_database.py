@@ -16,8 +16,8 @@ from rvmon.coverage import (
     group_of,
     model_of,
 )
+from rvmon.coverage.analysis import Answers
 from rvmon.coverage.database import Database, read
-from rvmon.coverage.questions import Answers
 from rvmon.errors import CoverageError
 from rvmon.language.checked.properties import BinKind
 from rvmon.verdicts import Verdict

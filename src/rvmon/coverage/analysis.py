@@ -1,4 +1,4 @@
-"""Answers about coverage: hits, holes, the contribution of each test, comparisons."""
+"""Analysis of coverage: hits, holes, the contribution of each test, comparisons."""
 
 from __future__ import annotations
 

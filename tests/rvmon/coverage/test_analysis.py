@@ -8,8 +8,8 @@ from tests.tools.covered import fill
 
 from rvmon import coverage as by_run
 from rvmon.coverage import Hit, TestRecord
+from rvmon.coverage.analysis import Answers
 from rvmon.coverage.database import Database
-from rvmon.coverage.questions import Answers
 from rvmon.coverage.ranking import ranking
 
 

@@ -7,7 +7,14 @@ from msgspec.structs import replace
 
 from rvmon.report.html import table_html
 from rvmon.report.printer import Printer
-from rvmon.report.table import RunGroup, VerdictTable, escape, print_table, table_latex, tables_csv
+from rvmon.report.verdict_table import (
+    RunGroup,
+    VerdictTable,
+    escape,
+    print_table,
+    table_latex,
+    tables_csv,
+)
 from rvmon.report.wording import MARKS
 from rvmon.verdicts import Verdict
 
