@@ -1,4 +1,4 @@
-"""Formulas of the common fragment in each peer's own language: a table, and one walk.
+"""Formulas of the common fragment in each peer's own language: `dialects.toml`, and one walk.
 
 A translation keeps the truth at every tick: what a peer reads otherwise than SEMANTICS 2 is put to
 it in other words, and what it cannot say is refused. Bounds are in ticks, the peer's unit of time
@@ -7,8 +7,10 @@ is one tick; a proposition is a column of the trace (`spelling`), `true` a colum
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+import tomllib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, fields
+from pathlib import Path
 
 from msgspec import structs
 from tests.tools.common_fragment import EVER, UntranslatableError, both, either, to_core
@@ -55,13 +57,13 @@ class Dialect:
     weakened: bool = False
 
 
-def translate(formula: Formula, dialect: Dialect) -> str:
-    """The formula as text of the dialect.
+def translate(formula: Formula, dialect: str) -> str:
+    """The formula as text of a dialect of `dialects.toml`.
 
     Raises:
         UntranslatableError: the peer cannot say it.
     """
-    return _say(to_core(formula), dialect)
+    return _say(to_core(formula), DIALECTS[dialect])
 
 
 def spelling(name: str) -> str:
@@ -131,83 +133,20 @@ def _opened(formula: Unary | Binary, window: Interval) -> Formula:
     return both(Unary(always, formula.left, before), Unary(eventually, inner, at))
 
 
-Operators = Mapping[UnaryOp | BinaryOp, str]
+def _dialects() -> Iterator[tuple[str, Dialect]]:
+    """Those of `dialects.toml`."""
+    tables = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
+    own = {one.name for one in fields(Dialect)}
+    for key, table in tables.items():
+        table |= {**tables.get(table.pop("like", ""), {}), **table}
+        if "name" in table:
+            words = {word.upper(): text for word, text in table.items() if word not in own}
+            operators = {
+                (UnaryOp if word in UnaryOp.__members__ else BinaryOp)[word]: text
+                for word, text in words.items()
+            }
+            told = {name: one for name, one in table.items() if name in own}
+            yield key, Dialect(operators=operators, **told)
 
-_WORDS: Operators = {
-    UnaryOp.NOT: "(not({0}))",
-    BinaryOp.AND: "(({0}) and ({1}))",
-    BinaryOp.OR: "(({0}) or ({1}))",
-}
-_PAST: Operators = {
-    UnaryOp.ONCE: "(once{bound}({0}))",
-    UnaryOp.HISTORICALLY: "(historically{bound}({0}))",
-    BinaryOp.SINCE: "(({0}) since{bound} ({1}))",
-}
-_FUTURE: Operators = {
-    UnaryOp.EVENTUALLY: "(eventually{bound}({0}))",
-    UnaryOp.ALWAYS: "(always{bound}({0}))",
-    BinaryOp.UNTIL: "(({0}) until{bound} ({1}))",
-}
-_BY_LETTERS: Operators = {
-    UnaryOp.NOT: "(!({0}))",
-    UnaryOp.EVENTUALLY: "(F{bound}({0}))",
-    UnaryOp.ALWAYS: "(G{bound}({0}))",
-    BinaryOp.UNTIL: "(({0}) U{bound} ({1}))",
-}
 
-REELAY_DISCRETE = Dialect(
-    "reelay, discrete",
-    {**_WORDS, **_PAST, UnaryOp.PREVIOUS: "(pre({0}))"},
-    proposition="{{{}}}",
-    comparison="{{{} {} {}}}",
-    endless="",
-    point=False,
-)
-REELAY_DENSE = replace(
-    REELAY_DISCRETE,
-    name="reelay, dense",
-    operators={**_WORDS, **_PAST},
-    split=True,
-    weakened=True,
-)
-RTAMT_DISCRETE = Dialect(
-    "rtamt, discrete",
-    {
-        **_WORDS,
-        **_PAST,
-        **_FUTURE,
-        UnaryOp.NEXT: "(s_next({0}))",
-        UnaryOp.PREVIOUS: "(s_prev({0}))",
-    },
-)
-RTAMT_DENSE = Dialect("rtamt, dense", {**_WORDS, **_PAST, **_FUTURE}, split=True, weakened=True)
-MSTLO = Dialect(
-    "mstlo",
-    {**_WORDS, **_BY_LETTERS},
-    bound="[{}, {}]",
-    ever=False,
-    split=True,
-    weakened=True,
-)
-SENTIL = Dialect(
-    "sentil",
-    {**_WORDS, **_PAST, **_FUTURE, UnaryOp.NEXT: "(next({0}))"},
-    bound="[{}, {}]",
-    endless="inf",
-    split=True,
-)
-"""The instant of the right operand of an `until` is not the left one's, as in ours."""
-
-C2PO = Dialect(
-    "c2po",
-    {
-        **_BY_LETTERS,
-        BinaryOp.AND: "(({0}) && ({1}))",
-        BinaryOp.OR: "(({0}) || ({1}))",
-    },
-    proposition="{}",
-    comparison="",
-    bound="[{},{}]",
-    ever=False,
-)
-"""R2U2's compiler."""
+DIALECTS = dict(_dialects())

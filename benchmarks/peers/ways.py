@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from benchmarks.peers import dialects
 from benchmarks.peers.client import Peer
-from benchmarks.peers.dialects import ALWAYS_ONE, Dialect, spelling, translate
+from benchmarks.peers.dialects import ALWAYS_ONE, spelling, translate
 
 from rvmon.language.checked.formula import EventAtom, Formula
 from rvmon.language.checked.specification import (
@@ -56,7 +55,7 @@ class Way:
     package: str  # its name in the package index
     adapter: str  # the class that asks it
     kind: str  # what the adapter is given of time and semantics
-    dialect: Dialect  # the language
+    dialect: str  # the language
     time: TimeModel  # the time model of ours that it stands for
     shape: Shape  # what random formulas hold that it is asked
     sign: bool = False  # whether it answers with a robustness, whose sign counts; 0 says nothing
@@ -95,15 +94,15 @@ _PAST_STEP = Shape(step=True, future=False, numbers=False, events=False)
 _REELAY, _RTAMT, _MSTLO = ("reelay", "Reelay"), ("rtamt", "Rtamt"), ("mstlo-python", "Mstlo")
 
 WAYS = {
-    "reelay-discrete": Way(*_REELAY, "discrete", dialects.REELAY_DISCRETE, _SAMPLED, _PAST_STEP),
-    "reelay-dense": Way(*_REELAY, "dense", dialects.REELAY_DENSE, _HELD, _PAST),
-    "rtamt-discrete": Way(*_RTAMT, "discrete", dialects.RTAMT_DISCRETE, _SAMPLED, _BOTH_STEP, True),
-    "rtamt-dense": Way(*_RTAMT, "dense", dialects.RTAMT_DENSE, _HELD, _BOTH, True),
-    "mstlo-delayed": Way(*_MSTLO, "DelayedQualitative", dialects.MSTLO, _HELD, _FUTURE),
-    "sentil": Way("sentil", "Sentil", "discrete", dialects.SENTIL, _SAMPLED, _BOTH_STEP, True),
+    "reelay-discrete": Way(*_REELAY, "discrete", "REELAY_DISCRETE", _SAMPLED, _PAST_STEP),
+    "reelay-dense": Way(*_REELAY, "dense", "REELAY_DENSE", _HELD, _PAST),
+    "rtamt-discrete": Way(*_RTAMT, "discrete", "RTAMT_DISCRETE", _SAMPLED, _BOTH_STEP, True),
+    "rtamt-dense": Way(*_RTAMT, "dense", "RTAMT_DENSE", _HELD, _BOTH, True),
+    "mstlo-delayed": Way(*_MSTLO, "DelayedQualitative", "MSTLO", _HELD, _FUTURE),
+    "sentil": Way("sentil", "Sentil", "discrete", "SENTIL", _SAMPLED, _BOTH_STEP, True),
 }
 
-RTAMT_STEPPED = Way(*_RTAMT, "discrete online", dialects.RTAMT_DISCRETE, _SAMPLED, _PAST_STEP, True)
+RTAMT_STEPPED = Way(*_RTAMT, "discrete online", "RTAMT_DISCRETE", _SAMPLED, _PAST_STEP, True)
 """Row by row, as it is timed. Random formulas are not put to it: what stands twice in one it steps
 twice a row."""
 

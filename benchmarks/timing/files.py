@@ -15,7 +15,6 @@ from pathlib import Path
 
 import numpy as np
 from benchmarks.output import table
-from benchmarks.peers import dialects
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import Environment
 from benchmarks.process import Cost, measured
@@ -97,7 +96,7 @@ def _families(size: Size, environment: Environment, folder: Path) -> Iterator[Ta
         lines = (f"{','.join(map(str, row))}\n" for row in rows)
         path.write_text("".join([f"{','.join(table)}\n", *lines]))
         if environment.reelay is not None:
-            pattern = f"historically({translate(formula, dialects.REELAY_DISCRETE)})"
+            pattern = f"historically({translate(formula, 'REELAY_DISCRETE')})"
             command = (str(environment.reelay), "csv", str(path), pattern)
             yield Task(workload.name, "reelay C++", command, _violated)
         ours: tuple[str, ...] = (*RVMON, str(spec), *JSON)

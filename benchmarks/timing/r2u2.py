@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from benchmarks.peers.client import PeerError
-from benchmarks.peers.dialects import C2PO, spelling, translate
+from benchmarks.peers.dialects import spelling, translate
 from benchmarks.peers.ways import Question, answers, ask_monitor
 from benchmarks.timing.agreement import Agreement
 from benchmarks.timing.race import Pass, passed
@@ -88,7 +88,7 @@ class R2u2:
     def _build(self, workload: Workload) -> None:
         names = list(workload.columns)
         inputs = f"INPUT\n    {', '.join(map(spelling, names))}: bool;\n\nFTSPEC\n"
-        lines = "".join(f"    {translate(one, C2PO)};\n" for one in workload.formulas)
+        lines = "".join(f"    {translate(one, 'C2PO')};\n" for one in workload.formulas)
         text, mapping, bounds = (
             self.folder / name for name in ("formulas.c2po", "names.map", "bounds.h")
         )

@@ -12,7 +12,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any, Protocol
 
-from benchmarks.peers import dialects
 from benchmarks.peers.client import ADAPTERS, Peer, PeerError
 from benchmarks.peers.dialects import spelling, translate
 from benchmarks.peers.environment import HOME, LETTERS, Environment, packed
@@ -122,7 +121,7 @@ class NativeReelay:
             raise UntranslatableError("its harness knows the columns p, q, r, s")
         columns = {name: one[:rows] for name, one in workload.columns.items()}
         (HOME / "rows.bin").write_bytes(packed(columns))
-        said = (translate(formula, dialects.REELAY_DISCRETE) for formula in workload.formulas)
+        said = (translate(formula, "REELAY_DISCRETE") for formula in workload.formulas)
         self.patterns = [f"historically({one})" for one in said]
 
     def run(self) -> Pass:
