@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import logging
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -26,32 +26,15 @@ from rvmon.live import Driver, SimulatedClock
 from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.verdicts.report import Report
 
-PEERS = {
-    "rtamt, discrete online": ("rtamt", "Rtamt", "discrete online", "once[0:1](NAME > 0.5)"),
-    "rtamt, dense online": ("rtamt", "Rtamt", "dense online", "once[0:1](NAME > 0.5)"),
-    "reelay, dense": ("reelay", "Reelay", "dense", "once[0:1]{NAME > 0.5}"),
-    "mstlo": ("mstlo-python", "Mstlo", "DelayedQualitative", "F[0, 1](NAME > 0.5)"),
-    "SENTIL, online": ("sentil", "Sentil", "discrete", "(once[0,1] (NAME > 0.5))"),
-}
-"""Of each way to ask a peer: its package, the class that asks it, the kind, and the formula."""
 
-OURS = {
-    "rvmon": ("", "now"),
-    "rvmon, `settle=next`": ("", "next"),
-    "rvmon, `max delay 1 s`": ("max delay 1 s", "now"),
-}
-"""What the specification says of delays, and how samples settle."""
+class Told(msgspec.Struct):
+    """What stands in `faults.toml`."""
 
-SPEC = """
-spec faults
-time sampled
-DELAY
-signal v_x, v_y : real
-event row
-requirement R
-  upon row
-  then once[0 s, 1 s] NAME > 0.5
-"""
+    spec: str  # ours, with the places DELAY and NAME
+    ours: dict[str, tuple[str, str]]  # what it says of delays, and how samples settle
+    # of each way to ask a peer: its package, the class that asks it, the kind, and the formula
+    peers: dict[str, tuple[str, str, str, str]]
+    fault: list[Fault]
 
 
 class Fault(msgspec.Struct):
@@ -60,9 +43,6 @@ class Fault(msgspec.Struct):
     title: str
     samples: list[tuple[float, float]]
     asked: str = "v_x"
-
-    def spec(self, delay: str = "") -> rvmon.Spec:
-        return rvmon.loads(SPEC.replace("DELAY", delay).replace("NAME", self.asked))
 
 
 def _of_peer(peer: Peer, kind: str, formula: str, fault: Fault) -> str:
@@ -98,9 +78,9 @@ def _sign(value: float | bool) -> str:
     return "NaN" if value != value else str(int(value > 0))
 
 
-def _stepped(fault: Fault, delay: str, settle: str) -> str:
+def _stepped(spec: rvmon.Spec, fault: Fault, settle: str) -> str:
     """What a monitor says that takes the samples as they come."""
-    monitor, refused = fault.spec(delay).monitor(settle=settle), []
+    monitor, refused = spec.monitor(settle=settle), []
     for t, x in fault.samples:
         try:
             monitor.step(t, {"v_x": x, "row": True})
@@ -110,10 +90,10 @@ def _stepped(fault: Fault, delay: str, settle: str) -> str:
     return _told([monitor.finish()], refused)
 
 
-def _watched(fault: Fault) -> str:
+def _watched(spec: rvmon.Spec, fault: Fault) -> str:
     """What `rvmon.live` says, which `rvmon watch` uses."""
     clock = SimulatedClock()
-    driver = Driver(fault.spec(), clock=clock)
+    driver = Driver(spec, clock=clock)
     objects = JsonObjects(driver, clock=clock)
     for t, x in fault.samples:
         objects.take({"t": t, "v_x": x, "row": True})
@@ -135,11 +115,12 @@ def _told(reports: Sequence[Report], refused: Sequence[tuple[float, str]]) -> st
     return "; new run: ".join(runs) + (", " if refused else "") + _line(refused)
 
 
-def _answers(fault: Fault, environment: Environment) -> Iterator[tuple[str, str]]:
-    for name, (delay, settle) in OURS.items():
-        yield name, _stepped(fault, delay, settle)
-    yield "rvmon watch", _watched(fault)
-    for name, (package, adapter, kind, formula) in PEERS.items():
+def _answers(told: Told, fault: Fault, environment: Environment) -> Iterator[tuple[str, str]]:
+    text = told.spec.replace("NAME", fault.asked)
+    for name, (delay, settle) in told.ours.items():
+        yield name, _stepped(rvmon.loads(text.replace("DELAY", delay)), fault, settle)
+    yield "rvmon watch", _watched(rvmon.loads(text.replace("DELAY", "")), fault)
+    for name, (package, adapter, kind, formula) in told.peers.items():
         if package in environment.versions:
             with Peer(environment.python, adapter) as peer:
                 yield name, _of_peer(peer, kind, formula, fault).replace("\n", " ") or "nothing"
@@ -150,8 +131,8 @@ def faults() -> None:
     environment = prepare()
     logging.disable()  # what `rvmon watch` says of each verdict
     text = Path(__file__).with_suffix(".toml").read_text("utf-8")
-    entries: Mapping[str, Any] = tomllib.loads(text)
-    for fault in msgspec.convert(entries["fault"], list[Fault]):
+    told = msgspec.convert(tomllib.loads(text), Told)
+    for fault in told.fault:
         fed = ", ".join(f"{t:g}: {x:g}" for t, x in fault.samples)
         print(f"\n**{fault.title}** (fed {fed})\n")
-        show(["monitor", "says"], _answers(fault, environment))
+        show(["monitor", "says"], _answers(told, fault, environment))

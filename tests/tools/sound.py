@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 from msgspec import structs
 
-from rvmon.language.checked.formula import Compare, Probe, ProbeAtom, UpdateValue
+from rvmon.language.checked.formula import Probe, ProbeAtom, UpdateValue
 from rvmon.language.checked.specification import CheckedSpec, Event, Type
 from rvmon.testing.generate import Rng, chance, pick
 from rvmon.testing.generate.trace import Case
-from rvmon.testing.law.syntax import parts_of, subformulas
+from rvmon.testing.law.syntax import numerics, parts_of, subformulas
 from rvmon.trace.sample import Payload, Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.verdicts import Verdict
@@ -189,18 +189,14 @@ def is_spoken_of(spec: CheckedSpec) -> bool:
     """
     stale = {name for name, signal in spec.signals.items() if signal.stale_after is not None}
     for requirement in spec.requirements.values():
-        expressions = [capture.value for capture in requirement.captures]
-        for formula in (requirement.trigger, requirement.consequent):
-            for part in subformulas(formula):
-                if isinstance(part, ProbeAtom):
-                    if part.probe is Probe.KNOWN or part.name in stale:
-                        return False
-                elif isinstance(part, Compare):
-                    expressions += [part.left, part.right]
-        for expression in expressions:
-            for value in parts_of(expression):
-                if isinstance(value, UpdateValue) and value.name in stale:
-                    return False
+        wholes = (requirement.trigger, requirement.consequent)
+        for part in (part for whole in wholes for part in subformulas(whole)):
+            if isinstance(part, ProbeAtom) and (part.probe is Probe.KNOWN or part.name in stale):
+                return False
+        values = [value for whole in wholes for value in numerics(whole)]
+        values += [value for one in requirement.captures for value in parts_of(one.value)]
+        if any(isinstance(value, UpdateValue) and value.name in stale for value in values):
+            return False
     return True
 
 
