@@ -84,24 +84,18 @@ void report_queued(const queueing *g, const queued *one, int32_t location, bool 
     report(g->r, g->index, x, x->number, passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX, t, note);
 }
 
-/* Double the ring of a queue; false: memory is short. */
+/* Double the ring of a queue, which is full; false: memory is short. */
 static bool widen_queue(rv_monitor *m, queue *q)
 {
-    const int32_t room = (q->room > 0) ? 2 * q->room : 8;
-    queued *made =
-        (q->room < INT32_MAX / 4) ? arena_take(&m->memory, (size_t)room * sizeof *made) : NULL;
-    int32_t i;
+    const int32_t was = q->room;
+    queued *made = widened(m, q->items, &q->room, (int64_t)was + 1, sizeof *made);
     if (made == NULL) {
-        m->spoilt = true;
         return false;
     }
-    for (i = 0; i < q->count; i++) {
-        made[i] = *item(q, i);
-    }
-    arena_give(&m->memory, q->items, (size_t)q->room * sizeof *made);
     q->items = made;
-    q->room = room;
-    q->head = 0;
+    if (q->head > 0) { /* the youngest, in front of the oldest, come behind the others */
+        (void)memcpy(&made[was], made, (size_t)q->head * sizeof *made);
+    }
     return true;
 }
 

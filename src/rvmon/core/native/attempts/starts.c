@@ -64,6 +64,25 @@ static bool remains(run *r, int32_t index, int32_t at, int64_t t)
     return drive_from(r, index, at, t);
 }
 
+/* Take a judge to the position at `t`, where an attempt begins. One that rests has nothing to read there,
+ * one without attempts has not followed the letters. */
+static void follow(run *r, int32_t index, int64_t t)
+{
+    judge *j = &r->judges[index];
+    if (!has_attempts(j)) {
+        visit_judge(r, index, t);
+    } else if (j->position < t) {
+        if (((j->touched & TOUCHED_LETTER) != 0) || (GAP(r) == 0) || (r->rules.due[index] <= t)
+            || j->restless || j->slides || (is_networked(r, index) && !is_chained(r, index))) {
+            visit_judge(r, index, t);
+        } else {
+            j->position = t;
+        }
+    } else {
+        /* It has been there. */
+    }
+}
+
 /* Start an attempt that this run judges, at the position at `t`. `triggered` is earlier than `t` if the
  * attempt was triggered in a parent run (captured values). */
 void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
@@ -73,8 +92,8 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     const bool judged_here = (r->at.presence == ARE_THERE) && !j->blind;
     attempt *x;
     int32_t at;
-    if (judged_here && (!has_attempts(j) || (j->position < t))) {
-        visit_judge(r, index, t); /* a judge without attempts has not followed the letters */
+    if (judged_here) {
+        follow(r, index, t);
     }
     if (r->truth_log != NULL) {
         note_trigger(r, index, triggered);

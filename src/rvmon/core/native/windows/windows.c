@@ -247,6 +247,11 @@ bool chain_enter(run *r, int32_t index, int32_t at, int64_t t)
         return true; /* memory was short */
     }
     x->clocks[0] = (g.f.gap > 0) ? floored(t, g.f.step) : t;
+    if ((g.j->first >= 0) && (g.f.form->left < 0) && !g.c->parted
+        && !attempt_at(r->home, g.j->first)->parted) {
+        x->due = NEVER; /* an older one is open, and values are known in the order of positions */
+        return true;
+    }
     if (!judge_in_chain(&g, at, 2 * t + 1, &due)) {
         return false;
     }
