@@ -220,7 +220,10 @@ void pass_to(run *r, int32_t index, int64_t t)
         set_rule_due(r, index, NEVER);
     } else if (j->first < 0) {
         queue_pass(r, index, t);
-        j->position = ((GAP(r) > 0) && (t > position)) ? t : position;
+        if (GAP(r) > 0) {
+            j->position = (t > position) ? t : position;
+            j->restless = false; /* what moves at the next position is due there */
+        }
     } else if (is_chained(r, index)) {
         chain_pass(r, index, t, true);
     } else if (is_networked(r, index)) {

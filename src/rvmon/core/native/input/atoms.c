@@ -313,6 +313,9 @@ void recheck_fading(run *r)
         const int32_t atom = r->fresh[i];
         r->is_fresh[atom] = 0;
         fade(r, atom);
+        if (r->part->pulses[atom] >= 0) {
+            mark_dirty(r, r->part->pulses[atom]); /* taken as a pulse, it was not */
+        }
     }
     r->at.fresh_count = 0;
 }

@@ -130,6 +130,8 @@ void declare_no_source(run *r, bool event, int32_t local);
 
 /* ---- pulses.c: events that only start attempts */
 bool find_pulses(arena *a, const plan *all, part *p);
+bool take_pulse(run *r, int32_t local, int32_t says);
+void start_pulses(run *r, int64_t t);
 void end_pulses(run *r);
 
 /* ---- outages.c: stretches of time over which names are lost */

@@ -1,15 +1,17 @@
 /* Pulses: momentary atoms that do no more than start attempts.
  *
- * An event ends at the next position. If only triggers of pulses read the atom, its end changes nothing
- * but the truths of atom and leaf, since a pulse starts attempts where it is TRUE. So that position is
- * not visited: the truths are set once time passes it. The one exception is a stretch in doubt that
- * ends there, of which a DOUBT above the leaf has to hear.
+ * If only triggers of pulses read the atom of an event, nothing but its leaf changes where it occurs, and
+ * at the next position, where it ends. So neither position is visited for it: attempts start as the sample
+ * arrives, and the truths end once time passes the next position. The one exception is a stretch in doubt
+ * that begins or ends there, of which a DOUBT above the leaf has to hear.
  *
  * Source: SEMANTICS 3 (a pulse starts an attempt at every position where it holds). */
+#include "attempts/attempts.h"
 #include "formulas/formulas.h"
 #include "input/input.h"
 #include "notes/notes.h"
 #include "runs/runs.h"
+#include "windows/windows.h"
 
 /* Whether a node is read by triggers of pulses alone, in the second phase. */
 static bool is_read_by_pulses(const plan *all, const part *p, const node_plan *n)
@@ -39,7 +41,11 @@ bool find_pulses(arena *a, const plan *all, part *p)
                              && (p->plan->truths < 0) && (all->counts[SEC_MARGINS] == 0);
     int32_t i;
     p->pulses = arena_take(a, (size_t)(p->plan->atoms.count + 1) * sizeof *p->pulses);
-    for (i = 0; (p->pulses != NULL) && (i < p->plan->atoms.count); i++) {
+    p->pulsing = arena_take(a, (size_t)(p->plan->events.count + 1) * sizeof *p->pulsing);
+    if ((p->pulses == NULL) || (p->pulsing == NULL)) {
+        return false;
+    }
+    for (i = 0; i < p->plan->atoms.count; i++) {
         const list leaves = p->atoms[i].nodes[1];
         p->pulses[i] = -1;
         if (are_unheard && (p->atoms[i].momentary != 0) && (leaves.count == 1)) {
@@ -49,43 +55,113 @@ bool find_pulses(arena *a, const plan *all, part *p)
             }
         }
     }
-    return p->pulses != NULL;
+    for (i = 0; i < p->plan->events.count; i++) {
+        const list atoms = p->events[i].on_occurrence[1];
+        const int32_t atom = (atoms.count == 1) ? LIST(all, atoms)[0] : -1;
+        const bool is_pulse = (atom >= 0) && (p->pulses[atom] >= 0) && (p->atoms[atom].op == ATOM_EVENT)
+                              && (p->events[i].flags == 0) && (all->header->gap == 1)
+                              && (p->plan->watches.count == 0);
+        p->pulsing[i] = is_pulse ? atom : -1;
+    }
+    return true;
+}
+
+/* Whether a DOUBT above a leaf has to hear of it. */
+static bool is_doubted(const run *r, int32_t leaf)
+{
+    const list doubts = r->part->nodes[leaf].parents[1];
+    int32_t i;
+    for (i = 0; i < doubts.count; i++) {
+        if (r->truth[LIST(PLAN(r), doubts)[i]] != IS_FALSE) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /* Whether an atom of the last position is FALSE at the next, and nothing there hears of it. */
 static bool ends_unheard(const run *r, int32_t atom)
 {
     const int32_t leaf = r->part->pulses[atom];
-    list doubts;
-    int32_t i;
-    if ((leaf < 0) || (atom_now(r, &r->part->atoms[atom]) != IS_FALSE)) {
-        return false;
-    }
-    doubts = r->part->nodes[leaf].parents[1];
-    for (i = 0; i < doubts.count; i++) {
-        if (r->truth[LIST(PLAN(r), doubts)[i]] != IS_FALSE) {
-            return false;
-        }
-    }
-    return true;
+    return (leaf >= 0) && (atom_now(r, &r->part->atoms[atom]) == IS_FALSE) && !is_doubted(r, leaf);
 }
 
-/* End an atom at `t`, where nothing hears of it. */
-static void end_unheard(run *r, int32_t atom, int64_t t)
+/* Set the leaf of a pulse at `t`, of which no DOUBT hears. */
+static void set_unheard(run *r, int32_t leaf, uint8_t now, int64_t t)
 {
-    const int32_t leaf = r->part->pulses[atom];
     const list doubts = r->part->nodes[leaf].parents[1];
     const uint8_t was = r->truth[leaf];
     int32_t i;
-    r->is_fading[atom] = 0;
-    r->atom[atom] = IS_FALSE;
-    r->truth[leaf] = IS_FALSE;
+    r->truth[leaf] = now;
     for (i = 0; i < doubts.count; i++) {
-        (void)doubt_stays(r, LIST(PLAN(r), doubts)[i], IS_FALSE);
+        (void)doubt_stays(r, LIST(PLAN(r), doubts)[i], now);
     }
     if (r->truth_log != NULL) {
         note_node(r, leaf, was, t);
     }
+}
+
+/* Take an event that is no more than a pulse; false: it has to be taken in full. Its leaf is evaluated as
+ * its position is visited, or set as its attempts start. */
+bool take_pulse(run *r, int32_t local, int32_t says)
+{
+    const int32_t atom = r->part->pulsing[local];
+    if ((atom < 0) || (says != RV_SAYS_YES) || (r->at.phase == 0) || (r->at.presence != ARE_THERE)
+        || (r->at.lost_count > 0) || (r->atom[atom] != IS_FALSE)
+        || is_doubted(r, r->part->pulses[atom])) {
+        return false;
+    }
+    mark(r, r->part->plan->signals.count + local);
+    r->occurs[local] = IS_TRUE;
+    r->atom[atom] = IS_TRUE;
+    r->is_fresh[atom] = 1;
+    r->fresh[r->at.fresh_count] = atom;
+    r->at.fresh_count++;
+    return true;
+}
+
+/* Start the attempts of the pulses at `t`, where nothing else happens. */
+void start_pulses(run *r, int64_t t)
+{
+    const int32_t count = r->at.fresh_count;
+    int32_t i;
+    int32_t k;
+    r->at.starting = IS_FALSE;
+    r->at.before = t - 1;
+    r->at.position = t;
+    r->at.alarm = t + 1; /* they end there */
+    r->at.fresh_count = 0;
+    r->at.fading_count = count; /* those of before have ended */
+    for (i = 0; i < count; i++) {
+        r->fading[i] = r->fresh[i];
+        r->is_fresh[r->fading[i]] = 0;
+        r->is_fading[r->fading[i]] = 1;
+        set_unheard(r, r->part->pulses[r->fading[i]], IS_TRUE, t);
+    }
+    for (i = 0; i < count; i++) {
+        const list links = r->part->nodes[r->part->pulses[r->fading[i]]].links;
+        for (k = links.first; k < links.first + links.count; k++) {
+            const int32_t index = PLAN(r)->links[k].judge;
+            if (take_trigger(r, index, IS_TRUE)) {
+                begin_here(r, index, t, t);
+            }
+        }
+    }
+    r->at.gathered = false;
+    forget(r);
+}
+
+/* Whether a position has to be visited for what is due by then: some of it is not decided by time alone. */
+static bool is_due(run *r, int64_t t)
+{
+    const int32_t count = (timers_next(&r->rules) <= t) ? timers_due(&r->rules, t, r->due_rules) : 0;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        if ((r->judges[r->due_rules[i]].first >= 0) && !is_chained(r, r->due_rules[i])) {
+            return true;
+        }
+    }
+    return false;
 }
 
 /* Time passes the position behind the last one visited: end what held there, unless something hears of
@@ -93,7 +169,7 @@ static void end_unheard(run *r, int32_t atom, int64_t t)
 void end_pulses(run *r)
 {
     const int64_t t = r->at.position + GAP(r);
-    bool is_visited = (r->at.phase == 0) || (timers_next(&r->rules) <= t);
+    bool is_visited = (r->at.phase == 0) || is_due(r, t);
     int32_t kept = 0;
     int32_t i;
     for (i = 0; !is_visited && (i < r->at.fading_count); i++) {
@@ -105,7 +181,9 @@ void end_pulses(run *r)
     r->at.starting = IS_FALSE;
     r->at.before = r->at.position;
     for (i = 0; i < r->at.fading_count; i++) {
-        end_unheard(r, r->fading[i], t);
+        r->is_fading[r->fading[i]] = 0;
+        r->atom[r->fading[i]] = IS_FALSE;
+        set_unheard(r, r->part->pulses[r->fading[i]], IS_FALSE, t);
     }
     r->at.fading_count = 0;
     for (i = 0; i < r->repeating_count; i++) {

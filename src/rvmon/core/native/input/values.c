@@ -231,6 +231,9 @@ static void take_event(run *r, int32_t local, int32_t says, const rv_number *fie
 {
     const event_plan *e = &r->part->events[local];
     const int32_t name = r->part->plan->signals.count + local;
+    if (take_pulse(r, local, says)) {
+        return;
+    }
     if ((e->flags & EVENT_MARKS) != 0) {
         r->updated[name] = IS_TRUE;
         mark(r, name);

@@ -312,6 +312,8 @@ void arrive(run *r, int64_t t)
         set_alarm(r, next_position(r));
     } else if (r->margins != NULL) {
         margins_visit(r, t); /* a distance may change though no truth does */
+    } else if ((r->at.fresh_count > 0) && (gap == 1)) { /* else they wait for their tick */
+        start_pulses(r, t);
     } else {
         /* Nothing changed and nothing is due. */
     }
