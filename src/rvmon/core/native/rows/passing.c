@@ -65,7 +65,7 @@ static void refresh(batch *s, int64_t row)
 }
 
 /* Store the updates of the rows before `row`, and restart the examination at `row`. */
-static void turn_from(batch *s, int64_t row)
+void turn_from(batch *s, int64_t row)
 {
     int32_t i;
     if (s->together > 0) {
@@ -134,6 +134,9 @@ int64_t pass_over(batch *s, int64_t row)
         next = (ahead != 0U) ? s->first + lowest_bit(ahead) : s->first + s->together;
         due = (next > at) ? first_due(s, at, next) : next;
         if (due > at) {
+            if (s->counts && !count_rows(s, at, due)) {
+                return at;
+            }
             if (s->m->shapes != NULL) {
                 measure_rows(s, at, due);
             }
@@ -161,6 +164,7 @@ void make_ready(batch *s, int64_t row, int64_t end)
         turn_from(s, row);
     }
     refresh(s, row);
+    catch_up(s);
 }
 
 /* Rows up to `end` were judged. What was examined behind them stays valid, unless a signal became
@@ -184,44 +188,6 @@ void note_judged(batch *s, int64_t end)
     } else if (other) {
         turn_from(s, end);
     } else {
-    }
-}
-
-/* ---- begin and end */
-
-static void begin_column(const batch *s, column_watch *w, const rv_column *c)
-{
-    const rv_monitor *m = s->m;
-    int32_t first;
-    int32_t i;
-    w->column = c;
-    w->is_event = c->name >= m->plan.header->signals;
-    w->readers = subscriptions_of(m, c->name, &w->reader_count);
-    if (w->is_event && (c->fields != NULL)) {
-        w->fields = rv_fields_of(m, c->name - m->plan.header->signals, &first);
-    }
-    for (i = 0; !w->is_event && (i < w->reader_count); i++) {
-        const signal_plan *own = &home_of(s, w, i)->part->signals[w->readers[i].local];
-        w->ignores_nan = w->ignores_nan || ((own->flags & SIGNAL_IGNORES_NAN) != 0);
-    }
-}
-
-bool begin_rows(batch *s, const rv_column *columns)
-{
-    int32_t i;
-    s->watches = arena_take(&s->m->memory, (size_t)(s->columns + 1) * sizeof *s->watches);
-    for (i = 0; (s->watches != NULL) && (i < s->columns); i++) {
-        begin_column(s, &s->watches[i], &columns[i]);
-    }
-    return (s->watches != NULL) && begin_measured(s);
-}
-
-void end_rows(batch *s, int64_t row)
-{
-    if (s->watches != NULL) {
-        turn_from(s, row);
-        end_measured(s);
-        arena_give(&s->m->memory, s->watches, (size_t)(s->columns + 1) * sizeof *s->watches);
     }
 }
 

@@ -167,6 +167,45 @@ static int judge_instant(batch *s, int64_t row, int64_t end)
     return rv_step(s->m, s->times[row], made->updates, made->count);
 }
 
+static void begin_column(const batch *s, column_watch *w, const rv_column *c)
+{
+    const rv_monitor *m = s->m;
+    int32_t first;
+    int32_t i;
+    w->column = c;
+    w->is_event = c->name >= m->plan.header->signals;
+    w->readers = subscriptions_of(m, c->name, &w->reader_count);
+    if (w->is_event && (c->fields != NULL)) {
+        w->fields = rv_fields_of(m, c->name - m->plan.header->signals, &first);
+    }
+    for (i = 0; !w->is_event && (i < w->reader_count); i++) {
+        const signal_plan *own = &home_of(s, w, i)->part->signals[w->readers[i].local];
+        w->ignores_nan = w->ignores_nan || ((own->flags & SIGNAL_IGNORES_NAN) != 0);
+    }
+}
+
+/* Allocate what rows are examined with; false: memory is short. */
+static bool begin_rows(batch *s, const rv_column *columns)
+{
+    int32_t i;
+    s->watches = arena_take(&s->m->memory, (size_t)(s->columns + 1) * sizeof *s->watches);
+    for (i = 0; (s->watches != NULL) && (i < s->columns); i++) {
+        begin_column(s, &s->watches[i], &columns[i]);
+    }
+    return (s->watches != NULL) && begin_measured(s) && begin_counted(s);
+}
+
+static void end_rows(batch *s, int64_t row)
+{
+    if (s->watches != NULL) {
+        turn_from(s, row);
+        catch_up(s);
+        end_measured(s);
+        end_counted(s);
+        arena_give(&s->m->memory, s->watches, (size_t)(s->columns + 1) * sizeof *s->watches);
+    }
+}
+
 int rv_rows(rv_monitor *m, const int64_t *times, int64_t count, const rv_column *columns,
             int32_t columns_count, int64_t *done)
 {
