@@ -17,7 +17,7 @@ from typing import NamedTuple
 from rvmon.cdv.campaign import Campaign
 from rvmon.cli import evidence, guarded
 from rvmon.cli.evaluate_commands import add_evidence
-from rvmon.cli.options import declare
+from rvmon.cli.options import declare, names_in
 from rvmon.cli.parser import (
     TIME_FORMS,
     Parser,
@@ -174,7 +174,7 @@ def names_of(listed: str | None, known: Sequence[str], what: str) -> tuple[str, 
     """
     if listed is None:
         return tuple(known)
-    names = tuple(dict.fromkeys(name.strip() for name in listed.split(",") if name.strip()))
+    names = tuple(dict.fromkeys(names_in(listed)))
     if not names:
         raise UnknownNameError(f"--{what} names none: there are {', '.join(known)}")
     for name in names:

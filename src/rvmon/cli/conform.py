@@ -6,7 +6,7 @@ import argparse
 import json
 from dataclasses import asdict
 
-from rvmon.cli.options import budget_of
+from rvmon.cli.options import budget_of, names_in
 from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.errors import TraceError, UnknownNameError
 from rvmon.models.conform import Allowed, Conformance, actions_in, conform, labels_of
@@ -45,7 +45,7 @@ def run_conform(arguments: argparse.Namespace) -> int:
 def _chosen(listed: str | None, labels: tuple[str, ...]) -> frozenset[str] | None:
     if listed is None:
         return None
-    names = frozenset(name.strip() for name in listed.split(",") if name.strip())
+    names = frozenset(names_in(listed))
     for name in sorted(names - set(labels)):
         raise UnknownNameError(f"no label `{name}` in the model: there are {', '.join(labels)}")
     return names

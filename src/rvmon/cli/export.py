@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import asked_ids, constants_of
+from rvmon.cli.options import asked_ids, constants_of, model_constants_of
 from rvmon.cli.output import say, warn
 from rvmon.errors import RvmonError
 from rvmon.files import write_file
@@ -54,12 +54,7 @@ def _model_text(arguments: argparse.Namespace) -> str:
         raise RvmonError(
             f"--to {arguments.to} is of specifications: {arguments.subject} is a model"
         )
-    constants = {}
-    for name, value in constants_of(arguments.const).items():
-        try:
-            constants[name] = int(value)
-        except ValueError:
-            raise RvmonError(f"--const {name}={value}: constants of models are whole") from None
+    constants = model_constants_of(arguments.const)
     network = load_network(arguments.subject, constants=constants)
     if arguments.to == "dot":
         return network_dot(network)

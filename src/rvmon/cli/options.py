@@ -124,12 +124,13 @@ def asked_ids(arguments: argparse.Namespace, spec: Spec) -> tuple[str, ...] | No
     from rvmon.language.checked.names_read import labelled
 
     ids = ids_of(arguments.only, spec)
-    severities = [] if arguments.severity is None else [_listed(arguments.severity)]
-    tags = [_listed(one) for one in arguments.tag]
+    severities = [] if arguments.severity is None else [names_in(arguments.severity)]
+    tags = [names_in(one) for one in arguments.tag]
     return labelled(spec.checked, ids, severities, tags) if severities or tags else ids
 
 
-def _listed(text: str) -> list[str]:
+def names_in(text: str) -> list[str]:
+    """The names of a list with commas."""
     return [name.strip() for name in text.split(",") if name.strip()]
 
 
@@ -143,7 +144,7 @@ def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
 
     if listed is None:
         return None
-    ids = _listed(listed)
+    ids = names_in(listed)
     if not ids:
         known = ", ".join(spec.requirements)
         raise UnknownNameError(f"the list of requirements is empty: there are {known}")
@@ -177,13 +178,36 @@ def constants_of(texts: Iterable[str]) -> dict[str, str]:
     >>> constants_of(["T=2 s"])
     {'T': '2 s'}
     """
+    pairs = named_values("--const", texts, "NAME=VALUE, such as T=2s")
+    return {name: value.strip() for name, value in pairs}
+
+
+def model_constants_of(texts: Iterable[str]) -> dict[str, int]:
+    """The values by name, of a model, whose constants are whole numbers.
+
+    Raises:
+        RvmonError: a text has another form.
+    """
     constants = {}
-    for text in texts:
-        name, sign, value = text.partition("=")
-        if not sign or not name.strip() or not value.strip():
-            raise RvmonError(f"--const {text}: expected NAME=VALUE, such as T=2s")
-        constants[name.strip()] = value.strip()
+    for name, value in named_values("--const", texts, form := "NAME=NUMBER, such as N=4"):
+        digits = value.strip().removeprefix("-")
+        if not digits.isdecimal() or len(digits) > 10:
+            raise RvmonError(f"--const {name}={value}: expected {form}")
+        constants[name] = int(value)
     return constants
+
+
+def named_values(option: str, texts: Iterable[str], form: str) -> Iterator[tuple[str, str]]:
+    """The names and values of an option's texts, of a form that is given with an example.
+
+    Raises:
+        RvmonError: a text has another form.
+    """
+    for text in texts:
+        name, _, value = text.partition("=")
+        if not name.strip() or not value.strip():
+            raise RvmonError(f"{option} {text}: expected {form}")
+        yield name.strip(), value
 
 
 def refuse_over(written: Iterable[str | None], read: Iterable[str]) -> None:

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from rvmon.cli.options import named_values, names_in
 from rvmon.cli.output import warn
 from rvmon.errors import RvmonError, UnknownNameError
 
@@ -56,7 +57,7 @@ def allowed_names(text: str | None) -> bool | tuple[str, ...]:
     """
     if not text:
         return text is not None
-    return tuple(name.strip() for name in text.split(",") if name.strip())
+    return (*names_in(text),)
 
 
 def mapped_names(texts: Sequence[str]) -> dict[str, str]:
@@ -69,13 +70,9 @@ def mapped_names(texts: Sequence[str]) -> dict[str, str]:
     {'speed': 'Speed [m/s]'}
     """
     columns: dict[str, str] = {}
-    for text in texts:
-        name, sign, column = text.partition("=")
-        name = name.strip()
-        if not name or not sign or not column:
-            raise RvmonError(f"--map {text}: expected NAME=COLUMN, such as speed=v_mean")
+    for name, column in named_values("--map", texts, "NAME=COLUMN, such as speed=v_mean"):
         if name in columns:
-            raise RvmonError(f"--map {text}: `{name}` is mapped twice")
+            raise RvmonError(f"--map {name}={column}: `{name}` is mapped twice")
         columns[name] = column
     return columns
 

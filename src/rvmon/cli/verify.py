@@ -8,7 +8,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from rvmon.cli.options import budget_of
+from rvmon.cli.options import budget_of, model_constants_of, named_values
 from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.models.describe import (
@@ -39,8 +39,7 @@ if TYPE_CHECKING:
 def run_verify(arguments: argparse.Namespace) -> int:
     """Decide, show, and return the exit code."""
     _refuse_unused(arguments)
-    constants = dict(_constant(text) for text in arguments.const)
-    network = load_network(arguments.model, constants=constants)
+    network = load_network(arguments.model, constants=model_constants_of(arguments.const))
     if network.warnings:
         warn(rendered(network.warnings))
     budget = budget_of(arguments)
@@ -105,14 +104,6 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
         others = {key: results for key, results in data.items() if results}
         say_json(json.dumps(always | others, indent=2))
     return int(failed)
-
-
-def _constant(text: str) -> tuple[str, int]:
-    name, _, value = text.partition("=")
-    digits = value.strip().removeprefix("-")
-    if not name.strip() or not digits.isdecimal() or len(digits) > 10:
-        raise RvmonError(f"--const {text}: expected NAME=NUMBER, such as N=4")
-    return name.strip(), int(value)
 
 
 def _print_query(query: Query, word: str) -> None:
@@ -207,7 +198,8 @@ def check_spec(
     from rvmon.session import load
 
     spec = load(arguments.spec)
-    bindings = dict(_binding(text) for text in arguments.bind)
+    form = "NAME=EXPRESSION, such as 'open=Door.open'"
+    bindings = {name: text.strip() for name, text in named_values("--bind", arguments.bind, form)}
     for name in bindings.keys() - spec.checked.signals.keys():
         known = ", ".join(spec.checked.signals) or "none"
         raise UnknownNameError(f"--bind {name}: no signal of that name is declared: {known}")
@@ -223,13 +215,6 @@ def check_spec(
             json.dumps({"requirements": [observation_data(o) for o in observations]}, indent=2)
         )
     return int(any(not observation.holds for observation in observations))
-
-
-def _binding(text: str) -> tuple[str, str]:
-    name, _, value = text.partition("=")
-    if not name.strip() or not value.strip():
-        raise RvmonError(f"--bind {text}: expected NAME=EXPRESSION, such as 'open=Door.open'")
-    return name.strip(), value.strip()
 
 
 def _print_observation(observation: Observation, spec: Spec) -> None:
