@@ -7,7 +7,7 @@ from collections import Counter
 import pytest
 from tests.tools.compare import outcomes
 from tests.tools.differential import disagreements
-from tests.tools.forms import Maker
+from tests.tools.forms import Compiler, Maker
 from tests.tools.law import judge
 
 import rvmon
@@ -60,8 +60,9 @@ def test_what_is_over_changes_no_record(name, time):
     text = re.sub(r"(\d) s\b", r"\g<1>0 ns", text_of(REQUIRED[name], time))
     checked = rvmon.loads(text).checked
     case = Case(checked, tuple(samples(random.Random(f"{name}/{time}"), 18)), None)
+    compiler = Compiler()
     for form in ("c rows", "c+interrupt"):
-        assert disagreements(case, Maker(form)) == []
+        assert disagreements(case, Maker(form, compiler)) == []
 
 
 @pytest.mark.slow

@@ -23,6 +23,9 @@ TRIED = settings(
 ONE = Profile(requirements=1, captures=False, for_each=False)
 """One requirement without captured values."""
 
+_MAKE = Maker()
+"""Of all cases: two of one specification, one after the other, are judged by one compiled."""
+
 _BORN = {"p": True, "q": False, "r": True, "x": 1, "y": 0, "mode": "red"}
 
 
@@ -44,7 +47,7 @@ def known_from_the_first(case: Case) -> Case:
 
 def judge(case: Case) -> Report:
     """The report of a monitor that gets every sample whole and in order."""
-    return drive(Maker()(case), case)[0]
+    return drive(_MAKE(case), case)[0]
 
 
 def judged_otherwise(left: Case, right: Case) -> list[str]:
