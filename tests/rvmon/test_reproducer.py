@@ -128,6 +128,7 @@ def test_a_verdict_that_has_changed_is_told(tmp_path, capsys, says):
     assert "R#1 was F, as rvmon 9.9 (law 2) decided: it is P now" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     ["../a.rv", "/rvmon-escaped", "x/../../a.rv", "..\\a.rv", "C:/a.rv", "x\0y", "a.rv/", "."],

@@ -22,6 +22,7 @@ def test_path_meets_its_ends(start: float, speed: float, goal: float, duration: 
     assert slope(path, duration) == pytest.approx(0.0, abs=1e-8)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.floats(0, 1))
 def test_path_from_rest_is_the_min_jerk_profile(share: float) -> None:

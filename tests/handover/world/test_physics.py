@@ -115,6 +115,7 @@ HANDED = (Stage.fetch, Stage.offer, 2.0, Stage.sense)
 UNREAD = Reading(gaze=None, pressure=None, location=None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loss", [0.0, 1.0])
 def test_all_is_ok_when_the_human_takes_hold(loss: float) -> None:
     """Looking, reaching and holding make all readings true; what loses each says nothing of it."""
@@ -293,6 +294,7 @@ def joints_at(x: float, z: float) -> tuple[float, float, float]:
     return joints
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("in_plane", "feels_it"), [(True, True), (False, False)])
 def test_the_gripper_pushes_a_hand_in_its_plane_alone(*, in_plane: bool, feels_it: bool) -> None:
     """A hand on the table where the gripper comes down is hit, one in front of it is passed."""

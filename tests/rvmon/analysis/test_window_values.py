@@ -30,6 +30,7 @@ def told(words, capsys):
     return {int(number): values for number, values in found.items()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 500 ms"])
 @pytest.mark.parametrize(
     ("requirement", "expected"),

@@ -26,6 +26,7 @@ def test_each_function_is_a_block_unless_they_are_grouped(code):
     assert blocks == {"climbing": [4, 5, 6, 9], "common": [12]}
 
 
+@pytest.mark.slow
 def test_what_ran_is_hit(code):
     toy = loaded(code).Toy()
     measured = cdv.Code(cdv.blocks_of(code))
@@ -53,6 +54,7 @@ def test_what_ran_is_hit(code):
     ]
 
 
+@pytest.mark.slow
 def test_only_the_marked_code_is_measured_where_it_is_marked(campaign, code):
     from rvmon.cdv.play import player
 

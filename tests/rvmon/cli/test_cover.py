@@ -71,6 +71,7 @@ def test_requirements_stand_in_the_order_of_the_file(tmp_path, capsys):
     assert verdicts == ["T2", "T10"]
 
 
+@pytest.mark.slow
 def test_what_cannot_be_hit_stands_apart(door, capsys):
     """It leaves the share and the holes, and has a list with its reason; a hit of it is wrong."""
     with Database.open(door) as database:
@@ -122,6 +123,7 @@ def test_ucis_is_as_its_schema_has_it(door, tmp_path, capsys):
     capsys.readouterr()
 
 
+@pytest.mark.slow
 def test_bins_and_crosses(door, capsys):
     _, lines = shown(capsys, door, "--bins=gaze")
     assert lines[-3:-1] == ["yes 3 2 calm-1 at 1 s", "no 3 2 wild-1 at 7 s"]
@@ -191,6 +193,7 @@ def test_json_has_all(door, says):
     assert document["compared"] is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("options", "code"),
     [
@@ -210,6 +213,7 @@ def test_exit_codes(door, capsys, options, code):
     assert main(["cover", door, *options]) == code
 
 
+@pytest.mark.slow
 def test_databases_are_merged(door, capsys):
     other, out = "other.cov", "out.cov"
     with Database.open(other) as database:

@@ -68,6 +68,7 @@ def test_all_requirements_within_80_columns(door, says):
     assert text.count("The shortest run on which it") == 6
 
 
+@pytest.mark.slow
 def test_what_cannot_be_is_said(door, says):
     text = says(0, "explain", "door.rv", "D3").out
     assert "fails: never, whatever comes" in text
@@ -79,6 +80,7 @@ def test_what_cannot_be_is_said(door, says):
     )
 
 
+@pytest.mark.slow
 def test_the_difference_of_two(door, says):
     text = says(0, "explain", "door.rv", "D1", "D2", "--runs", "300").out
     difference = text.split("one fails and the other does not")[1]

@@ -31,6 +31,7 @@ RECORDINGS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", RECORDINGS)
 def test_what_is_written_runs_at_once(name, tmp_path, monkeypatch, says):
     monkeypatch.chdir(tmp_path)
@@ -142,6 +143,7 @@ def test_nothing_is_overwritten(tmp_path, monkeypatch, says):
     assert "requirement R1" in (tmp_path / "a.rv").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "text", "time"),
     [

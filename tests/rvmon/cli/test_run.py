@@ -29,6 +29,7 @@ def files(door):
     return door
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("trace", "code", "strict"), [("P", 0, 0), ("F", 1, 1), ("NT", 0, 1), ("I", 0, 1)]
 )

@@ -42,6 +42,7 @@ def test_each_verdict_is_a_line_and_the_end_a_table(door, capsys, says):
     assert last == {"robot": "", "runs": 1, "verdicts": {"D1": "F"}, "samples": 2, "lost": 0}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("before", ["[INFO] the robot starts", "\n", '{"level": "info"}'])
 def test_what_a_program_greets_with_does_not_choose_the_clock(door, says, before):
     """Lines with stamps are judged at them, whatever stands above; each has its number."""

@@ -24,6 +24,7 @@ def door(door):
     return door
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("named", "verdict"), [("D1#1", "P"), ("D1#2", "F"), ("D1#3", "I"), ("D1", "F"), ("D2", "P")]
 )

@@ -42,6 +42,7 @@ def test_carets_stand_below_what_they_mean(tmp_path, monkeypatch, capsys, says, 
     assert max(map(len, lines)) <= int(columns)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "cp1252"])
 def test_signs_that_an_encoding_lacks_are_spelled(monkeypatch, encoding):
     """An F has no question mark, which is the sign of an I; lines are no longer than they were."""

@@ -32,6 +32,7 @@ def pairs():
             yield from ((op, kind) for kind in kinds)
 
 
+@pytest.mark.law
 @pytest.mark.parametrize(("op", "kind"), [*pairs()])
 def test_functions_are_those_of_the_oracle(op, kind):
     """Of 200 random arguments, infinities and ends of 64 bits among them."""

@@ -109,6 +109,7 @@ def test_a_model_may_grow(path):
     assert sorted(coverage.model.groups["g"].items) == ["a", "b", "c"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("other", "told"),
     [

@@ -79,6 +79,7 @@ def judged(spec, observation, run):
     return {attempt.verdict.value for attempt in attempts}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("requirement", "holds"),
     [
@@ -112,6 +113,7 @@ def test_a_requirement_that_no_run_triggers_is_vacuous():
     assert "vacuous" in one.remark
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("requirement", "holds", "remark"),
     [

@@ -46,6 +46,7 @@ EQUAL = ["", "chan priority default < low, high", "system A, B"]
 REVERSED = ["chan priority high < low < default", "system B < A"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ranks", RANKED)
 def test_a_requirement_may_hold_by_priority_alone(ranks):
     assert answer("upon start then for 3 s not slow", ranks).holds is True
@@ -61,6 +62,7 @@ def test_without_it_the_requirement_fails(ranks):
         Rules(network).replay(one.failing)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ranks", [*EQUAL, *RANKED, *REVERSED])
 def test_no_priority_makes_time_wait(ranks):
     one = answer("upon start then within 2 s quick", ranks, stay="")

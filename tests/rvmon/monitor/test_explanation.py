@@ -284,6 +284,7 @@ def test_what_ended_an_episode_is_named(requirement, over):
     assert attempt.reason == f"{over}; after that no obligation was left"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("mode", "required", "samples", "reason", "blamed"),
     [

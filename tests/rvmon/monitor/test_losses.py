@@ -287,6 +287,7 @@ def test_what_is_decided_behind_an_outage_has_no_figure_of_before_it():
     assert figure.robustness.of(attempt) is None
 
 
+@pytest.mark.slow
 def test_reasons_that_are_all_different_do_not_fill_the_memory():
     """As those of a program that puts a line number into each."""
     monitor = begun()

@@ -114,6 +114,7 @@ def test_reasons_are_the_same_later(time):
     assert said > 8
 
 
+@pytest.mark.slow
 def test_what_stays_unknown_while_nobody_looks_fails_nothing():
     """A value lost since the network was last asked, which is not until the next change."""
     monitor = spec_of("whenever a then F[2 s, 5 s] F[1 ns, 2 ns] b").monitor()

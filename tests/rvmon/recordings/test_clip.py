@@ -208,6 +208,7 @@ def write_database(path):
     return next(folder.glob("*.db3")).rename(path / "a.db3")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("write", [write_bare, write_database])
 def test_a_part_of_what_there_should_be_is_cut(tmp_path, write):
     words = ["R", "--before", "1s", "--after", "1s"]
@@ -231,6 +232,7 @@ def test_stamps_of_headers_are_cut_by_what_was_recorded(tmp_path, late):
     assert stamps[-4:] == [(t + late) * 10**9 for t in (4, 5, 6, 7)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["float64", "timestamp[us, UTC]", "int64", "string"])
 def test_parquet_keeps_its_types(tmp_path, kind):
     """Whatever its stamps are; what is carried has the stamp of the start, or the one before."""

@@ -85,6 +85,7 @@ def said(rows):
 DIALECTS = (semicolons, tabs, bars_below_remarks, below_properties, units_in_names, said)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("write", DIALECTS)
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
 def test_a_dialect_gives_the_records_that_plain_csv_gives(tmp_path, write, encoding):

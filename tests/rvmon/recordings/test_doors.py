@@ -256,6 +256,7 @@ def test_equal_stamps_are_merged_and_the_order_is_kept(tmp_path):
             judged(base(), trace)
 
 
+@pytest.mark.slow
 def test_frames_of_pandas():
     pandas = pytest.importorskip("pandas")
     left = pandas.DataFrame({"t": [0.0, 1.0, 2.0, 3.0], "speed": [1.0, 1.0, 9.0, 1.0]})

@@ -80,6 +80,7 @@ def test_columns_say_what_rows_say(end, time, stale, tmp_path, cut_into):
     assert report == by_rows(spec, tmp_path / "a.csv", round(end * 1e9))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("text", ["t,p,x\n1,1,{}\n", "t,p,{}\n1,1,1\n"])
 def test_a_cell_that_rows_refuse_is_refused(text, tmp_path, cut_into):
     """A cell is as long as it may be, or one longer: judged both ways, or refused with its line."""

@@ -145,6 +145,7 @@ def test_hostile_names_steer_nothing_and_scripts_find_them():
         assert tracks <= {name for one in data["panels"].values() for name in one["tracks"]}
 
 
+@pytest.mark.slow
 def test_without_failure_it_opens_on_what_is_open():
     """Requirements that were never triggered say so; what passed is folded."""
     samples = [(0.0, {"closed": True, "gap": 1.0})]
@@ -354,6 +355,7 @@ def test_all_requirements_stand_over_the_whole_recording():
     assert float(bars[1][2]) == pytest.approx(10, abs=0.5)  # two of twenty seconds
 
 
+@pytest.mark.slow
 def test_a_list_has_totals_and_severities_and_the_most_failures_first(tmp_path):
     spec = rvmon.loads(SPEC + "  severity high\n")
     runs = {"week/fine.csv": door(answer=1.0)[1], "week/bad.csv": door()[1]}

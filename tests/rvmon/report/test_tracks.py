@@ -146,6 +146,7 @@ def test_dense_numbers_keep_their_peaks(steps):
     assert line == sorted(line, key=lambda point: point[0])
 
 
+@pytest.mark.slow
 def test_a_fast_switch_is_busy_not_lost():
     changes = Course.of([(t, bool(t % 2)) for t in range(10_000)])
     view = View(0, 20_000)

@@ -67,6 +67,7 @@ def test_always(judge: Any, formula: Formula, told: dict[str, Any], expected: st
     assert judge(formula, **told) == [expected]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("told", "expected"),
     [
@@ -109,6 +110,7 @@ def test_until_without_bound(judge: Any, told: dict[str, Any], expected: str) ->
     assert judge(two(p, "U", q), **told) == [expected]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("low", "told", "expected"),
     [
@@ -203,6 +205,7 @@ def test_clocked(judge: Any, formula: Formula, told: dict[str, Any], expected: s
     assert judge(formula, **told, **EVERY_3) == ([] if expected is None else [expected])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("formula", "told", "expected"),
     [

@@ -162,6 +162,7 @@ def test_payload_with_signal(judge: Any) -> None:
     assert at(judge, formula, 1, x="2", g="5") == "F"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("formula", "instant", "told", "expected"),
     [

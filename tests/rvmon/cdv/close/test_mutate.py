@@ -81,6 +81,7 @@ def test_whatever_is_changed_is_a_test_of_its_type():
     assert any(one.tree.parts for one in tests)
 
 
+@pytest.mark.slow
 def test_what_a_test_says_of_itself_and_fixed_fields_stay():
     """Name, purpose, robot, fault, known answers, and what has no neighbours, such as texts."""
     first = Odd(name="a", strategy="s", seed=1, text="t", mutation="m", expected={"R": "F"})

@@ -224,6 +224,7 @@ def test_a_requirement_without_a_name_is_told_so(message, text):
     assert "its name comes first" in message(f"requirement {text}")
 
 
+@pytest.mark.slow
 def test_infix_and_clause_words_may_be_names(codes):
     """Where an operand stands, infix words and clause words are names."""
     for name in sorted(INFIX_WORDS | CLAUSE_WORDS):

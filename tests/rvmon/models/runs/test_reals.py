@@ -66,6 +66,7 @@ def test_figures_of_such_runs():
     assert mean.value == 9.5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("term", "expected"),
     [

@@ -44,6 +44,7 @@ def test_broken_fischer_is_caught():
     assert shows(network, outcome)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("trains", [2, 3, 4])
 def test_trains_never_meet_and_always_cross(trains):
     network = load_network(MODELS / "train_gate.ta", constants={"N": trains})
