@@ -348,7 +348,7 @@ MANY["what only starts attempts, at ticks beside each other and apart, known and
         40,
         lost=(("e", 12, 14), ("g", 31, 33)),
     )
-    for time in ("held", "sampled every 2 ns")
+    for time in ("held", "sampled every 2 ns", "sampled every 5 ns")
     for trigger in ("e", "g.k == 1", "changed(x)", "updated(x)", "e and p", "e or updated(x)")
     for required in (
         "F[1 ns, 4 ns] p",

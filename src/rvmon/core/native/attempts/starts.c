@@ -99,7 +99,9 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         note_trigger(r, index, triggered);
     }
     if (judged_here && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)) {
-        margins_begin(r, index, t, measured_attempt(r, triggered, j->count + 1U));
+        if (r->margins != NULL) {
+            margins_begin(r, index, t, measured_attempt(r, triggered, j->count + 1U));
+        }
         (void)queue_begin(r, index, t);
         return;
     }

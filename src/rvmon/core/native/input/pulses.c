@@ -106,13 +106,16 @@ static void set_unheard(run *r, int32_t leaf, uint8_t now, int64_t t)
 bool take_pulse(run *r, int32_t local, int32_t says)
 {
     const int32_t atom = r->part->pulsing[local];
-    if ((atom < 0) || (says != RV_SAYS_YES) || (r->at.phase == 0) || (r->at.presence != ARE_THERE)
-        || (r->at.lost_count > 0) || (r->atom[atom] != IS_FALSE)
-        || is_doubted(r, r->part->pulses[atom])) {
+    if ((atom < 0) || (r->at.phase == 0)) {
         return false;
     }
-    mark(r, r->part->plan->signals.count + local);
-    r->occurs[local] = IS_TRUE;
+    if ((r->is_fresh[atom] != 0U) && (r->atom[atom] == IS_TRUE)) {
+        return true; /* it occurs, whatever else is said of it */
+    }
+    if ((says != RV_SAYS_YES) || (r->at.presence != ARE_THERE) || (r->at.lost_count > 0)
+        || (r->atom[atom] != IS_FALSE) || is_doubted(r, r->part->pulses[atom])) {
+        return false;
+    }
     r->atom[atom] = IS_TRUE;
     r->is_fresh[atom] = 1;
     r->fresh[r->at.fresh_count] = atom;
@@ -147,8 +150,6 @@ void start_pulses(run *r, int64_t t)
             }
         }
     }
-    r->at.gathered = false;
-    forget(r);
 }
 
 /* Whether a position has to be visited for what is due by then: some of it is not decided by time alone. */
