@@ -61,14 +61,18 @@ def _parts(rng: random.Random, rows: Rows, high: int) -> Iterator[tuple[str, int
     """What is true, and at how many rows."""
     known = {"low": _low_bound(high), "high": high}
     known |= {f"high{more:+d}": high + more for more in (-2, -1, 1)}
+
+    def number(text: str) -> int:
+        return known[text] if text in known else int(text)
+
     for row in rows:
         if not isinstance(row, str):
             for _ in range(rng.randint(1, 7)):
                 yield from _parts(rng, row, high)
             continue
         true, _, count = row.partition(" ")
-        least, _, most = (known.get(one) if one in known else one for one in count.partition(".."))
-        yield true.strip("-"), rng.randint(int(least or 0), int(most)) if most else int(least or 0)
+        least, _, most = count.partition("..")
+        yield true.strip("-"), rng.randint(number(least), number(most)) if most else number(least)
 
 
 def trace(family: Family, high: int, rows: int, seed: int = 1) -> dict[str, list[bool]]:

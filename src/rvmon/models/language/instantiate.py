@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import product
+from itertools import islice, product
 
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
@@ -320,7 +320,8 @@ def _edges(
         inner = scope.inner(selected) if selected else scope
         guards = [Guard()]
         if written.guard is not None:
-            guards = guards_of(resolver.condition(written.guard, inner))
+            condition = resolver.condition(written.guard, inner)
+            guards = [*islice(guards_of(condition), MAX_CASES + 1)]
         if len(guards) > MAX_CASES:
             message = f"a guard of more than {MAX_CASES} cases with clocks"
             raise model_error("TA019", message, written.span, "write several edges")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import islice
 
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
@@ -160,7 +161,34 @@ def _denied(expression: Expression) -> Expression:
 
 
 def normal_form(expression: Expression, positive: bool = True) -> Expression:
-    """The expression, or its negation, with `and` and `or` over discrete parts and atoms."""
+    """The expression, or its negation, with `and` and `or` over discrete parts and atoms.
+
+    Raises:
+        ModelError: it would have too many parts.
+    """
+    if _size(expression) > MOST_PARTS:
+        raise model_error("TA019", "too many conditions are compared", None, "split the condition")
+    return _normal_form(expression, positive)
+
+
+def _size(expression: Expression) -> int:
+    """The parts of the normal form: what compares conditions has each of them twice."""
+    if is_discrete(expression):
+        return 1
+    match expression:
+        case UnaryOperation(_, operand):
+            return _size(operand)
+        case PathFormula(_, body, _, left):
+            return _size(body) + _size(left)
+        case BinaryOperation(op, left, right):
+            return (1 + (op in (BinaryOp.EQ, BinaryOp.NE))) * (_size(left) + _size(right))
+        case Choice(condition, then, otherwise):
+            return 2 * _size(condition) + _size(then) + _size(otherwise)
+        case _:
+            return 1
+
+
+def _normal_form(expression: Expression, positive: bool = True) -> Expression:
     if is_discrete(expression):
         return expression if positive else _denied(expression)
     match expression:
@@ -170,37 +198,39 @@ def normal_form(expression: Expression, positive: bool = True) -> Expression:
             return expression if positive else UnaryOperation(UnaryOp.NOT, expression)
         case PathFormula(op, body, bound, left):
             op = op if positive else _NEGATED_PATH[op]
-            return PathFormula(op, normal_form(body, positive), bound, normal_form(left))
+            return PathFormula(op, _normal_form(body, positive), bound, _normal_form(left))
         case UnaryOperation(UnaryOp.NOT, operand):
-            return normal_form(operand, not positive)
+            return _normal_form(operand, not positive)
         case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right):
             if not positive:
                 op = BinaryOp.OR if op is BinaryOp.AND else BinaryOp.AND
-            parts = normal_form(left, positive), normal_form(right, positive)
+            parts = _normal_form(left, positive), _normal_form(right, positive)
             return BinaryOperation(op, *parts)
         case BinaryOperation(BinaryOp.IMPLY, left, right):
             op = BinaryOp.OR if positive else BinaryOp.AND
             return BinaryOperation(
-                op, normal_form(left, not positive), normal_form(right, positive)
+                op, _normal_form(left, not positive), _normal_form(right, positive)
             )
         case BinaryOperation(BinaryOp.EQ | BinaryOp.NE as op, left, right):
             # `p == q` between conditions is "both or neither", `p != q` is "one of them".
             same = (op is BinaryOp.EQ) == positive
             return BinaryOperation(
                 BinaryOp.OR,
-                BinaryOperation(BinaryOp.AND, normal_form(left), normal_form(right, same)),
+                BinaryOperation(BinaryOp.AND, _normal_form(left), _normal_form(right, same)),
                 BinaryOperation(
-                    BinaryOp.AND, normal_form(left, positive=False), normal_form(right, not same)
+                    BinaryOp.AND, _normal_form(left, positive=False), _normal_form(right, not same)
                 ),
             )
         case Choice(condition, then, otherwise):
             return BinaryOperation(
                 BinaryOp.OR,
-                BinaryOperation(BinaryOp.AND, normal_form(condition), normal_form(then, positive)),
+                BinaryOperation(
+                    BinaryOp.AND, _normal_form(condition), _normal_form(then, positive)
+                ),
                 BinaryOperation(
                     BinaryOp.AND,
-                    normal_form(condition, positive=False),
-                    normal_form(otherwise, positive),
+                    _normal_form(condition, positive=False),
+                    _normal_form(otherwise, positive),
                 ),
             )
         case _:  # arithmetic, and what is discrete
@@ -226,21 +256,22 @@ def split_guard(expression: Expression, span: Span) -> Guard:
     Raises:
         ModelError: clocks stand under `or`.
     """
-    guards = guards_of(expression)
-    if len(guards) > 1:
+    guard, *others = islice(guards_of(expression), 2)
+    if others:
         fix = "make one location for each alternative"
         raise model_error("TA009", "a clock under `or`", span, fix)
-    return guards[0]
+    return guard
 
 
-def guards_of(expression: Expression) -> list[Guard]:
-    """A condition as guards of which one holds where it does, and never two."""
-    made = []
+def guards_of(expression: Expression) -> Iterator[Guard]:
+    """A condition as guards of which one holds where it does, and never two; made as asked for."""
     for parts in _cases(normal_form(expression)):
         data = together(part for part in parts if not isinstance(part, ClockCompare))
-        made.append(Guard(data, tuple(part for part in parts if isinstance(part, ClockCompare))))
-    return made
+        yield Guard(data, tuple(part for part in parts if isinstance(part, ClockCompare)))
 
+
+MOST_PARTS = 100_000
+"""Of a condition in normal form."""
 
 MOST_PIECES = 4000
 """Alternatives of a formula that are taken apart."""
@@ -304,18 +335,19 @@ def _split(formula: Expression) -> list[_Parts]:
             raise AssertionError(f"{formula} is not normalised")
 
 
-def _cases(formula: Expression) -> list[list[Expression]]:
+def _cases(formula: Expression) -> Iterator[list[Expression]]:
     """A normalised condition as alternatives of parts that hold together, each without the others.
 
-    Where `p or q` holds, p does, or it does not and q does.
+    Where `p or q` holds, p does, or it does not and q does. There may be many more than are asked
+    for.
     """
-    if is_discrete(formula):
-        return [list(chained(BinaryOp.AND, formula))]
     match formula:
+        case _ if is_discrete(formula):
+            yield [*chained(BinaryOp.AND, formula)]
         case BinaryOperation(BinaryOp.AND, left, right):
-            return [[*one, *other] for one in _cases(left) for other in _cases(right)]
+            yield from ([*one, *other] for one in _cases(left) for other in _cases(right))
         case BinaryOperation(BinaryOp.OR, left, right):
-            without = BinaryOperation(BinaryOp.AND, normal_form(left, positive=False), right)
-            return [*_cases(left), *_cases(without)]
+            yield from _cases(left)
+            yield from _cases(BinaryOperation(BinaryOp.AND, normal_form(left, False), right))
         case _:
-            return [[formula]]
+            yield [formula]

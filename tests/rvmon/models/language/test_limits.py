@@ -10,6 +10,9 @@ from rvmon.models.search.verify import verify
 A = "automaton A { location a start a } "
 
 
+EDGE = "clock x automaton T {{ location a start a edge a -> a when {} }}"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "code", "message"),
@@ -37,6 +40,8 @@ A = "automaton A { location a start a } "
             "TA019",
             "edges in one",
         ),
+        (EDGE.format("x == 0" + " == 0" * 4), "TA019", "more than 16 cases"),
+        (EDGE.format("x == 0" + " == 0" * 50), "TA019", "too many conditions are compared"),
         ("b(const int[0,1] i) = c(i) c(const int[0,1] i) = b(i) system b " + A, "TA015", "itself"),
         ("b() = b() system b " + A, "TA015", "an instance of itself"),
         (
