@@ -67,7 +67,7 @@ class Question(Struct, frozen=True, dict=True):
     for_each: ForEach | None = None
     captured: Mapping[str, Scalar] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def whose(self) -> tuple[object, ...]:
         """The key of questions that can be evaluated in one run."""
         return self.for_each, *self.captured.items()

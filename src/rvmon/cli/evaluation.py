@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct, field, structs
 
@@ -123,14 +123,14 @@ class RecordingCoverage:
                     self._fault = error
             yield piece
 
-    def finished(self, report: Report) -> Report:
-        """The report with what was found, when all of the recording went by.
+    def finished(self) -> dict[str, Any]:
+        """What was found, for the report, when all of the recording went by.
 
         Raises:
             TraceError: coverage cannot be found.
         """
         if self._run is None:
-            return report
+            return {}
         from rvmon.coverage import covered_groups, illegal
 
         if self._fault is not None:
@@ -140,7 +140,7 @@ class RecordingCoverage:
             self.hits = found
         model = self._spec.coverage_model.bin_model
         wrong = tuple(illegal(found, model))
-        return replace(report, illegal=wrong, coverage=covered_groups(found, model))
+        return {"illegal": wrong, "coverage": covered_groups(found, model)}
 
 
 class Judged(Struct, frozen=True):
@@ -259,7 +259,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
         report = spec.judge(
             source, only=options.only, decided=before.extend, robustness=options.robustness
         )
-        report = beside.finished(report)
+        covered = beside.finished()
         if report.end is None:
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to evaluate")
     except TraceError as error:
@@ -272,7 +272,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
     )
     trace = shown_path(trace)
     health = (*recording.rows.alternations.remarked(report.health), *recording.health())
-    report = replace(report, trace=trace, health=health, **found)
+    report = replace(report, trace=trace, health=health, **covered, **found)
     seconds = time.monotonic() - began
     return Judged(trace, report, missing=missing, hits=beside.hits, seconds=seconds)
 

@@ -255,20 +255,16 @@ def illegal(hits: Hits, model: Model) -> list[IllegalHit]:
 
 def covered_groups(hits: Hits, model: Model) -> tuple[CoveredGroup, ...]:
     """The coverage of one run, per group, with items that were not hit."""
-
-    def covered(group: Group, item: Item) -> CoveredBin:
-        hit = hits.get(group.name, {}).get(item.name)
-        count, first = (0, None) if hit is None else (hit.count, hit.first)
-        return CoveredBin(item.name, item.kind, item.goal, count, first)
-
-    return tuple(
-        CoveredGroup(
-            group.name,
-            group.subject.value,
-            tuple(covered(group, item) for item in group.items.values()),
-        )
-        for group in model.groups.values()
-    )
+    found = []
+    for group in model.groups.values():
+        own = hits.get(group.name, {})
+        bins = []
+        for item in group.items.values():
+            hit = own.get(item.name)
+            count, first = (0, None) if hit is None else (hit.count, hit.first)
+            bins.append(CoveredBin(item.name, item.kind, item.goal, count, first))
+        found.append(CoveredGroup(group.name, group.subject.value, tuple(bins)))
+    return tuple(found)
 
 
 class Ending(StrEnum):

@@ -98,18 +98,26 @@ class RecordingRun:
         self._row = 0
         self._end = source.end
         self._cut = source.until if source.is_cut else None
-        self._losses = Losses(checked, planned, self.core, None)
-        stretches = [
-            self._losses.lose(outage.names, outage.since, outage.until, outage.why)
-            for outage in source.outages
-        ]
-        turns = [(_turns_at(turn, stretch[0].t), turn) for stretch in stretches for turn in stretch]
-        self._turns = [turn for _, turn in sorted(turns, key=lambda pair: pair[0])]
+        self._outages = source.outages
+        self._turns = self._turns_of_outages() if self._outages else []
 
     @cached_property
     def _validator(self) -> Validator:
         """Checks what the core does not take as it is, of which most recordings have nothing."""
         return Validator(self._checked, self._expected, self._planned.single_payloads)
+
+    @cached_property
+    def _losses(self) -> Losses:
+        """Tracks outages, of which most recordings have none."""
+        return Losses(self._checked, self._planned, self.core, None)
+
+    def _turns_of_outages(self) -> list[Turn]:
+        stretches = [
+            self._losses.lose(outage.names, outage.since, outage.until, outage.why)
+            for outage in self._outages
+        ]
+        turns = [(_turns_at(turn, stretch[0].t), turn) for stretch in stretches for turn in stretch]
+        return [turn for _, turn in sorted(turns, key=lambda pair: pair[0])]
 
     def take(self, piece: Batch | Sample) -> None:
         """Judge the next piece of the recording."""
@@ -220,7 +228,8 @@ class RecordingRun:
     def finish(self) -> int | None:
         """End the run where the recording ends; returns the last instant of the trace, ticks."""
         # An outage extends the trace to its last instant (SEMANTICS 1, Outage).
-        self._lose_until(TIME_LIMIT if self._cut is None else self._cut)
+        if self._turns:
+            self._lose_until(TIME_LIMIT if self._cut is None else self._cut)
         return self.core.finish(self._end)
 
     def report(self) -> Report:
@@ -228,7 +237,7 @@ class RecordingRun:
         origin, _, _ = self.core.times()
         end = self.finish()
         findings = () if self._findings is None else self._findings.found(self.core)
-        health = (*findings, *self._losses.health())
+        health = (*findings, *(self._losses.health() if self._outages else ()))
         return report_of_run(self._planned, self.core, origin or 0, end, health)
 
 

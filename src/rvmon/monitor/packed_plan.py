@@ -119,7 +119,7 @@ class PlannedCore(Struct, frozen=True):
 
     packed: Packed
     captured: CapturedValues
-    numbers: Mapping[str, int]
+    numbers: dict[str, int]
     words: tuple[Mapping[str, int] | None, ...]
     kinds: bytes
     limits: bytes
@@ -149,7 +149,10 @@ class PlannedCore(Struct, frozen=True):
             many: makes a lazy sequence of raw records, when thousands are decided at once; see
                 `rvmon.monitor.records.recorded`.
         """
-        coming = {name: number for name, number in self.numbers.items() if name not in absent}
+        coming, is_absent = self.numbers, bytes(len(self.numbers))
+        if absent:
+            coming = {name: number for name, number in coming.items() if name not in absent}
+            is_absent = bytes(name in absent for name in self.numbers)
         attempts = (
             Attempt,
             self.packed.ids,
@@ -161,7 +164,7 @@ class PlannedCore(Struct, frozen=True):
         return native.Monitor(
             self.packed.data,
             (coming, self.words, self.kinds, self.limits),
-            bytes(name in absent for name in self.numbers),
+            is_absent,
             (look_closer, look_closer_ns),
             attempts,
         )

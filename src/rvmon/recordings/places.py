@@ -31,7 +31,7 @@ def is_address(path: str) -> bool:
     >>> is_address("s3://runs/monday.csv"), is_address("C:/runs/monday.csv")
     (True, False)
     """
-    return _ADDRESS.match(path) is not None
+    return "://" in path and _ADDRESS.match(path) is not None
 
 
 def endings_of(path: str) -> tuple[str, str]:
