@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from rvmon.coverage import Hits
     from rvmon.coverage.monitor import CoverageRun
+    from rvmon.monitor.packed_plan import PlannedCore
     from rvmon.recordings.batch import Batch
     from rvmon.reproducer import Case
     from rvmon.verdicts.attempt import Attempt
@@ -191,9 +192,10 @@ def judge_all(
     is_alone = len(traces) == 1
     is_apart = jobs != 1 and not is_alone
     begin = partial(partial, judge, spec, options=options, is_alone=is_alone)
+    planned: PlannedCore | None = None
     if is_apart:
         begin = partial(partial, _judge_apart, spec, options=options, writes_json=writes_json)
-        spec.planned(options.only)  # for all that go on from here
+        planned = spec.planned(options.only)  # for all that go on from here
     try:
         with bar("recordings", len(traces)) as show:
             jobs = jobs if isinstance(jobs, str) else min(jobs, len(traces))
@@ -201,10 +203,8 @@ def judge_all(
                 done += 1
                 if not is_alone:  # that one shows how far it is read
                     show(done)
-                if is_apart and one.report is not None:
-                    one = structs.replace(
-                        one, report=with_plan(one.report, spec.planned(options.only))
-                    )
+                if planned is not None and one.report is not None:
+                    one = structs.replace(one, report=with_plan(one.report, planned))
                 yield one
     except WorkerLostError as error:
         for trace in traces[done:]:
