@@ -60,10 +60,9 @@ NOT_UNITS = RESERVED | INFIX_WORDS | CLAUSE_WORDS | frozenset(("input", "output"
 """Words that do not count as the unit of a number before them."""
 
 
-_ITEM = re.compile(
+_ITEM = (  # compiled where a text is split: a start of `rvmon` seldom does
     rf"^[ \t\ufeff]*(?P<word>{'|'.join(ITEM_WORDS)}|max(?=\s+delay))(?!\w|\.\w)"
-    r"(?P<named>[ \t]*(?:\w[\w.]*|`[^`\n]*`)[ \t]*:)?",
-    re.MULTILINE,
+    r"(?P<named>[ \t]*(?:\w[\w.]*|`[^`\n]*`)[ \t]*:)?"
 )
 
 
@@ -77,7 +76,7 @@ def split_items(text: str) -> list[tuple[int, int]]:
     """
     starts: list[int] = []
     inside = ""
-    for head in _ITEM.finditer(text):
+    for head in re.finditer(_ITEM, text, re.MULTILINE):
         word = head["word"]
         if word == "property" and inside == "requirement" and not head["named"]:
             continue
