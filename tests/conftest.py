@@ -23,6 +23,12 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(Seconds())
 
 
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """One process more than cores for all tests: one or the other waits for a program."""
+    return (os.cpu_count() or 1) + (not config.option.markexpr)
+
+
 class _Doctests:
     """A plugin, so that it sees `src` too, that looks for doctests only where a prompt stands."""
 
