@@ -1,9 +1,10 @@
 """Whether two sides judge alike, before their times are set side by side.
 
 The first formula of a workload is judged at every row of its last rows, where the Timescales
-families are violated: ours by the monitor that is measured, the peer by its own, on as many rows as
-it judges in a given time. rtamt, which is timed on the past, is stepped for that. On random
-formulas and traces they are compared by `benchmarks.differential peers`.
+families are violated, and with each column held for half of them: ours by the monitor that is
+measured, the peer by its own, on as many rows as it judges in a given time. rtamt, which is timed
+on the past, is stepped for that. On random formulas and traces they are compared by
+`benchmarks.differential peers`.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.environment import Environment
-from benchmarks.peers.ways import RTAMT_STEPPED, WAYS, Question, answers, ask_monitor
+from benchmarks.peers.ways import RTAMT_STEPPED, WAYS, Columns, Question, answers, ask_monitor
 from benchmarks.timing.race import PEERS, Figure, margin_text
 from benchmarks.timing.workload import Size, Workload
 from tests.tools.common_fragment import UntranslatableError
@@ -68,7 +69,7 @@ def compare(
         workload: the measured workload.
         timed: the figures: a peer gets as many rows as it judges in the time.
         peers: the other monitors, by label.
-        size: the time for which a peer may judge.
+        size: the time for which a peer may judge each trace.
     """
     about = Agreement("rvmon", workload.name, workload.form)
     formula = workload.formulas[0]
@@ -83,19 +84,26 @@ def compare(
             yield replace(about, remark=f"{workload.form}: {text}")
             continue
         columns = {name: workload.columns[name][-rows:] for name in sorted({*names_read(formula)})}
-        question = Question(formula, columns)
+        both: list[tuple[bool | None, bool | None]] = []
         try:
-            pairs = zip(
-                answers(question, ask_monitor),
-                WAYS_OF[label].truths(peers[label], question),
-                strict=True,
-            )
-            both = [pair for pair in pairs if None not in pair]
+            for own in _with_stretches(columns):
+                question = Question(formula, own)
+                theirs = WAYS_OF[label].truths(peers[label], question)
+                both += zip(answers(question, ask_monitor), theirs, strict=True)
         except (PeerError, UntranslatableError, RvmonError) as error:
             yield replace(about, remark=str(error).splitlines()[0])
             continue
-        equal, false = sum(own is its for own, its in both), sum(not own for own, _ in both)
+        both = [pair for pair in both if None not in pair]
+        equal, false = sum(one is its for one, its in both), sum(not one for one, _ in both)
         yield replace(about, equal=equal, compared=len(both), false=false)
+
+
+def _with_stretches(columns: Columns) -> Iterator[Columns]:
+    """The columns, and with each in turn held for the second half, so that both verdicts occur."""
+    yield columns
+    for name, column in columns.items():
+        half = len(column) // 2
+        yield {**columns, name: [*column[:half], *[column[half]] * (len(column) - half)]}
 
 
 def margins_alike(workload: Workload, environment: Environment) -> Iterator[Agreement]:
