@@ -8,16 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
-from typing import TYPE_CHECKING
 
 from msgspec import Struct, field
 
 from rvmon.diagnostics import Source, Span
 from rvmon.language.checked.formula import FieldValue, Formula, Numeric
+from rvmon.language.checked.properties import Cover, Coverpoint, Cross, Property
 from rvmon.trace.schema import Kind, Schema
-
-if TYPE_CHECKING:
-    from rvmon.language.checked.properties import Cover, Coverpoint, Cross, Property
 
 
 class Role(StrEnum):
