@@ -19,20 +19,9 @@ from itertools import combinations, groupby
 
 from rvmon.models import model_error
 from rvmon.models.network import Network, check_clocks
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.derived import Watcher, finer
 from rvmon.models.network.evaluate import Evaluator
-from rvmon.models.network.expressions import (
-    FALSE,
-    MAX_TIME,
-    TRUE,
-    ClockCompare,
-    ClockOp,
-    Constant,
-    Expression,
-    LocationKind,
-    UnaryOp,
-    UnaryOperation,
-)
 from rvmon.models.network.guards import together
 from rvmon.models.runs import Action, Position, Run
 from rvmon.models.runs.moves import check_start
@@ -126,7 +115,7 @@ def conform(
     if network.unit is None or network.unit % RESOLUTION:
         fix = "write its unit of time, such as `unit 50 ms`"
         raise model_error("TA023", "time is not in whole milliseconds", None, fix)
-    if end + tolerance >= MAX_TIME * RESOLUTION:
+    if end + tolerance >= ex.MAX_TIME * RESOLUTION:
         fix = "compare a shorter part, with --until"
         raise model_error("TA019", "the recording is longer than 24 days", None, fix)
     fine, labels = finer(network, network.unit // RESOLUTION), tuple(sorted(observed))
@@ -134,9 +123,9 @@ def conform(
     chain, meter = _chain_of(actions, end, tolerance, most), Meter(budget, None)
     watcher = _following(fine, labels, chain, most)
     over = watcher.add_location()
-    bound = ClockCompare(watcher.clock, ClockOp.GE, Constant(max(0, chain[-1].earliest)))
-    watcher.add_edge(over - 1, over, TRUE, [bound], watches=False)
-    spans = seek(watcher.network(), Sought(Seek.GOAL, FALSE), meter).spans
+    bound = ex.ClockCompare(watcher.clock, ex.ClockOp.GE, ex.Constant(max(0, chain[-1].earliest)))
+    watcher.add_edge(over - 1, over, ex.TRUE, [bound], watches=False)
+    spans = seek(watcher.network(), Sought(Seek.GOAL, ex.FALSE), meter).spans
     if over in spans:
         return Conformance(len(actions), None)
     reached = max(spans, default=0)
@@ -221,12 +210,14 @@ def _following(
     """The automaton that follows a recording up to the last of some places."""
     watcher = Watcher(network, labels, [""])
     for place in chain:
-        watcher.add_location([ClockCompare(watcher.clock, ClockOp.LE, Constant(place.latest))])
+        watcher.add_location(
+            [ex.ClockCompare(watcher.clock, ex.ClockOp.LE, ex.Constant(place.latest))]
+        )
     numbers = {(place.t, place.left): number for number, place in enumerate(chain)}
-    named: dict[tuple[str, ...], Expression] = {(): _named(watcher, labels, ())}
+    named: dict[tuple[str, ...], ex.Expression] = {(): _named(watcher, labels, ())}
     for number, place in enumerate(chain):
         watcher.add_edge(number, number, named[()])
-        since = ClockCompare(watcher.clock, ClockOp.GE, Constant(max(0, place.earliest)))
+        since = ex.ClockCompare(watcher.clock, ex.ClockOp.GE, ex.Constant(max(0, place.earliest)))
         for names, left in _firsts(place.left, most) if place.left else ():
             target = numbers.get((place.t, left)) if left else place.next
             if target is not None and target < len(chain):
@@ -235,10 +226,10 @@ def _following(
     return watcher
 
 
-def _named(watcher: Watcher, labels: Iterable[str], names: Sequence[str]) -> Expression:
+def _named(watcher: Watcher, labels: Iterable[str], names: Sequence[str]) -> ex.Expression:
     """Whether a move has just these of the observed names."""
     return together(
-        watcher.has(name) if name in names else UnaryOperation(UnaryOp.NOT, watcher.has(name))
+        watcher.has(name) if name in names else ex.UnaryOperation(ex.UnaryOp.NOT, watcher.has(name))
         for name in labels
     )
 
@@ -248,15 +239,15 @@ def _allowed(
 ) -> tuple[Allowed, ...]:
     """The actions possible at the last place, each with its earliest and latest instant."""
     watcher, last = _following(network, labels, chain, most), len(chain) - 1
-    end = ClockCompare(watcher.clock, ClockOp.GE, Constant(chain[-1].latest))
-    names = {watcher.add_location(kind=LocationKind.URGENT): label for label in labels}
+    end = ex.ClockCompare(watcher.clock, ex.ClockOp.GE, ex.Constant(chain[-1].latest))
+    names = {watcher.add_location(kind=ex.LocationKind.URGENT): label for label in labels}
     for place, label in names.items():
         watcher.add_edge(last, place, watcher.has(label))
-        for op in (ClockOp.GE, ClockOp.LE):  # so that the clock counts there, as far as that
-            watcher.add_edge(place, place, TRUE, [replace(end, op=op)], watches=False)
-    over = watcher.add_location(kind=LocationKind.URGENT)
-    watcher.add_edge(last, over, TRUE, [end], watches=False)
-    spans = seek(watcher.network(), Sought(Seek.GOAL, FALSE), meter).spans
+        for op in (ex.ClockOp.GE, ex.ClockOp.LE):  # so that the clock counts there, as far as that
+            watcher.add_edge(place, place, ex.TRUE, [replace(end, op=op)], watches=False)
+    over = watcher.add_location(kind=ex.LocationKind.URGENT)
+    watcher.add_edge(last, over, ex.TRUE, [end], watches=False)
+    spans = seek(watcher.network(), Sought(Seek.GOAL, ex.FALSE), meter).spans
     found = [
         Allowed(names[place], round(low) * RESOLUTION, round(high) * RESOLUTION)
         for place, (low, high) in sorted(spans.items(), key=lambda one: one[1])

@@ -24,15 +24,9 @@ from rvmon.models import model_error
 from rvmon.models.conform import labels_of
 from rvmon.models.language.elaborate import signal_on
 from rvmon.models.network import Network, check_clocks
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.derived import finer
 from rvmon.models.network.evaluate import Evaluator, evaluator
-from rvmon.models.network.expressions import (
-    BaseType,
-    Expression,
-    InLocation,
-    LocationKind,
-    VariableValue,
-)
 from rvmon.models.network.guards import either, together
 from rvmon.models.network.scope import PlacedSymbol
 from rvmon.models.requirement_observer import Observed
@@ -203,20 +197,20 @@ def _observe(
     )
 
 
-def _unbounded(network: Network) -> Expression:
+def _unbounded(network: Network) -> ex.Expression:
     """Every automaton is where no invariant bounds clocks."""
     free = (
         tuple(
-            InLocation(index, number)
+            ex.InLocation(index, number)
             for number, place in enumerate(automaton.locations)
-            if place.kind is LocationKind.NORMAL and not place.invariant.clocks
+            if place.kind is ex.LocationKind.NORMAL and not place.invariant.clocks
         )
         for index, automaton in enumerate(network.automata)
     )
     return together(either(places) for places in free)
 
 
-def _reached(problem: Observed, goal: Expression, meter: Meter) -> Run | None:
+def _reached(problem: Observed, goal: ex.Expression, meter: Meter) -> Run | None:
     """A run to where an attempt is like that."""
     if meter.stopped:
         return None
@@ -248,11 +242,11 @@ def signals_of(network: Network) -> dict[str, Evaluator]:
     return {name: evaluator(value) for name, value in _values(network).items()}
 
 
-def _values(network: Network) -> dict[str, Expression]:
-    values: dict[str, Expression] = {}
+def _values(network: Network) -> dict[str, ex.Expression]:
+    values: dict[str, ex.Expression] = {}
     for name, symbol in network.names.top.symbols.items():
-        if isinstance(symbol, PlacedSymbol) and symbol.kind is BaseType.INT and symbol.is_single:
-            values[name] = VariableValue(symbol.slot)
+        if isinstance(symbol, PlacedSymbol) and symbol.kind is ex.BaseType.INT and symbol.is_single:
+            values[name] = ex.VariableValue(symbol.slot)
     for signal in network.signals:
         values[signal.name] = signal.value
     return values

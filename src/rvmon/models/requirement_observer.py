@@ -18,18 +18,9 @@ from rvmon.language.checked.formula import Bound, BoundAtom
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton
 from rvmon.logic.lower import Obligation
 from rvmon.models.network import Network
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.derived import Watcher
 from rvmon.models.network.evaluate import evaluator
-from rvmon.models.network.expressions import (
-    FALSE,
-    BinaryOp,
-    BinaryOperation,
-    ClockCompare,
-    ClockOp,
-    Constant,
-    Expression,
-    LocationKind,
-)
 from rvmon.models.network.guards import either, together
 from rvmon.models.requirement_propositions import (
     Ages,
@@ -121,7 +112,7 @@ class Observed:
         obligation: Obligation,
         pulse: bool,
         automaton: Automaton,
-        signals: dict[str, Expression],
+        signals: dict[str, ex.Expression],
         labels: frozenset[str],
     ) -> None:
         self._automaton = automaton
@@ -143,9 +134,9 @@ class Observed:
         self._since = self._watcher.clock + count
         """The clock that the watcher sets in each step."""
         now = Labelling(signals, self._watcher.has)
-        between = Labelling(signals, lambda _name: FALSE)
-        self._triggers = FALSE if trigger is None or bound else now.expression(trigger)
-        self._lasting = FALSE if trigger is None or bound else between.expression(trigger)
+        between = Labelling(signals, lambda _name: ex.FALSE)
+        self._triggers = ex.FALSE if trigger is None or bound else now.expression(trigger)
+        self._lasting = ex.FALSE if trigger is None or bound else between.expression(trigger)
         propositions = [now.expression(proposition) for proposition in alphabet.propositions]
         self._tables = Tables(automaton, propositions, network.unit or 1)
         self._sites: dict[_Site, int] = {}
@@ -178,14 +169,14 @@ class Observed:
         place = self._sites.get(site)
         if place is None:
             urgent = site.phase is Phase.FRESH and not site.is_decided
-            kind = LocationKind.URGENT if urgent else LocationKind.NORMAL
+            kind = ex.LocationKind.URGENT if urgent else ex.LocationKind.NORMAL
             waits = site.phase is Phase.HELD and not site.is_decided
             bounds = self._tables.highest(*site.held) if waits else ()
             place = self._sites[site] = self._watcher.add_location(bounds, kind)
             self._waiting.append(site)
         return place
 
-    def _where(self, counts: Callable[[_Site], bool], *, at_start: bool = True) -> Expression:
+    def _where(self, counts: Callable[[_Site], bool], *, at_start: bool = True) -> ex.Expression:
         """The states in which the watcher is in some sites."""
         places = []
         for site, place in self._sites.items():
@@ -193,7 +184,7 @@ class Observed:
             if shown is not None and counts(shown):
                 there = self._watcher.is_in(place)
                 if site.phase is Phase.HELD and site.is_decided:  # decided once time has passed
-                    there = BinaryOperation(BinaryOp.AND, there, self._after())
+                    there = ex.BinaryOperation(ex.BinaryOp.AND, there, self._after())
                 places.append(there)
         return either(places)
 
@@ -201,9 +192,9 @@ class Observed:
         waits = site.phase is Phase.HELD and not site.is_decided
         return waits and self._tables.is_last(site.location, site.region)
 
-    def _after(self) -> ClockCompare:
+    def _after(self) -> ex.ClockCompare:
         """Some time has passed since the watcher stepped."""
-        return ClockCompare(self._since, ClockOp.GT, Constant(0))
+        return ex.ClockCompare(self._since, ex.ClockOp.GT, ex.Constant(0))
 
     def _expand(self, site: _Site) -> None:
         """Add the edges that leave a site."""
@@ -212,7 +203,7 @@ class Observed:
             case Phase.START:
                 self._follow_none(place, self._is_ready)
                 if self._begun is not None and not self._begun.is_decided:
-                    at_once = ClockCompare(self._since, ClockOp.LE, Constant(0))
+                    at_once = ex.ClockCompare(self._since, ex.ClockOp.LE, ex.Constant(0))
                     self._follow(place, self._begun, (at_once,))
             case Phase.IDLE | Phase.READY:
                 self._follow_none(place, site.phase is Phase.READY)
@@ -225,16 +216,16 @@ class Observed:
         """Moves without an attempt, and those that begin one."""
         held, resets = self._lasting, (self._since,)
         self._watcher.add_edge(place, self._place(_Site(Phase.IDLE)), negated(held), (), resets)
-        if held != FALSE:
+        if held != ex.FALSE:
             self._watcher.add_edge(place, self._place(_Site(Phase.READY)), held, (), resets)
         if self._pulse or not is_ready:
             for letters, edge in self._tables.edges(self._automaton.initial, ()):
                 when = together((self._triggers, letters))
-                if when != FALSE:
+                if when != ex.FALSE:
                     site, started = self._fresh(edge, ())
                     self._watcher.add_edge(place, self._place(site), when, (), started)
 
-    def _follow(self, place: int, site: _Site, room: tuple[ClockCompare, ...]) -> None:
+    def _follow(self, place: int, site: _Site, room: tuple[ex.ClockCompare, ...]) -> None:
         """Moves with an attempt, and what time does to it: behind an action, or at a bound."""
         regions = [*self._tables.regions(site.location, site.region)]
         for region in regions:
@@ -243,7 +234,7 @@ class Observed:
                 fresh, started = self._fresh(edge, site.clocks)
                 self._watcher.add_edge(place, self._place(fresh), letters, bounds, started)
         # The state, and with it the class of its letter, is the same in all steps of an instant.
-        waits: dict[tuple[tuple[ClockCompare, ...], _Held], set[int]] = {}
+        waits: dict[tuple[tuple[ex.ClockCompare, ...], _Held], set[int]] = {}
         for region, letter in product(regions, range(self._automaton.classes)):
             for way in self._held((site.location, site.clocks, region), letter, {}, 0):
                 if site.phase is not Phase.HELD or way[1] != site.held:
@@ -252,7 +243,7 @@ class Observed:
             self._wait(place, self._tables.letters(classes), (*room, *bounds), held)
 
     def _wait(
-        self, place: int, letters: Expression, bounds: tuple[ClockCompare, ...], held: _Held
+        self, place: int, letters: ex.Expression, bounds: tuple[ex.ClockCompare, ...], held: _Held
     ) -> None:
         location, clocks, region = held
         numbers, started = self._started(clocks)
@@ -276,7 +267,7 @@ class Observed:
 
     def _held(
         self, held: _Held, letter: int, ages: Ages, steps: int
-    ) -> Iterator[tuple[tuple[ClockCompare, ...], _Held]]:
+    ) -> Iterator[tuple[tuple[ex.ClockCompare, ...], _Held]]:
         """The waiting states that steps just after an instant lead to, with the bounds for each."""
         if steps > MOST_STEPS:
             yield bounds_of(ages), (_LOST, (), ())

@@ -20,20 +20,7 @@ from rvmon.language.checked.formula import Constant as ConstantLeaf
 from rvmon.logic.automaton import NOW, Automaton, row_of
 from rvmon.logic.state_formula import Lapsed, Lost, StateOp, Unborn
 from rvmon.logic.state_formula import State as Proposition
-from rvmon.models.network.expressions import (
-    FALSE,
-    MAX_TIME,
-    TRUE,
-    BinaryOp,
-    BinaryOperation,
-    Choice,
-    ClockCompare,
-    ClockOp,
-    Constant,
-    Expression,
-    UnaryOp,
-    UnaryOperation,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import either, together
 
 
@@ -58,12 +45,12 @@ class Labelling:
     """
 
     def __init__(
-        self, signals: Mapping[str, Expression], event: Callable[[str], Expression]
+        self, signals: Mapping[str, ex.Expression], event: Callable[[str], ex.Expression]
     ) -> None:
         self._signals = signals
         self._event = event
 
-    def expression(self, proposition: Proposition) -> Expression:
+    def expression(self, proposition: Proposition) -> ex.Expression:
         """A proposition of a state, or of an action that leads to it.
 
         Raises:
@@ -72,7 +59,7 @@ class Labelling:
         args = [self.expression(argument) for argument in proposition.args]
         match proposition.op, proposition.leaf:
             case StateOp.NOT, _:
-                return UnaryOperation(UnaryOp.NOT, args[0])
+                return ex.UnaryOperation(ex.UnaryOp.NOT, args[0])
             case StateOp.AND, _:
                 return together(args)
             case StateOp.OR, _:
@@ -80,9 +67,9 @@ class Labelling:
             case StateOp.SURE, _:  # nothing is unknown
                 return args[0]
             case StateOp.LEAF, ConstantLeaf(value=value):
-                return Constant(int(value))
+                return ex.Constant(int(value))
             case StateOp.LEAF, Unborn() | Lost() | Lapsed():  # nor is anything unborn
-                return FALSE
+                return ex.FALSE
             case StateOp.LEAF, SignalAtom(name=name):
                 return self._signal(name)
             case StateOp.LEAF, EventAtom(name=name):
@@ -94,30 +81,30 @@ class Labelling:
             case _:
                 raise NotExpressibleError("it refers to the past")
 
-    def _comparison(self, op: CompareOp, left: Numeric, right: Numeric) -> Expression:
+    def _comparison(self, op: CompareOp, left: Numeric, right: Numeric) -> ex.Expression:
         match left, right:
             case Literal(int() | float() as one), Literal(int() | float() as other):
-                return Constant(int(op.holds(one, other)))
+                return ex.Constant(int(op.holds(one, other)))
             case Literal(), _:
                 return self._comparison(op.mirrored, right, left)
             case _, Literal(float() as number) if not number.is_integer():
                 if op in (CompareOp.EQ, CompareOp.NE):  # a model has whole numbers
-                    return Constant(int(op is CompareOp.NE))
+                    return ex.Constant(int(op is CompareOp.NE))
                 up = op in (CompareOp.LT, CompareOp.GE)
                 return self._comparison(op, left, Literal(ceil(number) if up else floor(number)))
             case _:
-                return BinaryOperation(BinaryOp(op), self._number(left), self._number(right))
+                return ex.BinaryOperation(ex.BinaryOp(op), self._number(left), self._number(right))
 
-    def _number(self, number: Numeric) -> Expression:
+    def _number(self, number: Numeric) -> ex.Expression:
         match number:
             case SignalValue(name):
                 return self._signal(name)
             case Literal(int() | float() as value):
-                return Constant(int(value))
+                return ex.Constant(int(value))
             case _:
                 raise NotExpressibleError("it calculates with numbers")
 
-    def _signal(self, name: str) -> Expression:
+    def _signal(self, name: str) -> ex.Expression:
         if name not in self._signals:
             fix = f"`--bind '{name}=…'` gives it a meaning"
             raise NotExpressibleError(f"the network has no signal `{name}`: {fix}")
@@ -161,7 +148,9 @@ class Tables:
             number of units.
     """
 
-    def __init__(self, automaton: Automaton, propositions: Sequence[Expression], unit: int) -> None:
+    def __init__(
+        self, automaton: Automaton, propositions: Sequence[ex.Expression], unit: int
+    ) -> None:
         if len(propositions) > MOST_CONDITIONS:
             raise NotExpressibleError(f"it reads more than {MOST_CONDITIONS} conditions")
         self._automaton = automaton
@@ -180,7 +169,7 @@ class Tables:
         edge = automaton.edges[row_of(automaton, location, region) * automaton.classes + letter]
         return None if edge < 0 else (automaton.targets[edge], automaton.sources[edge])
 
-    def edges(self, location: int, region: Region) -> Iterator[tuple[Expression, Edge]]:
+    def edges(self, location: int, region: Region) -> Iterator[tuple[ex.Expression, Edge]]:
         """All edges from a region, each with when it is taken."""
         classes: dict[Edge, set[int]] = {}
         for number in range(self._automaton.classes):
@@ -190,11 +179,11 @@ class Tables:
         for edge, numbers in classes.items():
             yield self.letters(numbers), edge
 
-    def letters(self, classes: set[int]) -> Expression:
+    def letters(self, classes: set[int]) -> ex.Expression:
         """Whether a letter is in some classes."""
         return self._in(self._tree, classes)
 
-    def class_of(self, holds: Callable[[Expression], int]) -> int:
+    def class_of(self, holds: Callable[[ex.Expression], int]) -> int:
         """The class of the letter of a state, given which propositions hold there."""
         tree = self._tree
         while not isinstance(tree, int):
@@ -212,17 +201,17 @@ class Tables:
         true = self._classes(place + 1, letter + high)
         return false if false == true else (place, false, true)
 
-    def _in(self, tree: _Tree, classes: set[int]) -> Expression:
+    def _in(self, tree: _Tree, classes: set[int]) -> ex.Expression:
         if isinstance(tree, int):
-            return TRUE if tree in classes else FALSE
+            return ex.TRUE if tree in classes else ex.FALSE
         place, false, true = tree
         no, yes = self._in(false, classes), self._in(true, classes)
         test = self._propositions[place]
         if no == yes:
             return no
-        if yes == FALSE:
+        if yes == ex.FALSE:
             return together((negated(test), no))
-        return together((test, yes)) if no == FALSE else Choice(test, yes, no)
+        return together((test, yes)) if no == ex.FALSE else ex.Choice(test, yes, no)
 
     # Ages.
 
@@ -238,21 +227,23 @@ class Tables:
 
     def highest(
         self, location: int, clocks: Sequence[int], region: Region
-    ) -> Iterator[ClockCompare]:
+    ) -> Iterator[ex.ClockCompare]:
         """The bounds up to which ages stay in a region."""
         for clock, _, high in self._bounds(location, clocks, region):
             if high is not None:
-                yield ClockCompare(clock, ClockOp.LE, Constant(high.number))
+                yield ex.ClockCompare(clock, ex.ClockOp.LE, ex.Constant(high.number))
 
-    def exact(self, location: int, clocks: Sequence[int], region: Region) -> Iterator[ClockCompare]:
+    def exact(
+        self, location: int, clocks: Sequence[int], region: Region
+    ) -> Iterator[ex.ClockCompare]:
         """The ages in a region."""
         for clock, low, high in self._bounds(location, clocks, region):
             if low is not None:
-                op = ClockOp.GT if low.behind else ClockOp.GE
-                yield ClockCompare(clock, op, Constant(low.number))
+                op = ex.ClockOp.GT if low.behind else ex.ClockOp.GE
+                yield ex.ClockCompare(clock, op, ex.Constant(low.number))
             if high is not None:
-                op = ClockOp.LE if high.behind else ClockOp.LT
-                yield ClockCompare(clock, op, Constant(high.number))
+                op = ex.ClockOp.LE if high.behind else ex.ClockOp.LT
+                yield ex.ClockCompare(clock, op, ex.Constant(high.number))
 
     def just_behind(
         self, location: int, clocks: Sequence[int], region: Region, ages: Ages
@@ -284,14 +275,14 @@ class Tables:
             yield clock, low, cuts[place] if place < len(cuts) else None
 
 
-def bounds_of(ages: Ages) -> tuple[ClockCompare, ...]:
+def bounds_of(ages: Ages) -> tuple[ex.ClockCompare, ...]:
     """The condition that clocks have some ages; clocks that begin now satisfy it."""
     bounds = []
     for clock, (low, high) in ages.items():
         if clock != NOW and low:
-            bounds.append(ClockCompare(clock, ClockOp.GE, Constant(low)))
+            bounds.append(ex.ClockCompare(clock, ex.ClockOp.GE, ex.Constant(low)))
         if clock != NOW and high < inf:
-            bounds.append(ClockCompare(clock, ClockOp.LT, Constant(int(high))))
+            bounds.append(ex.ClockCompare(clock, ex.ClockOp.LT, ex.Constant(int(high))))
     return tuple(bounds)
 
 
@@ -299,13 +290,13 @@ def _cut(ticks: int, unit: int) -> _Cut:
     number, rest = divmod(ticks, unit)
     if rest > 1:
         raise NotExpressibleError("a window does not end at a whole number of the model's units")
-    if number >= MAX_TIME:
+    if number >= ex.MAX_TIME:
         raise NotExpressibleError("a window has too many of the model's units")
     return _Cut(number, behind=rest == 1)
 
 
-def negated(one: Expression) -> Expression:
+def negated(one: ex.Expression) -> ex.Expression:
     """The negation of an expression."""
-    if one in (TRUE, FALSE):
-        return FALSE if one == TRUE else TRUE
-    return UnaryOperation(UnaryOp.NOT, one)
+    if one in (ex.TRUE, ex.FALSE):
+        return ex.FALSE if one == ex.TRUE else ex.TRUE
+    return ex.UnaryOperation(ex.UnaryOp.NOT, one)

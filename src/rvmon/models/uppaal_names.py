@@ -10,36 +10,7 @@ from math import prod
 from typing import assert_never
 
 from rvmon.models.network import Network
-from rvmon.models.network.expressions import (
-    Assignment,
-    BinaryOp,
-    BinaryOperation,
-    Choice,
-    ClockCompare,
-    Constant,
-    Deadlock,
-    Expression,
-    Fractional,
-    Function,
-    If,
-    InLocation,
-    Invoke,
-    Lookup,
-    Missing,
-    PathFormula,
-    Perform,
-    Reset,
-    Return,
-    Slot,
-    Statement,
-    UnaryOp,
-    UnaryOperation,
-    Variable,
-    VariableValue,
-    While,
-    expressions_of,
-    statements_in,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.fractions import FUNCTIONS, number_of
 from rvmon.models.network.guards import parts_of
 
@@ -52,7 +23,7 @@ _KEYWORDS = (
 )
 _RESERVED = frozenset(_KEYWORDS.split())
 _INDICES = re.compile(r"\[(-?\d+)\]")
-_SIGNS = {BinaryOp.AND: "&&", BinaryOp.OR: "||"}
+_SIGNS = {ex.BinaryOp.AND: "&&", ex.BinaryOp.OR: "||"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,7 +80,7 @@ class Names:
         self.variables = self._things([variable.name for variable in network.variables])
         self.channels = self._things([channel.name for channel in network.channels])
         self.locals = self._things([variable.name for variable in network.locals])
-        self.functions: dict[int, tuple[str, Function]] = {}
+        self.functions: dict[int, tuple[str, ex.Function]] = {}
         self.automata = [self._fresh(automaton.name) for automaton in network.automata]
 
     def _fresh(self, name: str) -> str:
@@ -142,12 +113,12 @@ class Names:
         )
         return Thing(self._fresh(base), min(indices.values()), extents)
 
-    def function(self, function: Function) -> str:
+    def function(self, function: ex.Function) -> str:
         """The name of a function; those that it calls are named before."""
         if id(function) not in self.functions:
-            for statement in statements_in(function.body):
-                for part in (p for e in expressions_of(statement) for p in parts_of(e)):
-                    if isinstance(part, Invoke):
+            for statement in ex.statements_in(function.body):
+                for part in (p for e in ex.expressions_of(statement) for p in parts_of(e)):
+                    if isinstance(part, ex.Invoke):
                         self.function(part.function)
             self.functions[id(function)] = self._fresh(function.name), function
         return self.functions[id(function)][0]
@@ -162,14 +133,14 @@ class Names:
         """The text for a clock."""
         return _holder(self.clocks, index).element(index)
 
-    def variable(self, slot: Slot) -> str:
+    def variable(self, slot: ex.Slot) -> str:
         """The text for a variable that the variables may choose, be it one of a function."""
         if slot.first >= 0:
             return self.slot(slot, self.variables)
         first = slot.first + len(self.network.locals)
         return self.slot(replace(slot, first=first), self.locals)
 
-    def slot(self, slot: Slot, things: Iterable[Thing]) -> str:
+    def slot(self, slot: ex.Slot, things: Iterable[Thing]) -> str:
         """The text for a variable or channel that the variables may choose."""
         thing = _holder(things, slot.first)
         if not slot.extents:
@@ -180,44 +151,44 @@ class Names:
             places.append(f"[{text} - {extent.start}]" if extent.start else f"[{text}]")
         return thing.name + "".join(places)
 
-    def expression(self, expression: Expression) -> str:
+    def expression(self, expression: ex.Expression) -> str:
         """An expression, operands in brackets where they need any."""
         match expression:
-            case Constant(value):
+            case ex.Constant(value):
                 return str(value) if value >= 0 else f"({value})"
-            case VariableValue(slot):
+            case ex.VariableValue(slot):
                 return self.variable(slot)
-            case Lookup(values, slot):
+            case ex.Lookup(values, slot):
                 return _chosen(values, slot.extents, [self.expression(i) for i in slot.indices])
-            case Invoke(function, arguments):
+            case ex.Invoke(function, arguments):
                 given = ", ".join(map(self.expression, arguments))
                 return f"{self.function(function)}({given})"
-            case Fractional("=", (Constant(bits),)):
+            case ex.Fractional("=", (ex.Constant(bits),)):
                 text = repr(number_of(bits))
                 return text if bits >= 0 else f"({text})"
-            case Fractional("=" | "double" | "grid", (operand,)):
+            case ex.Fractional("=" | "double" | "grid", (operand,)):
                 return self.expression(operand)
-            case Fractional(name, operands):
+            case ex.Fractional(name, operands):
                 texts = [*map(self.expression, operands)]
                 call = f"{name}({', '.join(texts)})"
                 return call if name in FUNCTIONS else f"({texts[0]} {name} {texts[1]})"
-            case UnaryOperation(UnaryOp.NOT, operand):
+            case ex.UnaryOperation(ex.UnaryOp.NOT, operand):
                 return f"!({self.expression(operand)})"
-            case UnaryOperation(op, operand):
+            case ex.UnaryOperation(op, operand):
                 return f"({op}{self.expression(operand)})"
-            case BinaryOperation(op, left, right):
+            case ex.BinaryOperation(op, left, right):
                 sign = _SIGNS.get(op, str(op))
                 return f"({self.expression(left)} {sign} {self.expression(right)})"
-            case Choice(condition, then, otherwise):
+            case ex.Choice(condition, then, otherwise):
                 parts = map(self.expression, (condition, then, otherwise))
                 return "({} ? {} : {})".format(*parts)
-            case InLocation(automaton, place):
+            case ex.InLocation(automaton, place):
                 return f"{self.automata[automaton]}.{self.location(automaton, place)}"
-            case ClockCompare(clock, op, bound):
+            case ex.ClockCompare(clock, op, bound):
                 return f"{self.clock(clock)} {op} {self.expression(bound)}"
-            case Deadlock():
+            case ex.Deadlock():
                 return "deadlock"
-            case PathFormula(op, body, bound):
+            case ex.PathFormula(op, body, bound):
                 limit = "" if bound is None else f"[<={bound}]"
                 return f"{op}{limit} {self.expression(body)}"
             case _:
@@ -243,7 +214,7 @@ def _holder(things: Iterable[Thing], index: int) -> Thing:
     return next(thing for thing in things if thing.first <= index < thing.first + thing.length)
 
 
-def updates_text(names: Names, updates: Iterable[Statement]) -> str:
+def updates_text(names: Names, updates: Iterable[ex.Statement]) -> str:
     """The updates of an edge in their order."""
     return ", ".join(line.removesuffix(";") for line in _lines(names, updates))
 
@@ -253,14 +224,14 @@ def function_lines(names: Names) -> list[str]:
     return [line for _, function in names.functions.values() for line in _function(names, function)]
 
 
-def type_text(variable: Variable) -> str:
+def type_text(variable: ex.Variable) -> str:
     """The type of a variable."""
     if variable.is_real:
         return "double"
     return "bool" if variable.is_bool else f"int[{variable.low},{variable.high}]"
 
 
-def _function(names: Names, function: Function) -> Iterator[str]:
+def _function(names: Names, function: ex.Function) -> Iterator[str]:
     given = [(f"given_{i}", slot, v) for i, (slot, v) in enumerate(function.parameters)]
     listed = ", ".join(f"{type_text(variable)} {name}" for name, _, variable in given)
     yield f"{type_text(function.result[1])} {names.function(function)}({listed}) {{"
@@ -275,48 +246,48 @@ def _function(names: Names, function: Function) -> Iterator[str]:
     yield "}"
 
 
-def _locals(names: Names, function: Function) -> list[Thing]:
+def _locals(names: Names, function: ex.Function) -> list[Thing]:
     """The parameters and local variables of a function, arrays as one thing."""
     slots = {slot for slot, _ in function.parameters}
-    for statement in statements_in(function.body):
-        if isinstance(statement, Assignment):
+    for statement in ex.statements_in(function.body):
+        if isinstance(statement, ex.Assignment):
             slots.add(statement.slot.first)
-        for part in (p for e in expressions_of(statement) for p in parts_of(e)):
-            if isinstance(part, VariableValue):
+        for part in (p for e in ex.expressions_of(statement) for p in parts_of(e)):
+            if isinstance(part, ex.VariableValue):
                 slots.add(part.slot.first)
     places = {slot + len(names.network.locals) for slot in slots if slot < 0}
     return [t for t in names.locals if places & set(range(t.first, t.first + t.length))]
 
 
-def _lines(names: Names, statements: Iterable[Statement]) -> Iterator[str]:
+def _lines(names: Names, statements: Iterable[ex.Statement]) -> Iterator[str]:
     for statement in statements:
         yield from _statement(names, statement)
 
 
-def _statement(names: Names, statement: Statement) -> Iterator[str]:
+def _statement(names: Names, statement: ex.Statement) -> Iterator[str]:
     text = names.expression
     match statement:
-        case Assignment(slot, value):
+        case ex.Assignment(slot, value):
             yield f"{names.variable(slot)} = {text(value)};"
-        case Reset(clock, value):
+        case ex.Reset(clock, value):
             yield f"{names.clock(clock)} = {text(value)};"
-        case Perform(call):
+        case ex.Perform(call):
             yield f"{text(call)};"
-        case If(condition, then, otherwise):
+        case ex.If(condition, then, otherwise):
             yield from _nested(names, f"if ({text(condition)}) {{", then)
             if otherwise:
                 yield from _nested(names, "else {", otherwise)
-        case While(condition, body):
+        case ex.While(condition, body):
             yield from _nested(names, f"while ({text(condition)}) {{", body)
-        case Return(value):
+        case ex.Return(value):
             yield f"return {text(value)};"
-        case Missing():
+        case ex.Missing():
             pass
         case _:
             assert_never(statement)
 
 
-def _nested(names: Names, head: str, inside: Sequence[Statement]) -> Iterator[str]:
+def _nested(names: Names, head: str, inside: Sequence[ex.Statement]) -> Iterator[str]:
     yield head
     for line in _lines(names, inside):
         yield f"  {line}"

@@ -21,22 +21,7 @@ from rvmon.diagnostics import Span
 from rvmon.models import model_error
 from rvmon.models.language import syntax
 from rvmon.models.network import Automaton, Channel, Clock, Edge
-from rvmon.models.network.expressions import (
-    MAX_TIME,
-    Assignment,
-    BinaryOp,
-    BinaryOperation,
-    ClockCompare,
-    ClockOp,
-    Constant,
-    Expression,
-    Reset,
-    Slot,
-    UnaryOp,
-    UnaryOperation,
-    Variable,
-    VariableValue,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import normal_form, parts_of, resets_in
 
 
@@ -64,41 +49,43 @@ class Diagonals:
     """
 
     clocks: Sequence[Clock]
-    variables: list[Variable]
+    variables: list[ex.Variable]
     places: dict[Diagonal, tuple[int, Span]] = field(default_factory=dict)
 
-    def compare(self, first: int, second: int, op: BinaryOp, number: int, span: Span) -> Expression:
+    def compare(
+        self, first: int, second: int, op: ex.BinaryOp, number: int, span: Span
+    ) -> ex.Expression:
         """`first − second` compared with a number, as a condition on variables."""
         match op:
-            case BinaryOp.LE | BinaryOp.LT:
-                return self._kept(Diagonal(first, second, number, op is BinaryOp.LT), span)
-            case BinaryOp.GE | BinaryOp.GT:
-                kept = self._kept(Diagonal(first, second, number, op is BinaryOp.GE), span)
-                return UnaryOperation(UnaryOp.NOT, kept)
-            case BinaryOp.NE:
-                same = self.compare(first, second, BinaryOp.EQ, number, span)
-                return UnaryOperation(UnaryOp.NOT, same)
+            case ex.BinaryOp.LE | ex.BinaryOp.LT:
+                return self._kept(Diagonal(first, second, number, op is ex.BinaryOp.LT), span)
+            case ex.BinaryOp.GE | ex.BinaryOp.GT:
+                kept = self._kept(Diagonal(first, second, number, op is ex.BinaryOp.GE), span)
+                return ex.UnaryOperation(ex.UnaryOp.NOT, kept)
+            case ex.BinaryOp.NE:
+                same = self.compare(first, second, ex.BinaryOp.EQ, number, span)
+                return ex.UnaryOperation(ex.UnaryOp.NOT, same)
             case _:
-                least = self.compare(first, second, BinaryOp.GE, number, span)
-                most = self.compare(first, second, BinaryOp.LE, number, span)
-                return BinaryOperation(BinaryOp.AND, least, most)
+                least = self.compare(first, second, ex.BinaryOp.GE, number, span)
+                most = self.compare(first, second, ex.BinaryOp.LE, number, span)
+                return ex.BinaryOperation(ex.BinaryOp.AND, least, most)
 
-    def _kept(self, diagonal: Diagonal, span: Span) -> Expression:
+    def _kept(self, diagonal: Diagonal, span: Span) -> ex.Expression:
         if diagonal not in self.places:
             self.places[diagonal] = len(self.variables), span
             # In the names of variables brackets are indices.
             name = self._text(diagonal).replace("[", "(").replace("]", ")")
-            self.variables.append(Variable(name, 0, 1, int(diagonal.holds(0)), is_bool=True))
-        return VariableValue(Slot(self.places[diagonal][0]))
+            self.variables.append(ex.Variable(name, 0, 1, int(diagonal.holds(0)), is_bool=True))
+        return ex.VariableValue(ex.Slot(self.places[diagonal][0]))
 
     def _text(self, diagonal: Diagonal) -> str:
         first, second = (self.clocks[clock].name for clock in (diagonal.first, diagonal.second))
         return f"{first} - {second} {'<' if diagonal.strict else '<='} {diagonal.number}"
 
-    def are_read(self, expression: Expression) -> bool:
+    def are_read(self, expression: ex.Expression) -> bool:
         """Whether an expression reads the variable of one."""
         places = {place for place, _ in self.places.values()}
-        parts = (part for part in parts_of(expression) if isinstance(part, VariableValue))
+        parts = (part for part in parts_of(expression) if isinstance(part, ex.VariableValue))
         return any(part.slot.first in places for part in parts)
 
     def kept_up(self, automata: Sequence[Automaton]) -> Iterator[Automaton]:
@@ -144,37 +131,39 @@ class Diagonals:
             case int(first), int(second):
                 yield self._noted(edge, diagonal, diagonal.holds(first - second))
             case int(first), _:
-                op = ClockOp.GT if diagonal.strict else ClockOp.GE
+                op = ex.ClockOp.GT if diagonal.strict else ex.ClockOp.GE
                 yield from self._split(edge, diagonal, diagonal.second, op, first - diagonal.number)
             case _, int(second):
-                op = ClockOp.LT if diagonal.strict else ClockOp.LE
+                op = ex.ClockOp.LT if diagonal.strict else ex.ClockOp.LE
                 yield from self._split(edge, diagonal, diagonal.first, op, second + diagonal.number)
 
     def _split(
-        self, edge: Edge, diagonal: Diagonal, clock: int, op: ClockOp, number: int
+        self, edge: Edge, diagonal: Diagonal, clock: int, op: ex.ClockOp, number: int
     ) -> Iterator[Edge]:
-        if number >= MAX_TIME:
+        if number >= ex.MAX_TIME:
             raise model_error("TA007", f"a clock compared with {number}", edge.span)
-        lower = op in (ClockOp.GE, ClockOp.GT)
-        if number < 0 or (number == 0 and op in (ClockOp.GE, ClockOp.LT)):  # clocks are not below 0
+        lower = op in (ex.ClockOp.GE, ex.ClockOp.GT)
+        if number < 0 or (
+            number == 0 and op in (ex.ClockOp.GE, ex.ClockOp.LT)
+        ):  # clocks are not below 0
             yield self._noted(edge, diagonal, lower)
             return
         for truth in (True, False):
-            compare = normal_form(ClockCompare(clock, op, Constant(number)), truth)
-            assert isinstance(compare, ClockCompare), "as its negation is"
+            compare = normal_form(ex.ClockCompare(clock, op, ex.Constant(number)), truth)
+            assert isinstance(compare, ex.ClockCompare), "as its negation is"
             guard = replace(edge.guard, clocks=(*edge.guard.clocks, compare))
             text = f"{edge.text} where {self.clocks[clock].name} {compare.op} {number}"
             yield self._noted(replace(edge, guard=guard, text=text), diagonal, truth)
 
     def _noted(self, edge: Edge, diagonal: Diagonal, truth: bool) -> Edge:
         place, _ = self.places[diagonal]
-        note = Assignment(Slot(place), Constant(int(truth)), self.variables[place])
+        note = ex.Assignment(ex.Slot(place), ex.Constant(int(truth)), self.variables[place])
         return replace(edge, updates=(*edge.updates, note))
 
 
 def difference(
-    diagonals: Diagonals | None, first: int, second: int, op: BinaryOp, number: int, span: Span
-) -> Expression:
+    diagonals: Diagonals | None, first: int, second: int, op: ex.BinaryOp, number: int, span: Span
+) -> ex.Expression:
     """`first − second` compared with a number.
 
     Raises:
@@ -190,9 +179,9 @@ def difference(
 def terms_of(written: syntax.Expression, sign: int = 1) -> Iterator[tuple[int, syntax.Expression]]:
     """The terms of a sum, each with its sign."""
     match written:
-        case syntax.Binary(BinaryOp.ADD | BinaryOp.SUB as op, left, right):
+        case syntax.Binary(ex.BinaryOp.ADD | ex.BinaryOp.SUB as op, left, right):
             yield from terms_of(left, sign)
-            yield from terms_of(right, sign if op is BinaryOp.ADD else -sign)
+            yield from terms_of(right, sign if op is ex.BinaryOp.ADD else -sign)
         case _:
             yield sign, written
 
@@ -202,7 +191,7 @@ def _values(edge: Edge, diagonal: Diagonal) -> dict[int, int]:
     found: dict[int, int] = {}
     for reset in resets_in(edge.updates):
         if reset.clock in (diagonal.first, diagonal.second):
-            if not isinstance(reset.value, Constant) or not _stands_on(edge, reset):
+            if not isinstance(reset.value, ex.Constant) or not _stands_on(edge, reset):
                 fix = "set it to a number, in the update of the edge itself"
                 message = "a clock that is compared with another one is set to what is computed"
                 raise model_error("TA008", message, edge.span, fix)
@@ -210,7 +199,7 @@ def _values(edge: Edge, diagonal: Diagonal) -> dict[int, int]:
     return found
 
 
-def _stands_on(edge: Edge, reset: Reset) -> bool:
+def _stands_on(edge: Edge, reset: ex.Reset) -> bool:
     return any(update is reset for update in edge.updates)
 
 
@@ -222,7 +211,7 @@ def _meet(edge: Edge, other: Edge) -> bool:
     return one.first < its.first + its.size and its.first < one.first + one.size
 
 
-_LOWER = (ClockOp.GE, ClockOp.GT)
+_LOWER = (ex.ClockOp.GE, ex.ClockOp.GT)
 
 
 def without_lower_bounds(
@@ -250,7 +239,7 @@ def _without(
         return automaton
     for place, bounds in zip(automaton.locations, lower, strict=True):
         for bound in bounds:
-            if not isinstance(bound.bound, Constant):
+            if not isinstance(bound.bound, ex.Constant):
                 raise _refusal("the lower bound of this invariant is not constant", place.span)
             sets = (r for a in others for e in a.edges for r in resets_in(e.updates))
             if any(bound.clock == reset.clock for reset in sets):
@@ -274,23 +263,23 @@ def _refusal(message: str, span: Span | None) -> Exception:
     return model_error("TA009", message, span, "put it on the guards of the edges that lead here")
 
 
-def _holds(bound: ClockCompare, value: int) -> bool:
-    assert isinstance(bound.bound, Constant), "looked at before"
-    return value >= bound.bound.value + (bound.op is ClockOp.GT)
+def _holds(bound: ex.ClockCompare, value: int) -> bool:
+    assert isinstance(bound.bound, ex.Constant), "looked at before"
+    return value >= bound.bound.value + (bound.op is ex.ClockOp.GT)
 
 
 def _guarded(
-    edge: Edge, bounds: Sequence[ClockCompare], channels: Sequence[Channel]
+    edge: Edge, bounds: Sequence[ex.ClockCompare], channels: Sequence[Channel]
 ) -> Edge | None:
     """The edge, taken only where the bounds hold behind it; `None` if they never do."""
-    added: list[ClockCompare] = []
+    added: list[ex.ClockCompare] = []
     for bound in bounds:
         resets = [reset for reset in resets_in(edge.updates) if reset.clock == bound.clock]
         if not resets:
             added.append(bound)
             continue
         value = resets[-1].value
-        if not isinstance(value, Constant) or resets[-1] not in edge.updates:
+        if not isinstance(value, ex.Constant) or resets[-1] not in edge.updates:
             raise _refusal("an invariant bounds a clock from below that is computed", edge.span)
         if not _holds(bound, value.value):
             return None

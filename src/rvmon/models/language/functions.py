@@ -23,24 +23,7 @@ from rvmon.models.language.symbols import (
     value_of,
     variable_of,
 )
-from rvmon.models.network.expressions import (
-    Assignment,
-    BaseType,
-    Constant,
-    Expression,
-    Function,
-    InLocation,
-    Invoke,
-    Missing,
-    Reset,
-    Return,
-    Slot,
-    Statement,
-    Variable,
-    VariableValue,
-    expressions_of,
-    statements_in,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import parts_of
 from rvmon.models.network.scope import (
     ChosenSymbol,
@@ -55,10 +38,10 @@ from rvmon.models.network.scope import (
 MAX_LOCALS = 100_000
 """The most parameters and local variables of all functions together."""
 
-_NOTHING = ResolvedType(BaseType.INT, 0, 0)
+_NOTHING = ResolvedType(ex.BaseType.INT, 0, 0)
 """The result type of a function that returns nothing."""
 
-_CHOSEN = InLocation(-1, -1)
+_CHOSEN = ex.InLocation(-1, -1)
 """Stands for an index that is not constant, in the key of a function."""
 
 
@@ -73,9 +56,9 @@ class Functions:
         open: the functions being made.
     """
 
-    variables: list[Variable] = field(default_factory=list)
-    locals: list[Variable] = field(default_factory=list)
-    made: dict[tuple[object, ...], Function] = field(default_factory=dict)
+    variables: list[ex.Variable] = field(default_factory=list)
+    locals: list[ex.Variable] = field(default_factory=list)
+    made: dict[tuple[object, ...], ex.Function] = field(default_factory=dict)
     open: set[tuple[object, ...]] = field(default_factory=set)
 
     def place(
@@ -86,16 +69,16 @@ class Functions:
         self.locals += [variable_of(kind, name, default_of(kind)) for name in reversed(names)]
         if len(self.locals) > MAX_LOCALS:
             raise model_error("TA019", f"more than {MAX_LOCALS:,} local variables", None)
-        return PlacedSymbol(BaseType.INT, Slot(-len(self.locals), extents))
+        return PlacedSymbol(ex.BaseType.INT, ex.Slot(-len(self.locals), extents))
 
-    def variable(self, slot: Slot) -> Variable:
+    def variable(self, slot: ex.Slot) -> ex.Variable:
         """The variable of a slot, or the first of its array."""
         first = slot.first
         return self.variables[first] if first >= 0 else self.locals[-first - 1]
 
     def call(
         self, symbol: FunctionSymbol, written: syntax.Call, scope: Scope, resolver: Resolver
-    ) -> Invoke:
+    ) -> ex.Invoke:
         """The value of a call.
 
         Raises:
@@ -104,8 +87,8 @@ class Functions:
         text: syntax.FunctionText = symbol.written
         check_count(text.name, text.parameters, written.arguments, written.span)
         bound: list[Symbol | None] = []
-        values: list[Expression] = []
-        chosen: list[Expression] = []
+        values: list[ex.Expression] = []
+        chosen: list[ex.Expression] = []
         for parameter, argument in zip(text.parameters, written.arguments, strict=True):
             kind, extents = _type_of(parameter, symbol.scope, resolver)
             if _is_bound(parameter, kind, extents):
@@ -116,7 +99,7 @@ class Functions:
             bound.append(None)
             if not (extents or kind.fields):
                 value = number(argument, scope, resolver)
-                real = kind.base is BaseType.DOUBLE
+                real = kind.base is ex.BaseType.DOUBLE
                 values.append(fitted(value, real, resolver.functions, argument.span))
                 continue
             thing = resolver.symbol(argument, scope)
@@ -134,7 +117,7 @@ class Functions:
                 function = self.made[key] = _make(text, symbol.scope, bound, resolver)
             finally:
                 self.open.discard(key)
-        return Invoke(function, (*values, *chosen), written.span)
+        return ex.Invoke(function, (*values, *chosen), written.span)
 
 
 def _type_of(
@@ -147,7 +130,7 @@ def _type_of(
 
 def _is_bound(parameter: syntax.Parameter, kind: ResolvedType, extents: Extents) -> bool:
     """Whether a parameter stands for the argument itself, not for its value."""
-    if kind.placed_as is not BaseType.INT:
+    if kind.placed_as is not ex.BaseType.INT:
         return True
     return parameter.reference and not (kind.const and not (extents or kind.fields))
 
@@ -161,22 +144,22 @@ def _check_fit(
     calls: Functions,
 ) -> None:
     single = leaves(thing)
-    own = single[0].kind if isinstance(single[0], PlacedSymbol) else BaseType.INT
+    own = single[0].kind if isinstance(single[0], PlacedSymbol) else ex.BaseType.INT
     is_real = (
         isinstance(single[0], PlacedSymbol)
-        and own is BaseType.INT
+        and own is ex.BaseType.INT
         and calls.variable(single[0].slot).is_real
     )
     if (
         own is not kind.placed_as
         or len(single) != count_of(kind, extents)
-        or (not kind.fields and is_real != (kind.base is BaseType.DOUBLE))
+        or (not kind.fields and is_real != (kind.base is ex.BaseType.DOUBLE))
     ):
         fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
         raise model_error("TA015", "this argument is of the wrong kind", span, fix)
 
 
-def _with_slots(symbol: Symbol, change: Callable[[Slot], Slot]) -> Symbol:
+def _with_slots(symbol: Symbol, change: Callable[[ex.Slot], ex.Slot]) -> Symbol:
     match symbol:
         case RecordSymbol(fields):
             return RecordSymbol(tuple((name, _with_slots(s, change)) for name, s in fields))
@@ -186,34 +169,34 @@ def _with_slots(symbol: Symbol, change: Callable[[Slot], Slot]) -> Symbol:
             return symbol
 
 
-def _without_choice(slot: Slot, chosen: list[Expression]) -> Slot:
+def _without_choice(slot: ex.Slot, chosen: list[ex.Expression]) -> ex.Slot:
     """The slot with a mark for each index that is not constant; those are noted."""
-    indices: list[Expression] = []
+    indices: list[ex.Expression] = []
     for index in slot.indices:
-        if not isinstance(index, Constant):
+        if not isinstance(index, ex.Constant):
             chosen.append(index)
-        indices.append(index if isinstance(index, Constant) else _CHOSEN)
+        indices.append(index if isinstance(index, ex.Constant) else _CHOSEN)
     return replace(slot, indices=tuple(indices), span=None)
 
 
 def _make(
     text: syntax.FunctionText, scope: Scope, bound: Sequence[Symbol | None], resolver: Resolver
-) -> Function:
+) -> ex.Function:
     """A function with its parameters bound, or given places of their own."""
     functions, inner, taken = resolver.functions, Scope(scope), Scope()
     parameters: list[int] = []
     indices: list[int] = []
 
-    def chosen(slot: Slot) -> Slot:
+    def chosen(slot: ex.Slot) -> ex.Slot:
         """The slot with places for the indices that calls choose."""
-        own: list[Expression] = []
+        own: list[ex.Expression] = []
         for index, extent in zip(slot.indices, slot.extents, strict=False):
             if index == _CHOSEN:
-                kind = ResolvedType(BaseType.INT, extent.start, extent.stop - 1)
+                kind = ResolvedType(ex.BaseType.INT, extent.start, extent.stop - 1)
                 symbol = functions.place(kind, (), ["index"], None)
                 assert isinstance(symbol, PlacedSymbol), "of numbers"
                 indices.append(symbol.slot.first)
-                index = VariableValue(symbol.slot)
+                index = ex.VariableValue(symbol.slot)
             own.append(index)
         return replace(slot, indices=tuple(own))
 
@@ -228,7 +211,7 @@ def _make(
         inner.symbols[parameter.name] = symbol
         parameters += [leaf.slot.first for leaf in leaves(symbol) if isinstance(leaf, PlacedSymbol)]
     result = _NOTHING if text.type is None else resolver.type(text.type, scope)
-    if result.extents or result.base not in (BaseType.INT, BaseType.BOOL, BaseType.DOUBLE):
+    if result.extents or result.base not in (ex.BaseType.INT, ex.BaseType.BOOL, ex.BaseType.DOUBLE):
         fix = "let it set a parameter that is passed by reference"
         message = f"`{text.name}` returns an array or record"
         raise model_error("TA016", message, text.span, fix)
@@ -236,23 +219,25 @@ def _make(
     assert isinstance(place, PlacedSymbol), "of a number"
     body, goes_on = Bodies(text, resolver).statements(text.body.statements, inner)
     if goes_on:
-        body.append(Return(Constant(0)) if text.type is None else Missing(text.name, text.span))
+        body.append(
+            ex.Return(ex.Constant(0)) if text.type is None else ex.Missing(text.name, text.span)
+        )
     slots = [*parameters, *indices]
-    return Function(
+    return ex.Function(
         text.name,
-        tuple((slot, functions.variable(Slot(slot))) for slot in slots),
+        tuple((slot, functions.variable(ex.Slot(slot))) for slot in slots),
         (place.slot.first, functions.variable(place.slot)),
         tuple(body),
         len(functions.locals),
-        any(map(_changes, statements_in(body))),
+        any(map(_changes, ex.statements_in(body))),
     )
 
 
-def _changes(statement: Statement) -> bool:
+def _changes(statement: ex.Statement) -> bool:
     """Whether a statement sets what is not a function's own."""
-    if isinstance(statement, Reset) or (
-        isinstance(statement, Assignment) and statement.slot.first >= 0
+    if isinstance(statement, ex.Reset) or (
+        isinstance(statement, ex.Assignment) and statement.slot.first >= 0
     ):
         return True
-    calls = (part for e in expressions_of(statement) for part in parts_of(e))
-    return any(isinstance(part, Invoke) and part.function.changes for part in calls)
+    calls = (part for e in ex.expressions_of(statement) for part in parts_of(e))
+    return any(isinstance(part, ex.Invoke) and part.function.changes for part in calls)

@@ -24,19 +24,8 @@ from rvmon.models.language.symbols import (
     values_of,
 )
 from rvmon.models.language.unsupported import refuse_foreign, type_reason
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.evaluate import evaluator
-from rvmon.models.network.expressions import (
-    MAX_TIME,
-    TRUE,
-    BaseType,
-    BinaryOp,
-    Choice,
-    Constant,
-    Deadlock,
-    Expression,
-    InLocation,
-    PathFormula,
-)
 from rvmon.models.network.fractions import FUNCTIONS, literal
 from rvmon.models.network.guards import is_fixed, refuse_changes
 from rvmon.models.network.scope import (
@@ -77,7 +66,7 @@ class Resolver:
     unrolled: int = 0
     fraction: Span | None = None
 
-    def expression(self, written: syntax.Expression, scope: Scope) -> Expression:
+    def expression(self, written: syntax.Expression, scope: Scope) -> ex.Expression:
         """The expression over the network.
 
         Raises:
@@ -85,12 +74,12 @@ class Resolver:
         """
         match written:
             case syntax.Number(value):
-                return Constant(value)
+                return ex.Constant(value)
             case syntax.Decimal(value, span):
                 self.fraction = self.fraction or span
                 return literal(value)
             case syntax.Name("deadlock", _) if self.automata and not scope.find("deadlock"):
-                return Deadlock()
+                return ex.Deadlock()
             case syntax.Call(name) if isinstance(function := scope.find(name), FunctionSymbol):
                 return self.functions.call(function, written, scope, self)
             case syntax.Call(name, given, span) if name in FUNCTIONS and not scope.find(name):
@@ -116,7 +105,7 @@ class Resolver:
                 if op in operations.SAMENESS and (whole := self._whole_compare(written, scope)):
                     return whole
                 first = self.expression(left, scope)
-                if first == Constant(0) and op is BinaryOp.AND:
+                if first == ex.Constant(0) and op is ex.BinaryOp.AND:
                     return first  # what stands behind need not have a meaning then
                 return operations.binary(
                     op, first, self.expression(right, scope), span, self.functions
@@ -124,9 +113,9 @@ class Resolver:
             case syntax.Conditional(condition, then, otherwise, _):
                 test = self.expression(condition, scope)
                 yes, no = self.expression(then, scope), self.expression(otherwise, scope)
-                if isinstance(test, Constant):
+                if isinstance(test, ex.Constant):
                     return yes if test.value else no
-                return Choice(test, yes, no)
+                return ex.Choice(test, yes, no)
             case syntax.Quantified(op, name, kind, body, span):
                 values = values_of(self.type(kind, scope), kind.span)
                 self.unrolled += len(values)
@@ -141,8 +130,8 @@ class Resolver:
             case syntax.Path(op, body, bound, span, left):
                 if not self.automata:
                     raise model_error("TA020", "only queries refer to runs", span)
-                until = TRUE if left is None else self.expression(left, scope)
-                return PathFormula(
+                until = ex.TRUE if left is None else self.expression(left, scope)
+                return ex.PathFormula(
                     op, self.expression(body, scope), self.limit(bound, scope), until
                 )
             case syntax.LeadsTo(_, _, _, span):
@@ -159,7 +148,7 @@ class Resolver:
             case _:
                 assert_never(written)
 
-    def condition(self, written: syntax.Expression, scope: Scope) -> Expression:
+    def condition(self, written: syntax.Expression, scope: Scope) -> ex.Expression:
         """An expression that changes nothing where it is evaluated.
 
         Raises:
@@ -191,8 +180,8 @@ class Resolver:
         if written is None:
             return None
         units = self.constant(written, scope)
-        if not 0 <= units < MAX_TIME:
-            fix = f"bounds are from 0 to {MAX_TIME - 1:,}"
+        if not 0 <= units < ex.MAX_TIME:
+            fix = f"bounds are from 0 to {ex.MAX_TIME - 1:,}"
             raise model_error("TA007", f"a bound of {units}", written.span, fix)
         return units
 
@@ -234,7 +223,7 @@ class Resolver:
 
     def _plain_type(self, written: syntax.TypeText, scope: Scope) -> ResolvedType:
         """A type without its prefixes."""
-        if written.base is BaseType.NAMED:
+        if written.base is ex.BaseType.NAMED:
             symbol = scope.find(written.name)
             if not isinstance(symbol, TypeSymbol):
                 if reason := type_reason(written.name):
@@ -243,7 +232,7 @@ class Resolver:
                 fix = did_you_mean(written.name, [*types, "int", "bool", "clock", "chan"])
                 raise model_error("TA002", f"no type named `{written.name}`", written.span, fix)
             return symbol.type
-        if written.base is BaseType.RECORD:
+        if written.base is ex.BaseType.RECORD:
             fields = {}
             for part in written.fields:
                 kind = self.type(part.type, scope)
@@ -251,20 +240,20 @@ class Resolver:
                     raise model_error("TA003", f"two fields named `{part.name}`", part.span)
                 sizes = self.extents(part.sizes, scope)
                 fields[part.name] = replace(kind, extents=(*sizes, *kind.extents))
-            return ResolvedType(BaseType.RECORD, fields=tuple(fields.items()))
-        if written.base is BaseType.DOUBLE:
+            return ResolvedType(ex.BaseType.RECORD, fields=tuple(fields.items()))
+        if written.base is ex.BaseType.DOUBLE:
             self.fraction = self.fraction or written.span
-        if written.base is not BaseType.INT:
+        if written.base is not ex.BaseType.INT:
             return ResolvedType(written.base, 0, 1)
         if written.low is None or written.high is None:
             if not (self.open_ints or written.const):
                 fix = "give its range: int[low, high]"
                 raise model_error("TA005", "an int without a range", written.span, fix)
-            return ResolvedType(BaseType.INT, *(INT32 if written.const else INT16))
+            return ResolvedType(ex.BaseType.INT, *(INT32 if written.const else INT16))
         low, high = self.constant(written.low, scope), self.constant(written.high, scope)
         if low > high:
             raise model_error("TA007", f"the range [{low}, {high}] is empty", written.span)
-        return ResolvedType(BaseType.INT, low, high)
+        return ResolvedType(ex.BaseType.INT, low, high)
 
     def symbol(self, written: syntax.Expression, scope: Scope) -> Symbol:
         """The symbol of a name, an element of an array or a member of a record.
@@ -312,7 +301,7 @@ class Resolver:
     def clock(self, written: syntax.Expression, scope: Scope) -> int | None:
         """The clock that an expression names, if it names one."""
         match self._named(written, scope):
-            case PlacedSymbol(BaseType.CLOCK, slot):
+            case PlacedSymbol(ex.BaseType.CLOCK, slot):
                 return clock_of(slot, written.span)
             case _:
                 return None
@@ -324,7 +313,7 @@ class Resolver:
             return None
         return self.symbol(written, scope)
 
-    def _clock_compare(self, written: syntax.Binary, scope: Scope) -> Expression | None:
+    def _clock_compare(self, written: syntax.Binary, scope: Scope) -> ex.Expression | None:
         """A comparison in which clocks stand; `None` if none does."""
         terms = [*terms_of(written.left), *terms_of(written.right, -1)]
         named = [(sign, part, self.clock(part, scope)) for sign, part in terms]
@@ -346,14 +335,14 @@ class Resolver:
         match clocks:
             case [(sign, clock)]:
                 turned = op if sign > 0 else operations.MIRRORED[op]
-                return operations.compare_clock(clock, turned, Constant(sign * number), span)
+                return operations.compare_clock(clock, turned, ex.Constant(sign * number), span)
             case [(-1, second), (1, first)] if first != second:
                 return difference(self.diagonals, first, second, op, number, span)
             case _:
                 fix = "compare one clock, or the difference of two, with a number"
                 raise model_error("TA008", "a sum of clocks is compared", span, fix)
 
-    def _whole_compare(self, written: syntax.Binary, scope: Scope) -> Expression | None:
+    def _whole_compare(self, written: syntax.Binary, scope: Scope) -> ex.Expression | None:
         """Records or arrays compared element by element."""
         left, right = self._named(written.left, scope), self._named(written.right, scope)
         if left is None or right is None or not (is_whole(left) and is_whole(right)):
@@ -375,13 +364,13 @@ class Resolver:
                 return None
         return symbol if isinstance(symbol, RecordSymbol) else None
 
-    def _location(self, written: syntax.Expression, scope: Scope) -> InLocation | None:
+    def _location(self, written: syntax.Expression, scope: Scope) -> ex.InLocation | None:
         if not isinstance(written, syntax.Member) or self._record(written.base, scope):
             return None
         automaton = self._automaton(written.base, scope)
         if written.name not in automaton.locations:
             return None
-        return InLocation(automaton.index, automaton.locations[written.name])
+        return ex.InLocation(automaton.index, automaton.locations[written.name])
 
     def _automaton(self, written: syntax.Expression, scope: Scope) -> AutomatonSymbol:
         match written:

@@ -23,23 +23,7 @@ from rvmon.models.language.symbols import (
     value_of,
     values_of,
 )
-from rvmon.models.network.expressions import (
-    MAX_TIME,
-    Assignment,
-    BaseType,
-    BinaryOp,
-    BinaryOperation,
-    Constant,
-    Expression,
-    If,
-    Invoke,
-    Perform,
-    Reset,
-    Return,
-    Statement,
-    VariableValue,
-    While,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import is_discrete
 from rvmon.models.network.scope import (
     ConstantSymbol,
@@ -51,7 +35,7 @@ from rvmon.models.network.scope import (
 )
 
 
-def number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Expression:
+def number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> ex.Expression:
     """An expression whose value the variables give.
 
     Raises:
@@ -67,7 +51,7 @@ def number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Expr
 
 def updates_of(
     written: Sequence[syntax.UpdateText | syntax.Call], scope: Scope, resolver: Resolver
-) -> tuple[Statement, ...]:
+) -> tuple[ex.Statement, ...]:
     """The updates of an edge.
 
     Raises:
@@ -87,27 +71,27 @@ def is_price(target: syntax.Expression, scope: Scope) -> bool:
 
 def _update(
     written: syntax.UpdateText | syntax.Call, scope: Scope, resolver: Resolver
-) -> list[Statement]:
+) -> list[ex.Statement]:
     if isinstance(written, syntax.Call):
         call = resolver.expression(written, scope)
-        if not isinstance(call, Invoke):
+        if not isinstance(call, ex.Invoke):
             raise model_error("TA004", "this is no function", written.span)
-        return [Perform(call)]
+        return [ex.Perform(call)]
     if is_price(written.target, scope):
         return []
     clock = resolver.clock(written.target, scope)
     if clock is not None:
         value = clock_number(number(written.value, scope, resolver), resolver.functions)
-        if isinstance(value, Constant) and not 0 <= value.value < MAX_TIME:
+        if isinstance(value, ex.Constant) and not 0 <= value.value < ex.MAX_TIME:
             raise model_error("TA007", f"a clock is set to {value.value}", written.span)
-        return [Reset(clock, value, written.span)]
+        return [ex.Reset(clock, value, written.span)]
     target = resolver.symbol(written.target, scope)
     if is_whole(target) and isinstance(written.value, syntax.Name | syntax.Index | syntax.Member):
         return _copy(target, resolver.symbol(written.value, scope), written.span, resolver)
     return [_set(target, number(written.value, scope, resolver), written.target.span, resolver)]
 
 
-def _copy(target: Symbol, source: Symbol, span: Span, resolver: Resolver) -> list[Statement]:
+def _copy(target: Symbol, source: Symbol, span: Span, resolver: Resolver) -> list[ex.Statement]:
     """An array or record set to another one, element by element."""
     if not is_alike(target, source):
         raise model_error("TA004", "these are not of one type", span)
@@ -115,12 +99,12 @@ def _copy(target: Symbol, source: Symbol, span: Span, resolver: Resolver) -> lis
     return [_set(one, value_of(other, span), span, resolver) for one, other in pairs]
 
 
-def _set(target: Symbol, value: Expression, span: Span, resolver: Resolver) -> Statement:
+def _set(target: Symbol, value: ex.Expression, span: Span, resolver: Resolver) -> ex.Statement:
     match target:
-        case PlacedSymbol(BaseType.INT, slot) if target.is_single:
+        case PlacedSymbol(ex.BaseType.INT, slot) if target.is_single:
             variable = resolver.functions.variable(slot)
             value = fitted(value, variable.is_real, resolver.functions, span)
-            return Assignment(replace(slot, span=span), value, variable)
+            return ex.Assignment(replace(slot, span=span), value, variable)
         case _:
             fix = "only variables and clocks can be set"
             raise model_error("TA004", "this cannot be set", span, fix)
@@ -135,13 +119,13 @@ class Bodies:
 
     def statements(
         self, written: Sequence[syntax.Statement], scope: Scope
-    ) -> tuple[list[Statement], bool]:
+    ) -> tuple[list[ex.Statement], bool]:
         """The statements, and whether a run can go on behind them; what none reaches is left out.
 
         Raises:
             ModelError: something in them has no meaning.
         """
-        made: list[Statement] = []
+        made: list[ex.Statement] = []
         for statement in written:
             more, goes_on = self._statement(statement, scope)
             made += more
@@ -149,7 +133,9 @@ class Bodies:
                 return made, False
         return made, True
 
-    def _statement(self, written: syntax.Statement, scope: Scope) -> tuple[list[Statement], bool]:
+    def _statement(
+        self, written: syntax.Statement, scope: Scope
+    ) -> tuple[list[ex.Statement], bool]:
         resolver = self.resolver
         match written:
             case syntax.Declaration():
@@ -162,11 +148,11 @@ class Bodies:
                 test = number(condition, scope, resolver)
                 yes, after_yes = self.statements(then, scope.inner({}))
                 no, after_no = self.statements(otherwise, scope.inner({}))
-                return [If(test, tuple(yes), tuple(no))], after_yes or after_no
+                return [ex.If(test, tuple(yes), tuple(no))], after_yes or after_no
             case syntax.Loop(condition, inside, span):
                 test = number(condition, scope, resolver)
                 body, _ = self.statements(inside, scope.inner({}))
-                return [While(test, tuple(body), span)], True
+                return [ex.While(test, tuple(body), span)], True
             case syntax.Each():
                 return self._each(written, scope), True
             case syntax.ReturnText(None, span) if self.text.type is not None:
@@ -174,27 +160,27 @@ class Bodies:
             case syntax.ReturnText(value, span) if value is not None:
                 if self.text.type is None:
                     raise model_error("TA004", f"`{self.text.name}` returns no value", span)
-                real = self.text.type.base is BaseType.DOUBLE
+                real = self.text.type.base is ex.BaseType.DOUBLE
                 result = fitted(number(value, scope, resolver), real, resolver.functions, span)
-                return [Return(result)], False
+                return [ex.Return(result)], False
             case syntax.ReturnText():
-                return [Return(Constant(0))], False
+                return [ex.Return(ex.Constant(0))], False
             case _:
                 assert_never(written)
 
-    def _declaration(self, item: syntax.Declaration, scope: Scope) -> list[Statement]:
+    def _declaration(self, item: syntax.Declaration, scope: Scope) -> list[ex.Statement]:
         resolver = self.resolver
         claim(item.name, item.span, scope)
         kind = resolver.type(item.type, scope)
         extents = (*resolver.extents(item.sizes, scope), *kind.extents)
         kind = replace(kind, extents=())
-        if kind.base in (BaseType.CLOCK, BaseType.CHANNEL):
+        if kind.base in (ex.BaseType.CLOCK, ex.BaseType.CHANNEL):
             fix = "declare it outside the function"
             raise model_error("TA004", "a clock or channel in a function", item.span, fix)
         initial = item.initial
         if kind.const and initial is not None and not (extents or kind.fields):
             value = self._single(initial, scope)
-            if isinstance(value, Constant):
+            if isinstance(value, ex.Constant):
                 scope.symbols[item.name] = ConstantSymbol(value.value)
                 return []
         name = f"{self.text.name}.{item.name}"
@@ -210,7 +196,7 @@ class Bodies:
         extents: Extents,
         kind: ResolvedType,
         scope: Scope,
-    ) -> list[Statement]:
+    ) -> list[ex.Statement]:
         """Sets all of a local variable, which has no value from before."""
         resolver = self.resolver
         if written is None:
@@ -218,7 +204,7 @@ class Bodies:
             ranges = [resolver.functions.variable(leaf.slot) for leaf in single]
             span = self.text.span
             return [
-                _set(leaf, Constant(max(v.low, min(0, v.high))), span, resolver)
+                _set(leaf, ex.Constant(max(v.low, min(0, v.high))), span, resolver)
                 for leaf, v in zip(single, ranges, strict=True)
             ]
         if (extents or kind.fields) and not isinstance(written, syntax.Values):
@@ -229,32 +215,32 @@ class Bodies:
         if isinstance(symbol, RecordSymbol) and not extents:
             members = [inner for _, inner in symbol.fields]
         else:
-            members = [element_of(symbol, Constant(i), written.span) for i in extents[0]]
+            members = [element_of(symbol, ex.Constant(i), written.span) for i in extents[0]]
         pairs = zip(members, parts, strict=True)
         return [s for member, part in pairs for s in self._initial(member, *part, scope)]
 
-    def _single(self, written: syntax.Initial, scope: Scope) -> Expression:
+    def _single(self, written: syntax.Initial, scope: Scope) -> ex.Expression:
         """The initial value of a single thing."""
         if isinstance(written, syntax.Values):
             raise model_error("TA004", "one value expected, a list found", written.span)
         return number(written, scope, self.resolver)
 
-    def _each(self, written: syntax.Each, scope: Scope) -> list[Statement]:
+    def _each(self, written: syntax.Each, scope: Scope) -> list[ex.Statement]:
         resolver, inner = self.resolver, scope.inner({})
         values = values_of(resolver.type(written.type, scope), written.type.span)
         span = written.span
-        kind = ResolvedType(BaseType.INT, values.start, values.stop)
+        kind = ResolvedType(ex.BaseType.INT, values.start, values.stop)
         symbol = resolver.functions.place(kind, (), [f"{self.text.name}.{written.name}"], None)
         assert isinstance(symbol, PlacedSymbol), "of a number"
         inner.symbols[written.name], inner.places[written.name] = symbol, span
         body, goes_on = self.statements(written.body, inner.inner({}))
-        here = VariableValue(symbol.slot)
+        here = ex.VariableValue(symbol.slot)
         if goes_on:
-            after = BinaryOperation(BinaryOp.ADD, here, Constant(1))
+            after = ex.BinaryOperation(ex.BinaryOp.ADD, here, ex.Constant(1))
             body.append(_set(symbol, after, span, resolver))
-        first = _set(symbol, Constant(values.start), span, resolver)
-        test = BinaryOperation(BinaryOp.LT, here, Constant(values.stop))
-        return [first, While(test, tuple(body), span)]
+        first = _set(symbol, ex.Constant(values.start), span, resolver)
+        test = ex.BinaryOperation(ex.BinaryOp.LT, here, ex.Constant(values.stop))
+        return [first, ex.While(test, tuple(body), span)]
 
 
 def variable_type(kind: ResolvedType) -> ResolvedType:

@@ -10,17 +10,8 @@ from typing import Any, Protocol, assert_never
 from rvmon.diagnostics import Label, Span
 from rvmon.models import model_error
 from rvmon.models.language import syntax
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.evaluate import check_index
-from rvmon.models.network.expressions import (
-    BaseType,
-    Constant,
-    Expression,
-    Fractional,
-    Lookup,
-    Slot,
-    Variable,
-    VariableValue,
-)
 from rvmon.models.network.scope import (
     AutomatonKey,
     AutomatonSymbol,
@@ -83,8 +74,8 @@ def laid_out(
     """
     suffixes = _suffixes(extents if unnamed is None else unnamed)
     names = [name + suffix for name in names for suffix in suffixes]
-    if kind.base is not BaseType.RECORD:
-        real = kind.base is BaseType.DOUBLE
+    if kind.base is not ex.BaseType.RECORD:
+        real = kind.base is ex.BaseType.DOUBLE
         if kind.const and value is not None and not (real and extents):
             return ConstantSymbol(value, extents, real)
         return placer.place(kind, extents, names, value)
@@ -114,10 +105,10 @@ def _suffixes(extents: Extents) -> list[str]:
     return [f"[{i}]{rest}" for i in extents[0] for rest in _suffixes(extents[1:])]
 
 
-def variable_of(kind: ResolvedType, name: str, initial: int) -> Variable:
+def variable_of(kind: ResolvedType, name: str, initial: int) -> ex.Variable:
     """A variable of a type."""
-    is_bool, is_real = kind.base is BaseType.BOOL, kind.base is BaseType.DOUBLE
-    return Variable(name, kind.low, kind.high, initial, is_bool, is_real)
+    is_bool, is_real = kind.base is ex.BaseType.BOOL, kind.base is ex.BaseType.DOUBLE
+    return ex.Variable(name, kind.low, kind.high, initial, is_bool, is_real)
 
 
 def default_of(kind: ResolvedType) -> int:
@@ -169,7 +160,7 @@ def values_of(kind: ResolvedType, span: Span) -> range:
     Raises:
         ModelError: the type has none or too many.
     """
-    if kind.base not in (BaseType.INT, BaseType.BOOL):
+    if kind.base not in (ex.BaseType.INT, ex.BaseType.BOOL):
         raise model_error("TA004", "only int and bool types can be enumerated", span)
     if kind.high - kind.low >= MAX_VALUES:
         fix = "give a small range: int[low, high]"
@@ -197,13 +188,13 @@ class Calls(Protocol):
     """Functions that can be called (`functions.Functions`)."""
 
     @property
-    def locals(self) -> Sequence[Variable]:
+    def locals(self) -> Sequence[ex.Variable]:
         """The parameters and local variables; the first has slot −1."""
         ...
 
     def call(
         self, symbol: FunctionSymbol, written: syntax.Call, scope: Scope, resolver: Any
-    ) -> Expression:
+    ) -> ex.Expression:
         """The value of a call."""
         ...
 
@@ -213,12 +204,12 @@ class Calls(Protocol):
         """Make room for parameters or local variables."""
         ...
 
-    def variable(self, slot: Slot) -> Variable:
+    def variable(self, slot: ex.Slot) -> ex.Variable:
         """The variable of a slot, or the first of its array."""
         ...
 
 
-def value_of(symbol: Symbol, span: Span) -> Expression:
+def value_of(symbol: Symbol, span: Span) -> ex.Expression:
     """The value that a symbol has in an expression.
 
     Raises:
@@ -226,15 +217,15 @@ def value_of(symbol: Symbol, span: Span) -> Expression:
     """
     match symbol:
         case ConstantSymbol(int(value), _, is_real):
-            return Fractional("=", (Constant(value),)) if is_real else Constant(value)
-        case PlacedSymbol(BaseType.INT, slot) if symbol.is_single:
-            return VariableValue(replace(slot, span=span))
+            return ex.Fractional("=", (ex.Constant(value),)) if is_real else ex.Constant(value)
+        case PlacedSymbol(ex.BaseType.INT, slot) if symbol.is_single:
+            return ex.VariableValue(replace(slot, span=span))
         case ChosenSymbol(values, slot) if len(slot.indices) == len(slot.extents):
-            return Lookup(values, replace(slot, span=span))
-        case PlacedSymbol(BaseType.CLOCK):
+            return ex.Lookup(values, replace(slot, span=span))
+        case PlacedSymbol(ex.BaseType.CLOCK):
             fix = "a clock can only be compared with a number, or be set"
             raise model_error("TA009", "a clock has no value here", span, fix)
-        case PlacedSymbol(BaseType.INT) | ConstantSymbol() | ChosenSymbol():
+        case PlacedSymbol(ex.BaseType.INT) | ConstantSymbol() | ChosenSymbol():
             raise model_error("TA004", "an array is no value", span, "give an index")
         case RecordSymbol(fields):
             fix = f"name a field, such as {span.text}.{fields[0][0]}"
@@ -248,7 +239,7 @@ def value_of(symbol: Symbol, span: Span) -> Expression:
             assert_never(symbol)
 
 
-def element_of(symbol: Symbol, index: Expression, span: Span) -> Symbol:
+def element_of(symbol: Symbol, index: ex.Expression, span: Span) -> Symbol:
     """An element of an array.
 
     Raises:
@@ -256,8 +247,8 @@ def element_of(symbol: Symbol, index: Expression, span: Span) -> Symbol:
     """
     match symbol:
         case ConstantSymbol(tuple() as values, (extent, *inner)):
-            if not isinstance(index, Constant) or index.value not in extent:
-                slot = Slot(0, (extent, *inner), (index,), span)
+            if not isinstance(index, ex.Constant) or index.value not in extent:
+                slot = ex.Slot(0, (extent, *inner), (index,), span)
                 return ChosenSymbol(tuple(flat(values)), slot)
             return ConstantSymbol(values[index.value - extent.start], tuple(inner))
         case PlacedSymbol(_, slot) | ChosenSymbol(_, slot):
@@ -282,7 +273,7 @@ def is_whole(symbol: Symbol) -> bool:
     match symbol:
         case RecordSymbol():
             return True
-        case PlacedSymbol(BaseType.INT, slot) | ChosenSymbol(_, slot):
+        case PlacedSymbol(ex.BaseType.INT, slot) | ChosenSymbol(_, slot):
             return len(slot.indices) < len(slot.extents)
         case ConstantSymbol(value):
             return isinstance(value, tuple)
@@ -309,38 +300,40 @@ def leaves(symbol: Symbol) -> list[Symbol]:
             return [leaf for v in values for leaf in leaves(ConstantSymbol(v, tuple(inner)))]
         case PlacedSymbol(_, slot) | ChosenSymbol(_, slot) if len(slot.indices) < len(slot.extents):
             extent = slot.extents[len(slot.indices)]
-            deeper = (settle(replace(slot, indices=(*slot.indices, Constant(i)))) for i in extent)
+            deeper = (
+                settle(replace(slot, indices=(*slot.indices, ex.Constant(i)))) for i in extent
+            )
             return [leaf for slot in deeper for leaf in leaves(replace(symbol, slot=slot))]
         case _:
             return [symbol]
 
 
-def _deeper(slot: Slot, index: Expression, span: Span) -> Slot:
+def _deeper(slot: ex.Slot, index: ex.Expression, span: Span) -> ex.Slot:
     if len(slot.indices) == len(slot.extents):
         raise model_error("TA004", "more indices than the array has dimensions", span)
-    return settle(Slot(slot.first, slot.extents, (*slot.indices, index), span))
+    return settle(ex.Slot(slot.first, slot.extents, (*slot.indices, index), span))
 
 
-def settle(slot: Slot) -> Slot:
+def settle(slot: ex.Slot) -> ex.Slot:
     """The same slot without its array, if its indices are constant and complete."""
     if len(slot.indices) < len(slot.extents):
         return slot
     offset = 0
     for extent, index in zip(slot.extents, slot.indices, strict=True):
-        if not isinstance(index, Constant) or index.value not in extent:
+        if not isinstance(index, ex.Constant) or index.value not in extent:
             return slot  # a run that comes to an index outside the array has no meaning
         offset = offset * len(extent) + index.value - extent.start
-    return Slot(slot.first + offset, (), (), slot.span)
+    return ex.Slot(slot.first + offset, (), (), slot.span)
 
 
-def clock_of(slot: Slot, span: Span) -> int:
+def clock_of(slot: ex.Slot, span: Span) -> int:
     """The index of the clock that a slot names.
 
     Raises:
         ModelError: the variables would have to choose it, or it is an array.
     """
     for extent, index in zip(slot.extents, slot.indices, strict=False):
-        if isinstance(index, Constant):
+        if isinstance(index, ex.Constant):
             check_index(index.value, extent, span)
     if slot.extents:
         missing = len(slot.indices) < len(slot.extents)

@@ -11,18 +11,7 @@ from dataclasses import dataclass, field
 
 from rvmon.diagnostics import Diagnostic, Span
 from rvmon.models import model_error
-from rvmon.models.network.expressions import (
-    TRUE,
-    BinaryOp,
-    ClockCompare,
-    Constant,
-    Expression,
-    LocationKind,
-    PathOp,
-    Slot,
-    Statement,
-    Variable,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.scope import Names
 
 
@@ -49,7 +38,7 @@ class Channel:
 class Sync:
     """One end of a channel."""
 
-    slot: Slot
+    slot: ex.Slot
     sends: bool
 
 
@@ -57,8 +46,8 @@ class Sync:
 class Guard:
     """A condition: on the variables and, all together, on clocks."""
 
-    data: Expression = TRUE
-    clocks: tuple[ClockCompare, ...] = ()
+    data: ex.Expression = ex.TRUE
+    clocks: tuple[ex.ClockCompare, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +55,7 @@ class Rate:
     """The rate of a clock: its increase per unit of time."""
 
     clock: int
-    value: Expression
+    value: ex.Expression
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,11 +69,11 @@ class Location:
     """
 
     name: str
-    kind: LocationKind
+    kind: ex.LocationKind
     invariant: Guard
     span: Span | None = field(default=None, compare=False)
     rates: tuple[Rate, ...] = ()
-    leaving: tuple[Expression, Expression] | None = None
+    leaving: tuple[ex.Expression, ex.Expression] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +93,7 @@ class Edge:
     target: int
     guard: Guard
     sync: Sync | None
-    updates: tuple[Statement, ...]
+    updates: tuple[ex.Statement, ...]
     weight: float
     label: str
     text: str
@@ -154,8 +143,8 @@ class Priorities:
 class LeadsToFormula:
     """Wherever `left` holds, `right` will on every run, within `bound` if there is one."""
 
-    left: Expression
-    right: Expression
+    left: ex.Expression
+    right: ex.Expression
     bound: int | None = None
 
 
@@ -168,11 +157,11 @@ class Chance:
         sign, level: a test: whether the share is `>=` or `<=` that; `None`: an estimate.
     """
 
-    op: PathOp
-    body: Expression
+    op: ex.PathOp
+    body: ex.Expression
     horizon: int
     runs: int | None
-    sign: BinaryOp | None
+    sign: ex.BinaryOp | None
     level: float
 
 
@@ -181,7 +170,7 @@ class Mean:
     """The largest, or least, value that random runs have within a horizon, on average."""
 
     largest: bool
-    value: Expression
+    value: ex.Expression
     horizon: int
     runs: int | None
 
@@ -191,7 +180,7 @@ class Term:
     """Something that has a value in each state: a clock, or an expression if `clock` is `None`."""
 
     text: str
-    value: Expression
+    value: ex.Expression
     clock: int | None = None
 
 
@@ -214,14 +203,14 @@ class Extremes:
     """
 
     ends: tuple[bool, ...]
-    where: Expression
+    where: ex.Expression
     terms: tuple[Term, ...]
 
 
 Asked = Chance | Mean | Simulation | Extremes
 """Queries that are answered by figures or values, not by yes or no."""
 
-QueryFormula = Expression | LeadsToFormula | Asked
+QueryFormula = ex.Expression | LeadsToFormula | Asked
 
 
 @dataclass(frozen=True, slots=True)
@@ -240,7 +229,7 @@ class Signal:
     """A name of specifications for something of the network."""
 
     name: str
-    value: Expression
+    value: ex.Expression
 
 
 @dataclass(frozen=True, slots=True)
@@ -266,7 +255,7 @@ class Network:
     title: str
     unit: int | None
     clocks: tuple[Clock, ...]
-    variables: tuple[Variable, ...]
+    variables: tuple[ex.Variable, ...]
     channels: tuple[Channel, ...]
     automata: tuple[Automaton, ...]
     queries: tuple[Query, ...]
@@ -287,11 +276,11 @@ class Network:
             for automaton in self.automata
             for place in automaton.locations
             for rate in place.rates
-            if rate.value != Constant(1)
+            if rate.value != ex.Constant(1)
         )
 
     @property
-    def locals(self) -> tuple[Variable, ...]:
+    def locals(self) -> tuple[ex.Variable, ...]:
         """Parameters and local variables of functions; the last stands in slot −1."""
         return tuple(reversed(self.names.functions.locals))
 

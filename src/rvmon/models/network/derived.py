@@ -19,23 +19,7 @@ from rvmon.models.network import (
     Network,
     Priorities,
 )
-from rvmon.models.network.expressions import (
-    FALSE,
-    TRUE,
-    Assignment,
-    BinaryOp,
-    BinaryOperation,
-    ClockCompare,
-    Constant,
-    Expression,
-    InLocation,
-    LocationKind,
-    Reset,
-    Slot,
-    Statement,
-    Variable,
-    VariableValue,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import resets_in
 
 
@@ -68,10 +52,10 @@ def _edge(edge: Edge, factor: int) -> Edge:
     return replace(edge, guard=_guard(edge.guard, factor), updates=updates)
 
 
-def _update(update: Statement, factor: int) -> Statement:
-    if isinstance(update, Reset):
+def _update(update: ex.Statement, factor: int) -> ex.Statement:
+    if isinstance(update, ex.Reset):
         return replace(update, value=_times(update.value, factor))
-    if any(reset.value != Constant(0) for reset in resets_in([update])):
+    if any(reset.value != ex.Constant(0) for reset in resets_in([update])):
         fix = "set clocks in the updates of edges, not in functions"
         raise model_error("TA016", "a function sets a clock to a number of units", None, fix)
     return update
@@ -81,16 +65,16 @@ def _guard(guard: Guard, factor: int) -> Guard:
     return Guard(
         guard.data,
         tuple(
-            ClockCompare(clock.clock, clock.op, _times(clock.bound, factor))
+            ex.ClockCompare(clock.clock, clock.op, _times(clock.bound, factor))
             for clock in guard.clocks
         ),
     )
 
 
-def _times(number: Expression, factor: int) -> Expression:
-    if isinstance(number, Constant):
-        return Constant(number.value * factor)
-    return BinaryOperation(BinaryOp.MUL, number, Constant(factor))
+def _times(number: ex.Expression, factor: int) -> ex.Expression:
+    if isinstance(number, ex.Constant):
+        return ex.Constant(number.value * factor)
+    return ex.BinaryOperation(ex.BinaryOp.MUL, number, ex.Constant(factor))
 
 
 def names_of(network: Network, edge: Edge) -> tuple[str, ...]:
@@ -117,50 +101,50 @@ class Watcher:
         self._clocks = tuple(map(Clock, clocks))
         self.clock = len(network.clocks)
         first = len(network.variables)
-        self._slots = {name: Slot(first + k) for k, name in enumerate(dict.fromkeys(names))}
-        self._unnoted: tuple[Statement, ...] = tuple(_set(s, 0) for s in self._slots.values())
+        self._slots = {name: ex.Slot(first + k) for k, name in enumerate(dict.fromkeys(names))}
+        self._unnoted: tuple[ex.Statement, ...] = tuple(_set(s, 0) for s in self._slots.values())
         self._locations: list[Location] = []
         self._edges: list[Edge] = []
 
-    def has(self, name: str) -> Expression:
+    def has(self, name: str) -> ex.Expression:
         """Whether a move has a name; false between moves."""
-        return VariableValue(self._slots[name])
+        return ex.VariableValue(self._slots[name])
 
     def add_location(
-        self, bounds: Iterable[ClockCompare] = (), kind: LocationKind = LocationKind.NORMAL
+        self, bounds: Iterable[ex.ClockCompare] = (), kind: ex.LocationKind = ex.LocationKind.NORMAL
     ) -> int:
         """Add a location with an invariant; its number."""
-        self._locations.append(Location("", kind, Guard(TRUE, tuple(bounds))))
+        self._locations.append(Location("", kind, Guard(ex.TRUE, tuple(bounds))))
         return len(self._locations) - 1
 
     def add_edge(
         self,
         source: int,
         target: int,
-        when: Expression = TRUE,
-        bounds: Iterable[ClockCompare] = (),
+        when: ex.Expression = ex.TRUE,
+        bounds: Iterable[ex.ClockCompare] = (),
         resets: Iterable[int] = (),
         *,
         watches: bool = True,
     ) -> None:
         """Add an edge that goes along with moves, or one that the watcher takes by itself."""
-        if when == FALSE:
+        if when == ex.FALSE:
             return
-        set_now = tuple(Reset(clock, Constant(0)) for clock in resets)
+        set_now = tuple(ex.Reset(clock, ex.Constant(0)) for clock in resets)
         unnoted = self._unnoted if watches else ()
         updates = (*unnoted, *set_now) if set_now else unnoted
         guard = Guard(when, tuple(bounds))
         self._edges.append(Edge(source, target, guard, None, updates, 1.0, "", "", watches=watches))
 
-    def is_in(self, location: int) -> Expression:
+    def is_in(self, location: int) -> ex.Expression:
         """Whether it is in a location."""
-        return InLocation(len(self._network.automata), location)
+        return ex.InLocation(len(self._network.automata), location)
 
     def network(self, initial: int = 0) -> Network:
         """The network with the watcher, in one of its locations at the start."""
         network, own = (
             self._network,
-            (Variable(name, 0, 1, 0, is_bool=True) for name in self._slots),
+            (ex.Variable(name, 0, 1, 0, is_bool=True) for name in self._slots),
         )
         ranks = network.priorities
         automata = [
@@ -188,5 +172,5 @@ class Watcher:
         return replace(edge, updates=(*edge.updates, *noted))
 
 
-def _set(slot: Slot, value: int) -> Assignment:
-    return Assignment(slot, Constant(value), Variable("", 0, 1, 0, is_bool=True))
+def _set(slot: ex.Slot, value: int) -> ex.Assignment:
+    return ex.Assignment(slot, ex.Constant(value), ex.Variable("", 0, 1, 0, is_bool=True))

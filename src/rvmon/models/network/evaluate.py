@@ -7,52 +7,24 @@ from typing import assert_never
 
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
-from rvmon.models.network.expressions import (
-    MAX_TIME,
-    MOST_ROUNDS,
-    Assignment,
-    BinaryOp,
-    BinaryOperation,
-    Choice,
-    ClockCompare,
-    Constant,
-    Deadlock,
-    Expression,
-    Fractional,
-    If,
-    InLocation,
-    Invoke,
-    Lookup,
-    Missing,
-    PathFormula,
-    Perform,
-    Reset,
-    Return,
-    Slot,
-    Statement,
-    UnaryOp,
-    UnaryOperation,
-    Variable,
-    VariableValue,
-    While,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.fractions import GRID, operation
 
 
-def apply_unary(op: UnaryOp, value: int) -> int:
+def apply_unary(op: ex.UnaryOp, value: int) -> int:
     """The value of an operator on one operand."""
     match op:
-        case UnaryOp.NOT:
+        case ex.UnaryOp.NOT:
             return int(not value)
-        case UnaryOp.NEGATE:
+        case ex.UnaryOp.NEGATE:
             return -value
-        case UnaryOp.INVERT:
+        case ex.UnaryOp.INVERT:
             return ~value
         case _:
             assert_never(op)
 
 
-def apply_binary(op: BinaryOp, left: int, right: int) -> int:
+def apply_binary(op: ex.BinaryOp, left: int, right: int) -> int:
     """The value of an operator on two operands; division truncates, as in C.
 
     >>> apply_binary(BinaryOp.DIV, -7, 2), apply_binary(BinaryOp.MOD, -7, 2)
@@ -66,28 +38,28 @@ def _divide(left: int, right: int) -> int:
     return quotient if (left < 0) == (right < 0) else -quotient
 
 
-OPERATIONS: dict[BinaryOp, Callable[[int, int], int]] = {
-    BinaryOp.AND: lambda a, b: int(bool(a) and bool(b)),
-    BinaryOp.OR: lambda a, b: int(bool(a) or bool(b)),
-    BinaryOp.IMPLY: lambda a, b: int(not a or bool(b)),
-    BinaryOp.LT: lambda a, b: int(a < b),
-    BinaryOp.LE: lambda a, b: int(a <= b),
-    BinaryOp.EQ: lambda a, b: int(a == b),
-    BinaryOp.NE: lambda a, b: int(a != b),
-    BinaryOp.GE: lambda a, b: int(a >= b),
-    BinaryOp.GT: lambda a, b: int(a > b),
-    BinaryOp.ADD: lambda a, b: a + b,
-    BinaryOp.SUB: lambda a, b: a - b,
-    BinaryOp.MUL: lambda a, b: a * b,
-    BinaryOp.DIV: _divide,
-    BinaryOp.MOD: lambda a, b: a - b * _divide(a, b),
-    BinaryOp.BIT_AND: lambda a, b: a & b,
-    BinaryOp.BIT_OR: lambda a, b: a | b,
-    BinaryOp.BIT_XOR: lambda a, b: a ^ b,
-    BinaryOp.SHIFT_LEFT: lambda a, b: a << b,
-    BinaryOp.SHIFT_RIGHT: lambda a, b: a >> b,
-    BinaryOp.MINIMUM: min,
-    BinaryOp.MAXIMUM: max,
+OPERATIONS: dict[ex.BinaryOp, Callable[[int, int], int]] = {
+    ex.BinaryOp.AND: lambda a, b: int(bool(a) and bool(b)),
+    ex.BinaryOp.OR: lambda a, b: int(bool(a) or bool(b)),
+    ex.BinaryOp.IMPLY: lambda a, b: int(not a or bool(b)),
+    ex.BinaryOp.LT: lambda a, b: int(a < b),
+    ex.BinaryOp.LE: lambda a, b: int(a <= b),
+    ex.BinaryOp.EQ: lambda a, b: int(a == b),
+    ex.BinaryOp.NE: lambda a, b: int(a != b),
+    ex.BinaryOp.GE: lambda a, b: int(a >= b),
+    ex.BinaryOp.GT: lambda a, b: int(a > b),
+    ex.BinaryOp.ADD: lambda a, b: a + b,
+    ex.BinaryOp.SUB: lambda a, b: a - b,
+    ex.BinaryOp.MUL: lambda a, b: a * b,
+    ex.BinaryOp.DIV: _divide,
+    ex.BinaryOp.MOD: lambda a, b: a - b * _divide(a, b),
+    ex.BinaryOp.BIT_AND: lambda a, b: a & b,
+    ex.BinaryOp.BIT_OR: lambda a, b: a | b,
+    ex.BinaryOp.BIT_XOR: lambda a, b: a ^ b,
+    ex.BinaryOp.SHIFT_LEFT: lambda a, b: a << b,
+    ex.BinaryOp.SHIFT_RIGHT: lambda a, b: a >> b,
+    ex.BinaryOp.MINIMUM: min,
+    ex.BinaryOp.MAXIMUM: max,
 }
 
 
@@ -108,7 +80,7 @@ def check_index(position: int, extent: range, span: Span | None) -> None:
         raise model_error("TA007", f"index {position} is outside the array", span, fix)
 
 
-def fitting(number: int, variable: Variable, span: Span | None) -> int:
+def fitting(number: int, variable: ex.Variable, span: Span | None) -> int:
     """The number as a variable holds it.
 
     Raises:
@@ -127,8 +99,8 @@ def fitting(number: int, variable: Variable, span: Span | None) -> int:
 
 def check_time(number: int, span: Span | None) -> int:
     """Refuse a number that no clock can be compared with or set to."""
-    if not 0 <= number < MAX_TIME:
-        fix = f"keep it from 0 to {MAX_TIME - 1:,}, or choose a larger unit of time"
+    if not 0 <= number < ex.MAX_TIME:
+        fix = f"keep it from 0 to {ex.MAX_TIME - 1:,}, or choose a larger unit of time"
         raise model_error("TA007", f"{number} is no time for a clock", span, fix)
     return number
 
@@ -142,68 +114,68 @@ Values = Sequence[int]
 Evaluator = Callable[[Locations, Values], int]
 
 
-def evaluator(expression: Expression) -> Evaluator:
+def evaluator(expression: ex.Expression) -> Evaluator:
     """Make a function of locations and variables for an expression without clocks.
 
     The connectives evaluate their right side only if it matters, so that `i < N and a[i] > 0`
     never leaves the array.
     """
     match expression:
-        case Constant(value):
+        case ex.Constant(value):
             return lambda _locations, _values: value
-        case VariableValue(Slot(first, ())):
+        case ex.VariableValue(ex.Slot(first, ())):
             return lambda _locations, values: values[first]
-        case VariableValue(slot):
+        case ex.VariableValue(slot):
             element = slot_evaluator(slot)
             return lambda locations, values: values[element(locations, values)]
-        case Lookup(table, slot):
+        case ex.Lookup(table, slot):
             place = slot_evaluator(slot)
             return lambda locations, values: table[place(locations, values)]
-        case Invoke():
+        case ex.Invoke():
             return caller(expression)
-        case Fractional(name, operands, span):
+        case ex.Fractional(name, operands, span):
             compute, parts = operation(name, span), [evaluator(part) for part in operands]
             return lambda locations, values: compute(*(part(locations, values) for part in parts))
-        case InLocation(automaton, location):
+        case ex.InLocation(automaton, location):
             return lambda locations, _values: int(locations[automaton] == location)
-        case UnaryOperation(unary, operand):
+        case ex.UnaryOperation(unary, operand):
             inner = evaluator(operand)
             return lambda locations, values: apply_unary(unary, inner(locations, values))
-        case BinaryOperation(BinaryOp.AND, _, _):
-            every = [evaluator(part) for part in chained(BinaryOp.AND, expression)]
+        case ex.BinaryOperation(ex.BinaryOp.AND, _, _):
+            every = [evaluator(part) for part in chained(ex.BinaryOp.AND, expression)]
             return lambda locations, values: int(all(part(locations, values) for part in every))
-        case BinaryOperation(BinaryOp.OR, _, _):
-            some = [evaluator(part) for part in chained(BinaryOp.OR, expression)]
+        case ex.BinaryOperation(ex.BinaryOp.OR, _, _):
+            some = [evaluator(part) for part in chained(ex.BinaryOp.OR, expression)]
             return lambda locations, values: int(any(part(locations, values) for part in some))
-        case BinaryOperation(op, left, right, span):
+        case ex.BinaryOperation(op, left, right, span):
             return _binary_evaluator(op, evaluator(left), evaluator(right), span)
-        case Choice(condition, then, otherwise):
+        case ex.Choice(condition, then, otherwise):
             test, yes, no = evaluator(condition), evaluator(then), evaluator(otherwise)
             return lambda locations, values: (
                 yes(locations, values) if test(locations, values) else no(locations, values)
             )
-        case ClockCompare() | Deadlock() | PathFormula():
+        case ex.ClockCompare() | ex.Deadlock() | ex.PathFormula():
             raise AssertionError(f"{expression} has no value in a discrete state")
         case _:
             assert_never(expression)
 
 
-def chained(op: BinaryOp, expression: Expression) -> list[Expression]:
+def chained(op: ex.BinaryOp, expression: ex.Expression) -> list[ex.Expression]:
     """The operands of a connective, with nested ones of the same kind flattened."""
     match expression:
-        case BinaryOperation(found, left, right) if found is op:
+        case ex.BinaryOperation(found, left, right) if found is op:
             return [*chained(op, left), *chained(op, right)]
         case _:
             return [expression]
 
 
 def _binary_evaluator(
-    op: BinaryOp, left: Evaluator, right: Evaluator, span: Span | None
+    op: ex.BinaryOp, left: Evaluator, right: Evaluator, span: Span | None
 ) -> Evaluator:
     match op:
-        case BinaryOp.IMPLY:
+        case ex.BinaryOp.IMPLY:
             return lambda ls, vs: int(not left(ls, vs) or bool(right(ls, vs)))
-        case BinaryOp.DIV | BinaryOp.MOD:
+        case ex.BinaryOp.DIV | ex.BinaryOp.MOD:
             divide = OPERATIONS[op]
 
             def quotient(ls: Locations, vs: Values) -> int:
@@ -214,7 +186,7 @@ def _binary_evaluator(
                 return divide(left(ls, vs), divisor)
 
             return quotient
-        case BinaryOp.SHIFT_LEFT | BinaryOp.SHIFT_RIGHT:
+        case ex.BinaryOp.SHIFT_LEFT | ex.BinaryOp.SHIFT_RIGHT:
             shift = OPERATIONS[op]
 
             def shifted(ls: Locations, vs: Values) -> int:
@@ -227,7 +199,7 @@ def _binary_evaluator(
             return lambda ls, vs: function(left(ls, vs), right(ls, vs))
 
 
-def slot_evaluator(slot: Slot) -> Evaluator:
+def slot_evaluator(slot: ex.Slot) -> Evaluator:
     """Make a function that gives the index of the variable or channel that a slot names."""
     if not slot.extents:
         return lambda _locations, _values: slot.first
@@ -262,7 +234,7 @@ Runner = Callable[[Locations, Frame], int | None]
 """Runs statements; gives the value if they return one."""
 
 
-def runner(statements: Sequence[Statement]) -> Runner:
+def runner(statements: Sequence[ex.Statement]) -> Runner:
     """Make a function that runs statements one behind the other."""
     steps = [_step(statement) for statement in statements]
 
@@ -276,7 +248,7 @@ def runner(statements: Sequence[Statement]) -> Runner:
     return run
 
 
-def caller(call: Invoke) -> Callable[[Locations, Values], int]:
+def caller(call: ex.Invoke) -> Callable[[Locations, Values], int]:
     """Make a function that gives the value of a call."""
     function = call.function
     arguments = [evaluator(argument) for argument in call.arguments]
@@ -296,34 +268,34 @@ def caller(call: Invoke) -> Callable[[Locations, Values], int]:
     return value
 
 
-def _step(statement: Statement) -> Runner:
+def _step(statement: ex.Statement) -> Runner:
     match statement:
-        case Assignment():
+        case ex.Assignment():
             return _assigner(statement)
-        case Reset(clock, written, span):
-            value, steps = evaluator(written), GRID if isinstance(written, Fractional) else 1
+        case ex.Reset(clock, written, span):
+            value, steps = evaluator(written), GRID if isinstance(written, ex.Fractional) else 1
 
             def set_clock(locations: Locations, frame: Frame) -> None:
                 frame.clocks[clock] = check_time(value(locations, frame), span) / steps
 
             return set_clock
-        case Perform(call):
+        case ex.Perform(call):
             perform = caller(call)
 
             def do(locations: Locations, frame: Frame) -> None:
                 perform(locations, frame)
 
             return do
-        case If(condition, then, otherwise):
+        case ex.If(condition, then, otherwise):
             test, yes, no = evaluator(condition), runner(then), runner(otherwise)
             return lambda locations, frame: (
                 yes(locations, frame) if test(locations, frame) else no(locations, frame)
             )
-        case While():
+        case ex.While():
             return _repeater(statement)
-        case Return(written):
+        case ex.Return(written):
             return evaluator(written)
-        case Missing(name, span):
+        case ex.Missing(name, span):
 
             def miss(_locations: Locations, _frame: Frame) -> int:
                 fix = "end every way through it with `return`"
@@ -334,7 +306,7 @@ def _step(statement: Statement) -> Runner:
             assert_never(statement)
 
 
-def _assigner(statement: Assignment) -> Runner:
+def _assigner(statement: ex.Assignment) -> Runner:
     slot, variable, span = statement.slot, statement.variable, statement.slot.span
     index, value = slot_evaluator(slot), evaluator(statement.value)
 
@@ -345,14 +317,14 @@ def _assigner(statement: Assignment) -> Runner:
     return assign
 
 
-def _repeater(statement: While) -> Runner:
+def _repeater(statement: ex.While) -> Runner:
     test, body, span = evaluator(statement.condition), runner(statement.body), statement.span
 
     def repeat(locations: Locations, frame: Frame) -> int | None:
         while test(locations, frame):
             frame.rounds += 1
-            if frame.rounds > MOST_ROUNDS:
-                message = f"loops go round more than {MOST_ROUNDS:,} times in one step"
+            if frame.rounds > ex.MOST_ROUNDS:
+                message = f"loops go round more than {ex.MOST_ROUNDS:,} times in one step"
                 raise model_error("TA019", message, span, "let them end sooner")
             value = body(locations, frame)
             if value is not None:

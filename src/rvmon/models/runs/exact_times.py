@@ -14,14 +14,8 @@ from typing import Any, TypeVar
 
 from rvmon.errors import ModelError
 from rvmon.models.network import Edge, Guard, Network
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.evaluate import Frame, evaluator, runner, slot_evaluator
-from rvmon.models.network.expressions import (
-    TRUE,
-    ClockCompare,
-    ClockOp,
-    Expression,
-    LocationKind,
-)
 from rvmon.models.runs import Action, Run
 
 T = TypeVar("T")
@@ -60,7 +54,7 @@ class Rules:
         self._network = network
         self._ready: dict[int, tuple[object, Callable[..., Any]]] = {}
 
-    def value(self, now: Configuration, expression: Expression) -> int:
+    def value(self, now: Configuration, expression: ex.Expression) -> int:
         """The value of an expression without clocks."""
         return int(self._made(expression, evaluator)(now.locations, now.values))
 
@@ -130,7 +124,7 @@ class Rules:
             automaton.locations[place].kind
             for automaton, place in zip(self._network.automata, now.locations, strict=True)
         )
-        if any(kind is not LocationKind.NORMAL for kind in kinds):
+        if any(kind is not ex.LocationKind.NORMAL for kind in kinds):
             return True
         for automaton, edge in self._ready_edges(now):
             if edge.sync is None or not edge.sync.sends:
@@ -152,18 +146,18 @@ class Rules:
         assert edge.sync is not None, "asked of synchronising edges only"
         return int(self._made(edge.sync.slot, slot_evaluator)(now.locations, now.values))
 
-    def compares(self, now: Configuration, compare: ClockCompare) -> bool:
+    def compares(self, now: Configuration, compare: ex.ClockCompare) -> bool:
         """Whether a clock is as a comparison says."""
         clock = now.clocks[compare.clock]
         bound = self.value(now, compare.bound)
         match compare.op:
-            case ClockOp.LT:
+            case ex.ClockOp.LT:
                 return clock < bound
-            case ClockOp.LE:
+            case ex.ClockOp.LE:
                 return clock <= bound
-            case ClockOp.GE:
+            case ex.ClockOp.GE:
                 return clock >= bound
-            case ClockOp.GT:
+            case ex.ClockOp.GT:
                 return clock > bound
 
     def replay(self, run: Run) -> list[Configuration]:
@@ -224,7 +218,7 @@ class Rules:
         committed = {
             i
             for i, automaton in enumerate(self._network.automata)
-            if automaton.locations[now.locations[i]].kind is LocationKind.COMMITTED
+            if automaton.locations[now.locations[i]].kind is ex.LocationKind.COMMITTED
         }
         if committed and not committed & set(movers):
             raise InvalidRunError("a committed location is not left")
@@ -233,7 +227,7 @@ class Rules:
         return after
 
     def _holds(self, now: Configuration, guard: Guard) -> bool:
-        data = guard.data == TRUE or self.value(now, guard.data)
+        data = guard.data == ex.TRUE or self.value(now, guard.data)
         return bool(data) and all(self.compares(now, compare) for compare in guard.clocks)
 
     def _check_invariants(self, now: Configuration) -> None:

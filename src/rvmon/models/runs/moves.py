@@ -18,6 +18,7 @@ from rvmon.diagnostics import Label, Span
 from rvmon.errors import ModelError
 from rvmon.models import model_error
 from rvmon.models.network import Edge, Guard, Network
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.evaluate import (
     Evaluator,
     Frame,
@@ -28,15 +29,6 @@ from rvmon.models.network.evaluate import (
     evaluator,
     runner,
     slot_evaluator,
-)
-from rvmon.models.network.expressions import (
-    TRUE,
-    ClockCompare,
-    ClockOp,
-    Constant,
-    Expression,
-    Fractional,
-    LocationKind,
 )
 from rvmon.models.network.guards import alternatives_of
 from rvmon.models.runs import Atom, bound_of
@@ -201,12 +193,12 @@ class Space:
         number = None if channel is None else channel(state.locations, state.values)
         return priorities.rank(number, (edge.automaton for edge in edges))
 
-    def _kinds(self, state: State) -> list[LocationKind]:
+    def _kinds(self, state: State) -> list[ex.LocationKind]:
         pairs = zip(self.network.automata, state.locations, strict=True)
         return [automaton.locations[place].kind for automaton, place in pairs]
 
     def _stops_time(self, state: State) -> bool:
-        if any(kind is not LocationKind.NORMAL for kind in self._kinds(state)):
+        if any(kind is not ex.LocationKind.NORMAL for kind in self._kinds(state)):
             return True
         tried = _Tried(state, self._leaving)
         return any(
@@ -222,7 +214,7 @@ class Space:
         """Edges that may move together, and what keeps the receivers back that they leave out."""
         tried = _Tried(state, self._leaving)
         kinds = enumerate(self._kinds(state))
-        committed = {index for index, kind in kinds if kind is LocationKind.COMMITTED}
+        committed = {index for index, kind in kinds if kind is ex.LocationKind.COMMITTED}
 
         def goes(edges: Iterable[ReadyEdge]) -> bool:
             return not committed or any(edge.automaton in committed for edge in edges)
@@ -314,20 +306,20 @@ def _ready(network: Network, automaton: int, number: int, grid: int) -> ReadyEdg
 
 def _data(guard: Guard) -> Evaluator | None:
     """A guard's condition on the variables; `None` if it always holds."""
-    return None if guard.data == TRUE else evaluator(guard.data)
+    return None if guard.data == ex.TRUE else evaluator(guard.data)
 
 
-def atoms_of(compares: Sequence[ClockCompare], span: Span | None, grid: int = 1) -> AtomMaker:
+def atoms_of(compares: Sequence[ex.ClockCompare], span: Span | None, grid: int = 1) -> AtomMaker:
     """A function that gives the bounds of some comparisons, in steps of a grid."""
-    if all(isinstance(compare.bound, Constant) for compare in compares):
+    if all(isinstance(compare.bound, ex.Constant) for compare in compares):
         fixed = tuple(
             _atom(compare, compare.bound.value * grid)
             for compare in compares
-            if isinstance(compare.bound, Constant)
+            if isinstance(compare.bound, ex.Constant)
         )
         return lambda _locations, _values: fixed
     bounds = [
-        (compare, evaluator(compare.bound), 1 if isinstance(compare.bound, Fractional) else grid)
+        (compare, evaluator(compare.bound), 1 if isinstance(compare.bound, ex.Fractional) else grid)
         for compare in compares
     ]
     return lambda locations, values: tuple(
@@ -336,9 +328,9 @@ def atoms_of(compares: Sequence[ClockCompare], span: Span | None, grid: int = 1)
     )
 
 
-def _atom(compare: ClockCompare, number: int) -> Atom:
-    clock, strict = compare.clock + 1, compare.op in (ClockOp.LT, ClockOp.GT)
-    if compare.op in (ClockOp.LT, ClockOp.LE):
+def _atom(compare: ex.ClockCompare, number: int) -> Atom:
+    clock, strict = compare.clock + 1, compare.op in (ex.ClockOp.LT, ex.ClockOp.GT)
+    if compare.op in (ex.ClockOp.LT, ex.ClockOp.LE):
         return 0, clock, bound_of(number, strict)
     return clock, 0, bound_of(-number, strict)
 
@@ -347,7 +339,7 @@ PiecesMaker = Callable[[Locations, Values], list[tuple[Atom, ...]]]
 """The bounds under which a formula holds in a discrete state, in alternatives."""
 
 
-def pieces_of(formula: Expression, grid: int = 1) -> PiecesMaker:
+def pieces_of(formula: ex.Expression, grid: int = 1) -> PiecesMaker:
     """Make a function that gives the pieces of a normalised formula that is plain."""
     pieces = [
         (evaluator(guard.data), atoms_of(guard.clocks, None, grid))

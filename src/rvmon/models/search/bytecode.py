@@ -6,40 +6,16 @@ from collections.abc import Iterable, Sequence
 from typing import assert_never
 
 from rvmon.models import model_error
-from rvmon.models.network.expressions import (
-    Assignment,
-    BinaryOp,
-    BinaryOperation,
-    Choice,
-    Constant,
-    Expression,
-    Function,
-    If,
-    InLocation,
-    Invoke,
-    Lookup,
-    Missing,
-    Perform,
-    Reset,
-    Return,
-    Slot,
-    Statement,
-    UnaryOp,
-    UnaryOperation,
-    VariableValue,
-    While,
-    expressions_of,
-    statements_in,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import parts_of
 
 # The numbers of `plan.h`.
 END, CONST, VARIABLE, INDEX, ROW, ELEMENT, LOOKUP, PLACE, NOT, NEGATE, TRUTH = range(11)
-_JUMPS = dict(zip([*BinaryOp][:3], (11, 12, 13), strict=True))
+_JUMPS = dict(zip([*ex.BinaryOp][:3], (11, 12, 13), strict=True))
 UNLESS, GO = 14, 15
-_BINARY = {op: number for number, op in enumerate([*BinaryOp][3:], start=16)}
+_BINARY = {op: number for number, op in enumerate([*ex.BinaryOp][3:], start=16)}
 INVERT, SET, STORE, CLOCK, CALL, DROP, HEAD, BACK, FAIL = range(34, 43)
-_UNARY = {UnaryOp.NOT: NOT, UnaryOp.NEGATE: NEGATE, UnaryOp.INVERT: INVERT}
+_UNARY = {ex.UnaryOp.NOT: NOT, ex.UnaryOp.NEGATE: NEGATE, ex.UnaryOp.INVERT: INVERT}
 STACK = 256
 MOST_NEST = 60
 """Calls in calls."""
@@ -61,7 +37,7 @@ class Programs:
         """The start of each program, by the identity of its expression, which is kept alive."""
         self._ends: list[int] = []
 
-    def add(self, expression: Expression) -> int:
+    def add(self, expression: ex.Expression) -> int:
         """Add a program that gives an expression's value; where it begins.
 
         Raises:
@@ -73,33 +49,33 @@ class Programs:
             self._added[id(expression)] = expression, start
         return self._added[id(expression)][1]
 
-    def add_updates(self, updates: Sequence[Statement]) -> int:
+    def add_updates(self, updates: Sequence[ex.Statement]) -> int:
         """Add a program that makes all updates of an edge; where it begins.
 
         Raises:
             ModelError: an expression is nested too deeply, or calls are.
         """
         if id(updates) not in self._added:
-            self._add_called(e for s in statements_in(updates) for e in expressions_of(s))
+            self._add_called(e for s in ex.statements_in(updates) for e in ex.expressions_of(s))
             start = len(self.code)
             depth, _ = self._statements(updates)
             self.code += [CONST, 0]
             self._added[id(updates)] = updates, self._finished(start, max(depth, 1))
         return self._added[id(updates)][1]
 
-    def add_index(self, slot: Slot) -> int:
+    def add_index(self, slot: ex.Slot) -> int:
         """Add a program that gives the number of a slot."""
         self._add_called(slot.indices)
         start = len(self.code)
         depth = self._offset(slot)
-        self.code += [CONST, slot.first, _BINARY[BinaryOp.ADD]]
+        self.code += [CONST, slot.first, _BINARY[ex.BinaryOp.ADD]]
         return self._finished(start, 1 + depth)
 
-    def _add_called(self, expressions: Iterable[Expression]) -> int:
+    def _add_called(self, expressions: Iterable[ex.Expression]) -> int:
         """Add the functions that expressions call, which must stand before them; how deep."""
         nest = 0
         for part in (part for expression in expressions for part in parts_of(expression)):
-            if isinstance(part, Invoke):
+            if isinstance(part, ex.Invoke):
                 if id(part.function) not in self._starts:
                     self._add_function(part.function)
                 nest = max(nest, 1 + self._nests[id(part.function)])
@@ -108,9 +84,9 @@ class Programs:
             raise model_error("TA019", f"more than {MOST_NEST} calls in calls", None, fix)
         return nest
 
-    def _add_function(self, function: Function) -> None:
+    def _add_function(self, function: ex.Function) -> None:
         body = function.body
-        calls = (e for s in statements_in(body) for e in expressions_of(s))
+        calls = (e for s in ex.statements_in(body) for e in ex.expressions_of(s))
         self._nests[id(function)] = self._add_called(calls)
         start = len(self.code)
         waiting, self._ends = self._ends, []
@@ -126,7 +102,7 @@ class Programs:
         """The number of a slot in the plan: those of functions stand behind all others."""
         return slot if slot >= 0 else self._slots + slot
 
-    def _statements(self, statements: Sequence[Statement]) -> tuple[int, bool]:
+    def _statements(self, statements: Sequence[ex.Statement]) -> tuple[int, bool]:
         """Emit statements; the depth of the stack that they need, and whether runs go on behind."""
         depth = 1
         for statement in statements:
@@ -136,22 +112,22 @@ class Programs:
                 return depth, False
         return depth, True
 
-    def _statement(self, statement: Statement) -> tuple[int, bool]:
+    def _statement(self, statement: ex.Statement) -> tuple[int, bool]:
         code = self.code
         match statement:
-            case Assignment(Slot(first, ()), value):
+            case ex.Assignment(ex.Slot(first, ()), value):
                 depth = self._emit(value)
                 code += [SET, self._place(first)]
-            case Assignment(slot, value):
+            case ex.Assignment(slot, value):
                 depth = max(self._offset(slot), 1 + self._emit(value))
                 code += [STORE, self._place(slot.first), slot.size]
-            case Reset(clock, value):
+            case ex.Reset(clock, value):
                 depth = self._emit(value)
                 code += [CLOCK, clock + 1]
-            case Perform(call):
+            case ex.Perform(call):
                 depth = self._emit(call)
                 code.append(DROP)
-            case If(condition, then, otherwise):
+            case ex.If(condition, then, otherwise):
                 first = self._emit(condition)
                 to_otherwise = self._hole(UNLESS)
                 second, after_then = self._statements(then)
@@ -161,7 +137,7 @@ class Programs:
                 if to_end is not None:
                     code[to_end] = len(code)
                 return max(first, second, third), after_then or after_otherwise
-            case While(condition, body):
+            case ex.While(condition, body):
                 head = len(code)
                 code.append(HEAD)
                 first = self._emit(condition)
@@ -171,11 +147,11 @@ class Programs:
                     code += [BACK, head]
                 code[to_end] = len(code)
                 depth = max(first, second)
-            case Return(value):
+            case ex.Return(value):
                 depth = self._emit(value)
                 self._ends.append(self._hole(GO))
                 return depth, False
-            case Missing():
+            case ex.Missing():
                 code.append(FAIL)
                 self._ends.append(self._hole(GO))
                 return 1, False
@@ -189,7 +165,7 @@ class Programs:
         self.code.append(END)
         return start
 
-    def _offset(self, slot: Slot) -> int:
+    def _offset(self, slot: ex.Slot) -> int:
         """Emit the offset of a slot; the depth of the stack that it needs."""
         depth = 1
         if not slot.extents:
@@ -207,55 +183,55 @@ class Programs:
             return 1
         high, low = divmod(value, _HALF)
         depth = self._constant(high)
-        times, plus = _BINARY[BinaryOp.MUL], _BINARY[BinaryOp.ADD]
+        times, plus = _BINARY[ex.BinaryOp.MUL], _BINARY[ex.BinaryOp.ADD]
         # 2^31 itself is none that a program can hold.
         self.code += [CONST, _HALF // 2, times, CONST, 2, times, CONST, low, plus]
         return depth + 1
 
-    def _emit(self, expression: Expression) -> int:
+    def _emit(self, expression: ex.Expression) -> int:
         """Emit an expression; the depth of the stack that it needs."""
         code = self.code
         match expression:
-            case Constant(value):
+            case ex.Constant(value):
                 return self._constant(value)
-            case VariableValue(Slot(first, ())):
+            case ex.VariableValue(ex.Slot(first, ())):
                 code += [VARIABLE, self._place(first)]
                 return 1
-            case VariableValue(slot):
+            case ex.VariableValue(slot):
                 depth = self._offset(slot)
                 code += [ELEMENT, self._place(slot.first), slot.size]
                 return depth
-            case Lookup(values, slot):
+            case ex.Lookup(values, slot):
                 depth = self._offset(slot)
                 code += [LOOKUP, len(self.table), len(values)]
                 self.table += values
                 return depth
-            case Invoke(function, arguments):
+            case ex.Invoke(function, arguments):
                 depths = [place + self._emit(argument) for place, argument in enumerate(arguments)]
                 for place, _ in reversed(function.parameters):
                     code += [SET, self._place(place)]
                 code += [CALL, self._starts[id(function)]]
                 return max(1, *depths) if depths else 1
-            case InLocation(automaton, location):
+            case ex.InLocation(automaton, location):
                 code += [PLACE, automaton, location]
                 return 1
-            case UnaryOperation(op, operand):
+            case ex.UnaryOperation(op, operand):
                 depth = self._emit(operand)
                 code.append(_UNARY[op])
                 return depth
-            case BinaryOperation(op, left, right) if op in _JUMPS:
+            case ex.BinaryOperation(op, left, right) if op in _JUMPS:
                 first = self._emit(left)
                 hole = self._hole(_JUMPS[op])
                 second = self._emit(right)
                 code.append(TRUTH)
                 code[hole] = len(code)
                 return max(first, second)
-            case BinaryOperation(op, left, right):
+            case ex.BinaryOperation(op, left, right):
                 first = self._emit(left)
                 second = self._emit(right)
                 code.append(_BINARY[op])
                 return max(first, 1 + second)
-            case Choice(condition, then, otherwise):
+            case ex.Choice(condition, then, otherwise):
                 first = self._emit(condition)
                 to_otherwise = self._hole(UNLESS)
                 second = self._emit(then)

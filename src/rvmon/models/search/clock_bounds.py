@@ -11,22 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from rvmon.models.network import Automaton, Edge, Network
-from rvmon.models.network.expressions import (
-    BinaryOp,
-    BinaryOperation,
-    Choice,
-    ClockCompare,
-    ClockOp,
-    Constant,
-    Expression,
-    InLocation,
-    Invoke,
-    Lookup,
-    Reset,
-    UnaryOp,
-    UnaryOperation,
-    VariableValue,
-)
+from rvmon.models.network import expressions as ex
 
 Limits = dict[int, int]
 """For each clock that is compared the largest number; others are compared with none."""
@@ -39,10 +24,10 @@ class ClockBounds:
     lower: Limits = field(default_factory=dict)
     upper: Limits = field(default_factory=dict)
 
-    def note(self, compares: Iterable[ClockCompare], network: Network) -> None:
+    def note(self, compares: Iterable[ex.ClockCompare], network: Network) -> None:
         """Add the numbers of some comparisons."""
         for compare in compares:
-            table = self.lower if compare.op in (ClockOp.GE, ClockOp.GT) else self.upper
+            table = self.lower if compare.op in (ex.ClockOp.GE, ex.ClockOp.GT) else self.upper
             # The bound may be an expression over variables: the search needs one number for all its
             # values.
             highest = value_range(compare.bound, network)[1]
@@ -62,7 +47,7 @@ def joined(several: Iterable[ClockBounds]) -> ClockBounds:
 def location_bounds(
     network: Network,
     automaton: Automaton,
-    asked: Mapping[int, Sequence[ClockCompare]] | None = None,
+    asked: Mapping[int, Sequence[ex.ClockCompare]] | None = None,
 ) -> list[ClockBounds]:
     """The bounds of each location of an automaton, from its guards and invariants.
 
@@ -80,7 +65,7 @@ def location_bounds(
         own.note(edge.guard.clocks, network)
         if _is_kept_back(edge, network):  # who is kept back, counts the other way round
             ClockBounds(own.upper, own.lower).note(edge.guard.clocks, network)
-        resets.append({update.clock for update in edge.updates if isinstance(update, Reset)})
+        resets.append({update.clock for update in edge.updates if isinstance(update, ex.Reset)})
     # A fixed point: numbers only grow, and each is one of finitely many.
     changed = True
     while changed:
@@ -107,56 +92,58 @@ def _is_kept_back(edge: Edge, network: Network) -> bool:
     return sync is not None and not sync.sends and network.channels[sync.slot.first].broadcast
 
 
-def value_range(expression: Expression, network: Network) -> tuple[int, int]:
+def value_range(expression: ex.Expression, network: Network) -> tuple[int, int]:
     """Numbers between which an expression over the variables lies."""
     match expression:
-        case Constant(value):
+        case ex.Constant(value):
             return value, value
-        case VariableValue(slot):
+        case ex.VariableValue(slot):
             first, table = slot.first, network.variables
             if first < 0:
                 first, table = first + len(network.locals), network.locals
             variables = table[first : first + slot.size]
             return min(v.low for v in variables), max(v.high for v in variables)
-        case Lookup(values, _):
+        case ex.Lookup(values, _):
             return min(values), max(values)
-        case Invoke(function):
+        case ex.Invoke(function):
             _, result = function.result
             return result.low, result.high
-        case Choice(_, then, otherwise):
+        case ex.Choice(_, then, otherwise):
             return _hull(value_range(then, network), value_range(otherwise, network))
-        case UnaryOperation(UnaryOp.NEGATE, operand):
+        case ex.UnaryOperation(ex.UnaryOp.NEGATE, operand):
             low, high = value_range(operand, network)
             return -high, -low
-        case UnaryOperation(UnaryOp.INVERT, operand):
+        case ex.UnaryOperation(ex.UnaryOp.INVERT, operand):
             low, high = value_range(operand, network)
             return -high - 1, -low - 1
-        case BinaryOperation(op, left, right):
+        case ex.BinaryOperation(op, left, right):
             return _binary_range(op, value_range(left, network), value_range(right, network))
-        case InLocation() | UnaryOperation():
+        case ex.InLocation() | ex.UnaryOperation():
             return 0, 1
         case _:
             raise AssertionError(f"{expression} is no number")
 
 
-def _binary_range(op: BinaryOp, left: tuple[int, int], right: tuple[int, int]) -> tuple[int, int]:
+def _binary_range(
+    op: ex.BinaryOp, left: tuple[int, int], right: tuple[int, int]
+) -> tuple[int, int]:
     match op:
-        case BinaryOp.ADD:
+        case ex.BinaryOp.ADD:
             return left[0] + right[0], left[1] + right[1]
-        case BinaryOp.SUB:
+        case ex.BinaryOp.SUB:
             return left[0] - right[1], left[1] - right[0]
-        case BinaryOp.MUL:
+        case ex.BinaryOp.MUL:
             products = [a * b for a in left for b in right]
             return min(products), max(products)
-        case BinaryOp.DIV | BinaryOp.MOD | BinaryOp.SHIFT_RIGHT:
+        case ex.BinaryOp.DIV | ex.BinaryOp.MOD | ex.BinaryOp.SHIFT_RIGHT:
             limit = max(map(abs, left))
             return -limit, limit
-        case BinaryOp.MINIMUM | BinaryOp.MAXIMUM:
+        case ex.BinaryOp.MINIMUM | ex.BinaryOp.MAXIMUM:
             return _hull(left, right)
-        case BinaryOp.SHIFT_LEFT:
+        case ex.BinaryOp.SHIFT_LEFT:
             limit = max(map(abs, left)) << min(31, max(0, right[1]))
             return -limit, limit
-        case BinaryOp.BIT_AND | BinaryOp.BIT_OR | BinaryOp.BIT_XOR:
+        case ex.BinaryOp.BIT_AND | ex.BinaryOp.BIT_OR | ex.BinaryOp.BIT_XOR:
             limit = (1 << max(abs(n).bit_length() for n in (*left, *right))) - 1
             return -limit - 1, limit
         case _:

@@ -13,15 +13,8 @@ from math import floor
 
 from rvmon.models import model_error
 from rvmon.models.network import Extremes, Network, Query, Term, check_clocks
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.evaluate import evaluator
-from rvmon.models.network.expressions import (
-    BinaryOp,
-    BinaryOperation,
-    ClockCompare,
-    ClockOp,
-    Constant,
-    Expression,
-)
 from rvmon.models.network.guards import compares_of, is_discrete, normal_form
 from rvmon.models.runs import Run
 from rvmon.models.runs.exact_times import Rules
@@ -146,7 +139,7 @@ class _Climb:
             remark,
         )  # fmt: skip
 
-    def _reach(self, formula: Expression) -> Run | None:
+    def _reach(self, formula: ex.Expression) -> Run | None:
         return seek(self._network, Sought(Seek.GOAL, normal_form(formula)), self._meter).run
 
     def _value(self, run: Run) -> Fraction:
@@ -169,11 +162,11 @@ class _Climb:
             return FARTHEST if self._largest else 0
         return self._sign * value_range(self._term.value, self._network)[self._largest]
 
-    def _beyond(self, number: int, *, or_at: bool = False) -> Expression:
+    def _beyond(self, number: int, *, or_at: bool = False) -> ex.Expression:
         """States that count and lie beyond a number."""
-        bound = Constant(self._sign * number)
+        bound = ex.Constant(self._sign * number)
         op = (">" if self._largest else "<") + ("=" if or_at else "")
-        compare: Expression = BinaryOperation(BinaryOp(op), self._term.value, bound)
+        compare: ex.Expression = ex.BinaryOperation(ex.BinaryOp(op), self._term.value, bound)
         if self._term.clock is not None:
-            compare = ClockCompare(self._term.clock, ClockOp(op), bound)
-        return BinaryOperation(BinaryOp.AND, self._where, compare)
+            compare = ex.ClockCompare(self._term.clock, ex.ClockOp(op), bound)
+        return ex.BinaryOperation(ex.BinaryOp.AND, self._where, compare)

@@ -15,16 +15,7 @@ from dataclasses import dataclass
 
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
-from rvmon.models.network.expressions import (
-    FALSE,
-    TRUE,
-    BinaryOp,
-    BinaryOperation,
-    Deadlock,
-    Expression,
-    PathFormula,
-    PathOp,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import is_discrete, normal_form, parts_of
 
 MOST_STATES = 2_000
@@ -42,7 +33,7 @@ class WayState:
         arcs: the states that can be next.
     """
 
-    label: tuple[Expression, ...]
+    label: tuple[ex.Expression, ...]
     starts: bool
     sets: int
     arcs: tuple[int, ...]
@@ -56,7 +47,7 @@ class Ways:
     sets: int
 
 
-def check_linear(formula: Expression, span: Span | None) -> None:
+def check_linear(formula: ex.Expression, span: Span | None) -> None:
     """Refuse what a run alone does not say.
 
     Raises:
@@ -64,23 +55,23 @@ def check_linear(formula: Expression, span: Span | None) -> None:
     """
     for part in parts_of(formula):
         match part:
-            case PathFormula(PathOp.FINALLY | PathOp.GLOBALLY, _, None):
+            case ex.PathFormula(ex.PathOp.FINALLY | ex.PathOp.GLOBALLY, _, None):
                 pass
-            case PathFormula(PathOp.FINALLY | PathOp.GLOBALLY):
+            case ex.PathFormula(ex.PathOp.FINALLY | ex.PathOp.GLOBALLY):
                 fix = "bounds are decided in CTL, as in A[] (p imply A<>[<=5] q)"
                 raise model_error("TA020", "a bound inside LTL is not decided", span, fix)
-            case PathFormula():
+            case ex.PathFormula():
                 fix = "ask for the parts one by one"
                 message = (
                     "operators of CTL and of LTL in one formula: that is CTL*, and not decided"
                 )
                 raise model_error("TA020", message, span, fix)
-            case Deadlock():
+            case ex.Deadlock():
                 fix = "ask for it with E<> or A[]"
                 raise model_error("TA020", "one run does not show `deadlock`", span, fix)
 
 
-def ways_of(formula: Expression, span: Span | None) -> Ways:
+def ways_of(formula: ex.Expression, span: Span | None) -> Ways:
     """The automaton of a normalised formula; `span` is the place of its query.
 
     Raises:
@@ -114,9 +105,9 @@ def ways_of(formula: Expression, span: Span | None) -> Ways:
 class _Case:
     """A way to satisfy some formulas now."""
 
-    label: tuple[Expression, ...]
-    following: frozenset[Expression]
-    waiting: frozenset[Expression]
+    label: tuple[ex.Expression, ...]
+    following: frozenset[ex.Expression]
+    waiting: frozenset[ex.Expression]
 
     def is_as_good_as(self, other: _Case) -> bool:
         """Whether all that the other one allows is allowed here."""
@@ -126,7 +117,7 @@ class _Case:
             and self.waiting <= other.waiting
         )
 
-    def sets(self, promises: Sequence[Expression]) -> int:
+    def sets(self, promises: Sequence[ex.Expression]) -> int:
         """The sets of acceptance, as bits: one for each formula `p U q` that does not wait."""
         return sum(1 << n for n, promise in enumerate(promises) if promise not in self.waiting)
 
@@ -135,9 +126,9 @@ class _Tableau:
     """The cases of formulas."""
 
     def __init__(self) -> None:
-        self._covers: dict[frozenset[Expression], list[_Case]] = {}
+        self._covers: dict[frozenset[ex.Expression], list[_Case]] = {}
 
-    def cover(self, formulas: frozenset[Expression]) -> list[_Case]:
+    def cover(self, formulas: frozenset[ex.Expression]) -> list[_Case]:
         """All ways to satisfy some formulas together, without those that others make needless."""
         known = self._covers.get(formulas)
         if known is None:
@@ -151,35 +142,35 @@ class _Tableau:
             self._covers[formulas] = known
         return known
 
-    def _cases(self, todo: list[Expression], case: _Case) -> Iterator[_Case]:
+    def _cases(self, todo: list[ex.Expression], case: _Case) -> Iterator[_Case]:
         if not todo:
             yield case
             return
         first, *rest = todo
         label, following, waiting = case.label, case.following, case.waiting
         match first:
-            case PathFormula(PathOp.FINALLY, body, _, left):
+            case ex.PathFormula(ex.PathOp.FINALLY, body, _, left):
                 yield from self._cases([body, *rest], case)
                 # It must be met some day: a run that waits for ever is caught by the set of
                 # acceptance for it.
                 later = _Case(label, following | {first}, waiting | {first})
                 yield from self._cases([left, *rest], later)
-            case PathFormula(PathOp.GLOBALLY, body, _, left):
+            case ex.PathFormula(ex.PathOp.GLOBALLY, body, _, left):
                 freed = normal_form(left, positive=False)
                 yield from self._cases([body, freed, *rest], case)
                 later = _Case(label, following | {first}, waiting)
                 yield from self._cases([body, *rest], later)
-            case BinaryOperation(BinaryOp.AND, one, other) if not is_discrete(first):
+            case ex.BinaryOperation(ex.BinaryOp.AND, one, other) if not is_discrete(first):
                 yield from self._cases([one, other, *rest], case)
-            case BinaryOperation(BinaryOp.OR, one, other) if not is_discrete(first):
+            case ex.BinaryOperation(ex.BinaryOp.OR, one, other) if not is_discrete(first):
                 yield from self._cases([one, *rest], case)
                 yield from self._cases([other, *rest], case)
-            case _ if first == TRUE or first in label:
+            case _ if first == ex.TRUE or first in label:
                 yield from self._cases(rest, case)
-            case _ if first in (FALSE, _NOT_TRUE) or normal_form(first, positive=False) in label:
+            case _ if first in (ex.FALSE, _NOT_TRUE) or normal_form(first, positive=False) in label:
                 return
             case _:
                 yield from self._cases(rest, _Case((*label, first), following, waiting))
 
 
-_NOT_TRUE = normal_form(TRUE, positive=False)
+_NOT_TRUE = normal_form(ex.TRUE, positive=False)

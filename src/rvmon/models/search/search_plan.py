@@ -10,22 +10,7 @@ from math import log
 
 from rvmon.models import model_error
 from rvmon.models.network import Edge, Guard, Network
-from rvmon.models.network.expressions import (
-    TRUE,
-    BinaryOp,
-    BinaryOperation,
-    ClockCompare,
-    ClockOp,
-    Constant,
-    Deadlock,
-    Expression,
-    InLocation,
-    LocationKind,
-    PathFormula,
-    PathOp,
-    UnaryOp,
-    UnaryOperation,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import (
     MOST_PIECES,
     alternatives_of,
@@ -44,8 +29,8 @@ MAGIC = 0x5A4E3031
 MOST_CLOCKS = 5000
 MOST_TREE_ROWS = 1000
 LARGEST = (1 << 31) - 2
-_OPS = {ClockOp.LT: 0, ClockOp.LE: 1, ClockOp.GE: 2, ClockOp.GT: 3}
-_KINDS = {LocationKind.NORMAL: 0, LocationKind.URGENT: 1, LocationKind.COMMITTED: 2}
+_OPS = {ex.ClockOp.LT: 0, ex.ClockOp.LE: 1, ex.ClockOp.GE: 2, ex.ClockOp.GT: 3}
+_KINDS = {ex.LocationKind.NORMAL: 0, ex.LocationKind.URGENT: 1, ex.LocationKind.COMMITTED: 2}
 _PLAIN, _AND, _OR, _NOT, _UNTIL, _STAY, _NEXT = range(7)
 
 
@@ -70,15 +55,15 @@ class Plan:
         self._pieces: list[int] = []
         self.edges: list[tuple[int, int]] = []
         timer = len(network.clocks)
-        due: tuple[ClockCompare, ...] = ()
+        due: tuple[ex.ClockCompare, ...] = ()
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
-            due = (ClockCompare(timer, ClockOp.LE, Constant(sought.bound)),)
+            due = (ex.ClockCompare(timer, ex.ClockOp.LE, ex.Constant(sought.bound)),)
         self._sets = [
             {reset.clock for edge in a.edges for reset in resets_in(edge.updates)}
             for a in network.automata
         ]
         # What a query compares clocks with, by automaton and location, or with None everywhere.
-        self._asked: dict[int | None, dict[int, list[ClockCompare]]] = {}
+        self._asked: dict[int | None, dict[int, list[ex.ClockCompare]]] = {}
         self.goal = alternatives_of(sought.goal, due)
         self.inside = alternatives_of(sought.inside, due)
         states = () if sought.ways is None else sought.ways.states
@@ -160,10 +145,10 @@ class Plan:
         last = slot.first + slot.size
         return [*row, self._programs.add_index(slot), slot.first, last, flags]
 
-    def _data(self, expression: Expression) -> int:
-        return -1 if expression == TRUE else self._programs.add(expression)
+    def _data(self, expression: ex.Expression) -> int:
+        return -1 if expression == ex.TRUE else self._programs.add(expression)
 
-    def _compares(self, compares: Iterable[ClockCompare]) -> tuple[int, int]:
+    def _compares(self, compares: Iterable[ex.ClockCompare]) -> tuple[int, int]:
         """Add atoms; where they begin, and how many they are."""
         first = len(self._atoms) // 4
         for compare in compares:
@@ -171,7 +156,7 @@ class Plan:
             match compare.bound:
                 # Most bounds are constants: the search compares with these directly, without a
                 # program.
-                case Constant(value) if 0 <= value <= LARGEST:
+                case ex.Constant(value) if 0 <= value <= LARGEST:
                     row += [-1, value]
                 case bound:
                     row += [self._programs.add(bound), 0]
@@ -204,39 +189,39 @@ class Plan:
             rows += [timer, 0, sought.bound]
         return rows
 
-    def _grow(self, formula: Expression) -> int:
+    def _grow(self, formula: ex.Expression) -> int:
         """Add rows of the tree for a normalised formula; the number of the last."""
         match formula:
-            case Deadlock():
+            case ex.Deadlock():
                 return self._row(_NOT, self._row(_NEXT, -1))
-            case UnaryOperation(UnaryOp.NOT, Deadlock()):
+            case ex.UnaryOperation(ex.UnaryOp.NOT, ex.Deadlock()):
                 return self._row(_NEXT, -1)
-            case BinaryOperation(BinaryOp.AND | BinaryOp.OR as op, left, right) if has_paths(
-                formula
-            ) or speaks_of_deadlock(formula):
-                kind = _AND if op is BinaryOp.AND else _OR
+            case ex.BinaryOperation(ex.BinaryOp.AND | ex.BinaryOp.OR as op, left, right) if (
+                has_paths(formula) or speaks_of_deadlock(formula)
+            ):
+                kind = _AND if op is ex.BinaryOp.AND else _OR
                 return self._row(kind, self._grow(left), self._grow(right))
-            case PathFormula(op, body, bound, left):
+            case ex.PathFormula(op, body, bound, left):
                 return self._path(op, self._grow(body), left, -1 if bound is None else bound)
             case _:
                 first = len(self._pieces) // 3
                 self._pieces += self._alternatives(alternatives_of(formula))
                 return self._row(_PLAIN, first, len(self._pieces) // 3 - first)
 
-    def _path(self, op: PathOp, body: int, until: Expression, bound: int) -> int:
-        left = -1 if until == TRUE else self._grow(until)
+    def _path(self, op: ex.PathOp, body: int, until: ex.Expression, bound: int) -> int:
+        left = -1 if until == ex.TRUE else self._grow(until)
         match op:
-            case PathOp.POSSIBLY:
+            case ex.PathOp.POSSIBLY:
                 return self._row(_UNTIL, left, body, bound)
-            case PathOp.INVARIANTLY:
+            case ex.PathOp.INVARIANTLY:
                 return self._row(_NOT, self._row(_UNTIL, left, self._row(_NOT, body), bound))
-            case PathOp.POTENTIALLY_ALWAYS:
+            case ex.PathOp.POTENTIALLY_ALWAYS:
                 return self._stay(body, left, bound)
-            case PathOp.EVENTUALLY:
+            case ex.PathOp.EVENTUALLY:
                 return self._row(_NOT, self._stay(self._row(_NOT, body), left, bound))
-            case PathOp.SOME_NEXT:
+            case ex.PathOp.SOME_NEXT:
                 return self._row(_NEXT, body)
-            case PathOp.EVERY_NEXT:
+            case ex.PathOp.EVERY_NEXT:
                 return self._row(_NOT, self._row(_NEXT, self._row(_NOT, body)))
             case _:
                 raise AssertionError(f"{op} refers to one run")
@@ -265,12 +250,12 @@ def _packed(head: Sequence[int], sections: Sequence[tuple[int, Sequence[int]]]) 
     return array("i", numbers).tobytes()
 
 
-def _places_of(condition: Expression) -> Iterator[tuple[int, int]]:
+def _places_of(condition: ex.Expression) -> Iterator[tuple[int, int]]:
     """Automata and the locations in which they are wherever a condition holds."""
     match condition:
-        case InLocation(automaton, location):
+        case ex.InLocation(automaton, location):
             yield automaton, location
-        case BinaryOperation(BinaryOp.AND, left, right):
+        case ex.BinaryOperation(ex.BinaryOp.AND, left, right):
             yield from _places_of(left)
             yield from _places_of(right)
 
@@ -325,9 +310,9 @@ class Sought:
     """
 
     kind: Seek
-    goal: Expression | None = None
-    inside: Expression | None = None
-    nested: Expression | None = None
+    goal: ex.Expression | None = None
+    inside: ex.Expression | None = None
+    nested: ex.Expression | None = None
     ways: Ways | None = None
     progress: bool = False
     choose: Policy = Policy.SHORTEST
@@ -341,7 +326,7 @@ class Sought:
             self.bound is not None
             or self.progress
             or self.choose is Policy.FASTEST
-            or any(isinstance(part, PathFormula) and part.bound is not None for part in nested)
+            or any(isinstance(part, ex.PathFormula) and part.bound is not None for part in nested)
         )
 
     @property

@@ -15,18 +15,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from rvmon.models.network import Network, check_clocks
-from rvmon.models.network.expressions import (
-    Assignment,
-    BinaryOp,
-    BinaryOperation,
-    Choice,
-    Constant,
-    Expression,
-    InLocation,
-    Slot,
-    Variable,
-    VariableValue,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.runs import Run
 from rvmon.models.runs.moves import check_start
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Statistics, Watch
@@ -103,18 +92,18 @@ def build_suite(
 def _way_to(network: Network, criterion: Criterion, item: Item, meter: Meter) -> Run | None:
     """The shortest run to an item; `None` if there is none, or the search was stopped."""
     if criterion is Criterion.LOCATIONS:
-        goal: Expression = InLocation(item.automaton, *item.numbers)
+        goal: ex.Expression = ex.InLocation(item.automaton, *item.numbers)
         return seek(network, Sought(Seek.GOAL, goal), meter).run
     # One more variable counts how many of the edges have just been taken in turn.
-    slot, count = Slot(len(network.variables)), len(item.numbers)
-    progress = Variable("", 0, count, 0)
+    slot, count = ex.Slot(len(network.variables)), len(item.numbers)
+    progress = ex.Variable("", 0, count, 0)
     last, edges = item.numbers[-1], [*network.automata[item.automaton].edges]
     for number, edge in enumerate(edges):
-        taken: Expression = Constant(int(number == item.numbers[0]))
+        taken: ex.Expression = ex.Constant(int(number == item.numbers[0]))
         if count > 1 and number == last:
-            before = BinaryOperation(BinaryOp.EQ, VariableValue(slot), Constant(1))
-            taken = Choice(before, Constant(count), taken)
-        edges[number] = replace(edge, updates=(*edge.updates, Assignment(slot, taken, progress)))
+            before = ex.BinaryOperation(ex.BinaryOp.EQ, ex.VariableValue(slot), ex.Constant(1))
+            taken = ex.Choice(before, ex.Constant(count), taken)
+        edges[number] = replace(edge, updates=(*edge.updates, ex.Assignment(slot, taken, progress)))
     automata = [*network.automata]
     automata[item.automaton] = replace(automata[item.automaton], edges=tuple(edges))
     counting = replace(
@@ -123,7 +112,7 @@ def _way_to(network: Network, criterion: Criterion, item: Item, meter: Meter) ->
         automata=tuple(automata),
         original=network,
     )
-    goal = BinaryOperation(BinaryOp.EQ, VariableValue(slot), Constant(count))
+    goal = ex.BinaryOperation(ex.BinaryOp.EQ, ex.VariableValue(slot), ex.Constant(count))
     return seek(counting, Sought(Seek.GOAL, goal), meter).run
 
 

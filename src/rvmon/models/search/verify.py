@@ -19,16 +19,7 @@ from rvmon.models.network import (
     Simulation,
     check_clocks,
 )
-from rvmon.models.network.expressions import (
-    FALSE,
-    TRUE,
-    BinaryOp,
-    BinaryOperation,
-    ClockCompare,
-    Expression,
-    PathFormula,
-    PathOp,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import (
     compares_of,
     has_paths,
@@ -91,7 +82,7 @@ def verify(
     return Outcome(asked, holds, run, found.chosen, meter.statistics(), remark)
 
 
-def compares_in(formula: QueryFormula) -> Iterator[ClockCompare]:
+def compares_in(formula: QueryFormula) -> Iterator[ex.ClockCompare]:
     """All comparisons of clocks in what a query asks."""
     match formula:
         case LeadsToFormula(left, right):
@@ -131,17 +122,17 @@ class _Found:
 
 
 _OUTERMOST = (
-    PathOp.POSSIBLY,
-    PathOp.INVARIANTLY,
-    PathOp.EVENTUALLY,
-    PathOp.POTENTIALLY_ALWAYS,
+    ex.PathOp.POSSIBLY,
+    ex.PathOp.INVARIANTLY,
+    ex.PathOp.EVENTUALLY,
+    ex.PathOp.POTENTIALLY_ALWAYS,
 )
 
 
 def _search(question: _Question, query: Query) -> _Found:
     match query.formula:
         case LeadsToFormula(left, right) if is_linear(left) or is_linear(right):
-            check_linear(PathFormula(PathOp.EVENTUALLY, left), query.span)
+            check_linear(ex.PathFormula(ex.PathOp.EVENTUALLY, left), query.span)
         case LeadsToFormula():
             pass
         case Chance() | Mean() | Simulation():
@@ -156,31 +147,35 @@ def _search(question: _Question, query: Query) -> _Found:
         case LeadsToFormula(left, right, bound):
             if is_plain(left) and is_plain(right):
                 return _Found(False, _unanswered(question, left, right, bound))
-            answered = PathFormula(PathOp.EVENTUALLY, right, bound)
-            implied = BinaryOperation(BinaryOp.IMPLY, left, answered)
-            return _at_start(question, PathFormula(PathOp.INVARIANTLY, implied))
-        case PathFormula(op, body, None, until) if (
-            until != TRUE and op in _OUTERMOST and is_plain(body) and is_plain(until)
+            answered = ex.PathFormula(ex.PathOp.EVENTUALLY, right, bound)
+            implied = ex.BinaryOperation(ex.BinaryOp.IMPLY, left, answered)
+            return _at_start(question, ex.PathFormula(ex.PathOp.INVARIANTLY, implied))
+        case ex.PathFormula(op, body, None, until) if (
+            until != ex.TRUE and op in _OUTERMOST and is_plain(body) and is_plain(until)
         ):
-            shows = op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS)
-            ends = op in (PathOp.POSSIBLY, PathOp.EVENTUALLY)
-            linear = PathFormula(PathOp.FINALLY if ends else PathOp.GLOBALLY, body, None, until)
+            shows = op in (ex.PathOp.POSSIBLY, ex.PathOp.POTENTIALLY_ALWAYS)
+            ends = op in (ex.PathOp.POSSIBLY, ex.PathOp.EVENTUALLY)
+            linear = ex.PathFormula(
+                ex.PathOp.FINALLY if ends else ex.PathOp.GLOBALLY, body, None, until
+            )
             return _Found(
                 shows, _accepted(question, normal_form(linear, positive=shows), query.span)
             )
-        case PathFormula(op, body, bound, until) if until == TRUE and op in _OUTERMOST:
-            if op in (PathOp.POSSIBLY, PathOp.POTENTIALLY_ALWAYS):
+        case ex.PathFormula(op, body, bound, until) if until == ex.TRUE and op in _OUTERMOST:
+            if op in (ex.PathOp.POSSIBLY, ex.PathOp.POTENTIALLY_ALWAYS):
                 sought, shows = normal_form(body), True
             else:
                 sought, shows = normal_form(body, positive=False), False
             match op:
-                case PathOp.POSSIBLY | PathOp.INVARIANTLY if has_paths(sought) and bound is None:
+                case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if (
+                    has_paths(sought) and bound is None
+                ):
                     return _reach_nested(question, sought, shows)
-                case PathOp.POSSIBLY | PathOp.INVARIANTLY if is_plain(sought):
+                case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if is_plain(sought):
                     return _Found(shows, *_reach(question, sought, bound))
-                case PathOp.POSSIBLY | PathOp.INVARIANTLY if not has_paths(sought):
+                case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if not has_paths(sought):
                     return _Found(shows, _reach_deadlock(question, sought, bound))
-                case PathOp.EVENTUALLY | PathOp.POTENTIALLY_ALWAYS if is_plain(sought):
+                case ex.PathOp.EVENTUALLY | ex.PathOp.POTENTIALLY_ALWAYS if is_plain(sought):
                     return _Found(shows, _staying(question, None, sought, bound))
                 case _:
                     return _at_start(question, query.formula)
@@ -191,10 +186,10 @@ def _search(question: _Question, query: Query) -> _Found:
             raise model_error("TA020", "a query refers to runs", query.span, fix)
 
 
-def _at_start(question: _Question, formula: Expression) -> _Found:
+def _at_start(question: _Question, formula: ex.Expression) -> _Found:
     """Whether a formula that speaks of runs holds at the start: no single run shows it."""
     # Going backwards meets no run that leaves a variable's range: going forwards does.
-    seek(question.network, Sought(Seek.GOAL, FALSE), question.meter)
+    seek(question.network, Sought(Seek.GOAL, ex.FALSE), question.meter)
     if not question.meter.stopped:
         sought = Sought(Seek.START, nested=normal_form(formula))
         found = seek(question.network, sought, question.meter).run is not None
@@ -206,12 +201,12 @@ def _at_start(question: _Question, formula: Expression) -> _Found:
 # Reaching.
 
 
-def _alternatives(formula: Expression) -> list[list[Expression]]:
+def _alternatives(formula: ex.Expression) -> list[list[ex.Expression]]:
     """A normalised formula as alternatives of parts that hold together; plain parts stay whole."""
     match formula:
-        case BinaryOperation(BinaryOp.OR, left, right) if has_paths(formula):
+        case ex.BinaryOperation(ex.BinaryOp.OR, left, right) if has_paths(formula):
             return [*_alternatives(left), *_alternatives(right)]
-        case BinaryOperation(BinaryOp.AND, left, right) if has_paths(formula):
+        case ex.BinaryOperation(ex.BinaryOp.AND, left, right) if has_paths(formula):
             return [
                 [*some, *others] for some in _alternatives(left) for others in _alternatives(right)
             ]
@@ -219,11 +214,11 @@ def _alternatives(formula: Expression) -> list[list[Expression]]:
             return [[formula]]
 
 
-def _lasting_part(parts: Sequence[Expression]) -> PathFormula | None:
+def _lasting_part(parts: Sequence[ex.Expression]) -> ex.PathFormula | None:
     """The only part that speaks of runs, if it is `E[]` with a plain formula inside."""
     match [part for part in parts if has_paths(part)]:
-        case [PathFormula(PathOp.POTENTIALLY_ALWAYS, body, _, left) as lasting] if (
-            left == TRUE and is_plain(body)
+        case [ex.PathFormula(ex.PathOp.POTENTIALLY_ALWAYS, body, _, left) as lasting] if (
+            left == ex.TRUE and is_plain(body)
         ):
             return lasting
         case _:
@@ -231,7 +226,7 @@ def _lasting_part(parts: Sequence[Expression]) -> PathFormula | None:
 
 
 def _reach(
-    question: _Question, formula: Expression, within: int | None
+    question: _Question, formula: ex.Expression, within: int | None
 ) -> tuple[Run | None, Policy | None]:
     """A run to a normalised formula, as the policy chooses it, or the shortest if that ends early.
 
@@ -250,13 +245,13 @@ def _reach(
     return run, Policy.SHORTEST
 
 
-def _reach_deadlock(question: _Question, formula: Expression, within: int | None) -> Run | None:
+def _reach_deadlock(question: _Question, formula: ex.Expression, within: int | None) -> Run | None:
     alive, dead = (with_deadlock(formula, value=value) for value in (False, True))
     sought = Sought(Seek.DEADLOCK, alive, dead, bound=within)
     return seek(question.network, sought, question.meter).run
 
 
-def _reach_nested(question: _Question, formula: Expression, shows: bool) -> _Found:
+def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _Found:
     """A run to a formula that speaks of runs from there; each alternative is sought by itself."""
     run = None
     for parts in _alternatives(formula):
@@ -277,7 +272,7 @@ def _reach_nested(question: _Question, formula: Expression, shows: bool) -> _Fou
 
 
 def _unanswered(
-    question: _Question, left: Expression, right: Expression, bound: int | None
+    question: _Question, left: ex.Expression, right: ex.Expression, bound: int | None
 ) -> Run | None:
     """A run on which `left` holds, but `right` not from there on, or not within the bound."""
     inside = normal_form(normal_form(right), positive=False)
@@ -285,7 +280,7 @@ def _unanswered(
 
 
 def _staying(
-    question: _Question, first: Expression | None, inside: Expression, bound: int | None
+    question: _Question, first: ex.Expression | None, inside: ex.Expression, bound: int | None
 ) -> Run | None:
     """A run that stays inside, from the start or from where `first` holds."""
     network, meter = question.network, question.meter
@@ -305,16 +300,19 @@ def _staying(
 # Accepting.
 
 
-def _on_runs(question: _Question, query: Query, formula: Expression) -> _Found:
+def _on_runs(question: _Question, query: Query, formula: ex.Expression) -> _Found:
     """Whether all runs satisfy a formula of LTL, or some run does."""
     body, shows = formula, False
-    if isinstance(formula, PathFormula) and formula.op in (PathOp.EVERY_RUN, PathOp.SOME_RUN):
-        body, shows = formula.body, formula.op is PathOp.SOME_RUN
+    if isinstance(formula, ex.PathFormula) and formula.op in (
+        ex.PathOp.EVERY_RUN,
+        ex.PathOp.SOME_RUN,
+    ):
+        body, shows = formula.body, formula.op is ex.PathOp.SOME_RUN
     check_linear(body, query.span)
     return _Found(shows, _accepted(question, normal_form(body, positive=shows), query.span))
 
 
-def _accepted(question: _Question, formula: Expression, span: Span | None) -> Run | None:
+def _accepted(question: _Question, formula: ex.Expression, span: Span | None) -> Run | None:
     """A run that satisfies a normalised formula of LTL, if there is one on which time passes."""
     network, meter = question.network, question.meter
     sought = Sought(Seek.RUN, ways=ways_of(formula, span))
