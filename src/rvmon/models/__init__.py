@@ -1,6 +1,7 @@
 """Networks of timed automata: text forms, zone model checker, witnesses, conformance, suites.
 
-Here are the diagnostics of models and queries: their codes, and how they are made and raised.
+Here are the diagnostics of models and queries: their codes, and how they are made and raised. What
+has no meaning, or is too large, is a `ModelError` wherever it is found.
 """
 
 from __future__ import annotations

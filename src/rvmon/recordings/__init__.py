@@ -1,5 +1,7 @@
 """Recordings to samples: tables, JSON lines, bags and logs of messages, memory.
 
+What cannot be read is a `TraceError` wherever it is found, a package that lacks an `RvmonError`.
+
 Here are their formats by file name; it imports next to nothing, as what starts fast needs it.
 """
 

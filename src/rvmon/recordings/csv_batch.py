@@ -134,9 +134,6 @@ class _Reader:
 
         Returns:
             How that ended, and where an odd row ends.
-
-        Raises:
-            TraceError: a cell is none of its kind; the rows above it have been given out.
         """
         source = text.rest
         if text.start == len(source):

@@ -355,11 +355,7 @@ def name_and_unit(column: str) -> tuple[str, str]:
 
 
 def bare_names(header: Sequence[str], schema: Schema) -> tuple[list[str], Schema]:
-    """A header without the units that stand in it, where what is left is a name that is read.
-
-    Raises:
-        TraceError: a column that is read is in another unit than its name is declared in.
-    """
+    """A header without the units that stand in it, where what is left is a name that is read."""
     declared = {*schema.signals, *schema.events}
     declared |= {f"{name}.{field}" for name, own in schema.events.items() for field in own}
     aliases = schema.aliases

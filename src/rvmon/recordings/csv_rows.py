@@ -71,11 +71,7 @@ class Layout(Struct, frozen=True):
 
 
 def read_layout(header: list[str], schema: Schema) -> Layout:
-    """Match the header's names with the declared ones.
-
-    Raises:
-        TraceError: no time column or two, or a name that stands twice.
-    """
+    """Match the header's names with the declared ones."""
     seen: dict[str, int] = {}
     for index, name in enumerate(header):
         if name in seen:
@@ -122,12 +118,7 @@ def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
 def split_lines(
     lines: Iterable[str], before: int = 0, separator: str = ","
 ) -> Iterator[tuple[int, list[str]]]:
-    """Split CSV text into rows with the number of the line that each ends on; blank ones are none.
-
-    Raises:
-        TraceError: the text is no CSV (a NUL character, a cell without end), or a row that quotes
-            ends of lines is longer than a line may be.
-    """
+    """CSV text as rows with the number of the line that each ends on; blank ones are none."""
     began, taken = 1, 0
 
     def of_row() -> Iterator[str]:
@@ -159,11 +150,7 @@ def split_lines(
 
 
 def read_row(row: list[str], layout: Layout) -> tuple[int, dict[str, Value]]:
-    """Read one row: ticks and what it updates; an empty cell is no update.
-
-    Raises:
-        TraceError: a cell is no value of its kind; the message names the column.
-    """
+    """Read one row: ticks and what it updates; an empty cell is no update."""
     if len(row) != len(layout.header):
         raise TraceError(f"{len(row)} cells where the header has {len(layout.header)}")
     t = ticks_of_cell(row[layout.time], layout.stamps)
@@ -215,11 +202,7 @@ def _scalar(cell: str, column: Column) -> Scalar:
 def csv_samples(
     rows: Iterator[tuple[int, list[str]]], layout: Layout
 ) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
-    """Line number, ticks and values of each row.
-
-    Raises:
-        TraceError: with the line's number.
-    """
+    """Line number, ticks and values of each row."""
     for line, row in rows:
         try:
             t, values = read_row(row, layout)
@@ -235,9 +218,6 @@ def unended(
 
     Its last cell may be half of one, so that what it feeds is unknown; a truth value has no half.
     Where that cell is the stamp, all is unknown.
-
-    Raises:
-        TraceError: with the line's number; also where a signal of `ignoring` would be unknown.
     """
     for line, row in rows:
         try:

@@ -43,9 +43,6 @@ class CsvText(Generic[_Found]):
 
     Mostly the end of a line is that of a row. Where it is not, what lies behind it is read again.
 
-    Args:
-        file: is read from its start.
-
     Attributes:
         is_whole: whether all of the file was read at once, so that nothing more is read of it.
         found: gives what was found in all of `rest`, if that was read ahead.

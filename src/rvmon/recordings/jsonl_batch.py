@@ -44,9 +44,6 @@ def jsonl_batches(
         schema: the declared names.
         ignored: names that are not declared are counted here.
         found_stamps: told what the stamps of the first line are.
-
-    Raises:
-        TraceError: with the line's number.
     """
     line = 0
     for text in whole_pieces(file, places.BLOCK):

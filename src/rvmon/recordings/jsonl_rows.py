@@ -50,9 +50,6 @@ def jsonl_samples(
         lines: text, one JSON object a line.
         schema: the declared names.
         ignored: names that the spec does not declare are counted here.
-
-    Raises:
-        TraceError: with the line's number; or a field of an event is to have another name.
     """
     for name in schema.columns:
         if name not in schema.signals and name not in schema.events:

@@ -29,12 +29,7 @@ ROWS = 1 << 16
 
 
 def parquet_file(path: str | Path) -> Any:
-    """The open file, as pyarrow has it.
-
-    Raises:
-        RvmonError: there is no pyarrow.
-        TraceError: it is no Parquet file, or a damaged one.
-    """
+    """The open file, as pyarrow has it."""
     with needed("Parquet", "pyarrow"):
         import pyarrow
         import pyarrow.parquet
@@ -51,23 +46,14 @@ def parquet_file(path: str | Path) -> Any:
 
 
 def parquet_cells(path: str | Path) -> Iterator[Mapping[str, list[Any]]]:
-    """The cells of all columns by name, rows by rows.
-
-    Raises:
-        RvmonError: there is no pyarrow.
-        TraceError: it is no Parquet file, or cannot be read to its end.
-    """
+    """The cells of all columns by name, rows by rows."""
     names = list(parquet_file(path).schema_arrow.names)
     for arrays in parquet_batches(path, names):
         yield dict(zip(names, map(arrow_cells, arrays), strict=True))
 
 
 def parquet_batches(path: str | Path, names: list[str]) -> Iterator[list[Any]]:
-    """These columns, rows by rows.
-
-    Raises:
-        TraceError: it cannot be read to its end.
-    """
+    """These columns, rows by rows."""
     file = parquet_file(path)
     import pyarrow
 
@@ -92,12 +78,7 @@ def _damage(error: Exception) -> TraceError:
 
 
 def parquet_layout(path: str | Path, schema: Schema) -> Layout:
-    """The layout of the file's columns.
-
-    Raises:
-        RvmonError: there is no pyarrow.
-        TraceError: it is no Parquet file, or has no time column or two.
-    """
+    """The layout of the file's columns."""
     fields = parquet_file(path).schema_arrow
     layout = read_layout(list(fields.names), schema)
     field = fields.field(layout.stamps.column)
@@ -114,12 +95,7 @@ def numbers_of_durations(column: Any) -> Any:
 
 
 def parquet_batches_of(path: str | Path, schema: Schema) -> Iterator[Batch | Iterator[Row]]:
-    """The rows of a file in order: as columns, if they hold what is declared, else one by one.
-
-    Raises:
-        RvmonError: there is no pyarrow.
-        TraceError: with the row's number, or it is damaged.
-    """
+    """The rows of a file in order: as columns, if they hold what is declared, else one by one."""
     layout = parquet_layout(path, schema)
     row = 1
     for given, *others in parquet_batches(path, layout.names_read):

@@ -88,11 +88,7 @@ def opened(path: str | Path) -> Iterator[tuple[BinaryIO, BinaryIO]]:
 
 @contextmanager
 def named_errors(path: str | Path) -> Iterator[None]:
-    """Errors inside are given the name of a file.
-
-    Raises:
-        TraceError: one happened; also if it cannot be opened, or is no text.
-    """
+    """Errors inside are given the name of a file."""
     try:
         yield
     except UnicodeDecodeError as error:
@@ -142,12 +138,7 @@ def _packing(packed: str) -> tuple[Callable[[BinaryIO, str], Any], tuple[type[Ex
 
 
 def local_path(path: str) -> Path:
-    """The path of a file; of an address that of its copy, kept until another one is asked for.
-
-    Raises:
-        TraceError: the address cannot be read.
-        RvmonError: a package is not installed.
-    """
+    """The path of a file; of an address that of its copy, kept until another one is asked for."""
     if not is_address(path):
         return Path(path)
     with _remote_errors(path):
@@ -195,12 +186,7 @@ def _copy(address: str, _state: str) -> _Copy:
 
 
 def matching_addresses(pattern: str) -> list[str]:
-    """The addresses that a pattern with `*` stands for, sorted.
-
-    Raises:
-        TraceError: the place cannot be read.
-        RvmonError: a package is not installed.
-    """
+    """The addresses that a pattern with `*` stands for, sorted."""
     with _remote_errors(pattern):
         system, inner = _system(pattern)
         return sorted(system.unstrip_protocol(name) for name in system.glob(inner))
@@ -238,11 +224,7 @@ LONGEST_LINE = 1 << 26
 
 
 def bounded_lines(text: TextIO) -> Iterator[str]:
-    """The lines of a text, which never fill the memory.
-
-    Raises:
-        TraceError: a line is too long.
-    """
+    """The lines of a text, which never fill the memory."""
     for number, line in enumerate(iter(partial(text.readline, LONGEST_LINE + 1), ""), 1):
         if len(line) > LONGEST_LINE:
             raise TraceError(
@@ -324,11 +306,7 @@ def files_of(path: str) -> list[str]:
 
 
 def one_recording(path: str) -> str:
-    """The recording at a path, or the only one in a folder, as of a bag that was not closed.
-
-    Raises:
-        TraceError: there are several.
-    """
+    """The recording at a path, or the only one in a folder, as of a bag that was not closed."""
     if is_address(path) or not os.path.isdir(path) or form_of_folder(path):
         return path
     found = list(found_recordings([path]))

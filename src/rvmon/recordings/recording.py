@@ -156,11 +156,7 @@ class FileRecording:
         self.ignored.update(dict.fromkeys(layout.ignored, 1))
 
     def __iter__(self) -> Iterator[Sample]:
-        """Samples in order of time, equal stamps merged.
-
-        Raises:
-            TraceError: with file and line; the samples before it have been given out.
-        """
+        """Samples in order of time, equal stamps merged."""
         with named_errors(self.path):
             yield from self.samples()
             if not self.rows.count:
@@ -332,11 +328,7 @@ def can_be_read_again(path: str) -> bool:
 
 
 def format_of(path: str) -> str:
-    """The format that a name stands for.
-
-    Raises:
-        TraceError: it stands for none.
-    """
+    """The format that a name stands for."""
     if path == "-":
         return "jsonl"
     if JOINT in path and not os.path.lexists(path):

@@ -199,9 +199,6 @@ class PairRecording:
             schema: the declared names; of others values are left as they are.
             ordered: whether a stamp before the one above it is an error. Under `max delay` rows are
                 put in order instead.
-
-        Raises:
-            TraceError: it is no iterable.
         """
         if not isinstance(trace, Iterable):
             raise TraceError(
@@ -213,11 +210,7 @@ class PairRecording:
         self._schema = schema
 
     def __iter__(self) -> Iterator[Sample]:
-        """Samples, equal stamps merged.
-
-        Raises:
-            TraceError: an item is something else.
-        """
+        """Samples, equal stamps merged."""
         return self.rows.samples(self._read())
 
     def _read(self) -> Iterator[Row]:

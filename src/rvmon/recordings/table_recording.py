@@ -86,11 +86,7 @@ class TableRecording:
             yield self._read()
 
     def __iter__(self) -> Iterator[Sample]:
-        """Samples in order of time, equal stamps merged.
-
-        Raises:
-            TraceError: a column is none, they differ in length, or a row is wrong.
-        """
+        """Samples in order of time, equal stamps merged."""
         return self.rows.samples(self._read())
 
     def _read(self) -> Iterator[Row]:
@@ -143,11 +139,7 @@ def stamps_of_column(stamps: Stamps, column: Any) -> Stamps:
 
 
 def rows_of_cells(columns: Iterable[Sequence[Any]], layout: Layout, first: int) -> Iterator[Row]:
-    """Rows of columns of values, those of stamps first; `None` is absent.
-
-    Raises:
-        TraceError: a stamp is none; rows are numbered from `first` on.
-    """
+    """Rows of columns of values, those of stamps first; `None` is absent."""
     for row, (stamp, *cells) in enumerate(zip(*columns, strict=True), first):
         found = zip(layout.columns, map(plain, cells), strict=True)
         given = ((column, cell) for column, cell in found if cell is not None)
@@ -169,9 +161,6 @@ def ticks_of_column(values: NDArray[Any], stamps: Stamps) -> NDArray[np.int64]:
     Args:
         values: int[n] or float[n]; of ticks themselves, int[n].
         stamps: says their unit, not `iso`.
-
-    Raises:
-        TraceError: a number is not finite or out of range.
     """
     if not len(values):
         return np.empty(0, np.int64)
@@ -235,9 +224,6 @@ def ticks_in_range(ticks: NDArray[Any]) -> NDArray[np.int64]:
 
     Only the ends are looked at: if these are in range, and whoever judges the column finds that it
     ascends, all are. To read all of a long column costs as much as to judge it.
-
-    Raises:
-        TraceError: the first or the last is out of range.
     """
     made = ticks.astype(np.int64, copy=False)
     for end in made[:: max(len(made) - 1, 1)].tolist():

@@ -19,10 +19,6 @@ from rvmon.errors import TraceError, needed
 def columns_by_name(table: Any) -> dict[str, Any] | None:
     """The columns of a table as they are; `None` if it is no table.
 
-    Raises:
-        TraceError: two columns have one name, or what gives itself out as a table is none.
-        RvmonError: pyarrow is needed to read it.
-
     >>> columns_by_name({"t": [0, 1]}), columns_by_name([(0, {})])
     ({'t': [0, 1]}, None)
     """
@@ -83,9 +79,6 @@ def cells_of(name: str, column: Any) -> list[Any]:
     Returns:
         Values as Python has them; `None` where there is none: null, masked, missing in a column of
         pandas that distinguishes that from NaN by its type.
-
-    Raises:
-        TraceError: it is no column.
 
     >>> cells_of("x", [1, None])
     [1, None]

@@ -27,9 +27,6 @@ def scalar_of_text(text: str, kind: Kind) -> Scalar:
         text: not empty; `nan` (any case) reads as NaN, but for labels.
         kind: the declared kind of the signal or field.
 
-    Raises:
-        TraceError: the text is no value of that kind; the caller adds the place.
-
     >>> [scalar_of_text("1.0", kind) for kind in (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)]
     [True, 1, 1.0, '1.0']
     """

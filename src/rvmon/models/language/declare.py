@@ -83,11 +83,7 @@ class Findings:
     found: dict[tuple[str, str, int], Diagnostic] = field(default_factory=dict)
 
     def add(self, diagnostic: Diagnostic) -> None:
-        """Note a finding; template instances repeat those of their template.
-
-        Raises:
-            ModelError: there are so many that looking for more would help nobody.
-        """
+        """Note a finding; template instances repeat those of their template."""
         start = diagnostic.spans[0].span.start if diagnostic.spans else -1
         self.found.setdefault((diagnostic.code, diagnostic.message, start), diagnostic)
         if len(self.found) >= MAX_FINDINGS:

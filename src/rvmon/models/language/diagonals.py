@@ -89,12 +89,7 @@ class Diagonals:
         return any(part.slot.first in places for part in parts)
 
     def kept_up(self, automata: Sequence[Automaton]) -> Iterator[Automaton]:
-        """The automata with edges that keep the variables up.
-
-        Raises:
-            ModelError: a clock is set in a function or to what is not constant, or both clocks are
-                set by edges that synchronise.
-        """
+        """The automata with edges that keep the variables up."""
         for diagonal, (_, span) in self.places.items():
             self._refuse_meetings(diagonal, automata, span)
         for automaton in automata:
@@ -164,11 +159,7 @@ class Diagonals:
 def difference(
     diagonals: Diagonals | None, first: int, second: int, op: ex.BinaryOp, number: int, span: Span
 ) -> ex.Expression:
-    """`first − second` compared with a number.
-
-    Raises:
-        ModelError: no edges keep it up.
-    """
+    """`first − second` compared with a number."""
     if diagonals is None:
         fix = "ask for it with --query, for which edges are made to keep it up"
         message = "two clocks are compared where edges cannot keep their difference up"
@@ -217,11 +208,7 @@ _LOWER = (ex.ClockOp.GE, ex.ClockOp.GT)
 def without_lower_bounds(
     automata: Sequence[Automaton], channels: Sequence[Channel]
 ) -> tuple[Automaton, ...]:
-    """The automata with invariants that bound clocks from above only, and the same runs.
-
-    Raises:
-        ModelError: a bound depends on variables, fails at the start, or cannot be moved.
-    """
+    """The automata with invariants that bound clocks from above only, and the same runs."""
     return tuple(
         _without(automaton, [a for a in automata if a is not automaton], channels)
         for automaton in automata

@@ -215,11 +215,7 @@ def _queries(
 
 
 def signal_on(network: Network, name: str, text: str) -> Signal:
-    """Give a name of specifications a meaning on a network.
-
-    Raises:
-        ModelError: the text is no expression over locations and variables.
-    """
+    """Give a name of specifications a meaning on a network."""
     findings = Findings()
     written = SignalText(name, parse_query(text).formula, Span(Source(name, text), 0, len(text)))
     signals = _signals([written], network.names, findings)

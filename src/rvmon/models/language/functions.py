@@ -79,11 +79,7 @@ class Functions:
     def call(
         self, symbol: FunctionSymbol, written: syntax.Call, scope: Scope, resolver: Resolver
     ) -> ex.Invoke:
-        """The value of a call.
-
-        Raises:
-            ModelError: the arguments do not fit, or the function calls itself.
-        """
+        """The value of a call."""
         text: syntax.FunctionText = symbol.written
         check_count(text.name, text.parameters, written.arguments, written.span)
         bound: list[Symbol | None] = []

@@ -39,11 +39,7 @@ _PLACED = {ex.BinaryOp.DIV, ex.BinaryOp.MOD, ex.BinaryOp.SHIFT_LEFT, ex.BinaryOp
 
 
 def compare_clock(clock: int, op: ex.BinaryOp, bound: ex.Expression, span: Span) -> ex.Expression:
-    """A comparison of a clock as one or two bounds.
-
-    Raises:
-        ModelError: the bound is no number of units of time.
-    """
+    """A comparison of a clock as one or two bounds."""
     if not is_discrete(bound):
         raise model_error("TA008", "a clock compared with clocks", span)
     if isinstance(bound, ex.Constant) and not 0 <= bound.value < ex.MAX_TIME:
@@ -67,11 +63,7 @@ def compare_clock(clock: int, op: ex.BinaryOp, bound: ex.Expression, span: Span)
 
 
 def unary(op: ex.UnaryOp, operand: ex.Expression, span: Span, calls: Calls) -> ex.Expression:
-    """An operator on one operand.
-
-    Raises:
-        ModelError: the operand speaks of clocks or runs, and the operator is arithmetic.
-    """
+    """An operator on one operand."""
     if op is not ex.UnaryOp.NOT:
         refuse_clocks(operand, span)
         if is_real(operand, calls):
@@ -92,13 +84,7 @@ def refuse_clocks(operand: ex.Expression, span: Span) -> None:
 def binary(
     op: ex.BinaryOp, left: ex.Expression, right: ex.Expression, span: Span, calls: Calls
 ) -> ex.Expression:
-    """An operator on two operands.
-
-    Raises:
-        ModelError: an operand speaks of clocks or runs and the operator is arithmetic; one has a
-            fraction and the operator is of integers; a constant divisor is 0, or a constant shift
-            none.
-    """
+    """An operator on two operands."""
     if op not in _LOGICAL and (is_real(left, calls) or is_real(right, calls)):
         if op not in OPERATIONS:
             raise model_error("TA004", f"`{op}` is for integers", span, "round them: fint(…)")
@@ -149,11 +135,7 @@ def truth(expression: ex.Expression) -> ex.Expression:
 def whole_compare(
     op: ex.BinaryOp, left: Symbol, right: Symbol, span: Span, calls: Calls
 ) -> ex.Expression:
-    """Arrays or records compared part by part.
-
-    Raises:
-        ModelError: they do not have the same parts.
-    """
+    """Arrays or records compared part by part."""
     if not is_alike(left, right):
         raise model_error("TA004", "these are not of one type", span)
     values = ((value_of(leaf, span) for leaf in leaves(side)) for side in (left, right))
@@ -183,11 +165,7 @@ _LINEAR = {
 def assuming(
     asked: ex.Expression | LeadsToFormula, premise: ex.Expression, span: Span
 ) -> ex.PathFormula:
-    """A query about those runs only of which a premise holds.
-
-    Raises:
-        ModelError: the query is none about whole runs.
-    """
+    """A query about those runs only of which a premise holds."""
     match asked:
         case LeadsToFormula(left, right, None):
             answered = ex.BinaryOperation(
@@ -266,11 +244,7 @@ def as_real(value: ex.Expression, calls: Calls, span: Span) -> ex.Expression:
 
 
 def fitted(value: ex.Expression, real: bool, calls: Calls, span: Span) -> ex.Expression:
-    """A value as a variable holds it, with a fraction or without.
-
-    Raises:
-        ModelError: it has one, and the variable has not.
-    """
+    """A value as a variable holds it, with a fraction or without."""
     if real:
         return as_real(value, calls, span)
     if is_real(value, calls):

@@ -39,9 +39,6 @@ MAX_CHARACTERS = 2_000_000
 def parse_document(source: Source) -> Document:
     """Read a whole `.ta` text.
 
-    Raises:
-        ModelError: the text is no model; the diagnostics say where and what was expected.
-
     >>> parse_document(Source("tiny.ta", "automaton a { location l start l }")).templates[0].name
     'a'
     """
@@ -53,11 +50,7 @@ def parse_document(source: Source) -> Document:
 
 
 def parse_query(text: str) -> QueryText:
-    """Read one query.
-
-    Raises:
-        ModelError: the text is no query.
-    """
+    """Read one query."""
     source = Source("<query>", text)
     formula = parse_part(text, "query", lambda start, end: Span(source, start, end))
     return QueryText("", "", text, formula, Span(source, 0, len(text)))
@@ -68,9 +61,6 @@ def parse_part(text: str, start: str, place: Place) -> Any:
 
     Returns:
         What `SyntaxBuilder` makes of that rule.
-
-    Raises:
-        ModelError: the text does not belong to the rule; it has the mistakes of all parts.
     """
     try:
         return _read(start, text, place)

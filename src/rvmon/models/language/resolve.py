@@ -67,11 +67,7 @@ class Resolver:
     fraction: Span | None = None
 
     def expression(self, written: syntax.Expression, scope: Scope) -> ex.Expression:
-        """The expression over the network.
-
-        Raises:
-            ModelError: a name is unknown or of the wrong kind, or the expression has no meaning.
-        """
+        """The expression over the network."""
         match written:
             case syntax.Number(value):
                 return ex.Constant(value)
@@ -149,21 +145,13 @@ class Resolver:
                 assert_never(written)
 
     def condition(self, written: syntax.Expression, scope: Scope) -> ex.Expression:
-        """An expression that changes nothing where it is evaluated.
-
-        Raises:
-            ModelError: it does, or it has no meaning.
-        """
+        """An expression that changes nothing where it is evaluated."""
         condition = self.expression(written, scope)
         refuse_changes(condition, written.span)
         return condition
 
     def constant(self, written: syntax.Expression, scope: Scope, *, real: bool = False) -> int:
-        """The value of an expression that must not depend on the state; `real`: its bits.
-
-        Raises:
-            ModelError: it does, or it has none.
-        """
+        """The value of an expression that must not depend on the state; `real`: its bits."""
         value = self.expression(written, scope)
         value = operations.fitted(value, real, self.functions, written.span)
         if not is_fixed(value):
@@ -172,11 +160,7 @@ class Resolver:
         return evaluator(value)((), ())
 
     def limit(self, written: syntax.Expression | None, scope: Scope) -> int | None:
-        """The bound of a path operator in units of time, if it has one.
-
-        Raises:
-            ModelError: it is not constant, or no time.
-        """
+        """The bound of a path operator in units of time, if it has one."""
         if written is None:
             return None
         units = self.constant(written, scope)
@@ -186,11 +170,7 @@ class Resolver:
         return units
 
     def extents(self, sizes: Sequence[syntax.Size], scope: Scope) -> tuple[range, ...]:
-        """The indices of each dimension: those below a number, or a type's values.
-
-        Raises:
-            ModelError: a size is not a constant above 0, or a type has too many values.
-        """
+        """The indices of each dimension: those below a number, or a type's values."""
         return tuple(self._extent(size, scope) for size in sizes)
 
     def _extent(self, size: syntax.Size, scope: Scope) -> range:
@@ -208,11 +188,7 @@ class Resolver:
         return range(number)
 
     def type(self, written: syntax.TypeText, scope: Scope) -> ResolvedType:
-        """The type with its range evaluated.
-
-        Raises:
-            ModelError: the range is empty, missing, or not constant; the typedef does not exist.
-        """
+        """The type with its range evaluated."""
         kind = self._plain_type(written, scope)
         return replace(
             kind,
@@ -256,11 +232,7 @@ class Resolver:
         return ResolvedType(ex.BaseType.INT, low, high)
 
     def symbol(self, written: syntax.Expression, scope: Scope) -> Symbol:
-        """The symbol of a name, an element of an array or a member of a record.
-
-        Raises:
-            ModelError: nothing has that name, or the expression is no name.
-        """
+        """The symbol of a name, an element of an array or a member of a record."""
         match written:
             case syntax.Name(name, span):
                 symbol = scope.find(name)

@@ -36,11 +36,7 @@ from rvmon.models.network.scope import (
 
 
 def number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> ex.Expression:
-    """An expression whose value the variables give.
-
-    Raises:
-        ModelError: it speaks of clocks or runs.
-    """
+    """An expression whose value the variables give."""
     value = resolver.expression(written, scope)
     diagonals = resolver.diagonals
     if not is_discrete(value) or (diagonals is not None and diagonals.are_read(value)):
@@ -52,11 +48,7 @@ def number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> ex.E
 def updates_of(
     written: Sequence[syntax.UpdateText | syntax.Call], scope: Scope, resolver: Resolver
 ) -> tuple[ex.Statement, ...]:
-    """The updates of an edge.
-
-    Raises:
-        ModelError: something cannot be set, or not to that.
-    """
+    """The updates of an edge."""
     return tuple(s for update in written for s in _update(update, scope, resolver))
 
 
@@ -120,11 +112,7 @@ class Bodies:
     def statements(
         self, written: Sequence[syntax.Statement], scope: Scope
     ) -> tuple[list[ex.Statement], bool]:
-        """The statements, and whether a run can go on behind them; what none reaches is left out.
-
-        Raises:
-            ModelError: something in them has no meaning.
-        """
+        """The statements that a run reaches, and whether it can go on behind them."""
         made: list[ex.Statement] = []
         for statement in written:
             more, goes_on = self._statement(statement, scope)

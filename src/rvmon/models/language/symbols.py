@@ -129,11 +129,7 @@ Part = tuple[syntax.Initial, Extents, ResolvedType]
 def parts_of_initial(
     written: syntax.Initial, extents: Extents, kind: ResolvedType
 ) -> list[Part] | None:
-    """The values for the elements of an array or the fields of a record; `None` of a single thing.
-
-    Raises:
-        ModelError: they are too few or too many, or a list stands where one value is expected.
-    """
+    """The values for the parts of an array or a record; `None` of a single thing."""
     if not isinstance(written, syntax.Values):
         if extents or kind.fields:
             fix = "write {a, b, …}"
@@ -155,11 +151,7 @@ def _expected(extents: Extents, kind: ResolvedType) -> Iterator[tuple[Extents, R
 
 
 def values_of(kind: ResolvedType, span: Span) -> range:
-    """All values of a finite type.
-
-    Raises:
-        ModelError: the type has none or too many.
-    """
+    """All values of a finite type."""
     if kind.base not in (ex.BaseType.INT, ex.BaseType.BOOL):
         raise model_error("TA004", "only int and bool types can be enumerated", span)
     if kind.high - kind.low >= MAX_VALUES:
@@ -210,11 +202,7 @@ class Calls(Protocol):
 
 
 def value_of(symbol: Symbol, span: Span) -> ex.Expression:
-    """The value that a symbol has in an expression.
-
-    Raises:
-        ModelError: it has none: a clock, an array, a channel or a type.
-    """
+    """The value that a symbol has in an expression."""
     match symbol:
         case ConstantSymbol(int(value), _, is_real):
             return ex.Fractional("=", (ex.Constant(value),)) if is_real else ex.Constant(value)
@@ -240,11 +228,7 @@ def value_of(symbol: Symbol, span: Span) -> ex.Expression:
 
 
 def element_of(symbol: Symbol, index: ex.Expression, span: Span) -> Symbol:
-    """An element of an array.
-
-    Raises:
-        ModelError: the symbol is no array, or the index is outside it.
-    """
+    """An element of an array."""
     match symbol:
         case ConstantSymbol(tuple() as values, (extent, *inner)):
             if not isinstance(index, ex.Constant) or index.value not in extent:
@@ -327,11 +311,7 @@ def settle(slot: ex.Slot) -> ex.Slot:
 
 
 def clock_of(slot: ex.Slot, span: Span) -> int:
-    """The index of the clock that a slot names.
-
-    Raises:
-        ModelError: the variables would have to choose it, or it is an array.
-    """
+    """The index of the clock that a slot names."""
     for extent, index in zip(slot.extents, slot.indices, strict=False):
         if isinstance(index, ex.Constant):
             check_index(index.value, extent, span)
@@ -345,11 +325,7 @@ def clock_of(slot: ex.Slot, span: Span) -> int:
 def automaton_at(
     automata: Mapping[AutomatonKey, AutomatonSymbol], key: AutomatonKey, span: Span
 ) -> AutomatonSymbol:
-    """The automaton of a name and arguments.
-
-    Raises:
-        ModelError: there is none, or none can be seen from where it is named.
-    """
+    """The automaton of a name and arguments."""
     if not automata:
         message = f"edges and invariants do not see the locations of `{span.text}`"
         fix = "only queries do: set a variable where it is entered and left, and read that"

@@ -81,11 +81,7 @@ class Element:
 
 
 def read_xml(source: Source) -> Element:
-    """Read a text as XML.
-
-    Raises:
-        ModelError: it is not well-formed, declares entities, or is too large or too deep.
-    """
+    """Read a text as XML."""
     text = source.text
     if len(text) > MAX_CHARACTERS:
         raise model_error("TA019", f"the text has more than {MAX_CHARACTERS:,} characters", None)
@@ -175,9 +171,6 @@ def read_uppaal(source: Source) -> tuple[Document, list[Diagnostic]]:
 
     Returns:
         The model, and warnings.
-
-    Raises:
-        ModelError: with everything that cannot be read.
     """
     root = read_xml(source)
     if root.name != "nta":

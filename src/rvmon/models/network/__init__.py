@@ -286,17 +286,7 @@ class Network:
 
 
 def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
-    """Refuse to decide what depends on fractions, or on clocks that stop or run at other rates.
-
-    Args:
-        network: of the clocks.
-        asked: the clocks in a query.
-
-    Raises:
-        ModelError: there are numbers with a fraction, or such a clock is compared. Source:
-            Henzinger, Kopke, Puri, Varaiya, What's Decidable about Hybrid Automata, 1998 (one
-            stop-watch makes reaching undecidable).
-    """
+    """Refuse to decide what depends on fractions, or on clocks that stop or run at other rates."""
     fix = "ask for figures, which are simulated: Pr[<=T](<> p), E[<=T; n](max: e)"
     if network.fraction is not None:
         message = "a number with a fraction: proofs work on integers only"

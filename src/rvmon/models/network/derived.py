@@ -87,11 +87,6 @@ def names_of(network: Network, edge: Edge) -> tuple[str, ...]:
 class Watcher:
     """A watcher in the making, and the network with it.
 
-    Args:
-        network: the watched network.
-        names: the names of moves that it reads.
-        clocks: names of the clocks that it has.
-
     Attributes:
         clock: the number of the first of its clocks.
     """

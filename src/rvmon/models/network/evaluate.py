@@ -81,11 +81,7 @@ def check_index(position: int, extent: range, span: Span | None) -> None:
 
 
 def fitting(number: int, variable: ex.Variable, span: Span | None) -> int:
-    """The number as a variable holds it.
-
-    Raises:
-        ModelError: it lies outside the variable's range.
-    """
+    """The number as a variable holds it."""
     if variable.is_bool:
         return int(bool(number))
     if variable.is_real:

@@ -88,11 +88,7 @@ def resets_in(updates: Sequence[ex.Statement]) -> Iterator[ex.Reset]:
 
 
 def refuse_changes(expression: ex.Expression, span: Span) -> None:
-    """Refuse a condition or number that changes variables when it is asked for.
-
-    Raises:
-        ModelError: it calls a function that does.
-    """
+    """Refuse a condition or number that changes variables when it is asked for."""
     for part in parts_of(expression):
         if isinstance(part, ex.Invoke) and part.function.changes:
             message = f"`{part.function.name}` changes variables or clocks"
@@ -229,11 +225,7 @@ def with_deadlock(formula: ex.Expression, value: bool) -> ex.Expression:
 
 
 def split_guard(expression: ex.Expression, span: Span) -> Guard:
-    """A condition as its discrete part and its clock bounds, which must all hold.
-
-    Raises:
-        ModelError: clocks stand under `or`.
-    """
+    """A condition as its discrete part and its clock bounds, which must all hold."""
     guard, *others = islice(guards_of(expression), 2)
     if others:
         fix = "make one location for each alternative"
@@ -284,9 +276,6 @@ def alternatives_of(
     Args:
         formula: without path operators and `deadlock`.
         due: bounds that hold besides in each.
-
-    Raises:
-        ModelError: they are too many.
     """
     if formula is None:
         return []

@@ -351,11 +351,7 @@ def pieces_of(formula: ex.Expression, grid: int = 1) -> PiecesMaker:
 
 
 def check_start(network: Network) -> None:
-    """Refuse a network that has no initial state.
-
-    Raises:
-        ModelError: an invariant forbids it.
-    """
+    """Refuse a network that has no initial state."""
     state = Space(network).initial()
     if state is None or any(bound < 0 for _, bound in state.invariant):
         places = [a.locations[a.initial] for a in network.automata]

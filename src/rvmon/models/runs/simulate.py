@@ -148,11 +148,7 @@ class _Paces:
             yield automaton.locations[place]
 
     def rates(self, state: State) -> tuple[float, ...]:
-        """The rate of each clock, numbered from 1.
-
-        Raises:
-            ModelError: two automata disagree, or a rate is below 0.
-        """
+        """The rate of each clock, numbered from 1."""
         if not self._are_changed:
             return self._ones
         if id(state) not in self._known:

@@ -123,11 +123,7 @@ def trajectories(
 
 
 def _random(network: Network, query: Query, seed: int) -> Random:
-    """The source of all choices.
-
-    Raises:
-        ModelError: the network cannot start, or its odds are not known.
-    """
+    """The source of all choices."""
     check_start(network)
     if network.has_split_edges:
         fix = "compare clocks with numbers, without `or`; or ask whether it can happen: E<> p"

@@ -38,11 +38,7 @@ class Programs:
         self._ends: list[int] = []
 
     def add(self, expression: ex.Expression) -> int:
-        """Add a program that gives an expression's value; where it begins.
-
-        Raises:
-            ModelError: it is nested too deeply.
-        """
+        """Add a program that gives an expression's value; where it begins."""
         if id(expression) not in self._added:
             self._add_called([expression])
             start = self._finished(len(self.code), self._emit(expression))
@@ -50,11 +46,7 @@ class Programs:
         return self._added[id(expression)][1]
 
     def add_updates(self, updates: Sequence[ex.Statement]) -> int:
-        """Add a program that makes all updates of an edge; where it begins.
-
-        Raises:
-            ModelError: an expression is nested too deeply, or calls are.
-        """
+        """Add a program that makes all updates of an edge; where it begins."""
         if id(updates) not in self._added:
             self._add_called(e for s in ex.statements_in(updates) for e in ex.expressions_of(s))
             start = len(self.code)

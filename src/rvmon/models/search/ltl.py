@@ -48,11 +48,7 @@ class Ways:
 
 
 def check_linear(formula: ex.Expression, span: Span | None) -> None:
-    """Refuse what a run alone does not say.
-
-    Raises:
-        ModelError: the formula has bounds, `deadlock`, or operators that speak of other runs.
-    """
+    """Refuse what a run alone does not say."""
     for part in parts_of(formula):
         match part:
             case ex.PathFormula(ex.PathOp.FINALLY | ex.PathOp.GLOBALLY, _, None):
@@ -72,11 +68,7 @@ def check_linear(formula: ex.Expression, span: Span | None) -> None:
 
 
 def ways_of(formula: ex.Expression, span: Span | None) -> Ways:
-    """The automaton of a normalised formula; `span` is the place of its query.
-
-    Raises:
-        ModelError: it has too many states.
-    """
+    """The automaton of a normalised formula; `span` is the place of its query."""
     tableau = _Tableau()
     first = tableau.cover(frozenset({formula}))
     number = {key: place for place, key in enumerate(first)}

@@ -100,9 +100,6 @@ def seek(
         sought: the question.
         meter: counts the states, and ends the search.
         proper_only: whether a way to stay counts only if time passes on it without bound.
-
-    Raises:
-        ModelError: a run of it leaves a variable's range, or numbers are too large.
     """
     plan = Plan(network, sought)
     paths = _Paths(network, plan, sought)
@@ -207,11 +204,7 @@ class _Paths:
         return make_run(shown, self._start, steps, ending, None if loop < 0 else loop)
 
     def fail(self, path: bytes, sought: Sought) -> None:
-        """Say what is wrong where a search could not go on.
-
-        Raises:
-            ModelError: always, unless the native search is wrong.
-        """
+        """Say what is wrong where a search could not go on."""
         state, _ = self.walk(path)
         for move in self._space.moves(state):
             self._space.moves(move.target)
@@ -230,9 +223,6 @@ class _Paths:
 
         Of two paths in succession the steps that they begin with are walked once: a search in depth
         finds many loops behind the same steps.
-
-        Raises:
-            ModelError: the last one leaves a variable's range.
         """
         numbers = array("i", path)
         common = _common_length(self._path, path) // numbers.itemsize

@@ -41,9 +41,6 @@ class Plan:
         edges: of the plan: automaton and number there.
         goal, inside: the alternatives of those.
         numbers, costs: the plan itself and the cost of each edge, as bytes.
-
-    Raises:
-        ModelError: the network or the query is too large for a plan.
     """
 
     def __init__(self, network: Network, sought: Sought) -> None:

@@ -131,9 +131,6 @@ def term_of(text: str) -> Term:
             as a quaternion does, `min(ranges)` and `max(ranges)` are of all elements of an array,
             `number(text)` is of a text.
 
-    Raises:
-        RvmonError: it is none; with cause and fix.
-
     >>> term_of("twist.linear.x")
     Field(path=('twist', 'linear', 'x'))
     >>> term_of("ranges[0] - 1").args

@@ -70,10 +70,6 @@ class FrameMessages(Messages):
         end: the last stamp.
         count: of the frames of these topics.
         outages: the stretches of lines that cannot be read, and its end if it was cut off.
-
-    Raises:
-        RvmonError: what reads it is not installed.
-        TraceError: it is no such log, or there is no database.
     """
 
     def __init__(self, path: Path, definitions: Mapping[str, str]) -> None:
@@ -225,11 +221,7 @@ def _is_cut(path: Path) -> bool:
 
 
 def _reading(path: Path, file: Any) -> tuple[Iterable[Any], Any]:
-    """The frames of an open log, and what tells of losses between them, as `_Lines` does.
-
-    Raises:
-        RvmonError: what reads it is not installed.
-    """
+    """The frames of an open log, and what tells of losses between them, as `_Lines` does."""
     with needed("a log of CAN", "python-can"):
         from can import ASCReader, BLFReader, CanutilsLogReader, TRCReader
 

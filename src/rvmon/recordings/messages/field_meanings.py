@@ -185,11 +185,7 @@ class Measure(Struct, frozen=True):
 
 
 def measures_of(term: Term, topic: Topic) -> tuple[Measure, ...]:
-    """In which units a value may be; none if nobody knows, or if it is a constant.
-
-    Raises:
-        TraceError: the units of what is added or compared contradict each other.
-    """
+    """In which units a value may be; none if nobody knows, or if it is a constant."""
     match term:
         case Constant():
             return ()
@@ -238,11 +234,7 @@ def _expect_alike(term: Applied, inner: list[tuple[Measure, ...]], topic: Topic)
 
 
 def expect_units(name: str, bound: Bound, schema: Schema, topic: Topic) -> None:
-    """See that values that feed a name are in its unit, as far as the messages say it.
-
-    Raises:
-        TraceError: they are not, or units in a value contradict each other.
-    """
+    """See that values that feed a name are in its unit, as far as the messages say it."""
     if bound.value is not None:
         _expect(name, bound.value, schema.units.get(name, ""), bound.unit, topic)
     for field, term in bound.fields.items():

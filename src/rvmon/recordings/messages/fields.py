@@ -52,11 +52,7 @@ def _fields_in(term: Term, sign: str = "") -> Iterator[tuple[Field | Elements, b
 
 
 def kind_of(field: Field | Elements, topic: Topic) -> Kind | None:
-    """The kind of the values of a field; `None` if nobody knows.
-
-    Raises:
-        TraceError: the topic has no such field, or it is a message or an array itself.
-    """
+    """The kind of the values of a field; `None` if nobody knows."""
     path = re.sub(r"\[[^\[\]]*\]", "[]", str(field))
     if not topic.leaves or path in topic.leaves:
         return None if path in topic.doubtful else topic.leaves.get(path)
@@ -80,11 +76,7 @@ def _listed(leaves: list[str]) -> str:
 def expect_kinds(
     name: str, kind: Kind, term: Term, labels: Mapping[str, str], topic: Topic
 ) -> None:
-    """See that the fields of a term can give values of a kind.
-
-    Raises:
-        TraceError: a field is not there, or holds something else.
-    """
+    """See that the fields of a term can give values of a kind."""
     for field, is_text in _fields_in(term):
         found = kind_of(field, topic)
         if found is None or (is_text and found is Kind.LABEL):
@@ -157,11 +149,7 @@ def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
 
 
 def stamp_getter(topic: Topic) -> Callable[[Any], int]:
-    """A function that gives the ticks that the header of a message says.
-
-    Raises:
-        TraceError: the messages have no header.
-    """
+    """A function that gives the ticks that the header of a message says."""
     for prefix in _STAMPS:
         for seconds, parts in _PARTS:
             if {f"{prefix}.{seconds}", f"{prefix}.{parts}"} <= topic.leaves.keys():

@@ -154,11 +154,7 @@ class MessageFile:
         return source
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
-        """The messages of these topics, as they were recorded.
-
-        Raises:
-            TraceError: one cannot be read.
-        """
+        """The messages of these topics, as they were recorded."""
         with closing(self._opened()) as source, _sizes():
             yield from source.read(topics)
 

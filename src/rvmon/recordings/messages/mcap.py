@@ -66,11 +66,7 @@ def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
 
 
 def _refuse_damaged_summary(path: Path) -> None:
-    """Refuse a file whose times and counts are not what their checksum says: no reader looks at it.
-
-    Raises:
-        TraceError: it is such a file.
-    """
+    """Refuse a file whose times and counts are not what their checksum says: no reader looks."""
     with open(path, "rb") as file:
         footer = max(0, file.seek(0, SEEK_END) - _FOOTER.size)
         file.seek(footer)
@@ -87,11 +83,7 @@ def _refuse_damaged_summary(path: Path) -> None:
 
 
 def mcap_reader(file: BinaryIO) -> Any:
-    """A reader of an open MCAP file of any encodings.
-
-    Raises:
-        RvmonError: it is not installed.
-    """
+    """A reader of an open MCAP file of any encodings."""
     with needed("MCAP", "mcap"):
         from mcap.reader import make_reader
     return make_reader(file, validate_crcs=True)

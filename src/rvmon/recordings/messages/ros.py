@@ -37,10 +37,6 @@ class BagMessages(Messages):
         path: a `.bag`, `.db3` or `.mcap` file, or a folder of ROS 2.
         form: `ros1` or `ros2`.
         definitions: of messages by type, which the bag may lack.
-
-    Raises:
-        RvmonError: rosbags is not installed.
-        TraceError: it is no bag, or a damaged one.
     """
 
     def __init__(self, path: Path, form: str, definitions: Mapping[str, str]) -> None:
@@ -104,11 +100,7 @@ class BagMessages(Messages):
 
 
 def refuse_fewer(found: int, counted: int) -> None:
-    """Refuse a recording that lacks messages of those that are read.
-
-    Raises:
-        TraceError: it says that there are more.
-    """
+    """Refuse a recording that lacks messages of those that are read."""
     if found < counted:
         raise TraceError(
             f"holds {found:,} messages of the topics that are read, and says itself that it has "
@@ -130,11 +122,7 @@ def bag_readers() -> Mapping[str, Callable[[Path], Any]]:
 
 
 def _refuse_unclosed(path: Path) -> None:
-    """Refuse a bag of ROS 2 of which a part is in a file that no reader of bags looks at.
-
-    Raises:
-        TraceError: there is such a part, as where a recorder was killed.
-    """
+    """Refuse a bag of ROS 2 of which a part is in a file that no reader of bags looks at."""
     inner = [path]
     if path.is_dir():
         listed = (path / "metadata.yaml").read_text("utf-8", "replace")

@@ -30,9 +30,6 @@ def message_rows(
     """Number of the message, ticks and values of each message that is read.
 
     Where stamps of headers count, messages are sorted by time in memory, unless they may be late.
-
-    Raises:
-        TraceError: with the number of the message among those of its topic.
     """
     rows = _rows(source, bounds, schema, skew)
     clock = schema.binding.clock

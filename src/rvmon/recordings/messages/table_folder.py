@@ -48,14 +48,7 @@ class _Table(Struct, frozen=True):
 
 
 class TableMessages(Messages):
-    """An open folder.
-
-    Attributes:
-        topics: by name, one of each file.
-
-    Raises:
-        TraceError: a file cannot be read, or `topics.toml` says something else.
-    """
+    """An open folder."""
 
     def __init__(self, folder: Path) -> None:
         self._tables = {name: _looked_over(table) for name, table in _tables(folder)}
@@ -70,11 +63,7 @@ class TableMessages(Messages):
         }
 
     def read(self, topics: Collection[str]) -> Iterator[Message]:
-        """The rows of these files, by time; those of one instant as the files are called.
-
-        Raises:
-            TraceError: a row is wrong, or before the one above it.
-        """
+        """The rows of these files, by time; those of one instant as the files are called."""
         rows = [_rows(name, table) for name, table in self._tables.items() if name in topics]
         yield from merge(*rows, key=lambda row: row[1])
 

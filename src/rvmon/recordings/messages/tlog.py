@@ -38,10 +38,6 @@ class TelemetryMessages(Messages):
         end: the last stamp.
         count: of all packets.
         outages: the stretches without a packet of a valid checksum.
-
-    Raises:
-        RvmonError: pymavlink is not installed.
-        TraceError: it is no such recording.
     """
 
     def __init__(self, path: Path) -> None:

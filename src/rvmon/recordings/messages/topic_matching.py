@@ -49,11 +49,7 @@ def matched(
 
 
 def _topic_like(name: str, pattern: str, schema: Schema, topics: Mapping[str, Topic]) -> str:
-    """The one topic that a pattern stands for, or the pattern itself if there is none.
-
-    Raises:
-        TraceError: there are several.
-    """
+    """The one topic that a pattern stands for, or the pattern itself if there is none."""
     if schema.binding.robot:
         return pattern.replace("*", schema.binding.robot)
     like = re.escape(pattern).replace(r"\*", "[^/]+")

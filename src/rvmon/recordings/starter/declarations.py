@@ -148,11 +148,7 @@ _ODD = "a covariance, or the like"
 
 
 def message_shapes(source: MessageFile) -> Shapes:
-    """The possible declarations of topics, their fields and the named elements of their arrays.
-
-    Raises:
-        TraceError: a message with a text cannot be read.
-    """
+    """The possible declarations of topics, their fields and the named elements of their arrays."""
     looked = names_in(source)
     declared: dict[str, Shape] = {}
     texts: dict[str, tuple[str, str]] = {}

@@ -56,9 +56,6 @@ def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
     Args:
         path: of it.
         stamps: the name of its time column; default `t` or `t_ns`.
-
-    Raises:
-        TraceError: the file cannot be read, or has no time column.
     """
     form = format_of(path)
     if form == JOINED:
