@@ -12,7 +12,7 @@ from typing import assert_never
 from rvmon.models.network import Network
 from rvmon.models.network import expressions as ex
 from rvmon.models.network.fractions import FUNCTIONS, number_of
-from rvmon.models.network.guards import parts_of
+from rvmon.models.network.guards import parts_in
 
 _KEYWORDS = (
     "after_update and assign before_update bool break broadcast case chan clock "
@@ -116,10 +116,9 @@ class Names:
     def function(self, function: ex.Function) -> str:
         """The name of a function; those that it calls are named before."""
         if id(function) not in self.functions:
-            for statement in ex.statements_in(function.body):
-                for part in (p for e in ex.expressions_of(statement) for p in parts_of(e)):
-                    if isinstance(part, ex.Invoke):
-                        self.function(part.function)
+            for part in parts_in(function.body):
+                if isinstance(part, ex.Invoke):
+                    self.function(part.function)
             self.functions[id(function)] = self._fresh(function.name), function
         return self.functions[id(function)][0]
 
@@ -249,12 +248,9 @@ def _function(names: Names, function: ex.Function) -> Iterator[str]:
 def _locals(names: Names, function: ex.Function) -> list[Thing]:
     """The parameters and local variables of a function, arrays as one thing."""
     slots = {slot for slot, _ in function.parameters}
-    for statement in ex.statements_in(function.body):
-        if isinstance(statement, ex.Assignment):
-            slots.add(statement.slot.first)
-        for part in (p for e in ex.expressions_of(statement) for p in parts_of(e)):
-            if isinstance(part, ex.VariableValue):
-                slots.add(part.slot.first)
+    for one in (*ex.statements_in(function.body), *parts_in(function.body)):
+        if isinstance(one, ex.Assignment | ex.VariableValue):
+            slots.add(one.slot.first)
     places = {slot + len(names.network.locals) for slot in slots if slot < 0}
     return [t for t in names.locals if places & set(range(t.first, t.first + t.length))]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from rvmon.diagnostics import Source, Span
 from rvmon.models.language.syntax import (
@@ -17,8 +17,7 @@ from rvmon.models.language.syntax import (
 from rvmon.models.network.expressions import LocationKind
 
 
-@dataclass(frozen=True, slots=True)
-class LocationText:
+class LocationText(Struct, frozen=True):
     """A location of a template; `leaving` is a rate, as a share."""
 
     name: str
@@ -28,8 +27,7 @@ class LocationText:
     leaving: tuple[Expression, Expression] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class SyncText:
+class SyncText(Struct, frozen=True):
     """`channel!` or `channel?`."""
 
     channel: Expression
@@ -37,8 +35,7 @@ class SyncText:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Selection:
+class Selection(Struct, frozen=True):
     """`name : type` of an edge: one edge for each value."""
 
     name: str
@@ -46,8 +43,7 @@ class Selection:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class EdgeText:
+class EdgeText(Struct, frozen=True):
     """An edge of a template; `label` names the action for people and recordings.
 
     Attributes:
@@ -66,8 +62,7 @@ class EdgeText:
     shares: tuple[Expression, tuple[Expression, ...]] | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class Template:
+class Template(Struct, frozen=True):
     """A template; without parameters it is an automaton by itself."""
 
     name: str
@@ -79,8 +74,7 @@ class Template:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Instance:
+class Instance(Struct, frozen=True):
     """`name(parameters) = template(arguments)`."""
 
     name: str
@@ -90,8 +84,7 @@ class Instance:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class QueryText:
+class QueryText(Struct, frozen=True):
     """A query with its id and its sentence for people, either may be empty, and its own text."""
 
     id: str
@@ -101,8 +94,7 @@ class QueryText:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class SignalText:
+class SignalText(Struct, frozen=True):
     """`signal name = value`: what a specification calls something of the model."""
 
     name: str
@@ -110,8 +102,7 @@ class SignalText:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Document:
+class Document(Struct, frozen=True):
     """A whole model as written.
 
     Attributes:

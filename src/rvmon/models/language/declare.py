@@ -12,20 +12,8 @@ from typing import TypeVar
 from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 from rvmon.errors import ModelError
 from rvmon.models import finding, model_error, refusal
-from rvmon.models.language import syntax
+from rvmon.models.language import symbols, syntax
 from rvmon.models.language.resolve import Resolver
-from rvmon.models.language.symbols import (
-    MAX_VALUES,
-    Value,
-    claim,
-    default_of,
-    element_of,
-    flat,
-    laid_out,
-    leaves,
-    parts_of_initial,
-    variable_of,
-)
 from rvmon.models.network import Channel, Clock
 from rvmon.models.network.expressions import BaseType, Constant, Slot, Variable
 from rvmon.models.network.scope import (
@@ -145,7 +133,7 @@ def declare(
             if isinstance(item, syntax.PrioritiesText):
                 _rank(item, scope, parts, resolver)
                 continue
-            claim(item.name, item.span, scope)
+            symbols.claim(item.name, item.span, scope)
             before = len(parts.variables)
             scope.symbols[item.name] = _symbol(item, scope, parts, resolver)
             if len(parts.variables) > before:
@@ -173,7 +161,7 @@ def _ranked(name: syntax.Expression, scope: Scope, resolver: Resolver) -> Iterat
     if isinstance(name, syntax.Name) and name.name == "default":
         yield None
         return
-    for leaf in leaves(resolver.symbol(name, scope)):
+    for leaf in symbols.leaves(resolver.symbol(name, scope)):
         match leaf:
             case PlacedSymbol(BaseType.CHANNEL, Slot(first, ())):
                 yield first
@@ -199,13 +187,17 @@ def _symbol(item: syntax.Named, scope: Scope, parts: Parts, resolver: Resolver) 
     extents = (*resolver.extents(item.sizes, scope), *kind.extents)
     if isinstance(item, syntax.TypeDefinition):
         return TypeSymbol(replace(kind, extents=extents))
-    if prod(map(len, extents)) > MAX_VALUES:
-        raise model_error("TA019", f"an array of more than {MAX_VALUES:,} elements", item.span)
+    if prod(map(len, extents)) > symbols.MAX_VALUES:
+        raise model_error(
+            "TA019", f"an array of more than {symbols.MAX_VALUES:,} elements", item.span
+        )
     value = None if item.initial is None else _initial(item.initial, extents, kind, scope, resolver)
     if kind.const and value is None:
         fix = f"write const {item.name} = …"
         raise model_error("TA006", f"the constant `{item.name}` has no value", item.span, fix)
-    return laid_out(kind, extents, [scope.prefix + item.name], value, _Placer(parts, item.span))
+    return symbols.laid_out(
+        kind, extents, [scope.prefix + item.name], value, _Placer(parts, item.span)
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -216,7 +208,11 @@ class _Placer:
     span: Span
 
     def place(
-        self, kind: ResolvedType, extents: tuple[range, ...], names: Sequence[str], value: Value
+        self,
+        kind: ResolvedType,
+        extents: tuple[range, ...],
+        names: Sequence[str],
+        value: symbols.Value,
     ) -> Symbol:
         """Put clocks, variables or channels of some names behind those that are there."""
         parts, span = self.parts, self.span
@@ -234,8 +230,12 @@ class _Placer:
                 return PlacedSymbol(kind.base, Slot(first, extents))
             case _:
                 first = _room(parts.variables, len(names), MAX_PARTS, "variables", span)
-                numbers = [default_of(kind)] * len(names) if value is None else flat(value)
-                parts.variables += map(partial(variable_of, kind), names, numbers)
+                numbers = (
+                    [symbols.default_of(kind)] * len(names)
+                    if value is None
+                    else symbols.flat(value)
+                )
+                parts.variables += map(partial(symbols.variable_of, kind), names, numbers)
                 return PlacedSymbol(BaseType.INT, Slot(first, extents))
 
 
@@ -256,7 +256,7 @@ def _initial(
 ) -> ConstantValue:
     if (extents or kind.fields) and isinstance(written, syntax.Name | syntax.Index | syntax.Member):
         return _copied(resolver.symbol(written, scope), extents, kind, written.span)
-    parts = parts_of_initial(written, extents, kind)
+    parts = symbols.parts_of_initial(written, extents, kind)
     if parts is None:
         assert not isinstance(written, syntax.Values), "it would have parts"
         value = resolver.constant(written, scope, real=kind.base is BaseType.DOUBLE)
@@ -270,7 +270,7 @@ def _copied(
 ) -> ConstantValue:
     """The values of a constant array or record."""
     if extents:
-        elements = (element_of(symbol, Constant(index), span) for index in extents[0])
+        elements = (symbols.element_of(symbol, Constant(index), span) for index in extents[0])
         return tuple(_copied(element, extents[1:], kind, span) for element in elements)
     if kind.fields and isinstance(symbol, RecordSymbol):
         pairs = zip(symbol.fields, kind.fields, strict=False)

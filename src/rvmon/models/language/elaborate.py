@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
+from msgspec import structs
+
 from rvmon.diagnostics import Severity, Source, Span
 from rvmon.models import finding, left_out, model_error
 from rvmon.models.language import automaton_syntax, syntax
@@ -157,10 +159,10 @@ def _with_constants(
     for item in document.declarations:
         if isinstance(item, syntax.Declaration) and item.name in constants.keys() & known:
             value = syntax.Number(constants[item.name], item.span)
-            changed.append(replace(item, initial=value))
+            changed.append(structs.replace(item, initial=value))
         else:
             changed.append(item)
-    return replace(document, declarations=tuple(changed))
+    return structs.replace(document, declarations=tuple(changed))
 
 
 def asked_on(network: Network, text: str) -> tuple[Network, Query]:

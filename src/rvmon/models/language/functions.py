@@ -7,24 +7,12 @@ from dataclasses import dataclass, field, replace
 
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
-from rvmon.models.language import syntax
+from rvmon.models.language import symbols, syntax
 from rvmon.models.language.operations import fitted
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.statements import Bodies, number, variable_type
-from rvmon.models.language.symbols import (
-    Extents,
-    Value,
-    check_count,
-    claim,
-    count_of,
-    default_of,
-    laid_out,
-    leaves,
-    value_of,
-    variable_of,
-)
 from rvmon.models.network import expressions as ex
-from rvmon.models.network.guards import parts_of
+from rvmon.models.network.guards import parts_in
 from rvmon.models.network.scope import (
     ChosenSymbol,
     FunctionSymbol,
@@ -62,11 +50,17 @@ class Functions:
     open: set[tuple[object, ...]] = field(default_factory=set)
 
     def place(
-        self, kind: ResolvedType, extents: Extents, names: Sequence[str], value: Value
+        self,
+        kind: ResolvedType,
+        extents: symbols.Extents,
+        names: Sequence[str],
+        value: symbols.Value,
     ) -> Symbol:
         """Make room for parameters or local variables."""
         del value  # they are set whenever the function runs
-        self.locals += [variable_of(kind, name, default_of(kind)) for name in reversed(names)]
+        self.locals += [
+            symbols.variable_of(kind, name, symbols.default_of(kind)) for name in reversed(names)
+        ]
         if len(self.locals) > MAX_LOCALS:
             raise model_error("TA019", f"more than {MAX_LOCALS:,} local variables", None)
         return PlacedSymbol(ex.BaseType.INT, ex.Slot(-len(self.locals), extents))
@@ -81,7 +75,7 @@ class Functions:
     ) -> ex.Invoke:
         """The value of a call."""
         text: syntax.FunctionText = symbol.written
-        check_count(text.name, text.parameters, written.arguments, written.span)
+        symbols.check_count(text.name, text.parameters, written.arguments, written.span)
         bound: list[Symbol | None] = []
         values: list[ex.Expression] = []
         chosen: list[ex.Expression] = []
@@ -100,7 +94,7 @@ class Functions:
                 continue
             thing = resolver.symbol(argument, scope)
             _check_fit(thing, kind, extents, parameter, argument.span, self)
-            values += [value_of(leaf, argument.span) for leaf in leaves(thing)]
+            values += [symbols.value_of(leaf, argument.span) for leaf in symbols.leaves(thing)]
         key = (id(text), id(symbol.scope), *bound)
         function = self.made.get(key)
         if function is None:
@@ -118,13 +112,13 @@ class Functions:
 
 def _type_of(
     parameter: syntax.Parameter, scope: Scope, resolver: Resolver
-) -> tuple[ResolvedType, Extents]:
+) -> tuple[ResolvedType, symbols.Extents]:
     kind = resolver.type(parameter.type, scope)
     extents = (*resolver.extents(parameter.sizes, scope), *kind.extents)
     return replace(kind, extents=()), extents
 
 
-def _is_bound(parameter: syntax.Parameter, kind: ResolvedType, extents: Extents) -> bool:
+def _is_bound(parameter: syntax.Parameter, kind: ResolvedType, extents: symbols.Extents) -> bool:
     """Whether a parameter stands for the argument itself, not for its value."""
     if kind.placed_as is not ex.BaseType.INT:
         return True
@@ -134,12 +128,12 @@ def _is_bound(parameter: syntax.Parameter, kind: ResolvedType, extents: Extents)
 def _check_fit(
     thing: Symbol,
     kind: ResolvedType,
-    extents: Extents,
+    extents: symbols.Extents,
     parameter: syntax.Parameter,
     span: Span,
     calls: Functions,
 ) -> None:
-    single = leaves(thing)
+    single = symbols.leaves(thing)
     own = single[0].kind if isinstance(single[0], PlacedSymbol) else ex.BaseType.INT
     is_real = (
         isinstance(single[0], PlacedSymbol)
@@ -148,7 +142,7 @@ def _check_fit(
     )
     if (
         own is not kind.placed_as
-        or len(single) != count_of(kind, extents)
+        or len(single) != symbols.count_of(kind, extents)
         or (not kind.fields and is_real != (kind.base is ex.BaseType.DOUBLE))
     ):
         fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
@@ -197,15 +191,17 @@ def _make(
         return replace(slot, indices=tuple(own))
 
     for parameter, thing in zip(text.parameters, bound, strict=True):
-        claim(parameter.name, parameter.span, taken)
+        symbols.claim(parameter.name, parameter.span, taken)
         if thing is not None:
             inner.symbols[parameter.name] = _with_slots(thing, chosen)
             continue
         kind, extents = _type_of(parameter, scope, resolver)
         kind, called = variable_type(kind), [f"{text.name}.{parameter.name}"]
-        symbol = laid_out(kind, extents, called, None, functions)
+        symbol = symbols.laid_out(kind, extents, called, None, functions)
         inner.symbols[parameter.name] = symbol
-        parameters += [leaf.slot.first for leaf in leaves(symbol) if isinstance(leaf, PlacedSymbol)]
+        parameters += [
+            leaf.slot.first for leaf in symbols.leaves(symbol) if isinstance(leaf, PlacedSymbol)
+        ]
     result = _NOTHING if text.type is None else resolver.type(text.type, scope)
     if result.extents or result.base not in (ex.BaseType.INT, ex.BaseType.BOOL, ex.BaseType.DOUBLE):
         fix = "let it set a parameter that is passed by reference"
@@ -225,15 +221,13 @@ def _make(
         (place.slot.first, functions.variable(place.slot)),
         tuple(body),
         len(functions.locals),
-        any(map(_changes, ex.statements_in(body))),
+        _changes(body),
     )
 
 
-def _changes(statement: ex.Statement) -> bool:
-    """Whether a statement sets what is not a function's own."""
-    if isinstance(statement, ex.Reset) or (
-        isinstance(statement, ex.Assignment) and statement.slot.first >= 0
-    ):
-        return True
-    calls = (part for e in ex.expressions_of(statement) for part in parts_of(e))
-    return any(isinstance(part, ex.Invoke) and part.function.changes for part in calls)
+def _changes(body: Sequence[ex.Statement]) -> bool:
+    """Whether statements set what is not a function's own."""
+    return any(
+        isinstance(one, ex.Reset) or (isinstance(one, ex.Assignment) and one.slot.first >= 0)
+        for one in ex.statements_in(body)
+    ) or any(isinstance(one, ex.Invoke) and one.function.changes for one in parts_in(body))

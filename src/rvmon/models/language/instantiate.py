@@ -8,20 +8,12 @@ from itertools import islice, product
 
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
-from rvmon.models.language import automaton_syntax, syntax
+from rvmon.models.language import automaton_syntax, symbols, syntax
 from rvmon.models.language.automaton_syntax import Document
 from rvmon.models.language.declare import Findings, Parts, check_range
 from rvmon.models.language.operations import as_real, binary, is_real, refuse_clocks
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.statements import is_price, updates_of
-from rvmon.models.language.symbols import (
-    MAX_VALUES,
-    check_count,
-    claim,
-    count_of,
-    leaves,
-    values_of,
-)
 from rvmon.models.network import (
     Automaton,
     Channel,
@@ -65,7 +57,7 @@ def processes_of(
     declared: tuple[Family, ...] = (*document.templates, *document.instances)
     for family in declared:
         with findings.collect():
-            claim(family.name, family.span, top)
+            symbols.claim(family.name, family.span, top)
             top.families.add(family.name)
             families[family.name] = family
     used = {instance.template.name for instance in document.instances}
@@ -101,11 +93,13 @@ def _instances(
             fix = f"write instance = {family.name}(…)"
             message = f"the parameter `{parameter.name}` needs an argument"
             raise model_error("TA015", message, parameter.span, fix)
-        ranges.append(values_of(resolver.type(parameter.type, top), parameter.type.span))
+        ranges.append(symbols.values_of(resolver.type(parameter.type, top), parameter.type.span))
     for count, arguments in enumerate(product(*ranges)):
-        if count >= MAX_VALUES:
+        if count >= symbols.MAX_VALUES:
             fix = "narrow the types of its parameters"
-            raise model_error("TA019", f"more than {MAX_VALUES:,} instances", family.span, fix)
+            raise model_error(
+                "TA019", f"more than {symbols.MAX_VALUES:,} instances", family.span, fix
+            )
         bound = [ConstantSymbol(value) for value in arguments]
         template, scope = _bind(family, bound, families, top, resolver)
         listed = f"({', '.join(map(str, arguments))})" if arguments else ""
@@ -135,7 +129,7 @@ def _bind(
 ) -> tuple[automaton_syntax.Template, Scope]:
     scope = Scope(top)
     for parameter, argument in zip(family.parameters, arguments, strict=True):
-        claim(parameter.name, parameter.span, scope)
+        symbols.claim(parameter.name, parameter.span, scope)
         scope.symbols[parameter.name] = argument
     if isinstance(family, automaton_syntax.Template):
         return family, scope
@@ -144,7 +138,7 @@ def _bind(
         fix = did_you_mean(family.template.name, list(families))
         message = f"no template `{family.template.name}`"
         raise model_error("TA002", message, family.template.span, fix)
-    check_count(target.name, target.parameters, family.arguments, family.span)
+    symbols.check_count(target.name, target.parameters, family.arguments, family.span)
     bound: list[Symbol] = []
     own = Scope(top)  # a parameter's type may speak of the parameters before it
     for parameter, written in zip(target.parameters, family.arguments, strict=True):
@@ -172,7 +166,9 @@ def _argument(
         case PlacedSymbol(place, slot):
             fits = place is kind.placed_as and slot.extents[len(slot.indices) :] == extents
         case RecordSymbol():
-            fits = bool(kind.fields) and len(leaves(symbol)) == count_of(kind, extents)
+            fits = bool(kind.fields) and len(symbols.leaves(symbol)) == symbols.count_of(
+                kind, extents
+            )
         case _:
             fits = isinstance(symbol, ConstantSymbol) and (kind.const or not parameter.reference)
     if not fits:
@@ -191,7 +187,7 @@ def location_names(template: automaton_syntax.Template, findings: Findings) -> d
     scope = Scope()
     for index, location in enumerate(template.locations):
         with findings.collect():
-            claim(location.name, location.span, scope)
+            symbols.claim(location.name, location.span, scope)
             names[location.name] = index
     return names
 
@@ -283,7 +279,7 @@ def _parts(
             yield from _parts(left, scope, resolver)
             yield from _parts(right, scope, resolver)
         case syntax.Quantified(BinaryOp.AND, name, kind, body) if _has_rate(body):
-            for value in values_of(resolver.type(kind, scope), kind.span):
+            for value in symbols.values_of(resolver.type(kind, scope), kind.span):
                 inner = scope.inner({name: ConstantSymbol(value)})
                 yield from _parts(body, inner, resolver)
         case _:
@@ -308,11 +304,13 @@ def _edges(
     source, target = _location(written.source, names), _location(written.target, names)
     ranges, selected_names = [], Scope()
     for selection in written.selections:
-        claim(selection.name, selection.span, selected_names)
-        ranges.append(values_of(resolver.type(selection.type, scope), selection.span))
+        symbols.claim(selection.name, selection.span, selected_names)
+        ranges.append(symbols.values_of(resolver.type(selection.type, scope), selection.span))
     for count, chosen in enumerate(product(*ranges)):
-        if count >= MAX_VALUES:
-            raise model_error("TA019", f"more than {MAX_VALUES:,} edges in one", written.span)
+        if count >= symbols.MAX_VALUES:
+            raise model_error(
+                "TA019", f"more than {symbols.MAX_VALUES:,} edges in one", written.span
+            )
         selected = {
             selection.name: ConstantSymbol(value)
             for selection, value in zip(written.selections, chosen, strict=True)

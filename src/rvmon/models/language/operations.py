@@ -12,7 +12,8 @@ from rvmon.models import model_error
 from rvmon.models.language.symbols import Calls, check_count, is_alike, leaves, value_of
 from rvmon.models.network import LeadsToFormula
 from rvmon.models.network import expressions as ex
-from rvmon.models.network.evaluate import apply_binary, apply_unary, check_shift, evaluator
+from rvmon.models.network.evaluate import OPERATIONS as ON_INTEGERS
+from rvmon.models.network.evaluate import UNARY, check_shift, evaluator
 from rvmon.models.network.fractions import FUNCTIONS, OPERATIONS, gives_fraction, literal, number_of
 from rvmon.models.network.guards import is_discrete, is_fixed, is_linear
 from rvmon.models.network.scope import Symbol
@@ -36,6 +37,10 @@ MIRRORED = {
 }
 _LOGICAL = {ex.BinaryOp.AND, ex.BinaryOp.OR, ex.BinaryOp.IMPLY}
 _PLACED = {ex.BinaryOp.DIV, ex.BinaryOp.MOD, ex.BinaryOp.SHIFT_LEFT, ex.BinaryOp.SHIFT_RIGHT}
+_TWO_BOUNDS: dict[ex.BinaryOp, tuple[ex.BinaryOp, ex.ClockOp, ex.ClockOp]] = {
+    ex.BinaryOp.EQ: (ex.BinaryOp.AND, ex.ClockOp.GE, ex.ClockOp.LE),
+    ex.BinaryOp.NE: (ex.BinaryOp.OR, ex.ClockOp.LT, ex.ClockOp.GT),
+}
 
 
 def compare_clock(clock: int, op: ex.BinaryOp, bound: ex.Expression, span: Span) -> ex.Expression:
@@ -45,21 +50,11 @@ def compare_clock(clock: int, op: ex.BinaryOp, bound: ex.Expression, span: Span)
     if isinstance(bound, ex.Constant) and not 0 <= bound.value < ex.MAX_TIME:
         fix = f"clocks are compared with numbers from 0 to {ex.MAX_TIME - 1:,}"
         raise model_error("TA007", f"a clock compared with {bound.value}", span, fix)
-    match op:
-        case ex.BinaryOp.EQ:
-            return ex.BinaryOperation(
-                ex.BinaryOp.AND,
-                ex.ClockCompare(clock, ex.ClockOp.GE, bound),
-                ex.ClockCompare(clock, ex.ClockOp.LE, bound),
-            )
-        case ex.BinaryOp.NE:
-            return ex.BinaryOperation(
-                ex.BinaryOp.OR,
-                ex.ClockCompare(clock, ex.ClockOp.LT, bound),
-                ex.ClockCompare(clock, ex.ClockOp.GT, bound),
-            )
-        case _:
-            return ex.ClockCompare(clock, ex.ClockOp(op.value), bound)
+    if op not in _TWO_BOUNDS:
+        return ex.ClockCompare(clock, ex.ClockOp(op.value), bound)
+    joined, *signs = _TWO_BOUNDS[op]
+    first, second = (ex.ClockCompare(clock, sign, bound) for sign in signs)
+    return ex.BinaryOperation(joined, first, second)
 
 
 def unary(op: ex.UnaryOp, operand: ex.Expression, span: Span, calls: Calls) -> ex.Expression:
@@ -70,7 +65,7 @@ def unary(op: ex.UnaryOp, operand: ex.Expression, span: Span, calls: Calls) -> e
             instead = ex.BinaryOp.SUB if op is ex.UnaryOp.NEGATE else ex.BinaryOp.BIT_XOR
             return binary(instead, ex.Constant(0), operand, span, calls)
     if isinstance(operand, ex.Constant):
-        return ex.Constant(apply_unary(op, operand.value))
+        return ex.Constant(UNARY[op](operand.value))
     return ex.UnaryOperation(op, operand)
 
 
@@ -99,7 +94,7 @@ def binary(
             check_shift(bits, span)
     match op, left, right:
         case _, ex.Constant(a), ex.Constant(b):
-            return ex.Constant(apply_binary(op, a, b))
+            return ex.Constant(ON_INTEGERS[op](a, b))
         case ex.BinaryOp.AND, ex.Constant(value), other:
             return truth(other) if value else ex.Constant(0)
         case ex.BinaryOp.OR, ex.Constant(value), other:

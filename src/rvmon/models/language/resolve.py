@@ -9,20 +9,8 @@ from typing import assert_never
 from rvmon.diagnostics import Span
 from rvmon.errors import ModelError
 from rvmon.models import model_error, refusal
-from rvmon.models.language import operations, syntax
+from rvmon.models.language import operations, symbols, syntax
 from rvmon.models.language.diagonals import Diagonals, difference, terms_of
-from rvmon.models.language.symbols import (
-    INT16,
-    INT32,
-    MAX_VALUES,
-    Calls,
-    automaton_at,
-    clock_of,
-    element_of,
-    is_whole,
-    value_of,
-    values_of,
-)
 from rvmon.models.language.unsupported import refuse_foreign, type_reason
 from rvmon.models.network import expressions as ex
 from rvmon.models.network.evaluate import evaluator
@@ -59,7 +47,7 @@ class Resolver:
         fraction: the place of a number with a fraction, if one was met.
     """
 
-    functions: Calls
+    functions: symbols.Calls
     automata: Mapping[AutomatonKey, AutomatonSymbol] = field(default_factory=dict)
     open_ints: bool = False
     diagonals: Diagonals | None = None
@@ -89,7 +77,7 @@ class Resolver:
             case syntax.Name() | syntax.Index() | syntax.Member() | syntax.Call():
                 if (location := self._location(written, scope)) is not None:
                     return location
-                return value_of(self.symbol(written, scope), written.span)
+                return symbols.value_of(self.symbol(written, scope), written.span)
             case syntax.Rate(_, span):
                 fix = "a rate stands in an invariant: x' == 2, alone or joined by &&"
                 raise model_error("TA009", "the rate of a clock stands here", span, fix)
@@ -113,7 +101,7 @@ class Resolver:
                     return yes if test.value else no
                 return ex.Choice(test, yes, no)
             case syntax.Quantified(op, name, kind, body, span):
-                values = values_of(self.type(kind, scope), kind.span)
+                values = symbols.values_of(self.type(kind, scope), kind.span)
                 self.unrolled += len(values)
                 if self.unrolled > MAX_UNROLLED:
                     message = f"quantifiers stand for more than {MAX_UNROLLED:,} conditions"
@@ -175,16 +163,18 @@ class Resolver:
 
     def _extent(self, size: syntax.Size, scope: Scope) -> range:
         if isinstance(size, syntax.TypeText):
-            return values_of(self.type(size, scope), size.span)
+            return symbols.values_of(self.type(size, scope), size.span)
         if isinstance(size, syntax.Name) and isinstance(
             symbol := scope.find(size.name), TypeSymbol
         ):
-            return values_of(symbol.type, size.span)
+            return symbols.values_of(symbol.type, size.span)
         number = self.constant(size, scope)
         if number < 1:
             raise model_error("TA007", f"an array of {number} elements", size.span)
-        if number > MAX_VALUES:
-            raise model_error("TA019", f"an array of more than {MAX_VALUES:,} elements", size.span)
+        if number > symbols.MAX_VALUES:
+            raise model_error(
+                "TA019", f"an array of more than {symbols.MAX_VALUES:,} elements", size.span
+            )
         return range(number)
 
     def type(self, written: syntax.TypeText, scope: Scope) -> ResolvedType:
@@ -225,7 +215,9 @@ class Resolver:
             if not (self.open_ints or written.const):
                 fix = "give its range: int[low, high]"
                 raise model_error("TA005", "an int without a range", written.span, fix)
-            return ResolvedType(ex.BaseType.INT, *(INT32 if written.const else INT16))
+            return ResolvedType(
+                ex.BaseType.INT, *(symbols.INT32 if written.const else symbols.INT16)
+            )
         low, high = self.constant(written.low, scope), self.constant(written.high, scope)
         if low > high:
             raise model_error("TA007", f"the range [{low}, {high}] is empty", written.span)
@@ -247,7 +239,7 @@ class Resolver:
             case syntax.Index(base, index, span):
                 position = self.expression(index, scope)
                 operations.refuse_clocks(position, index.span)
-                return element_of(self.symbol(base, scope), position, span)
+                return symbols.element_of(self.symbol(base, scope), position, span)
             case syntax.Member(base, name, span) if whole := self._record(base, scope):
                 if name not in (fields := dict(whole.fields)):
                     fix = did_you_mean(name, list(fields))
@@ -274,7 +266,7 @@ class Resolver:
         """The clock that an expression names, if it names one."""
         match self._named(written, scope):
             case PlacedSymbol(ex.BaseType.CLOCK, slot):
-                return clock_of(slot, written.span)
+                return symbols.clock_of(slot, written.span)
             case _:
                 return None
 
@@ -317,7 +309,11 @@ class Resolver:
     def _whole_compare(self, written: syntax.Binary, scope: Scope) -> ex.Expression | None:
         """Records or arrays compared element by element."""
         left, right = self._named(written.left, scope), self._named(written.right, scope)
-        if left is None or right is None or not (is_whole(left) and is_whole(right)):
+        if (
+            left is None
+            or right is None
+            or not (symbols.is_whole(left) and symbols.is_whole(right))
+        ):
             return None
         return operations.whole_compare(written.op, left, right, written.span, self.functions)
 
@@ -327,7 +323,7 @@ class Resolver:
             case syntax.Name(name):
                 symbol = scope.find(name)
             case syntax.Index(base, index, span) if inner := self._record(base, scope):
-                symbol = element_of(inner, self.expression(index, scope), span)
+                symbol = symbols.element_of(inner, self.expression(index, scope), span)
             case syntax.Member(base, name) if inner := self._record(base, scope):
                 symbol = dict(inner.fields).get(name)
             case syntax.Member(syntax.Name() | syntax.Call() as base, name) if self.automata:
@@ -353,7 +349,7 @@ class Resolver:
             case _:
                 span = written.span
                 key = ("", ())
-        return automaton_at(self.automata, key, span)
+        return symbols.automaton_at(self.automata, key, span)
 
 
 def _no_value(span: Span) -> ModelError:

@@ -26,6 +26,12 @@ class StatementBuilder(Transformer[Token, Any]):
 
     makers: ClassVar[Mapping[str, Maker]] = {
         "block": lambda items, span: syntax.Block(_statements(items), span),
+        "branch": lambda items, span: syntax.Branch(
+            items[0], _statements(items[1:2]), _statements(items[2:]), span
+        ),
+        "each": lambda items, span: syntax.Each(
+            str(items[0]), items[1], _statements(items[2:]), span
+        ),
         "perform": lambda items, _: items[0],
         "nothing": lambda *_: (),
         "loop": lambda items, span: syntax.Loop(items[0], _statements(items[1:]), span),
@@ -60,12 +66,6 @@ class StatementBuilder(Transformer[Token, Any]):
         result = kind[0] if kind else None
         return syntax.FunctionText(result, str(name), parameters, body, self._token_span(name))
 
-    def branch(self, meta: Meta, items: Sequence[Any]) -> syntax.Branch:
-        condition, then, *otherwise = items
-        return syntax.Branch(
-            condition, _statements([then]), _statements(otherwise), self._span(meta)
-        )
-
     def loop_behind(self, meta: Meta, items: Sequence[Any]) -> syntax.Block:
         span, body = self._span(meta), _statements(items[:1])
         return syntax.Block((*body, syntax.Loop(items[1], body, span)), span)
@@ -76,10 +76,6 @@ class StatementBuilder(Transformer[Token, Any]):
         body = _statements([items[-1], *items[place + 1 : -1]])
         loop = syntax.Loop(items[place], body, span)
         return syntax.Block((*_statements(items[:place]), loop), span)
-
-    def each(self, meta: Meta, items: Sequence[Any]) -> syntax.Each:
-        name, kind, body = items
-        return syntax.Each(str(name), kind, _statements([body]), self._span(meta))
 
     # Labels.
 
@@ -131,9 +127,6 @@ def is_rule(item: object, rule: str) -> bool:
     return isinstance(item, Tree) and item.data == rule
 
 
-# ruff: noqa: D102 - the methods are the grammar's rules, called with one signature
-
-
 _CTL = {
     "EF": PathOp.POSSIBLY,
     "AG": PathOp.INVARIANTLY,
@@ -155,16 +148,13 @@ class QueryBuilder(StatementBuilder):
     makers: ClassVar[Mapping[str, Maker]] = {
         **StatementBuilder.makers,
         "within": lambda items, _: (items[0], items[1] if len(items) > 1 else None),
+        "path": lambda items, span: syntax.Path(PathOp(items[0]), items[-1], _bound(items), span),
+        "path_prefix": lambda items, span: syntax.Path(
+            _CTL[items[0]], items[-1], _bound(items), span
+        ),
+        "leads_to": lambda items, span: syntax.LeadsTo(items[0], items[-1], _bound(items), span),
         "assuming": lambda items, span: syntax.Assuming(items[0], items[1], span),
     }
-
-    def path(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
-        word, *bound, body = items
-        return syntax.Path(PathOp(word), body, bound[0] if bound else None, self._span(meta))
-
-    def path_prefix(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
-        word, *bound, body = items
-        return syntax.Path(_CTL[word], body, bound[0] if bound else None, self._span(meta))
 
     def until(self, meta: Meta, items: Sequence[Any]) -> syntax.Path:
         quantifier, left, word, *bound, right = items
@@ -216,9 +206,10 @@ class QueryBuilder(StatementBuilder):
         where = terms.pop(0).children[0] if is_rule(terms[0], "where") else None
         return syntax.Extremes(ends, where, tuple(terms), self._span(meta))
 
-    def leads_to(self, meta: Meta, items: Sequence[Any]) -> syntax.LeadsTo:
-        left, *bound, right = items
-        return syntax.LeadsTo(left, right, bound[0] if bound else None, self._span(meta))
+
+def _bound(items: Sequence[Any]) -> Any:
+    """The bound between the first and the last of what was read, if there is one."""
+    return items[1] if len(items) > 2 else None
 
 
 def _until(

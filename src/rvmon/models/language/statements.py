@@ -8,21 +8,9 @@ from typing import assert_never
 
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
-from rvmon.models.language import syntax
+from rvmon.models.language import symbols, syntax
 from rvmon.models.language.operations import clock_number, fitted
 from rvmon.models.language.resolve import Resolver
-from rvmon.models.language.symbols import (
-    Extents,
-    claim,
-    element_of,
-    is_alike,
-    is_whole,
-    laid_out,
-    leaves,
-    parts_of_initial,
-    value_of,
-    values_of,
-)
 from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import is_discrete
 from rvmon.models.network.scope import (
@@ -78,17 +66,19 @@ def _update(
             raise model_error("TA007", f"a clock is set to {value.value}", written.span)
         return [ex.Reset(clock, value, written.span)]
     target = resolver.symbol(written.target, scope)
-    if is_whole(target) and isinstance(written.value, syntax.Name | syntax.Index | syntax.Member):
+    if symbols.is_whole(target) and isinstance(
+        written.value, syntax.Name | syntax.Index | syntax.Member
+    ):
         return _copy(target, resolver.symbol(written.value, scope), written.span, resolver)
     return [_set(target, number(written.value, scope, resolver), written.target.span, resolver)]
 
 
 def _copy(target: Symbol, source: Symbol, span: Span, resolver: Resolver) -> list[ex.Statement]:
     """An array or record set to another one, element by element."""
-    if not is_alike(target, source):
+    if not symbols.is_alike(target, source):
         raise model_error("TA004", "these are not of one type", span)
-    pairs = zip(leaves(target), leaves(source), strict=True)
-    return [_set(one, value_of(other, span), span, resolver) for one, other in pairs]
+    pairs = zip(symbols.leaves(target), symbols.leaves(source), strict=True)
+    return [_set(one, symbols.value_of(other, span), span, resolver) for one, other in pairs]
 
 
 def _set(target: Symbol, value: ex.Expression, span: Span, resolver: Resolver) -> ex.Statement:
@@ -158,7 +148,7 @@ class Bodies:
 
     def _declaration(self, item: syntax.Declaration, scope: Scope) -> list[ex.Statement]:
         resolver = self.resolver
-        claim(item.name, item.span, scope)
+        symbols.claim(item.name, item.span, scope)
         kind = resolver.type(item.type, scope)
         extents = (*resolver.extents(item.sizes, scope), *kind.extents)
         kind = replace(kind, extents=())
@@ -172,7 +162,7 @@ class Bodies:
                 scope.symbols[item.name] = ConstantSymbol(value.value)
                 return []
         name = f"{self.text.name}.{item.name}"
-        symbol = laid_out(variable_type(kind), extents, [name], None, resolver.functions)
+        symbol = symbols.laid_out(variable_type(kind), extents, [name], None, resolver.functions)
         statements = self._initial(symbol, initial, extents, kind, scope)
         scope.symbols[item.name] = symbol  # its initial value sees what the name meant before
         return statements
@@ -181,14 +171,14 @@ class Bodies:
         self,
         symbol: Symbol,
         written: syntax.Initial | None,
-        extents: Extents,
+        extents: symbols.Extents,
         kind: ResolvedType,
         scope: Scope,
     ) -> list[ex.Statement]:
         """Sets all of a local variable, which has no value from before."""
         resolver = self.resolver
         if written is None:
-            single = [leaf for leaf in leaves(symbol) if isinstance(leaf, PlacedSymbol)]
+            single = [leaf for leaf in symbols.leaves(symbol) if isinstance(leaf, PlacedSymbol)]
             ranges = [resolver.functions.variable(leaf.slot) for leaf in single]
             span = self.text.span
             return [
@@ -197,13 +187,13 @@ class Bodies:
             ]
         if (extents or kind.fields) and not isinstance(written, syntax.Values):
             return _copy(symbol, resolver.symbol(written, scope), written.span, resolver)
-        parts = parts_of_initial(written, extents, kind)
+        parts = symbols.parts_of_initial(written, extents, kind)
         if parts is None:
             return [_set(symbol, self._single(written, scope), written.span, resolver)]
         if isinstance(symbol, RecordSymbol) and not extents:
             members = [inner for _, inner in symbol.fields]
         else:
-            members = [element_of(symbol, ex.Constant(i), written.span) for i in extents[0]]
+            members = [symbols.element_of(symbol, ex.Constant(i), written.span) for i in extents[0]]
         pairs = zip(members, parts, strict=True)
         return [s for member, part in pairs for s in self._initial(member, *part, scope)]
 
@@ -215,7 +205,7 @@ class Bodies:
 
     def _each(self, written: syntax.Each, scope: Scope) -> list[ex.Statement]:
         resolver, inner = self.resolver, scope.inner({})
-        values = values_of(resolver.type(written.type, scope), written.type.span)
+        values = symbols.values_of(resolver.type(written.type, scope), written.type.span)
         span = written.span
         kind = ResolvedType(ex.BaseType.INT, values.start, values.stop)
         symbol = resolver.functions.place(kind, (), [f"{self.text.name}.{written.name}"], None)

@@ -5,7 +5,7 @@ Both text forms, `.ta` and UPPAAL's XML, are read into these types; `elaborate` 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from msgspec import Struct
 
 from rvmon.diagnostics import Span
 from rvmon.models.network.expressions import BaseType, BinaryOp, PathOp, UnaryOp
@@ -13,32 +13,28 @@ from rvmon.models.network.expressions import BaseType, BinaryOp, PathOp, UnaryOp
 # Expressions: of guards, invariants, updates, declarations and queries alike.
 
 
-@dataclass(frozen=True, slots=True)
-class Number:
+class Number(Struct, frozen=True):
     """An integer; `true` and `false` are 1 and 0."""
 
     value: int
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Decimal:
+class Decimal(Struct, frozen=True):
     """A number with a fraction."""
 
     value: float
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Name:
+class Name(Struct, frozen=True):
     """Anything that has a name."""
 
     name: str
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Index:
+class Index(Struct, frozen=True):
     """`base[index]`."""
 
     base: Expression
@@ -46,8 +42,7 @@ class Index:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Member:
+class Member(Struct, frozen=True):
     """`base.name`: a location or a local variable of an automaton."""
 
     base: Expression
@@ -55,16 +50,14 @@ class Member:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Rate:
+class Rate(Struct, frozen=True):
     """`target'`: how fast a clock runs."""
 
     target: Expression
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Call:
+class Call(Struct, frozen=True):
     """`name(arguments)`: a function's value, or in a query an instance of a template."""
 
     name: str
@@ -72,8 +65,7 @@ class Call:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Unary:
+class Unary(Struct, frozen=True):
     """An operator on one operand."""
 
     op: UnaryOp
@@ -81,8 +73,7 @@ class Unary:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Binary:
+class Binary(Struct, frozen=True):
     """An operator on two operands."""
 
     op: BinaryOp
@@ -91,8 +82,7 @@ class Binary:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Conditional:
+class Conditional(Struct, frozen=True):
     """`condition ? then : otherwise`."""
 
     condition: Expression
@@ -101,8 +91,7 @@ class Conditional:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Quantified:
+class Quantified(Struct, frozen=True):
     """`forall (name : type) body`, `exists (…) …` or `sum (…) …`: a finite type's values joined."""
 
     op: BinaryOp
@@ -112,8 +101,7 @@ class Quantified:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Path:
+class Path(Struct, frozen=True):
     """A path operator on a formula; `bound` is the T of `[<=T]`, `left` the p of `[p U q]`."""
 
     op: PathOp
@@ -123,8 +111,7 @@ class Path:
     left: Expression | None = None
 
 
-@dataclass(frozen=True, slots=True)
-class LeadsTo:
+class LeadsTo(Struct, frozen=True):
     """`left --> right`, with `[<=T]` if bounded."""
 
     left: Expression
@@ -133,8 +120,7 @@ class LeadsTo:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Assuming:
+class Assuming(Struct, frozen=True):
     """A query about the runs that a formula holds of."""
 
     query: Expression
@@ -142,8 +128,7 @@ class Assuming:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Chance:
+class Chance(Struct, frozen=True):
     """`Pr[<=T; n](<> p)`, or with `[]`; compared with a `level` by `op` if it is a test."""
 
     op: PathOp
@@ -155,8 +140,7 @@ class Chance:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Mean:
+class Mean(Struct, frozen=True):
     """`E[<=T; n](max: e)`, or with `min`."""
 
     largest: bool
@@ -166,8 +150,7 @@ class Mean:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Simulation:
+class Simulation(Struct, frozen=True):
     """`simulate [<=T; n] {e, …}`."""
 
     terms: tuple[Expression, ...]
@@ -176,8 +159,7 @@ class Simulation:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Extremes:
+class Extremes(Struct, frozen=True):
     """`sup{where}: e, …`, `inf` or `bounds`; `ends` says which: the largest value, the least."""
 
     ends: tuple[bool, ...]
@@ -211,8 +193,7 @@ Expression = (
 # Declarations.
 
 
-@dataclass(frozen=True, slots=True)
-class TypeText:
+class TypeText(Struct, frozen=True):
     """A type as written.
 
     Attributes:
@@ -233,8 +214,7 @@ class TypeText:
     urgent: bool = False
 
 
-@dataclass(frozen=True, slots=True)
-class Values:
+class Values(Struct, frozen=True):
     """`{a, b, …}`: the initial values of an array."""
 
     items: tuple[Initial, ...]
@@ -247,8 +227,7 @@ Size = Expression | TypeText
 """The size of an array: a number, or a type whose values are its indices."""
 
 
-@dataclass(frozen=True, slots=True)
-class Declaration:
+class Declaration(Struct, frozen=True):
     """One declared name."""
 
     type: TypeText
@@ -258,8 +237,7 @@ class Declaration:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class TypeDefinition:
+class TypeDefinition(Struct, frozen=True):
     """`typedef type name`, or that of an array."""
 
     name: str
@@ -268,8 +246,7 @@ class TypeDefinition:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Parameter:
+class Parameter(Struct, frozen=True):
     """A parameter of a template or function; a `reference` stands for the thing itself."""
 
     type: TypeText
@@ -282,8 +259,7 @@ class Parameter:
 # Functions.
 
 
-@dataclass(frozen=True, slots=True)
-class UpdateText:
+class UpdateText(Struct, frozen=True):
     """`target = value`; `x += v` and `x++` are written out."""
 
     target: Expression
@@ -291,8 +267,7 @@ class UpdateText:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Branch:
+class Branch(Struct, frozen=True):
     """`if (condition) then else otherwise`."""
 
     condition: Expression
@@ -301,8 +276,7 @@ class Branch:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Loop:
+class Loop(Struct, frozen=True):
     """`while (condition) body`; behind each round comes what a `for` does then."""
 
     condition: Expression
@@ -310,8 +284,7 @@ class Loop:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Each:
+class Each(Struct, frozen=True):
     """`for (name : type) body`."""
 
     name: str
@@ -320,16 +293,14 @@ class Each:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class ReturnText:
+class ReturnText(Struct, frozen=True):
     """`return value`, or without a value."""
 
     value: Expression | None
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class Block:
+class Block(Struct, frozen=True):
     """Statements with names of their own."""
 
     statements: tuple[Statement, ...]
@@ -339,8 +310,7 @@ class Block:
 Statement = UpdateText | Call | Branch | Loop | Each | ReturnText | Block | Declaration
 
 
-@dataclass(frozen=True, slots=True)
-class FunctionText:
+class FunctionText(Struct, frozen=True):
     """`type name(parameters) { … }`; `type` is `None` for `cannot_pass`."""
 
     type: TypeText | None
@@ -350,8 +320,7 @@ class FunctionText:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
-class PrioritiesText:
+class PrioritiesText(Struct, frozen=True):
     """`chan priority a, b < default`: channels of one priority together, from the lowest."""
 
     levels: tuple[tuple[Expression, ...], ...]

@@ -44,6 +44,10 @@ class SyntaxBuilder(QueryBuilder):
         ),
         "prefix": lambda items, _: str(items[0]),
         "plain_type": lambda items, span: TypeText(BaseType(items[0]), span),
+        "int_type": lambda items, span: TypeText(BaseType.INT, span, *items),
+        "record_type": lambda items, span: TypeText(
+            BaseType.RECORD, span, fields=_all(items, syntax.Declaration)
+        ),
         "named_type": lambda items, span: TypeText(BaseType.NAMED, span, name=str(items[0])),
         "selection": lambda items, span: automaton_syntax.Selection(str(items[0]), items[1], span),
         "imply": lambda items, span: syntax.Binary(BinaryOp.IMPLY, items[0], items[-1], span),
@@ -213,14 +217,6 @@ class SyntaxBuilder(QueryBuilder):
             broadcast="broadcast" in prefixes,
             urgent="urgent" in prefixes,
         )
-
-    def int_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
-        low, high = items or (None, None)
-        return TypeText(BaseType.INT, self._span(meta), low, high)
-
-    def record_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
-        fields = _all(items, syntax.Declaration)
-        return TypeText(BaseType.RECORD, self._span(meta), fields=fields)
 
     def scalar_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
         # Which of its values is which makes no difference to any answer.

@@ -17,9 +17,11 @@ from __future__ import annotations
 import re
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 from xml.parsers import expat
+
+from msgspec.structs import replace
 
 from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.errors import ModelError

@@ -10,30 +10,19 @@ from rvmon.models import model_error
 from rvmon.models.network import expressions as ex
 from rvmon.models.network.fractions import GRID, operation
 
-
-def apply_unary(op: ex.UnaryOp, value: int) -> int:
-    """The value of an operator on one operand."""
-    match op:
-        case ex.UnaryOp.NOT:
-            return int(not value)
-        case ex.UnaryOp.NEGATE:
-            return -value
-        case ex.UnaryOp.INVERT:
-            return ~value
-        case _:
-            assert_never(op)
-
-
-def apply_binary(op: ex.BinaryOp, left: int, right: int) -> int:
-    """The value of an operator on two operands; division truncates, as in C.
-
-    >>> apply_binary(BinaryOp.DIV, -7, 2), apply_binary(BinaryOp.MOD, -7, 2)
-    (-3, -1)
-    """
-    return OPERATIONS[op](left, right)
+UNARY: dict[ex.UnaryOp, Callable[[int], int]] = {
+    ex.UnaryOp.NOT: lambda a: int(not a),
+    ex.UnaryOp.NEGATE: lambda a: -a,
+    ex.UnaryOp.INVERT: lambda a: ~a,
+}
 
 
 def _divide(left: int, right: int) -> int:
+    """The quotient, truncated as in C.
+
+    >>> _divide(-7, 2), _divide(7, 2)
+    (-3, 3)
+    """
     quotient = abs(left) // abs(right)
     return quotient if (left < 0) == (right < 0) else -quotient
 
@@ -135,8 +124,8 @@ def evaluator(expression: ex.Expression) -> Evaluator:
         case ex.InLocation(automaton, location):
             return lambda locations, _values: int(locations[automaton] == location)
         case ex.UnaryOperation(unary, operand):
-            inner = evaluator(operand)
-            return lambda locations, values: apply_unary(unary, inner(locations, values))
+            compute, inner = UNARY[unary], evaluator(operand)
+            return lambda locations, values: compute(inner(locations, values))
         case ex.BinaryOperation(ex.BinaryOp.AND, _, _):
             every = [evaluator(part) for part in chained(ex.BinaryOp.AND, expression)]
             return lambda locations, values: int(all(part(locations, values) for part in every))

@@ -71,6 +71,13 @@ def parts_of(expression: ex.Expression) -> Iterator[ex.Expression]:
                 pass
 
 
+def parts_in(statements: Sequence[ex.Statement]) -> Iterator[ex.Expression]:
+    """All expressions in statements, with all that their operators join."""
+    for statement in ex.statements_in(statements):
+        for expression in ex.expressions_of(statement):
+            yield from parts_of(expression)
+
+
 def is_discrete(expression: ex.Expression) -> bool:
     """Whether locations and variables alone give the expression a value."""
     of_runs = ex.ClockCompare | ex.Deadlock | ex.PathFormula
@@ -173,42 +180,31 @@ def _normal_form(expression: ex.Expression, positive: bool = True) -> ex.Express
             return ex.PathFormula(op, _normal_form(body, positive), bound, _normal_form(left))
         case ex.UnaryOperation(ex.UnaryOp.NOT, operand):
             return _normal_form(operand, not positive)
-        case ex.BinaryOperation(ex.BinaryOp.AND | ex.BinaryOp.OR as op, left, right):
-            if not positive:
-                op = ex.BinaryOp.OR if op is ex.BinaryOp.AND else ex.BinaryOp.AND
-            parts = _normal_form(left, positive), _normal_form(right, positive)
-            return ex.BinaryOperation(op, *parts)
-        case ex.BinaryOperation(ex.BinaryOp.IMPLY, left, right):
-            op = ex.BinaryOp.OR if positive else ex.BinaryOp.AND
-            return ex.BinaryOperation(
-                op, _normal_form(left, not positive), _normal_form(right, positive)
-            )
+        case ex.BinaryOperation(
+            ex.BinaryOp.AND | ex.BinaryOp.OR | ex.BinaryOp.IMPLY as op, left, right
+        ):
+            first = _normal_form(left, positive != (op is ex.BinaryOp.IMPLY))
+            op = ex.BinaryOp.AND if (op is ex.BinaryOp.AND) == positive else ex.BinaryOp.OR
+            return ex.BinaryOperation(op, first, _normal_form(right, positive))
         case ex.BinaryOperation(ex.BinaryOp.EQ | ex.BinaryOp.NE as op, left, right):
             # `p == q` between conditions is "both or neither", `p != q` is "one of them".
             same = (op is ex.BinaryOp.EQ) == positive
-            return ex.BinaryOperation(
-                ex.BinaryOp.OR,
-                ex.BinaryOperation(ex.BinaryOp.AND, _normal_form(left), _normal_form(right, same)),
-                ex.BinaryOperation(
-                    ex.BinaryOp.AND,
-                    _normal_form(left, positive=False),
-                    _normal_form(right, not same),
-                ),
-            )
+            return _chosen(left, _normal_form(right, same), _normal_form(right, not same))
         case ex.Choice(condition, then, otherwise):
-            return ex.BinaryOperation(
-                ex.BinaryOp.OR,
-                ex.BinaryOperation(
-                    ex.BinaryOp.AND, _normal_form(condition), _normal_form(then, positive)
-                ),
-                ex.BinaryOperation(
-                    ex.BinaryOp.AND,
-                    _normal_form(condition, positive=False),
-                    _normal_form(otherwise, positive),
-                ),
+            return _chosen(
+                condition, _normal_form(then, positive), _normal_form(otherwise, positive)
             )
         case _:  # arithmetic, and what is discrete
             raise AssertionError(f"{expression} is no condition")
+
+
+def _chosen(
+    condition: ex.Expression, then: ex.Expression, otherwise: ex.Expression
+) -> ex.Expression:
+    """The condition with what holds beside it, or its negation with what holds beside that."""
+    yes = ex.BinaryOperation(ex.BinaryOp.AND, _normal_form(condition), then)
+    no = ex.BinaryOperation(ex.BinaryOp.AND, _normal_form(condition, positive=False), otherwise)
+    return ex.BinaryOperation(ex.BinaryOp.OR, yes, no)
 
 
 def with_deadlock(formula: ex.Expression, value: bool) -> ex.Expression:

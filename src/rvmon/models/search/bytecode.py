@@ -7,7 +7,7 @@ from typing import assert_never
 
 from rvmon.models import model_error
 from rvmon.models.network import expressions as ex
-from rvmon.models.network.guards import parts_of
+from rvmon.models.network.guards import parts_in, parts_of
 
 # The numbers of `plan.h`.
 END, CONST, VARIABLE, INDEX, ROW, ELEMENT, LOOKUP, PLACE, NOT, NEGATE, TRUTH = range(11)
@@ -40,7 +40,7 @@ class Programs:
     def add(self, expression: ex.Expression) -> int:
         """Add a program that gives an expression's value; where it begins."""
         if id(expression) not in self._added:
-            self._add_called([expression])
+            self._add_called(parts_of(expression))
             start = self._finished(len(self.code), self._emit(expression))
             self._added[id(expression)] = expression, start
         return self._added[id(expression)][1]
@@ -48,7 +48,7 @@ class Programs:
     def add_updates(self, updates: Sequence[ex.Statement]) -> int:
         """Add a program that makes all updates of an edge; where it begins."""
         if id(updates) not in self._added:
-            self._add_called(e for s in ex.statements_in(updates) for e in ex.expressions_of(s))
+            self._add_called(parts_in(updates))
             start = len(self.code)
             depth, _ = self._statements(updates)
             self.code += [CONST, 0]
@@ -57,16 +57,16 @@ class Programs:
 
     def add_index(self, slot: ex.Slot) -> int:
         """Add a program that gives the number of a slot."""
-        self._add_called(slot.indices)
+        self._add_called(part for index in slot.indices for part in parts_of(index))
         start = len(self.code)
         depth = self._offset(slot)
         self.code += [CONST, slot.first, _BINARY[ex.BinaryOp.ADD]]
         return self._finished(start, 1 + depth)
 
-    def _add_called(self, expressions: Iterable[ex.Expression]) -> int:
-        """Add the functions that expressions call, which must stand before them; how deep."""
+    def _add_called(self, parts: Iterable[ex.Expression]) -> int:
+        """Add the functions that are called, which must stand before who calls them; how deep."""
         nest = 0
-        for part in (part for expression in expressions for part in parts_of(expression)):
+        for part in parts:
             if isinstance(part, ex.Invoke):
                 if id(part.function) not in self._starts:
                     self._add_function(part.function)
@@ -77,12 +77,10 @@ class Programs:
         return nest
 
     def _add_function(self, function: ex.Function) -> None:
-        body = function.body
-        calls = (e for s in ex.statements_in(body) for e in ex.expressions_of(s))
-        self._nests[id(function)] = self._add_called(calls)
+        self._nests[id(function)] = self._add_called(parts_in(function.body))
         start = len(self.code)
         waiting, self._ends = self._ends, []
-        depth, _ = self._statements(body)
+        depth, _ = self._statements(function.body)
         for hole in self._ends:
             self.code[hole] = len(self.code)
         self._ends = waiting

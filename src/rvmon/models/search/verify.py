@@ -45,6 +45,10 @@ class _Question:
     meter: Meter
     policy: Policy
 
+    def run(self, sought: Sought) -> Run | None:
+        """A run like that; `None` if there is none, or the search was stopped."""
+        return seek(self.network, sought, self.meter).run
+
 
 def verify(
     network: Network,
@@ -189,10 +193,9 @@ def _search(question: _Question, query: Query) -> _Found:
 def _at_start(question: _Question, formula: ex.Expression) -> _Found:
     """Whether a formula that speaks of runs holds at the start: no single run shows it."""
     # Going backwards meets no run that leaves a variable's range: going forwards does.
-    seek(question.network, Sought(Seek.GOAL, ex.FALSE), question.meter)
+    question.run(Sought(Seek.GOAL, ex.FALSE))
     if not question.meter.stopped:
-        sought = Sought(Seek.START, nested=normal_form(formula))
-        found = seek(question.network, sought, question.meter).run is not None
+        found = question.run(Sought(Seek.START, nested=normal_form(formula))) is not None
         if found or not question.meter.stopped:
             return _Found(True, None, holds=found)
     return _Found(True, None)
@@ -233,22 +236,20 @@ def _reach(
     Returns:
         The run and how it was chosen; twice `None` if there is none.
     """
-    network, meter, policy = question.network, question.meter, question.policy
-    run = seek(network, Sought(Seek.GOAL, formula, bound=within), meter).run
+    sought = Sought(Seek.GOAL, formula, bound=within)
+    run = question.run(sought)
     if run is None:
         return None, None
-    if policy is not Policy.SHORTEST:
-        sought = Sought(Seek.GOAL, formula, bound=within, choose=policy)
-        best = seek(network, sought, meter).run
+    if question.policy is not Policy.SHORTEST:
+        best = question.run(replace(sought, choose=question.policy))
         if best is not None:
-            return best, policy
+            return best, question.policy
     return run, Policy.SHORTEST
 
 
 def _reach_deadlock(question: _Question, formula: ex.Expression, within: int | None) -> Run | None:
     alive, dead = (with_deadlock(formula, value=value) for value in (False, True))
-    sought = Sought(Seek.DEADLOCK, alive, dead, bound=within)
-    return seek(question.network, sought, question.meter).run
+    return question.run(Sought(Seek.DEADLOCK, alive, dead, bound=within))
 
 
 def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _Found:
@@ -258,8 +259,7 @@ def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _
         lasting = _lasting_part(parts)
         first = [part for part in parts if part is not lasting]
         if lasting is None or not all(map(is_plain, first)):
-            sought = Sought(Seek.NESTED, nested=together(parts))
-            run = seek(question.network, sought, question.meter).run
+            run = question.run(Sought(Seek.NESTED, nested=together(parts)))
         else:
             away = normal_form(lasting.body, positive=False)
             run = _unanswered(question, together(first), away, lasting.bound)
@@ -286,7 +286,7 @@ def _staying(
     network, meter = question.network, question.meter
     if bound is not None:
         late = Seek.LATE if first is None else Seek.LATE_AFTER
-        run = seek(network, Sought(late, first, inside, bound=bound), meter).run
+        run = question.run(Sought(late, first, inside, bound=bound))
         if run is not None or meter.stopped:
             return run
     sought = Sought(Seek.STAY if first is None else Seek.STAY_AFTER, first, inside)
@@ -314,12 +314,11 @@ def _on_runs(question: _Question, query: Query, formula: ex.Expression) -> _Foun
 
 def _accepted(question: _Question, formula: ex.Expression, span: Span | None) -> Run | None:
     """A run that satisfies a normalised formula of LTL, if there is one on which time passes."""
-    network, meter = question.network, question.meter
     sought = Sought(Seek.RUN, ways=ways_of(formula, span))
-    run = seek(network, sought, meter).run
+    run = question.run(sought)
     # Time stops on this run, which real systems cannot do; a run on which time passes convinces
     # more.
     if run is not None and run.ending in (Ending.ZENO_LOOP, Ending.TIME_LOCK):
-        better = seek(network, replace(sought, progress=True), meter).run
+        better = question.run(replace(sought, progress=True))
         return run if better is None else better
     return run
