@@ -39,6 +39,8 @@ def within(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
     >>> within(joined([(1, 4), (6, 7), (9, 9)]), 3, 6).tolist()
     [[3, 4], [6, 6]]
     """
+    if len(spans) and low <= spans[0, 0] and spans[-1, 1] <= high:
+        return spans
     part = spans[spans[:, 1].searchsorted(low) : spans[:, 0].searchsorted(high, "right")].copy()
     if len(part):
         part[0, 0] = max(part[0, 0], low)
@@ -53,9 +55,12 @@ def outside(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
     [[0, 1], [4, 5]]
     """
     gaps = np.empty((len(spans) + 1, 2), np.int64)
-    gaps[0, 0], gaps[1:, 0] = low, spans[:, 1] + 1
-    gaps[:-1, 1], gaps[-1, 1] = spans[:, 0] - 1, high
-    return gaps[gaps[:, 0] <= gaps[:, 1]]
+    gaps[0, 0], gaps[-1, 1] = low, high
+    if len(spans):
+        gaps[1:, 0] = spans[:, 1] + 1
+        gaps[:-1, 1] = spans[:, 0] - 1
+    # Between spans there is a gap, as they are not adjacent; before and behind them may be none.
+    return gaps[int(gaps[0, 0] > gaps[0, 1]) : len(gaps) - int(gaps[-1, 0] > gaps[-1, 1])]
 
 
 def hold(spans: NDArray[np.int64], ticks: Any) -> NDArray[np.bool_]:

@@ -233,8 +233,9 @@ class _Group:
             core: Truth(ticks.spans(one.true), ticks.others(one.false))
             for core, one in zip(self._made.order, known, strict=True)
         }
-        nowhere = np.empty((0, 2), np.int64)
-        truths[None] = Truth(nowhere, ticks.others(nowhere))
+        if None in self._made.cores.values():
+            nowhere = np.empty((0, 2), np.int64)
+            truths[None] = Truth(nowhere, ticks.others(nowhere))
         return {text: truths[core] for text, core in self._made.cores.items()}
 
 

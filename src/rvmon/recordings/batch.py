@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
+from functools import cached_property
 from itertools import repeat
 from math import isnan
 from typing import TYPE_CHECKING, Any
@@ -26,7 +27,7 @@ class NotPlainError(Exception):
     """The recording has to be read row by row; the message says why."""
 
 
-class Cells(Struct, frozen=True):
+class Cells(Struct, frozen=True, dict=True):
     """The values of a signal or of a field.
 
     Attributes:
@@ -51,8 +52,22 @@ class Cells(Struct, frozen=True):
     @property
     def holds_value(self) -> bool:
         """Whether some row says what it is."""
-        known = self.values == self.values
-        return bool((known if self.says is None else known & (self.says == YES)).any())
+        unknown = self.unknown
+        if self.says is None:
+            return len(self.values) > 0 if unknown is None else not unknown.all()
+        said = self.says != NO_UPDATE
+        return bool((said if unknown is None else said & ~unknown).any())
+
+    @cached_property
+    def unknown(self) -> NDArray[np.bool_] | None:
+        """The rows that say that it is unknown, by NaN or otherwise; `None`: there is none."""
+        found = None if self.says is None else self.says == UNKNOWN
+        if holds_nan(self.values):
+            nan = np.isnan(self.values)
+            if self.says is not None:
+                nan &= self.says == YES
+            found = nan if found is None else found | nan
+        return found if found is not None and found.any() else None
 
     def cut(self, start: int, stop: int) -> Cells:
         """Some of the rows."""
@@ -231,22 +246,11 @@ def without_ignored(batch: Batch, ignoring: frozenset[str]) -> Batch:
     own = {name: batch.signals[name] for name in ignoring & batch.signals.keys()}
     changed = {}
     for name, cells in own.items():
-        unknown = unknown_in(cells)
+        unknown = cells.unknown
         if unknown is not None:
             says = np.full(len(batch.times), YES, np.uint8) if cells.says is None else cells.says
             changed[name] = replace(cells, says=np.where(unknown, np.uint8(NO_UPDATE), says))
     return replace(batch, signals={**batch.signals, **changed}) if changed else batch
-
-
-def unknown_in(cells: Cells) -> NDArray[np.bool_] | None:
-    """The rows that say that it is unknown, by NaN or otherwise; `None`: there is none."""
-    found = None if cells.says is None else cells.says == UNKNOWN
-    if holds_nan(cells.values):
-        nan = np.isnan(cells.values)
-        if cells.says is not None:
-            nan &= cells.says == YES
-        found = nan if found is None else found | nan
-    return found if found is not None and found.any() else None
 
 
 def holds_nan(values: NDArray[Any]) -> bool:
@@ -263,13 +267,13 @@ def note_batch(batch: Batch, alternations: Alternations, conflicts: Conflicts) -
         if some_again:
             _note_conflicts(batch, name, cells, conflicts)
         said = last_said(batch, cells) if some_again else _said(cells)
-        _note(alternations, name, unknown_in(cells), said, len(batch.times))
+        _note(alternations, name, cells.unknown, said, len(batch.times))
     for name, event in batch.events.items():
         bare = event.says != NO_UPDATE
         for path, cells in event.fields.items():
             said = _said(cells)
             bare &= cells.says == NO_UPDATE if cells.says is not None else np.False_
-            _note(alternations, f"{name}.{path}", unknown_in(cells), said, len(batch.times))
+            _note(alternations, f"{name}.{path}", cells.unknown, said, len(batch.times))
         _note(alternations, name, event.says == UNKNOWN, bare, len(batch.times))
 
 
@@ -328,7 +332,7 @@ def unknown_rows(
     batch: Batch, cells: Cells, *, is_signal: bool
 ) -> Iterator[tuple[bool, NDArray[np.int64]]]:
     """The instants at which NaN (true), or null, is the last that is said of a signal, or field."""
-    unknown = unknown_in(cells)
+    unknown = cells.unknown
     if unknown is None:
         return
     rows = last_said(batch, cells) if is_signal else _rows_said(batch, cells)

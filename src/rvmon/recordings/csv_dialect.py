@@ -120,12 +120,14 @@ def dialect_of(head: bytes) -> Dialect:
     """
     is_wide = head.startswith((b"\xff\xfe", b"\xfe\xff"))
     encoding = "utf-16" if is_wide else PLAIN.encoding
-    lines = head.decode(encoding, "replace").splitlines()
-    if len(head) == _LOOKED_AT:
-        lines = lines[:-1]
-    if lines and any(cell.strip(' "') in DEFAULT_COLUMNS for cell in lines[0].split(",")[:-1]):
+    text = head.decode(encoding, "replace")
+    header = text.partition("\n")[0].splitlines()
+    if header and any(cell.strip(' "') in DEFAULT_COLUMNS for cell in header[0].split(",")[:-1]):
         # What is odd is told later.
         return structs.replace(PLAIN, encoding=encoding) if is_wide else PLAIN
+    lines = text.splitlines()
+    if len(head) == _LOOKED_AT:
+        lines = lines[:-1]
     above, separators = 0, _SEPARATORS
     if lines and (said := _SEPARATOR_SAID.fullmatch(lines[0])):
         above, separators = 1, (said[1],)

@@ -202,7 +202,7 @@ class Changes:
         """Add the updates of a signal in rows."""
         import numpy as np
 
-        from rvmon.recordings.batch import last_said, unknown_in
+        from rvmon.recordings.batch import last_said
 
         rows = last_said(batch, cells)
         if not len(rows):
@@ -210,7 +210,7 @@ class Changes:
         times, values = batch.times[rows], cells.values[rows]
         if cells.labels is not None:
             values = np.array(cells.labels, object)[values]
-        unknown = unknown_in(cells)
+        unknown = cells.unknown
         hidden = np.zeros(len(rows), bool) if unknown is None else unknown[rows]
         # The first row is compared with what came before this piece, the others with each other.
         self._add_value(int(times[0]), None if hidden[0] else _plain(values[0]))
