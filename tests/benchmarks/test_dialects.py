@@ -23,12 +23,13 @@ from tests.tools.build import (
     x,
 )
 from tests.tools.common_fragment import UntranslatableError, to_core
+from tests.tools.each import each
 
 from rvmon.language.checked.formula import Formula
 from rvmon.language.checked.specification import TimeModel
 
 
-@pytest.mark.parametrize(
+@each(
     ("dialect", "formula", "text"),
     [
         ("REELAY_DISCRETE", two(p, "->", q), "(((not({v_p}))) or ({v_q}))"),
@@ -48,7 +49,7 @@ def test_text(dialect: str, formula: Formula, text: str) -> None:
     assert translate(formula, dialect) == text
 
 
-@pytest.mark.parametrize(
+@each(
     ("dialect", "formula"),
     [
         ("REELAY_DISCRETE", eventually(p, 0, 3)),
@@ -66,7 +67,7 @@ def test_refusal(dialect: str, formula: Formula) -> None:
         translate(formula, dialect)
 
 
-@pytest.mark.parametrize(
+@each(
     "formula",
     [
         two(p, "R", q, 1, 3),

@@ -6,6 +6,7 @@ from importlib import import_module
 
 import pytest
 from tests.docs.pages import PAGES, ROOT
+from tests.tools.each import each
 
 from rvmon.cli import COMMANDS
 
@@ -56,7 +57,7 @@ def test_every_pattern_is_described(made):
     assert made("pattern_library").patterns().count("\n### ") == 17
 
 
-@pytest.mark.parametrize(("page", "text"), PICTURES)
+@each(("page", "text"), PICTURES)
 def test_a_picture_is_drawn(made, page, text):
     drawn = made("timeline").timeline(text.rstrip("\n"))
     names = text.partition("---\n")[2].partition("\n")[0].split(",")[1:]

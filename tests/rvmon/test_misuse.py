@@ -4,6 +4,7 @@ import functools
 
 import numpy as np
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import RvmonError, SnapshotError, TraceError, UnknownNameError
@@ -27,7 +28,7 @@ def spec():
     return rvmon.loads(DOOR)
 
 
-@pytest.mark.parametrize(
+@each(
     "stamps",
     [np.array([0.2, 1.9]), np.array([0.0, np.nan]), [0, "1"], [0, None], [False, True], [0, 2e30]],
 )
@@ -62,7 +63,7 @@ def test_numpy_numbers_are_seconds(spec):
     assert attempt.decided == 10**17
 
 
-@pytest.mark.parametrize(
+@each(
     ("t", "values", "message"),
     [
         ("a", {}, "time 'a' is no finite number"),
@@ -94,7 +95,7 @@ def test_a_monitor_takes_the_values_that_recordings_may_have(spec, one):
     assert report.verdicts == spec.evaluate(samples).verdicts == {"D1": "F", "D2": "P"}
 
 
-@pytest.mark.parametrize("trace", [None, 5, [5], [(None, {})], [(0, 5)], [(0,)]])
+@each("trace", [None, 5, [5], [(None, {})], [(0, 5)], [(0,)]])
 def test_a_wrong_trace_is_told(spec, trace):
     with pytest.raises(TraceError, match=r"expected|no finite number"):
         spec.evaluate(trace)
@@ -112,7 +113,7 @@ def test_no_requirement_is_judged(spec):
         assert (report.verdicts, report.attempts) == ({}, ())
 
 
-@pytest.mark.parametrize("wrong", [1.5, 1.0, "1", b"1", None, [], 1j, 10**400, np.array([1, 2])])
+@each("wrong", [1.5, 1.0, "1", b"1", None, [], 1j, 10**400, np.array([1, 2])])
 def test_ticks_given_online_are_whole_numbers(spec, wrong):
     monitor = spec.monitor()
     monitor.step_ns(1, {"knock": True, "closed": True})

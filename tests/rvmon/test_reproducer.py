@@ -5,6 +5,7 @@ import json
 import zipfile
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon import reproducer
@@ -174,7 +175,7 @@ def test_sizes_are_bounded(tmp_path, monkeypatch, says):
     assert "holds more than 9 files" in says(2, "why", path).err
 
 
-@pytest.mark.parametrize(
+@each(
     ("case", "told"),
     [
         ({"format": 2}, "of a later form (2), made by rvmon 9.9: install that"),

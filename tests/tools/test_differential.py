@@ -35,6 +35,7 @@ from tests.tools.build import (
 from tests.tools.compare import differences
 from tests.tools.differential import campaign, cases_of
 from tests.tools.drive import drive
+from tests.tools.each import each
 from tests.tools.health import expected_health, health_differences
 from tests.tools.judgement import Judgement, Moment
 from tests.tools.law import judge, word
@@ -117,7 +118,7 @@ OPEN = Case(spec_of(BOTH), timeline(p="0", q="0"))
 MET = Case(spec_of(requirement(eventually(p, 0, 3))), timeline(p="01"))
 
 
-@pytest.mark.parametrize(
+@each(
     ("case", "shown", "said"),
     [
         (OPEN, {}, ""),
@@ -242,7 +243,7 @@ def test_shrinking_ends_at_the_least() -> None:
     assert not any(case.end or case.outages for case in small)
 
 
-@pytest.mark.parametrize(
+@each(
     ("required", "wanted"),
     [
         (two(eventually(p, 0, 3), "and", eventually(no(q), 0, 5)), 3),

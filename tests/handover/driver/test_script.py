@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import pytest
+from tests.tools.each import each
 
 from handover.driver.script import INFORMED, Script
 from handover.generator import Action, ReceiveSignal, SendSignal, SetParam, Withdraw
@@ -78,7 +79,7 @@ def test_wait_is_in_units_of_fifty_milliseconds() -> None:
     assert play(SetParam("time", 40)).ended == 3.0
 
 
-@pytest.mark.parametrize(
+@each(
     "action",
     [
         SendSignal("setv"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import pairwise
 
 import pytest
@@ -20,12 +21,18 @@ def test_each_says_which_situation_it_is_to_reach() -> None:
     assert [test.name for test in directed() if not test.reaches] == []
 
 
+@cache
+def spec_of(robot: str) -> rvmon.Spec:
+    """The specification of a robot: of all its tests one."""
+    return rvmon.load(spec_path(robot))
+
+
 @pytest.mark.campaign
 @pytest.mark.parametrize("test", directed(), ids=lambda test: test.name)
 def test_verdicts_are_those_the_file_expects(test: AbstractTest) -> None:
     """Else nothing fails, and the robot goes from state to state as its protocol says."""
     assert test.robot is not None
-    checker = Checker(rvmon.load(spec_path(test.robot)))
+    checker = Checker(spec_of(test.robot))
     checker.begin()
     run = run_test(test, observer=checker.observe)
     report = checker.finish(run.end_ns)

@@ -9,6 +9,7 @@ from typing import get_args
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.tools.each import each
 
 from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam, Withdraw
 from handover.generator.abstract_test import Switch, directed
@@ -79,7 +80,7 @@ def test_files_carry_the_name(tmp_path: Path) -> None:
 GOOD = to_json(constrained(1, seed=0)[0])
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "message"),
     [
         (b"", "not JSON"),

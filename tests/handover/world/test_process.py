@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Generator
 from contextlib import contextmanager
 
-import pytest
+from tests.tools.each import each
 
 from handover.world.bus import Bus, Node, Schedule
 from handover.world.parameters import NS
@@ -40,7 +40,7 @@ def test_crash_is_a_result() -> None:
     assert process.error.startswith("KeyError: 'gripper' (test_process.py, line ")
 
 
-@pytest.mark.parametrize("wait", [-1.0, float("nan"), float("inf"), "2", None, True])
+@each("wait", [-1.0, float("nan"), float("inf"), "2", None, True])
 def test_wrong_waits_are_errors(wait: object) -> None:
     """Whatever is no number of seconds is the program's error."""
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from tests.tools.code_pages import page
+from tests.tools.each import each
 
 from rvmon.analysis.diagnostic_codes import code_list, every_page, every_rule, page_of
 from rvmon.analysis.shortest_examples import analyse
@@ -57,7 +58,7 @@ def message_about(found):
     return f"{render_full(found[:1])}\n\n…\n\n{render_full(found[-1:])}"
 
 
-@pytest.mark.parametrize("code", RULES)
+@each("code", RULES)
 def test_example_breaks_its_rule_and_the_fixed_one_none(code):
     shown, rule = page(code), RULES[code]
     found = findings_about(code, shown.example)

@@ -5,6 +5,7 @@ import random
 
 import pytest
 from tests.tools import build
+from tests.tools.each import each
 
 import rvmon
 from rvmon.analysis.example import Budget
@@ -68,7 +69,7 @@ def test_known_answers(analysed):
     assert not found.undecided
 
 
-@pytest.mark.parametrize(
+@each(
     ("time", "required", "passes"),
     [
         ("held", "for 1 s v", False),  # v ends, and what was required at its last instant fails

@@ -1,6 +1,6 @@
 """What was awaited and came after the deadline."""
 
-import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.analysis.late_arrival import late_in, waits_of
@@ -61,8 +61,8 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("time", ["held", "sampled"])
-@pytest.mark.parametrize("name", CASES)
+@each("time", ["held", "sampled"])
+@each("name", CASES)
 def test_what_came_too_late_is_found_with_its_instant(name, time):
     text, rows, expected = CASES[name]
     spec = rvmon.loads(HEAD.format(time=time) + text + "\n")

@@ -1,6 +1,6 @@
 """The nearest miss of a trigger that never came true."""
 
-import pytest
+from tests.tools.each import each
 
 from rvmon import loads
 from rvmon.analysis.subformulas import why_not_triggered
@@ -63,7 +63,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+@each("name", CASES)
 def test_what_the_trigger_lacked(name):
     trigger, rows, expected = CASES[name]
     spec = loads(SPEC.format(trigger)).checked

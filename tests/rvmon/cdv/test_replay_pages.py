@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import pytest
+from tests.tools.each import each
 
 from rvmon import cdv
 from rvmon.cdv.tables import Presentation
@@ -64,7 +65,7 @@ def test_pages_of_all_runs_need_no_second_play(campaign, tmp_path, spec):
     assert sorted((tmp_path / "played").read_text().split()) == ["high", "low"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("words", "told"),
     [
         (["run", "--strategy", "luck"], "no strategy `luck`: there are climbs"),

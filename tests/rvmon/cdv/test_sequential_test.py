@@ -4,6 +4,7 @@ import json
 import random
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.cdv.sequential_test import ALPHA, BETA, decide, errors_text
 from rvmon.cli.campaign import main
@@ -15,7 +16,7 @@ MOST = RunShare(at_least=False, percent=5.0)
 LEAST = RunShare(at_least=True, percent=95.0)
 
 
-@pytest.mark.parametrize(
+@each(
     ("share", "verdicts", "holds", "tests"),
     [
         (LEAST, [P] * 200, True, 57),

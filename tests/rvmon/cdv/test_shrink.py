@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import pytest
 from msgspec import structs
+from tests.tools.each import each
 
 from rvmon import cdv
 from rvmon.cdv.campaign_plan import Job, Outcome
@@ -48,7 +49,7 @@ def fails_if(condition):
     return lambda test: outcome(R1="F" if condition(test) else "P", R2="F")
 
 
-@pytest.mark.parametrize(
+@each(
     ("condition", "smallest"),
     [
         (lambda test: 7 in test.numbers, (7,)),

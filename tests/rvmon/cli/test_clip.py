@@ -1,6 +1,7 @@
 """`rvmon clip` as a person uses it."""
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.cli import main
@@ -159,8 +160,8 @@ def test_a_column_of_dates_or_durations_is_clipped_as_it_is_judged(base, says, k
     assert main(["run", "v.rv", "b.parquet", "--quiet"]) == 1
 
 
-@pytest.mark.parametrize("name", ["a.ulg", "a.blf", "a.mf4", "a.h5"])
-@pytest.mark.parametrize("out", [["-o", "piece.csv"], ["--reproducer", "a.rvcase"]])
+@each("name", ["a.ulg", "a.blf", "a.mf4", "a.h5"])
+@each("out", [["-o", "piece.csv"], ["--reproducer", "a.rvcase"]])
 def test_what_no_piece_is_cut_out_of_says_what_one_is(base, says, name, out):
     (base / name).write_bytes(b"")
     told = says(2, "clip", "base.rv", name, "R1", *out).err

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.cli import main
 
@@ -61,7 +62,7 @@ def test_tolerance_and_end(folder, says):
     assert "1 later action is not looked at" in shown.err
 
 
-@pytest.mark.parametrize(
+@each(
     ("arguments", "message"),
     [
         (["good.csv", "--observe", "light"], "no label `light`"),

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 from tests.tools.covered import door_model, dump, fill, hits_of
+from tests.tools.each import each
 from tests.tools.hostile import STEERING, hostile_names
 
 from rvmon.cli import main
@@ -252,7 +253,7 @@ def test_campaigns_are_compared(door, capsys, says):
     assert "did you mean `week 1`?" in says(2, "cover", door, "--campaign", "weak 1").err
 
 
-@pytest.mark.parametrize(
+@each(
     ("words", "told"),
     [
         (["none.cov"], "there is no file none.cov: `rvmon run --coverage none.cov` makes it"),

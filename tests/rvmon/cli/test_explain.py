@@ -1,6 +1,7 @@
 """`rvmon explain` as a person uses it."""
 
 import pytest
+from tests.tools.each import each
 
 SPEC = """
 spec door "A door"
@@ -96,7 +97,7 @@ def test_a_requirement_differs_not_from_its_twin(tmp_path, says):
     assert "No run was found" in says(0, "explain", str(path), "R1", "R2").out
 
 
-@pytest.mark.parametrize(
+@each(
     ("words", "said"),
     [
         (["door.rv", "D9"], "no requirement `D9`: there are D1"),

@@ -4,6 +4,7 @@ import json
 import random
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.cli import main
@@ -103,7 +104,7 @@ def test_a_response_is_timed_from_the_recording(tmp_path, says):
     assert "longest wait in the recording was 0.7 s" in shown
 
 
-@pytest.mark.parametrize(
+@each(
     ("name", "text", "said"),
     [
         ("a.csv", "time,x\n0,1\n", "`time` looks like it: name it"),

@@ -3,7 +3,7 @@
 import re
 from pathlib import Path
 
-import pytest
+from tests.tools.each import each
 
 from rvmon.cli import output as say
 
@@ -18,7 +18,7 @@ def test_commands_print_through_one_place():
     assert bare == {"output.py"}
 
 
-@pytest.mark.parametrize(
+@each(
     "words",
     [
         ["run", ESCAPE, "x.csv"],

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from tests.rvmon.cli.conftest import DOOR
+from tests.tools.each import each
 
 from rvmon.cli import evaluation, main
 from rvmon.cli.evaluation import judge
@@ -47,7 +48,7 @@ LABELLED = DOOR.replace("requirement D1", "requirement D0") + (
 )
 
 
-@pytest.mark.parametrize(
+@each(
     ("words", "chosen"),
     [
         ("--severity high", ["D0"]),
@@ -222,7 +223,7 @@ def test_until_is_the_end_that_is_judged(files, capsys, until, end, verdict):
     assert report["requirements"]["D1"]["verdict"] == verdict
 
 
-@pytest.mark.parametrize(
+@each(
     ("arguments", "message"),
     [
         (["door.rv", "quite-else.mcap"], "quite-else.mcap"),

@@ -6,6 +6,7 @@ import xml.etree.ElementTree as ET
 from dataclasses import replace
 
 import pytest
+from tests.tools.each import each
 from tests.tools.logs import write_can
 
 import rvmon
@@ -116,7 +117,7 @@ def test_shards_are_joined(folder, says):
     assert not list(folder.glob("*.unfinished"))
 
 
-@pytest.mark.parametrize(
+@each(
     ("words", "told"),
     [
         (["--shard", "1/2"], "name the file by --out"),

@@ -4,6 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.cli import main
 
@@ -41,7 +42,7 @@ def test_queries_by_id_and_by_text(says):
     assert second["holds"] is True
 
 
-@pytest.mark.parametrize(
+@each(
     ("arguments", "message"),
     [
         (["missing.ta"], "No such file"),

@@ -4,6 +4,7 @@ import json
 
 import pytest
 from tests.rvmon.cli.conftest import DOOR
+from tests.tools.each import each
 from tests.tools.logs import write_ulog
 
 from rvmon.cli import main
@@ -96,7 +97,7 @@ def test_late_samples_are_put_in_order(tmp_path, says):
     assert says(0, "why", tmp_path / "a.rv", tmp_path / "a.csv", "D1#1").out.startswith("D1#1  P")
 
 
-@pytest.mark.parametrize(
+@each(
     ("words", "said"),
     [
         (["door.rv", "a.csv", "D1#9"], "there are D1#1 to D1#3"),

@@ -1,6 +1,6 @@
 """Counts, durations, extremes and functions in the core: of practice, and beside the oracle."""
 
-import pytest
+from tests.tools.each import each
 
 import rvmon
 
@@ -123,7 +123,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+@each("name", CASES)
 def test_requirements_of_practice(name):
     """Each passes on one recording and fails on one that is a little off."""
     head, body, good, bad = CASES[name]

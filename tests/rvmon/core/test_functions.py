@@ -3,6 +3,7 @@
 import random
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.language.checked.arithmetic import NumericOp, UnitRule
@@ -33,7 +34,7 @@ def pairs():
 
 
 @pytest.mark.law
-@pytest.mark.parametrize(("op", "kind"), [*pairs()])
+@each(("op", "kind"), [*pairs()])
 def test_functions_are_those_of_the_oracle(op, kind):
     """Of 200 random arguments, infinities and ends of 64 bits among them."""
     rng = random.Random(f"{op} {kind}")

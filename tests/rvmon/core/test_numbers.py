@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.tools.each import each
 
 import rvmon
 
@@ -46,7 +47,7 @@ EXACT = [
 ]
 
 
-@pytest.mark.parametrize(("required", "values", "verdict"), EXACT)
+@each(("required", "values", "verdict"), EXACT)
 def test_whole_numbers_are_exact_or_unknown(required, values, verdict):
     """Within 64 bits the core says what Python's own numbers say, of columns and of samples."""
     spec, before = spec_of(required), {"x": 0, "y": 0, "z": 0.0}

@@ -12,6 +12,7 @@ from types import MappingProxyType
 import numpy as np
 import pytest
 from tests.tools.compare import outcomes
+from tests.tools.each import each
 from tests.tools.law import judge
 
 import rvmon
@@ -161,7 +162,7 @@ def test_names_of_an_enumeration(spec):
     assert both(spec, [(0, FIRST), *samples]) == [("R1", 1, S, 3 * S, "P")]
 
 
-@pytest.mark.parametrize(
+@each(
     ("t", "values", "error", "text"),
     [
         (S, {}, TimeOrderError, "is not after the one at 1 s"),
@@ -203,7 +204,7 @@ def test_a_wrong_call(spec):
     assert monitor.step_ns(t_ns=0, values=FIRST) == ()
 
 
-@pytest.mark.parametrize(
+@each(
     "seconds",
     [
         *(0.1, 1e-9, 0.3e-9, 0.5e-9, 2**-10, 3 * 2**-10, 1 - 2**-53, 86400.000000001, 1.7e9 + 0.1),

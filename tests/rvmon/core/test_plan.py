@@ -24,6 +24,7 @@ from tests.rvmon.core.plan_reader import (
     size_of_form,
     with_numbers,
 )
+from tests.tools.each import each
 
 import rvmon
 from rvmon.core import sections
@@ -148,7 +149,7 @@ CALCULATED = [SimpleNamespace(name=op.name, value=number) for op, number in OPER
 BEHIND = [SimpleNamespace(name="NOW", value=NOW), SimpleNamespace(name="WINDOW", value=WINDOW)]
 
 
-@pytest.mark.parametrize(
+@each(
     ("prefix", "numbers"),
     [
         ("SEC_", Section),

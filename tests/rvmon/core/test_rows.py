@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from tests.rvmon.core.tables import planned_for, random_table, rows_differ
 from tests.tools.compare import outcomes
+from tests.tools.each import each
 from tests.tools.forms import Compiler
 
 import rvmon
@@ -25,7 +26,7 @@ event e
 event pay(k: int, m: {low, high})"""
 
 
-@pytest.mark.parametrize(
+@each(
     ("name", "value"),
     [
         ("x", "9"),

@@ -6,6 +6,7 @@ import struct
 import pytest
 from msgspec.structs import replace
 from tests.rvmon.core.plan_reader import Plan, layouts, with_numbers
+from tests.tools.each import each
 from tests.tools.random_specs import truths_plan, with_random_coverage
 
 import rvmon
@@ -139,7 +140,7 @@ def test_all_that_is_counted_is_packed():
         assert len(plan.records["GROUPS"]) == len(spec.coverpoints) + len(spec.crosses)
 
 
-@pytest.mark.parametrize(
+@each(
     ("section", "record", "name", "value"),
     [
         (Section.PARTS, "part_plan", "truths", (1,)),

@@ -1,6 +1,7 @@
 """Windows of the past as numbers in expressions: compared, captured, bounded by."""
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.language.checked.specification import TimeModel
@@ -29,7 +30,7 @@ IN_TIME = [
 """Of held time alone where there may be no sample at an instant."""
 
 
-@pytest.mark.parametrize(("text", "time"), IN_TIME)
+@each(("text", "time"), IN_TIME)
 def test_windows_are_numbers_in_every_expression(text, time):
     every = " 500 ms" if time is TimeModel.CLOCKED else ""
     spec = rvmon.loads(f"spec s\ntime {time}{every}\n{HEIGHTS}\nrequirement R\n  always {text}\n")

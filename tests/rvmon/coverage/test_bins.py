@@ -5,6 +5,7 @@ import operator
 import random
 
 import pytest
+from tests.tools.each import each
 
 from rvmon import loads
 from rvmon.errors import UnknownNameError
@@ -29,7 +30,7 @@ def states(*names):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
+@each(
     ("bins", "samples", "expected"),
     [
         ("p {yes: true, no: false}", [(0, {"p": True}), (1, {"p": False})], {"yes": 1, "no": 1}),
@@ -84,8 +85,8 @@ STEPS = (
 )
 
 
-@pytest.mark.parametrize("time", ["held", "sampled"])
-@pytest.mark.parametrize(
+@each("time", ["held", "sampled"])
+@each(
     ("names", "expected"),
     [
         (("idle", "moving", "done"), {"go": 1, "all": 1}),

@@ -1,6 +1,7 @@
 """A hole says what it is, why it may be open, and what would close it."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon import loads
 from rvmon.coverage import Group, Hit, Item, Subject, group_of, merged, model_of
@@ -91,7 +92,7 @@ MODEL = model_of(
 )
 
 
-@pytest.mark.parametrize(
+@each(
     ("goal", "near", "far"),
     [
         (("both", "a × x"), {"both": {"a × y": HIT}}, {"both": {"b × y": HIT}}),
@@ -122,7 +123,7 @@ def test_what_met_more_of_the_preconditions_is_nearer(goal, near, far):
 WAYS = {"A → B": HIT, "B → C": HIT}
 
 
-@pytest.mark.parametrize(
+@each(
     ("goal", "hits", "why", "needs"),
     [
         (("both", "a × x"), {}, "each of them was seen, 0 of 2 at one instant", "all of them"),

@@ -1,6 +1,6 @@
 """What is declared and used nowhere gets a warning, in files that demand something."""
 
-import pytest
+from tests.tools.each import each
 
 from rvmon.language.compile import compile_text
 
@@ -13,7 +13,7 @@ def warned(text):
     return [(found.code, found.spans[0].span.text) for found in findings]
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "expected"),
     [
         (f"const T = 3 s\nconst D = 2 s  # D is not T\n{DEMAND}", [("RV017", "D")]),

@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import SpecError
 from rvmon.language.checked.functions import FUNCTIONS
@@ -50,7 +51,7 @@ def test_every_word_of_the_grammar_is_named():
     assert {*grammar_words()} <= {*re.findall(r"\w+(?= |\b)", quoted)}
 
 
-@pytest.mark.parametrize("sign", ["<->", "->", "-->", "&&", "||", "!", "A[]", "E<>", "inf", "∞"])
+@each("sign", ["<->", "->", "-->", "&&", "||", "!", "A[]", "E<>", "inf", "∞"])
 def test_every_sign_is_named(sign):
     assert sign in PAGE.replace("\\|", "|")
 

@@ -3,6 +3,7 @@
 import logging
 
 import pytest
+from tests.tools.each import each
 
 from rvmon import RvmonError, TraceError, Verdict, loads
 from rvmon.errors import UnknownNameError
@@ -183,8 +184,8 @@ def test_what_was_missed_of_one_robot_is_nothing_to_another():
     assert reports["right"] == {"D1": Verdict.INCONCLUSIVE, "D2": Verdict.PASS}
 
 
-@pytest.mark.parametrize("names", [None, ["opened"], ["knock", "speed", "opened"]])
-@pytest.mark.parametrize("found", [False, True])
+@each("names", [None, ["opened"], ["knock", "speed", "opened"]])
+@each("found", [False, True])
 def test_what_is_down_is_down_in_the_next_run_too(names, found):
     """Whatever began it: another specification, or a clock that was set back."""
     door = Door()

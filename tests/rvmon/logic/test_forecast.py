@@ -2,6 +2,7 @@
 
 import pytest
 from hypothesis import given, settings
+from tests.tools.each import each
 
 from rvmon import loads
 from rvmon.session import Spec
@@ -31,8 +32,8 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("time", ["held", "sampled"])
-@pytest.mark.parametrize("formula", CASES)
+@each("time", ["held", "sampled"])
+@each("formula", CASES)
 def test_what_is_still_possible(formula, time):
     monitor = loads(HEAD.format(time, formula)).monitor()
     monitor.step_ns(0, {"p": formula.startswith("p until"), "q": False})

@@ -17,6 +17,7 @@ from tests.tools.build import (
     two,
     x,
 )
+from tests.tools.each import each
 
 import rvmon
 from rvmon.logic.formula import Factory, Literal, Release, Sense, Since, Until, horizon
@@ -79,7 +80,7 @@ def test_an_episode_ends_where_its_trigger_is_known_to_be_false():
     assert node.left.sense is Sense.KNOWN_FALSE
 
 
-@pytest.mark.parametrize(
+@each(
     ("formula", "ticks"),
     [
         (p, 0),

@@ -3,6 +3,7 @@
 from fractions import Fraction
 
 import pytest
+from tests.tools.each import each
 from tests.tools.timed_generate import random_model
 
 from rvmon.errors import ModelError
@@ -56,7 +57,7 @@ def test_runs_of_the_model_conform(recorded, end):
     assert answer.explained == len(recorded)
 
 
-@pytest.mark.parametrize(
+@each(
     ("recorded", "end", "explained", "label"),
     [
         ([(1, "push"), (2.9, "opened")], 9, 1, "opened"),
@@ -172,7 +173,7 @@ automaton q { location a location b start a edge a -> b on c? as rcv }
 """
 
 
-@pytest.mark.parametrize(
+@each(
     ("names", "observed", "explained"),
     [
         ("rcv", "rcv", True),

@@ -4,6 +4,7 @@ import numpy as np
 import pyarrow
 import pytest
 from pyarrow import parquet
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import TraceError
@@ -140,8 +141,8 @@ def test_dates_that_are_not_declared_do_not_matter():
         assert rvmon.loads(BOUND).evaluate(trace).verdicts == {"R1": "P"}
 
 
-@pytest.mark.parametrize("wrong", [5, None, 2.5, "soon", b"1", np.array(3), np.float64(1)])
-@pytest.mark.parametrize("name", ["t", "x"])
+@each("wrong", [5, None, 2.5, "soon", b"1", np.array(3), np.float64(1)])
+@each("name", ["t", "x"])
 def test_what_is_no_column_is_refused(name, wrong):
     table = {"t": [0, 1], "x": [1.0, 1.0], name: wrong}
     with pytest.raises(rvmon.TraceError, match=f"column `{name}`: expected an array or a list"):

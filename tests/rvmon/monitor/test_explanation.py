@@ -1,6 +1,7 @@
 """What a record says of its verdict."""
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 
@@ -83,7 +84,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+@each("name", CASES)
 def test_a_failure_names_obligation_window_and_place(name):
     requirement, samples, end, reason, blamed, window = CASES[name]
     spec, attempts = run(requirement, samples, end)
@@ -101,8 +102,8 @@ def test_the_blamed_sample_is_the_one_that_changed_the_value():
     assert failed.blame.at == (10**9,)
 
 
-@pytest.mark.parametrize("required", ["false since near", "slow since near", "once near"])
-@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 s"])
+@each("required", ["false since near", "slow since near", "once near"])
+@each("time", ["held", "sampled", "sampled every 1 s"])
 def test_a_proposition_of_which_the_past_is_asked_too_is_shown_as_it_stands(required, time):
     """Not as it stood when all was born, from when on some of what is asked rests."""
     head = HEAD.replace("held", time, 1)

@@ -6,6 +6,7 @@ import numpy as np
 import pyarrow
 import pytest
 from pyarrow import parquet
+from tests.tools.each import each
 
 import rvmon
 from rvmon.cli import main
@@ -95,7 +96,7 @@ def test_an_event_is_there_by_a_column_of_its_payload(spec, tmp_path):
     assert spec.evaluate(path).verdicts == {"R1": "F", "R2": "P", "R3": "F"}
 
 
-@pytest.mark.parametrize(
+@each(
     "column",
     [
         "Speed",

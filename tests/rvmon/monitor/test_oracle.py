@@ -4,6 +4,7 @@ import pytest
 from tests.tools.compare import key_of
 from tests.tools.differential import case_of
 from tests.tools.drive import feed
+from tests.tools.each import each
 from tests.tools.judgement import Judgement
 
 from rvmon import loads
@@ -87,9 +88,9 @@ def test_engine_and_oracle_agree(time):
     assert min(finite, early, doubtful) > 2
 
 
-@pytest.mark.parametrize("value", [float("inf"), float("-inf")])
-@pytest.mark.parametrize("compare", ["<=", "<", ">=", ">", "==", "!="])
-@pytest.mark.parametrize("time", ["held", "sampled"])
+@each("value", [float("inf"), float("-inf")])
+@each("compare", ["<=", "<", ">=", ">", "==", "!="])
+@each("time", ["held", "sampled"])
 def test_equal_infinities_are_nothing_apart(time, compare, value):
     text = f"time {time}\nsignal x, y : real\nevent q\nrequirement Q\n"
     spec = loads(f"{text}  upon q then immediately x {compare} y\n")

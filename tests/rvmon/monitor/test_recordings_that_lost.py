@@ -7,6 +7,7 @@ from itertools import pairwise
 import pytest
 from tests.tools.compare import differences
 from tests.tools.doors import content_of, whole
+from tests.tools.each import each
 from tests.tools.judgement import Judgement
 
 import rvmon
@@ -73,8 +74,8 @@ def test_what_a_recording_lost_counts_from_its_first_to_its_last_instant(seed):
     assert columns > 8
 
 
-@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 ns"])
-@pytest.mark.parametrize("last", [4, 5, 6])
+@each("time", ["held", "sampled", "sampled every 1 ns"])
+@each("last", [4, 5, 6])
 def test_behind_an_outage_it_is_known_again(time, last):
     """Be its last instant that of a sample or not."""
     spec = rvmon.loads(

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from tests.tools.build import actions
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import TraceError, UnknownNameError
@@ -64,7 +65,7 @@ FIGURES = [
 ]
 
 
-@pytest.mark.parametrize(("time", "required", "told", "low", "high"), FIGURES)
+@each(("time", "required", "told", "low", "high"), FIGURES)
 def test_a_figure_lies_between_the_least_and_the_greatest(time, required, told, low, high):
     spec = rvmon.loads(HEAD.replace("spec s", f"spec s\ntime {time}") + f"{required}\n")
     samples = [(one.t * 1e-9, one.values) for one in actions(told)]
@@ -153,8 +154,8 @@ def test_a_stream_is_given_as_it_goes():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("time", ["held", "sampled"])
-@pytest.mark.parametrize(
+@each("time", ["held", "sampled"])
+@each(
     "requirement",
     [
         "upon e then within 50 ms x > 10 cm",

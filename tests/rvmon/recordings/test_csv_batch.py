@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from tests.rvmon.recordings.csv_reference import samples_of_csv
+from tests.tools.each import each
 
 import rvmon
 from rvmon.recordings import csv_batch, places
@@ -98,7 +99,7 @@ def of_pieces(path: Path):
             yield piece
 
 
-@pytest.mark.parametrize("stamp", ["5", "+5", "-5", "05", "5.", "+5.", "5.0", "5e0", "5.e0", "5E3"])
+@each("stamp", ["5", "+5", "-5", "05", "5.", "+5.", "5.0", "5e0", "5.e0", "5E3"])
 def test_nanoseconds_are_whole_in_columns_as_in_rows(tmp_path, stamp):
     """Digits behind a sign: neither a point nor an exponent, whatever number they make."""
     (tmp_path / "a.csv").write_text(f"t_ns,p\n-9,1\n{stamp},1\n900,0\n")
@@ -131,9 +132,7 @@ CELLS = {
 """Files with a cell to be filled in, and what is."""
 
 
-@pytest.mark.parametrize(
-    "text", [text.format(cell) for text, cells in CELLS.items() for cell in cells.split()]
-)
+@each("text", [text.format(cell) for text, cells in CELLS.items() for cell in cells.split()])
 def test_a_cell_is_read_as_in_rows(text, tmp_path):
     path = tmp_path / "a.csv"
     path.write_text(text)

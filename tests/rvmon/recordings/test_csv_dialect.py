@@ -3,6 +3,7 @@
 import random
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import TraceError
@@ -127,7 +128,7 @@ def test_blanks_and_a_header_that_is_a_comment(tmp_path):
     assert spec.evaluate(tmp_path / "b.csv").attempts == spec.evaluate(tmp_path / "c.csv").attempts
 
 
-@pytest.mark.parametrize(
+@each(
     ("header", "cells", "time"),
     [
         ("secs,nsecs", "1700000001,500000000", "secs+nsecs"),

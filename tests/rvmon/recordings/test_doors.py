@@ -10,6 +10,7 @@ import pytest
 from pyarrow import parquet
 from tests.tools.differential import cases_of
 from tests.tools.doors import content_of, doors, in_pieces, whole
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import MissingNameError, RvmonError, TraceError, UnknownNameError
@@ -131,7 +132,7 @@ def test_what_is_not_declared_so_is_refused(name, wrong):
         judged(base(), {"t": [0, 1], name: [None, wrong]})
 
 
-@pytest.mark.parametrize(
+@each(
     ("name", "text", "place"),
     [
         ("a.csv", "t,mode\n0,idle\n1,off\n2,off\n", "line 3: "),
@@ -140,7 +141,7 @@ def test_what_is_not_declared_so_is_refused(name, wrong):
         ("a.jsonl", '{"t": 0, "mode": "idle"}\n\n{"t": 1, "mode": "off"}\n', "line 3: "),
     ],
 )
-@pytest.mark.parametrize("header", ["", "max delay 1 s\n"])
+@each("header", ["", "max delay 1 s\n"])
 def test_a_label_that_is_not_declared_is_named_with_its_line(tmp_path, name, text, place, header):
     """Within a column, and row by row, as where late rows are put in order."""
     (tmp_path / name).write_text(text)

@@ -4,6 +4,7 @@ import json
 import random
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import TraceError
@@ -17,8 +18,8 @@ SPEC = rvmon.loads(
 PLAIN = '{"t": %d, "s": 1, "a": {"b": 2}, "go": {"n": 3}, "u": [{"v": "w:x"}]}\n'
 
 
-@pytest.mark.parametrize("lines", [0, 5, 600])
-@pytest.mark.parametrize(
+@each("lines", [0, 5, 600])
+@each(
     ("line", "name"),
     [
         ('{"t": 9000, "s": 1, "s": 50}', "s"),

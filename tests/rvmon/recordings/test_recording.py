@@ -3,6 +3,7 @@ import os
 from pathlib import Path
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import TimeOrderError, TraceError
@@ -53,8 +54,8 @@ UNENDED = {
 }
 
 
-@pytest.mark.parametrize("end", ["", "\n", "\r\n"])
-@pytest.mark.parametrize("form", UNENDED)
+@each("end", ["", "\n", "\r\n"])
+@each("form", UNENDED)
 def test_what_a_last_line_without_its_end_says_is_unknown(tmp_path, form, end):
     """`12` may be what was written of `125`: however the file lies there, that is told."""
     name, made = UNENDED[form]
@@ -158,7 +159,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize("name", BAD)
+@each("name", BAD)
 def test_bad_input_is_named_with_file_and_line(tmp_path, name):
     file, text, message = BAD[name]
     with pytest.raises(TraceError) as caught:
@@ -206,8 +207,8 @@ def test_a_line_of_blanks_is_passed_over(tmp_path):
     assert [t for t, _ in samples] == [1_000_000_000, 2_000_000_000]
 
 
-@pytest.mark.parametrize("number", ["1e400", "-1e400", "9" * 400])
-@pytest.mark.parametrize("form", ["a.csv", "a.jsonl", "b.jsonl"])
+@each("number", ["1e400", "-1e400", "9" * 400])
+@each("form", ["a.csv", "a.jsonl", "b.jsonl"])
 def test_a_number_too_large_for_a_double_is_refused(tmp_path, number, form):
     text = {
         "a.csv": f"t,x\n0,{number}\n",

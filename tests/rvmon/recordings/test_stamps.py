@@ -4,6 +4,7 @@ import numpy as np
 import pyarrow
 import pytest
 from pyarrow import parquet
+from tests.tools.each import each
 
 import rvmon
 from rvmon.cli import main
@@ -31,7 +32,7 @@ def ends(spec, folder, stamps, time):
     return {spec.evaluate(trace, time=time).end for trace in traces}
 
 
-@pytest.mark.parametrize(
+@each(
     ("stamps", "unit", "end"),
     [
         ([1, 2], "s", 2_000_000_000),
@@ -48,7 +49,7 @@ def test_every_door_reads_every_unit_exactly(spec, tmp_path, stamps, unit, end):
     assert ends(spec, tmp_path, stamps, f"at:{unit}") == {end}
 
 
-@pytest.mark.parametrize(
+@each(
     ("stamp", "unit", "told"),
     [
         ("1.5", "ns", "not a whole number of nanoseconds"),

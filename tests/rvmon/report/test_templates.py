@@ -4,6 +4,7 @@ import re
 from importlib import resources
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.report.tracks import TrackKind
 
@@ -13,7 +14,7 @@ TEMPLATES = {
 }
 
 
-@pytest.mark.parametrize("name", TEMPLATES)
+@each("name", TEMPLATES)
 def test_what_a_template_writes_is_escaped(name):
     text = TEMPLATES[name]
     assert not re.search(r"\|\s*safe\b|autoescape", text)

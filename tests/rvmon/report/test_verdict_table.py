@@ -4,6 +4,7 @@ import io
 
 import pytest
 from msgspec.structs import replace
+from tests.tools.each import each
 
 from rvmon.report.html import table_html
 from rvmon.report.printer import Printer
@@ -90,8 +91,8 @@ def test_latex_escapes_every_special_character():
     )
 
 
-@pytest.mark.parametrize("verdict", Verdict)
-@pytest.mark.parametrize(("shade", "page"), [("light", "#fbfbfa"), ("dark", "#0f1215")])
+@each("verdict", Verdict)
+@each(("shade", "page"), [("light", "#fbfbfa"), ("dark", "#0f1215")])
 def test_colours_can_be_read(verdict, shade, page):
     """Each verdict's colour contrasts with its page by at least 4.5 to 1 (WCAG AA)."""
     bright, dark = sorted((luminance(getattr(MARKS[verdict], shade)), luminance(page)))[::-1]

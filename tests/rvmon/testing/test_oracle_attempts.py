@@ -30,6 +30,7 @@ from tests.tools.build import (
     two,
     x,
 )
+from tests.tools.each import each
 
 from rvmon.errors import RvmonError
 from rvmon.language.checked import classify
@@ -46,7 +47,7 @@ def starts(judge: Any, trigger: Formula, **told: Any) -> list[int]:
     return [int(attempt.split()[0]) for attempt in attempts]
 
 
-@pytest.mark.parametrize(
+@each(
     ("row", "expected"),
     [
         ("0.1.0.1", [2, 6]),
@@ -72,7 +73,7 @@ def test_recovery_from_staleness(judge: Any) -> None:
     assert starts(judge, p, p="1.0...1", stale={"p": 2}) == [0]
 
 
-@pytest.mark.parametrize(
+@each(
     ("trigger", "rows", "expected"),
     [
         # A pulse starts an attempt wherever it holds.
@@ -95,7 +96,7 @@ def test_pulses_and_levels(judge: Any, trigger: Formula, rows: Any, expected: An
     assert starts(judge, trigger, **rows, end=5) == expected
 
 
-@pytest.mark.parametrize(
+@each(
     ("trigger", "expected"),
     [
         (no(e), False),
@@ -146,7 +147,7 @@ def test_order_of_the_report(judge: Any) -> None:
     assert judge(required, p="0", q="010", e="11...1", end=7) == ["1 P 1", "0 F 4", "5 I"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("rows", "expected"),
     [
         # From 1 to 2 q is required and given; at 3 the episode ends.
@@ -197,7 +198,7 @@ def test_whenever_sampled(judge: Any) -> None:
     assert judge(required, e="1", q="1....1", time=TimeModel.SAMPLED) == ["0 P 5"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("rows", "expected"),
     [
         # Required at 0 only; the episode is over at 1, q comes in time.

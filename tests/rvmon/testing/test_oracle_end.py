@@ -16,6 +16,7 @@ from tests.tools.build import (
     requirement,
     two,
 )
+from tests.tools.each import each
 
 from rvmon.language.checked.formula import Formula
 from rvmon.language.checked.specification import EndPolicy, TimeModel
@@ -24,7 +25,7 @@ SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}
 
 
-@pytest.mark.parametrize(
+@each(
     ("told", "expected"),
     [
         # Held: max(last sample, last advance - 1, the t of finish).
@@ -43,7 +44,7 @@ def test_where_the_end_is(judge: Any, told: dict[str, Any], expected: str) -> No
     assert judge(always(p), **told) == [expected]
 
 
-@pytest.mark.parametrize(
+@each(
     ("formula", "told", "expected"),
     [
         # An unbounded R counts as true if its window has opened.
@@ -82,7 +83,7 @@ def test_end_rule(judge: Any, formula: Formula, told: dict[str, Any], expected: 
     assert judge(formula, **told) == [expected]
 
 
-@pytest.mark.parametrize(
+@each(
     ("policy", "formula", "told", "expected"),
     [
         ("strict", always(p), {"p": "1", "end": 5}, "0 I"),
@@ -164,7 +165,7 @@ def test_policies_and_unknown_input(
         assert got == [expected.get(policy, "0 I")], policy
 
 
-@pytest.mark.parametrize(
+@each(
     ("policy", "rows", "expected"),
     [
         # Episode still running.
@@ -193,8 +194,8 @@ def test_each_attempt_for_itself(judge: Any) -> None:
     assert judge(required, e="1.1", p="01", end=4) == ["0 F 0", "2 P 4 held"]
 
 
-@pytest.mark.parametrize("time", [{}, SAMPLED, EVERY_3])
-@pytest.mark.parametrize(
+@each("time", [{}, SAMPLED, EVERY_3])
+@each(
     ("formula", "told", "expected"),
     [
         (always(p, 0, 0), {"p": "1"}, "0 P 1"),

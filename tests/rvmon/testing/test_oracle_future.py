@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from tests.tools.build import always, eventually, following, no, p, q, two
+from tests.tools.each import each
 
 from rvmon.language.checked.formula import Formula
 from rvmon.language.checked.specification import TimeModel
@@ -17,7 +18,7 @@ SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}
 
 
-@pytest.mark.parametrize(
+@each(
     ("formula", "told", "expected"),
     [
         # The last instant of the window still counts; the tick after it decides.
@@ -157,7 +158,7 @@ def test_strong_release(judge: Any, told: dict[str, Any], expected: str) -> None
     assert judge(two(p, "M", q, 0, 3), **told) == [expected]
 
 
-@pytest.mark.parametrize(
+@each(
     ("formula", "told", "expected"),
     [
         # Bounds measure stamps; a missed deadline is decided at b + 1 though no sample is there.
@@ -182,7 +183,7 @@ def test_sampled(judge: Any, formula: Formula, told: dict[str, Any], expected: s
     assert judge(formula, **told, **SAMPLED) == [expected]
 
 
-@pytest.mark.parametrize(
+@each(
     ("formula", "told", "expected"),
     [
         # Positions are 3, 6, 9 ... from the first multiple at or after the first sample.

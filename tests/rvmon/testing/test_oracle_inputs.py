@@ -22,6 +22,7 @@ from tests.tools.build import (
     two,
     x,
 )
+from tests.tools.each import each
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.language.checked.arithmetic import NumericOp
@@ -49,7 +50,7 @@ def at(judge: Any, formula: Formula, instant: int, **told: Any) -> str:
     return attempt.split()[1]
 
 
-@pytest.mark.parametrize(
+@each(
     ("formula", "instant", "told", "expected"),
     [
         # A signal holds its last value.
@@ -100,7 +101,7 @@ def test_staleness_needs_no_sample(judge: Any) -> None:
     assert judge(stale, p="1", stale={"p": 2}, end=2) == ["0 I"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("formula", "expected"),
     [
         (p, "I"),
@@ -125,7 +126,7 @@ def test_absent_trigger(judge: Any) -> None:
     assert judge(requirement(p, upon=e), p="1..0", names=ALL - {"e"}) == ["0 I"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("formula", "row", "expected"),
     [
         # No occurrence: false, and its negation true.
@@ -163,7 +164,7 @@ def test_payload_with_signal(judge: Any) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
+@each(
     ("formula", "instant", "told", "expected"),
     [
         (probe("updated", "x"), 1, {"x": ".5"}, "P"),
@@ -193,7 +194,7 @@ def of_updates(function: str, name: str = "x") -> Numeric:
     return UpdateValue(UpdateFunction(function), name)
 
 
-@pytest.mark.parametrize(
+@each(
     ("formula", "instant", "told", "expected"),
     [
         # The last two updates of x, however many ticks and other samples lie between.

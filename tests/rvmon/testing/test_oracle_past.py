@@ -24,12 +24,13 @@ from tests.tools.build import (
     true,
     two,
 )
+from tests.tools.each import each
 
 from rvmon.language.checked.formula import Formula
 from rvmon.language.checked.specification import TimeModel
 
 
-@pytest.mark.parametrize(
+@each(
     ("formula", "rows", "expected"),
     [
         # p at 0 only, judged at 3.
@@ -48,7 +49,7 @@ def test_once_and_historically(judge: Any, formula: Formula, rows: Any, expected
     assert judge(requirement(formula, upon=e), **rows) == [f"3 {expected}{instant}"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("low", "high", "p_row", "q_row", "expected"),
     [
         # q at 0 only, p from 1 on: the left operand is required behind q, up to now.
@@ -76,7 +77,7 @@ def test_since(
     assert got == [f"3 {expected}{instant}"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("formula", "rows", "expected"),
     [
         # At the first position Y is false, rise(φ) is φ, fall(φ) is false.
@@ -114,7 +115,7 @@ def test_sampled_past(judge: Any, formula: Formula, rows: Any, expected: str) ->
     assert got == [expected]
 
 
-@pytest.mark.parametrize(
+@each(
     ("rows", "expected"),
     [
         ({"p": "1", "e": "..1"}, "2 P 2"),

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import TraceError
@@ -111,9 +112,7 @@ def test_texts_are_rounded_once(text, unit):
             ticks_of_text(text, unit)
 
 
-@pytest.mark.parametrize(
-    "text", ["", ".", "1_0", "1.2.3", "\N{SUPERSCRIPT TWO}", "0x1", "1 2", "nan"]
-)
+@each("text", ["", ".", "1_0", "1.2.3", "\N{SUPERSCRIPT TWO}", "0x1", "1 2", "nan"])
 def test_what_is_no_decimal_is_refused(text):
     """Digits of other scripts are read as Python reads them; all else is no number."""
     with pytest.raises(TraceError):

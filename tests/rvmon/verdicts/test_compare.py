@@ -1,6 +1,6 @@
 """What has changed between two files of verdicts."""
 
-import pytest
+from tests.tools.each import each
 
 from rvmon.verdicts.compare import Change, compare
 from rvmon.verdicts.serialise import VerdictRow
@@ -26,7 +26,7 @@ def broken(recording="a.csv"):
     return [VerdictRow(recording, error="it is cut off")]
 
 
-@pytest.mark.parametrize(
+@each(
     ("before", "after", "change"),
     [
         ("P", "F", Change.BROKE),

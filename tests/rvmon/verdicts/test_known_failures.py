@@ -3,6 +3,7 @@
 import datetime
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import RvmonError
 from rvmon.verdicts import Verdict
@@ -72,7 +73,7 @@ def test_what_fails_no_more_is_to_be_taken_out(known):
     assert list(known("2030-01-01").remarks([report("tuesday/3.csv", "R2")])) == []
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "told"),
     [
         ("[[known", "known.toml"),

@@ -6,6 +6,7 @@ import json
 from dataclasses import replace
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import TraceError
 from rvmon.trace.sample import Health, HealthKind
@@ -104,9 +105,7 @@ DROPPED = [
 ]
 
 
-@pytest.mark.parametrize(
-    "text", ["", "[]", "{}", '{"requirements": {"R": 1}, "health": []}', b"\xff", *DROPPED]
-)
+@each("text", ["", "[]", "{}", '{"requirements": {"R": 1}, "health": []}', b"\xff", *DROPPED])
 def test_what_is_no_report_is_refused(text: str | bytes) -> None:
     with pytest.raises(TraceError):
         Report.from_json(text)

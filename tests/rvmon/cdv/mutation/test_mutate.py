@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 
 import pytest
+from tests.tools.each import each
 from tests.tools.looked_at import faults
 
 from rvmon.cdv.mutation.python_mutants import code_mutants
@@ -92,7 +93,7 @@ def test_what_is_said_to_be_equivalent_leaves_the_score_and_fails_if_it_is_kille
     assert f"lift:{name} is declared equivalent, and requirement (L1)" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize(
+@each(
     ("arguments", "message"),
     [
         (["--tests", "0"], "at least 1"),

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.cdv.mutation.baseline import Difference
 from rvmon.cdv.mutation.python_mutants import HELD_OUT, Mutant
@@ -118,7 +119,7 @@ def test_equivalents_are_read(path):
     assert equivalents(path, MUTANTS) == {"m:f:comparison:1": "they differ"}
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "message"),
     [
         ("[", "not TOML"),

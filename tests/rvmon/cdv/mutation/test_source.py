@@ -5,6 +5,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+from tests.tools.each import each
 
 from rvmon import cdv
 from rvmon.cdv.mutation.python_mutants import THIRDS, code_mutants, mutants, third_of
@@ -39,7 +40,7 @@ CHANGES = [
 OTHER = "\ndef other(): return {'d'}\n"
 
 
-@pytest.mark.parametrize(("kind", "body", "after"), CHANGES)
+@each(("kind", "body", "after"), CHANGES)
 def test_operators(tmp_path, kind, body, after):
     path = tmp_path / "m.py"
     path.write_text(f"def f(a, b):\n    {body}\n{OTHER}")

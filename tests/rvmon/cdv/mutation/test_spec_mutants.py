@@ -1,6 +1,7 @@
 """Mutants of requirements: text of the language, judged on runs, or proved equivalent."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon import load, loads
 from rvmon.cdv.mutation.baseline import Recorded
@@ -29,7 +30,7 @@ def spec_of(requirement):
     return loads(f"{DECLARED}requirement R\n  {requirement}\n")
 
 
-@pytest.mark.parametrize(("kind", "requirement", "after"), CHANGES)
+@each(("kind", "requirement", "after"), CHANGES)
 def test_operators(kind, requirement, after):
     found = spec_mutants(spec_of(requirement).checked)
     texts = [one.after for one in found if one.kind == kind]

@@ -8,6 +8,7 @@ import pytest
 from lsprotocol.types import Position, Range
 from pygls.uris import to_fs_path
 from tests.tools.code_pages import page
+from tests.tools.each import each
 
 from rvmon.analysis.diagnostic_codes import every_rule, page_of
 from rvmon.cli.lsp.completion import hover, proposals
@@ -247,7 +248,7 @@ OFFERED = {
 }
 
 
-@pytest.mark.parametrize("text", OFFERED)
+@each("text", OFFERED)
 def test_what_is_offered(text):
     word, expected = OFFERED[text]
     begun, kinds = offered(text)

@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.language.print import format_formula
@@ -18,7 +19,7 @@ def required(text):
     return format_formula(spec.checked.requirements["R"].consequent)
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "printed"),
     [
         ("count(e, 5 s) > 2", "count(e, 5 s) > 2"),

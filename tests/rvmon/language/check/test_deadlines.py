@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.language.print import format_formula
@@ -17,7 +18,7 @@ def loaded(text):
     return rvmon.loads(HEAD + text + "\n")
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "printed"),
     [
         ("a until now >= t0 + d let t0 = now", "a until now - t0 >= d"),
@@ -37,7 +38,7 @@ def test_they_are_made_of_what_has_passed(text, printed):
     assert found == printed
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "message"),
     [
         ("always (a -> within (d) f)", "comes from data"),

@@ -1,6 +1,6 @@
 """Cover goals, coverpoints and crosses."""
 
-import pytest
+from tests.tools.each import each
 
 from rvmon.language.checked.properties import BinKind
 from rvmon.language.print import format_formula
@@ -11,7 +11,7 @@ def bins(checked, text):
     return {bin_.name: format_formula(bin_.formula) for bin_ in point.bins}
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "expected"),
     [
         ("= a {yes: true, no: false}", {"yes": "a", "no": "not a"}),
@@ -69,7 +69,7 @@ def test_cover(checked):
     )
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "codes_found"),
     [
         ("coverpoint p = a {yes}", ["RV060"]),
@@ -112,7 +112,7 @@ def test_crosses_are_limited(codes):
     assert codes(f"{points}cross c = p, q") == ["RV061"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "empty"),
     [
         ("= x {b: [5, 3]}", True),

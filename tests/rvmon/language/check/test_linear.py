@@ -3,6 +3,7 @@
 import random
 
 import pytest
+from tests.tools.each import each
 from tests.tools.ltl3 import Tableau
 
 from rvmon import loads
@@ -51,7 +52,7 @@ LINEAR = {
 }
 
 
-@pytest.mark.parametrize("text", LINEAR)
+@each("text", LINEAR)
 def test_what_means_the_same_on_every_run_is_monitored(text):
     assert parts(text) == LINEAR[text]
 
@@ -67,7 +68,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("text", REFUSED)
+@each("text", REFUSED)
 def test_the_rest_is_refused_with_the_reason(text):
     """The diagnostic is RV054, its place the part that is not linear."""
     with pytest.raises(SpecError) as raised:

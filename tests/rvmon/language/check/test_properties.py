@@ -1,6 +1,6 @@
 """CTL properties, and the response monitors that are derived from them."""
 
-import pytest
+from tests.tools.each import each
 
 from rvmon.language.checked.formula import Interval, UnaryOp
 from rvmon.language.checked.properties import (
@@ -21,7 +21,7 @@ event released, stopped output
 """
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "universal", "op"),
     [
         ("A[] a", True, UnaryOp.ALWAYS),
@@ -75,7 +75,7 @@ def test_names_of_a_model(checked, codes):
     assert codes("signal released : bool\nproperty P: E<> relased") == ["RV052"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "code"),
     [
         ("A[] (a -> eventually b)", "RV051"),
@@ -106,7 +106,7 @@ def response(checked, body):
     return format_formula(found.trigger), format_formula(found.consequent)
 
 
-@pytest.mark.parametrize(
+@each(
     ("body", "trigger", "consequent"),
     [
         ("E<> (sensed and ok and released)", "sensed and ok", "within 3 s released"),
@@ -130,7 +130,7 @@ def test_response_monitor(checked, body, trigger, consequent):
     assert response(checked, body) == (trigger, consequent)
 
 
-@pytest.mark.parametrize(
+@each(
     "body",
     [
         "E<> (sensed or released)",

@@ -1,12 +1,13 @@
 """Requirements: normal forms, pulses, warnings, clauses."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.language.checked.specification import EndPolicy, Mode, RunShare
 from rvmon.language.print import format_formula
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "mode", "trigger", "consequent"),
     [
         ("always a", "whenever", "true", "a"),
@@ -37,7 +38,7 @@ def test_bare_formulas_are_split(checked, text, mode, trigger, consequent):
     assert parts == (Mode(mode), trigger, consequent)
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "code"),
     [
         ("upon F a then eventually b", "RV040"),
@@ -65,7 +66,7 @@ def test_requirements_that_are_refused_or_warned_of(codes, text, code):
     assert found == [code] or (found == ["RV060"] and "scope after (F b)" in text)
 
 
-@pytest.mark.parametrize(
+@each(
     "text",
     [
         "upon e then immediately a",
@@ -113,7 +114,7 @@ def test_a_share_of_runs_is_kept(requirement, clause, share):
     assert share is None or requirement(f"upon e then F a {share}").run_share == share
 
 
-@pytest.mark.parametrize("share", ["100 %", "0 %", "0.95", "95", "95 s", "1e999 %", "200 %"])
+@each("share", ["100 %", "0 %", "0.95", "95", "95 s", "1e999 %", "200 %"])
 def test_a_share_of_runs_is_a_percentage_between_0_and_100(codes, share):
     assert codes(f"requirement R always a in at least {share} of runs") == ["RV075"]
 

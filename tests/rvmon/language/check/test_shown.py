@@ -1,6 +1,7 @@
 """`monitor as cover`: properties of some path as goals, and what no single run shows."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon import loads
 from rvmon.errors import SpecError
@@ -26,7 +27,7 @@ def test_what_one_run_shows_is_a_goal(text):
     assert spec.checked.properties["R1"] is goal.ctl
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "message"),
     [
         ("property A[] a", "shown by no single run"),

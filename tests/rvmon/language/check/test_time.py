@@ -1,12 +1,12 @@
 """Durations and intervals in whole ticks, ages, and what depends on the time model."""
 
-import pytest
+from tests.tools.each import each
 
 from rvmon.language.checked.formula import Interval
 from rvmon.language.checked.specification import TimeModel
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "code"),
     [
         ("within 3 (a)", "RV030"),
@@ -30,7 +30,7 @@ def test_what_is_no_time_is_refused(codes, text, code):
     assert codes(f"requirement R upon start then {text}") == [code]
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "interval"),
     [
         ("F a", Interval(0, None)),
@@ -52,7 +52,7 @@ def test_intervals_in_ticks(checked, text, interval):
     assert spec.requirements["R"].consequent.interval == interval
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "meaning", "printed"),
     [
         ("age(d) > 200 ms", "not once[0, 200 ms] (updated(d) or start)", "age(d) > 200 ms"),

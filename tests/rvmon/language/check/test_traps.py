@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 from tests.tools import build
+from tests.tools.each import each
 from tests.tools.law import judge
 
 from rvmon.diagnostics import Source, Span
@@ -21,7 +22,7 @@ from rvmon.verdicts import Verdict
 NOWHERE = Span(Source("", ""), 0, 0)
 
 
-@pytest.mark.parametrize(
+@each(
     "body",
     [
         "upon e then not e unless f",
@@ -48,7 +49,7 @@ def test_false_at_its_own_trigger(body, codes):
     assert codes(f"requirement R {body}\n").count("RV047") == 1
 
 
-@pytest.mark.parametrize(
+@each(
     "body",
     [
         "upon e then not f unless e",
@@ -67,7 +68,7 @@ def test_not_false_at_its_trigger(body, codes):
     assert "RV047" not in codes(f"requirement R {body}\n")
 
 
-@pytest.mark.parametrize(
+@each(
     "formula",
     [
         "always held(a, 3 s)",
@@ -91,7 +92,7 @@ def test_the_position_before_the_first(codes):
     assert codes("time sampled every 10 ms\nrequirement R always not not previous a\n") == ["RV048"]
 
 
-@pytest.mark.parametrize(
+@each(
     "formula",
     [
         "always[3 s, inf) held(a, 3 s)",
@@ -109,7 +110,7 @@ def test_not_false_at_the_first_instant(formula, codes):
     assert "RV048" not in codes(f"requirement R {formula}\n")
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "found"),
     [
         ("whenever a then for 1 s x <= v let v = x", ["RV049"]),
@@ -134,8 +135,8 @@ def test_a_pulse_in_sampled_time_makes_stretches(codes):
     assert codes("time sampled\n" + text) == ["RV049"]
 
 
-@pytest.mark.parametrize("time", ["held", "sampled"])
-@pytest.mark.parametrize(
+@each("time", ["held", "sampled"])
+@each(
     "body",
     [
         "upon e then not e unless f",

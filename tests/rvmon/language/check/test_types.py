@@ -3,12 +3,13 @@
 from fractions import Fraction
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.language.checked.formula import Literal, SignalAtom
 from rvmon.units import UnknownUnitError, parse_unit
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "code"),
     [
         ("always x", "RV020"),
@@ -59,7 +60,7 @@ def test_what_does_not_fit_is_refused(codes, text, code):
     assert codes(f"requirement R {text}") == [code]
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "value"),
     [
         ("d < 5 cm", 0.05),
@@ -122,7 +123,7 @@ def test_label_equals_its_own_signal_first(checked):
     assert isinstance(requirement.consequent, SignalAtom)
 
 
-@pytest.mark.parametrize("text", ["m/", "/s", "m//s", "m s", "furlong", "", "m^x", "m" * 100])
+@each("text", ["m/", "/s", "m//s", "m s", "furlong", "", "m^x", "m" * 100])
 def test_malformed_units_are_refused(text):
     if text:
         with pytest.raises(UnknownUnitError):
@@ -131,7 +132,7 @@ def test_malformed_units_are_refused(text):
         assert parse_unit(text).dimension == ()
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "base", "factor"),
     [
         ("km/h", "m/s", Fraction(5, 18)),

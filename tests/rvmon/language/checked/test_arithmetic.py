@@ -3,6 +3,7 @@
 import re
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.language.checked.arithmetic import NumericOp, UnitRule
@@ -28,7 +29,7 @@ def wanted_unit(op):
     }.get(op.entry.unit, "")
 
 
-@pytest.mark.parametrize("op", FUNCTIONS)
+@each("op", FUNCTIONS)
 def test_a_wrong_number_of_arguments_is_refused(op):
     for count in range(1, 6):
         called = f"{op}({', '.join('x' * count)})"
@@ -42,7 +43,7 @@ def test_a_wrong_number_of_arguments_is_refused(op):
                 rvmon.loads(text)
 
 
-@pytest.mark.parametrize("op", [op for op in NumericOp if op is not NumericOp.BIT])
+@each("op", [op for op in NumericOp if op is not NumericOp.BIT])
 def test_constants_are_worked_out_as_values_are(op):
     """The same number, whether the checker or a monitor works it out."""
     whole = op.entry.unit is UnitRule.BITS
@@ -64,7 +65,7 @@ def test_constants_are_worked_out_as_values_are(op):
     assert [one.value for one in verdicts.values()] == ["P", "P"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("call", "message"),
     [
         ("sin(x) < 1", "`sin` takes an angle, `x` has no unit"),
@@ -84,7 +85,7 @@ def test_what_no_function_takes_is_refused(call, message):
         rvmon.loads(text)
 
 
-@pytest.mark.parametrize(
+@each(
     ("claim", "values"),
     [
         ("angle_between(a, 350 deg) == -20 deg", {"a": 10.0}),

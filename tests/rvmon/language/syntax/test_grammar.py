@@ -6,6 +6,7 @@ import logging
 import lark
 import pytest
 from lark import logger
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import SpecError
@@ -38,7 +39,7 @@ def test_grammar_has_no_conflicts():
     ]
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "printed"),
     [
         ("not a and b", "not a and b"),
@@ -123,7 +124,7 @@ def test_a_connective_beside_until_needs_brackets(text, help_):
     assert found.help == help_
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "same"),
     [
         ("mode in {red, blue}", "mode == red or mode == blue"),
@@ -179,7 +180,7 @@ def test_a_choice_is_no_captured_value(codes):
     assert "RV020" in codes("requirement R upon a then b let v = if a then 1 else 2")
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "code"),
     [
         *((text, "RV003") for text in ("a U b W c", "a until b since c", "a R b U c")),
@@ -268,7 +269,7 @@ def test_all_errors_of_a_file_appear_at_once(codes):
     assert codes(text) == ["RV001", "RV012", "RV023", "RV001", "RV001"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "expected"),
     [
         ("requirement R upon a within 3 s b", "`then`"),

@@ -1,6 +1,7 @@
 """What people write who come from elsewhere is fixed in the words of the language."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import SpecError
 from rvmon.language.compile import compile_text
@@ -20,7 +21,7 @@ def first_finding(text):
     return caught.value.diagnostics[0]
 
 
-@pytest.mark.parametrize(
+@each(
     ("required", "fix"),
     [
         ("within -1 s released", "write it without `-`"),
@@ -48,7 +49,7 @@ def test_what_is_owed(required, fix):
     assert fix in first_finding(f"requirement R\n  upon asked\n  then {required}\n").help
 
 
-@pytest.mark.parametrize(
+@each(
     ("item", "fix"),
     [
         ("signal w : real [N m]", "parts of a unit are joined by `*` and `/`"),

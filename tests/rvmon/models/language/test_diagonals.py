@@ -5,6 +5,7 @@ from fractions import Fraction
 from random import Random
 
 import pytest
+from tests.tools.each import each
 from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import RegionGraph, TooManyRegionsError
 
@@ -30,7 +31,7 @@ query: {}
 """
 
 
-@pytest.mark.parametrize(
+@each(
     ("query", "expected"),
     [
         ("E<> A.c", True),
@@ -119,7 +120,7 @@ automaton B {{ location b start b edge b -> b on c? do {} }}
 """
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "message"),
     [
         (SYNC.format("x - y > 1", "y = 0"), "set by edges that synchronise"),

@@ -1,6 +1,7 @@
 """Functions, records and whole arrays: what they compute, and what of them is refused."""
 
 import pytest
+from tests.tools.each import each
 from tests.tools.timed_regions import shows
 
 from rvmon.errors import ModelError
@@ -56,7 +57,7 @@ def test_what_functions_compute(functions, update, holds):
     assert verify(again, again.queries[0]).holds
 
 
-@pytest.mark.parametrize(
+@each(
     ("functions", "update", "code"),
     [
         ("int[0,9] f(int[0,9] n) { return f(n); }", "v = f(1)", "TA016"),

@@ -1,6 +1,7 @@
 """Lower bounds in invariants: what they keep out, and where they cannot be moved."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import ModelError
 from rvmon.models.language.load import loads_network
@@ -17,7 +18,7 @@ automaton A {{ location l location m invariant {invariant} start l edge l -> m {
 {other}"""
 
 
-@pytest.mark.parametrize(
+@each(
     ("invariant", "update", "query", "holds"),
     [
         ("x >= 3", "", "E<> A.m and x < 3", False),

@@ -1,6 +1,7 @@
 """All mistakes of a text that cannot be read are told, each with its place."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import ModelError
 from rvmon.models.language.load import loads_network
@@ -76,6 +77,6 @@ def test_so_many_mistakes_are_not_all_told():
     assert len(lines_of("int[0,5 n\n" * 100)) == MOST
 
 
-@pytest.mark.parametrize("text", ["}", "{", "automaton", "automaton A {", "query", "(" * 50, "x;"])
+@each("text", ["}", "{", "automaton", "automaton A {", "query", "(" * 50, "x;"])
 def test_what_has_no_parts_tells_one_mistake(text):
     assert lines_of(text) == [1]

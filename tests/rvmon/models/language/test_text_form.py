@@ -5,6 +5,7 @@ import random
 
 import lark
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
@@ -139,7 +140,7 @@ def test_constants_can_be_set_from_outside():
 A = "automaton A { location a start a } "
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "code"),
     [
         ("automaton A { location }", "TA001"),
@@ -334,7 +335,7 @@ def test_a_text_in_which_nothing_begins_is_refused_like_any_other(text):
     assert [code for code, *_ in findings(text)] == ["TA001"]
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "bound"),
     [
         ("p imply q imply r", "(p imply q) imply r"),
@@ -358,7 +359,7 @@ def test_operators_bind_as_those_of_uppaal(text, bound):
     )
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "message"),
     [
         ("chan a chan priority a < a", "a second priority"),

@@ -1,6 +1,7 @@
 """What UPPAAL has and this checker has not is refused by name, with its place and a way out."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
@@ -17,7 +18,7 @@ def model(declaration="", local="", invariant="", system="system T;", queries=""
 <system>{system}</system><queries>{queries}</queries></nta>"""
 
 
-@pytest.mark.parametrize(
+@each(
     ("parts", "message"),
     [
         ({"declaration": 'import "lib.so" { int f(); };'}, "functions from outside"),

@@ -4,6 +4,7 @@ from pathlib import Path
 from xml.sax.saxutils import escape
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
@@ -120,7 +121,7 @@ def test_unit_weight_and_label_come_from_comments():
     assert (network.automata[0].edges[0].weight, network.automata[0].edges[0].label) == (0.25, "go")
 
 
-@pytest.mark.parametrize(
+@each(
     ("text", "expected"),
     [
         ("<nta><declaration></nta>", ("TA018", "")),

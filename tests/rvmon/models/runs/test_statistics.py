@@ -4,6 +4,7 @@ import json
 from math import comb
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.cli import main
 from rvmon.confidence import interval
@@ -140,7 +141,7 @@ def test_expected_values():
     assert sampled("E[<=2; 2000](max: 10 * n)").low > 15
 
 
-@pytest.mark.parametrize(
+@each(
     "query",
     [
         "Pr[<=2](<> A.heads) >= 1.5",
@@ -310,7 +311,7 @@ def test_rates_may_be_told_for_all_elements():
     assert [compare.clock for compare in place.invariant.clocks] == [0, 1]
 
 
-@pytest.mark.parametrize(
+@each(
     ("written", "share"),
     [
         ("4", (4, 1)),

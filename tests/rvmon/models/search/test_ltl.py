@@ -1,6 +1,7 @@
 """Formulas of LTL over all runs, under premises, with a run that shows where they fail."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import ModelError
 from rvmon.models.language.load import loads_network
@@ -22,7 +23,7 @@ automaton A {
 """
 
 
-@pytest.mark.parametrize(
+@each(
     ("query", "expected"),
     [
         ("G F A.asked", False),
@@ -56,7 +57,7 @@ def test_a_loop_on_which_time_passes_is_preferred():
     assert "Zeno" in outcome.remark
 
 
-@pytest.mark.parametrize(
+@each(
     ("query", "message"),
     [
         ("G X (A.done)", "no next instant"),

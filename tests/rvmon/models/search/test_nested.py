@@ -1,6 +1,7 @@
 """Formulas of CTL are decided, with path operators inside others."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import ModelError
 from rvmon.models.language.load import loads_network
@@ -20,7 +21,7 @@ automaton A {
 """
 
 
-@pytest.mark.parametrize(
+@each(
     ("query", "expected"),
     [
         ("A[] (E<> A.trap)", True),
@@ -45,7 +46,7 @@ def test_the_run_leads_to_where_the_inner_formula_holds():
     assert outcome.run.duration > 5
 
 
-@pytest.mark.parametrize(
+@each(
     ("query", "expected"),
     [
         ("A<> (E<> A.trap)", True),

@@ -1,6 +1,7 @@
 """Small networks show each rule of the step by what can and cannot be reached."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
@@ -147,7 +148,7 @@ RULES = {
 }
 
 
-@pytest.mark.parametrize("rule", RULES)
+@each("rule", RULES)
 def test_a_step_is_taken_by_its_rule(rule):
     text, answers = RULES[rule]
     network = loads_network(text)

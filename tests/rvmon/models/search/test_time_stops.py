@@ -1,6 +1,7 @@
 """Zeno loops, time-locks and deadlocks are told apart and said to be what they are."""
 
 import pytest
+from tests.tools.each import each
 
 from rvmon.errors import ModelError
 from rvmon.models.language.load import loads_network
@@ -71,7 +72,7 @@ ENDINGS = {
 }
 
 
-@pytest.mark.parametrize("name", ENDINGS)
+@each("name", ENDINGS)
 def test_a_run_that_refutes_is_told_by_how_it_ends(name):
     text, query, ending = ENDINGS[name]
     outcome = verify(loads_network(text), query)

@@ -4,6 +4,7 @@ import math
 
 import pytest
 from tests.tools.bags import DEFINITIONS, START, write_json_mcap, write_ros1, write_ros2
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import RvmonError
@@ -193,7 +194,7 @@ def test_definitions_that_a_bag_lacks_are_named(read, tmp_path):
     assert read(named + BINDING, name="bag2", writer=bare) == EXPECTED
 
 
-@pytest.mark.parametrize(
+@each(
     ("binding", "message"),
     [
         ("bind = [", "no TOML: Invalid value"),

@@ -4,6 +4,7 @@ from importlib import resources
 
 import pytest
 from msgspec.structs import replace
+from tests.tools.each import each
 
 from rvmon.errors import TraceError
 from rvmon.recordings.messages import Topic
@@ -60,7 +61,7 @@ def test_each_field_of_the_standard_packages_is_listed():
     }
 
 
-@pytest.mark.parametrize(
+@each(
     ("type_name", "leaf", "units"),
     [
         ("nav_msgs/msg/Odometry", "pose.pose.position.z", "m"),

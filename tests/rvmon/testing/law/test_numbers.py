@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-import pytest
 from tests.tools.build import compared, spec_of, x, y
+from tests.tools.each import each
 
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.formula import Arithmetic, Literal, Numeric, UpdateFunction, UpdateValue
@@ -34,7 +34,7 @@ def value(expression: Numeric, *values: dict[str, Any]) -> Any:
     return number(expression, told(*values), {}, {})
 
 
-@pytest.mark.parametrize(
+@each(
     ("expression", "expected"),
     [
         (of("+", MOST, 1), None),
