@@ -50,6 +50,15 @@ class Cells(Struct, frozen=True, dict=True):
         return int(said.argmax()) if said.any() else None
 
     @property
+    def last_said(self) -> int | None:
+        """The last row that says something; `None`: there is none."""
+        count = len(self.values)
+        if not count or self.says is None or self.says[-1] != NO_UPDATE:
+            return count - 1 if count else None
+        said = (self.says != NO_UPDATE).nonzero()[0]
+        return int(said[-1]) if len(said) else None
+
+    @property
     def holds_value(self) -> bool:
         """Whether some row says what it is."""
         unknown = self.unknown
@@ -288,13 +297,13 @@ def _note(
     if unknown is not None:
         looked_at = unknown if said is None else unknown[said]
         if looked_at.any():
-            alternations.note_column(name, looked_at)
+            alternations.found[name].add_all(looked_at)
             return
         count = len(looked_at)
     elif said is not None:
         count = int(said.sum()) if said.dtype.kind == "b" else len(said)
     if count:
-        alternations.note_known(name, count)
+        alternations.found[name].add_known(count)
 
 
 def _said(cells: Cells) -> NDArray[Any] | None:

@@ -58,7 +58,7 @@ def batch_of(
             payloads.setdefault(column.name, {})[column.field] = columns[column]
     events = {}
     for name, fields in payloads.items():
-        says = _occurrences(own.get(name), fields.values(), len(times))
+        says = occurrences(own.get(name), fields.values(), len(times))
         heard = {field: _where(cells, says != NO) for field, cells in fields.items()}
         events[name] = Occurrences(says, heard)
     return Batch(times, signals, events, first, lines, is_last)
@@ -72,7 +72,7 @@ def _where(cells: Cells, heard: NDArray[np.bool_]) -> Cells:
     return replace(cells, says=np.where(heard, says, np.uint8(NO_UPDATE)))
 
 
-def _occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDArray[np.uint8]:
+def occurrences(own: Cells | None, fields: Iterable[Cells], count: int) -> NDArray[np.uint8]:
     """The occurrences of an event: by its own cell; with a payload, unless that is false."""
     if own is None:
         says = np.full(count, NO_UPDATE, np.uint8)

@@ -7,7 +7,7 @@ import io
 import json
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from datetime import UTC, datetime, timedelta
 from fractions import Fraction
 from io import TextIOWrapper
@@ -15,7 +15,7 @@ from pathlib import Path
 
 from msgspec import Struct, field
 
-from rvmon.recordings.csv_rows import Layout, csv_samples, read_layout, split_lines
+from rvmon.recordings.csv_rows import CopiedLines, Layout, csv_samples, read_layout, split_lines
 from rvmon.recordings.jsonl_rows import jsonl_samples
 from rvmon.recordings.places import bounded_lines, created, opened
 from rvmon.trace.sample import Sample, Value
@@ -135,25 +135,6 @@ def stamp_number(ticks: int, stamps: Stamps) -> int | float:
     return number
 
 
-class _Copied:
-    """Lines as they are read, of which those of the last row can be asked for."""
-
-    def __init__(self, lines: Iterable[str]) -> None:
-        self._lines = lines
-        self._read: list[str] = []
-
-    def __iter__(self) -> Iterator[str]:
-        for line in self._lines:
-            self._read.append(line)
-            yield line
-
-    def taken(self) -> str:
-        """The lines since this was asked last; the last one of all may lack its end, here too."""
-        text = "".join(self._read)
-        self._read.clear()
-        return text
-
-
 def clip_text(path: str, piece: Piece, out: Path, *, is_csv: bool) -> Copied:
     """Write a piece of a text, and report what is in it.
 
@@ -168,7 +149,7 @@ def clip_text(path: str, piece: Piece, out: Path, *, is_csv: bool) -> Copied:
         created(out) as packed,
         TextIOWrapper(packed, encoding="utf-8", newline="") as made,
     ):
-        lines = _Copied(bounded_lines(text))
+        lines = CopiedLines(bounded_lines(text))
         if is_csv:
             split = split_lines(lines)
             layout = read_layout(next(split)[1], piece.schema)

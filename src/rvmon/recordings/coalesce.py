@@ -186,33 +186,25 @@ class Alternations:
     """The alternations of all names of a recording; payload fields are called `event.field`."""
 
     def __init__(self) -> None:
-        self._found: dict[str, Alternation] = defaultdict(Alternation)
+        self.found: dict[str, Alternation] = defaultdict(Alternation)
 
     def note(self, values: Mapping[str, Value]) -> None:
         """Look through a sample."""
         for name, value in values.items():
             if value.__class__ in _SCALARS and value == value:
-                self._found[name].add_known(1)
+                self.found[name].add_known(1)
             elif isinstance(value, Mapping):
                 for field, scalar in value.items():
-                    self._found[f"{name}.{field}"].add(is_unknown=is_unknown(scalar))
+                    self.found[f"{name}.{field}"].add(is_unknown=is_unknown(scalar))
             elif not isinstance(value, tuple):
-                self._found[name].add(is_unknown=is_unknown(value))
-
-    def note_column(self, name: str, unknown: NDArray[np.bool_]) -> None:
-        """Look through rows of a signal: whether its value is unknown in each; there is one."""
-        self._found[name].add_all(unknown)
-
-    def note_known(self, name: str, count: int) -> None:
-        """Take so many rows of a signal in which its value is known."""
-        self._found[name].add_known(count)
+                self.found[name].add(is_unknown=is_unknown(value))
 
     def remarked(self, health: Iterable[Health]) -> tuple[Health, ...]:
         """The findings, with a remark at unknown values that look like a merge's."""
         return tuple(
             replace(one, remark=REMARK)
             if one.kind in (HealthKind.NAN, HealthKind.NONE)
-            and (found := self._found.get(one.name)) is not None
+            and (found := self.found.get(one.name)) is not None
             and found.is_merge
             else one
             for one in health

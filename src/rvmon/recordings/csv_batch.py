@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Generator, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,10 +43,7 @@ _MOST_LABELS = 1 << 16
 
 
 def csv_batches(
-    text: CsvText[Found],
-    layout: Layout,
-    ignoring: frozenset[str],
-    lose: Callable[[frozenset[str]], object],
+    text: CsvText[Found], layout: Layout, ignoring: frozenset[str]
 ) -> Iterator[Batch | Iterator[Row]]:
     """The rows of a text, in order.
 
@@ -54,7 +51,6 @@ def csv_batches(
         text: of which the header was taken.
         layout: of the columns.
         ignoring: the signals that take no unknown value.
-        lose: is told the names that are unknown as the last line has no end.
 
     Raises:
         TraceError: with the line's number; the rows above it have been given out.
@@ -77,8 +73,7 @@ def csv_batches(
     if text.start < len(text.rest):
         before = text.line
         tail = bounded_lines(io.StringIO(text.cut(len(text.rest)), newline=""))
-        for line, t, values, lost in unended(split_lines(tail, before), layout, ignoring):
-            lose(lost)
+        for line, t, values, text.lost in unended(split_lines(tail, before), layout, ignoring):
             yield iter([(line, t, values)])
 
 

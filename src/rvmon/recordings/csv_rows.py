@@ -115,6 +115,25 @@ def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
     )
 
 
+class CopiedLines:
+    """Lines as they are read, of which those of the last row can be asked for."""
+
+    def __init__(self, lines: Iterable[str]) -> None:
+        self._lines = lines
+        self._read: list[str] = []
+
+    def __iter__(self) -> Iterator[str]:
+        for line in self._lines:
+            self._read.append(line)
+            yield line
+
+    def taken(self) -> str:
+        """The lines since this was asked last; the last one of all may lack its end, here too."""
+        text = "".join(self._read)
+        self._read.clear()
+        return text
+
+
 def split_lines(
     lines: Iterable[str], before: int = 0, separator: str = ","
 ) -> Iterator[tuple[int, list[str]]]:

@@ -46,6 +46,7 @@ class CsvText(Generic[_Found]):
     Attributes:
         is_whole: whether all of the file was read at once, so that nothing more is read of it.
         found: gives what was found in all of `rest`, if that was read ahead.
+        lost: the names that are unknown as the last line has no end.
 
     Raises:
         UnicodeDecodeError: it is no text; so does whatever reads on.
@@ -64,6 +65,7 @@ class CsvText(Generic[_Found]):
         self.start = len(_MARK) if self.rest.startswith(_MARK) else 0
         self.line = 0
         self.is_last = False
+        self.lost: frozenset[str] = frozenset()
 
     def read_ahead(self, read: Callable[[bytes], _Found]) -> None:
         """Have further stretches read by other threads."""

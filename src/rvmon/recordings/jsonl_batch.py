@@ -14,8 +14,8 @@ from msgspec.structs import replace
 
 from rvmon.errors import TraceError
 from rvmon.recordings import places
-from rvmon.recordings.batch import NO, YES, Batch, NotPlainError, Occurrences
-from rvmon.recordings.cells import cells_of_values
+from rvmon.recordings.batch import Batch, NotPlainError, Occurrences
+from rvmon.recordings.cells import cells_of_values, occurrences
 from rvmon.recordings.jsonl_rows import bound, count_of_names, jsonl_samples, names_in
 from rvmon.recordings.places import bounded_lines, whole_pieces
 from rvmon.recordings.rows import Row
@@ -188,7 +188,4 @@ def _occurrences(cells: Sequence[Any], fields: Mapping[str, Kind], schema: Schem
     if schema.gaps.no_update is not None or any(cell == {} for cell in cells):
         raise NotPlainError("an event is something else")
     own = cells_of_values(occurs, Kind.BOOL, schema.gaps, msgspec.UNSET)
-    says = np.where(own.values, np.uint8(YES), np.uint8(NO))
-    if own.says is not None:
-        says = np.where(own.says == YES, says, own.says)
-    return Occurrences(says, payloads)
+    return Occurrences(occurrences(own, (), len(cells)), payloads)

@@ -9,7 +9,7 @@ from rvmon.recordings.coalesce import updates_in
 from rvmon.trace.sample import Sample, Scalar, Value
 
 if TYPE_CHECKING:
-    from rvmon.recordings.batch import Batch, Cells
+    from rvmon.recordings.batch import Batch
 
 FOREVER = (1 << 63) - 1
 """Later than any tick."""
@@ -57,9 +57,10 @@ class LastUpdates:
                 yield name, (piece.t, known(values[name]))
             return
         for name in names & piece.signals.keys():
-            row = _last_row(piece.signals[name])
+            row = piece.signals[name].last_said
             if row is not None:
-                yield name, (int(piece.times[row]), _value_in(piece.signals[name], row))
+                [value] = piece.signals[name].of_rows(row, row + 1)
+                yield name, (int(piece.times[row]), known(value))
 
 
 def known(value: Value) -> Scalar:
@@ -67,26 +68,6 @@ def known(value: Value) -> Scalar:
     if isinstance(value, float) and value != value:  # NaN
         return None
     return value if isinstance(value, bool | int | float | str) else None
-
-
-def _last_row(cells: Cells) -> int | None:
-    """The last row that says something of a signal."""
-    from rvmon.recordings.batch import NO_UPDATE
-
-    count = len(cells.values)
-    if not count or cells.says is None or cells.says[-1] != NO_UPDATE:
-        return count - 1 if count else None
-    said = (cells.says != NO_UPDATE).nonzero()[0]
-    return int(said[-1]) if len(said) else None
-
-
-def _value_in(cells: Cells, row: int) -> Scalar:
-    from rvmon.recordings.batch import UNKNOWN
-
-    value = known(cells.values[row].item())
-    if cells.says is not None and cells.says[row] == UNKNOWN:
-        return None
-    return value if cells.labels is None else cells.labels[int(value or 0)]
 
 
 class ValuesAt:

@@ -13,7 +13,7 @@ from itertools import islice
 from math import inf
 from pathlib import Path
 from stat import S_ISFIFO
-from typing import TYPE_CHECKING, BinaryIO
+from typing import TYPE_CHECKING, BinaryIO, TypeVar
 
 from rvmon.errors import TraceError
 from rvmon.recordings import (
@@ -45,6 +45,8 @@ if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
     from rvmon.recordings.csv_batch import Found
     from rvmon.recordings.messages.file import MessageFile
+
+_Piece = TypeVar("_Piece")
 
 _SECONDS = stamps_of("t")
 
@@ -106,7 +108,7 @@ class FileRecording:
         self._messages: MessageFile | None = None
         self._joined: Joined | None = None
         self._begun: tuple[CsvText[Found], Layout] | None = None
-        self._unended: frozenset[str] = frozenset()
+        self._text: CsvText[Found] | None = None
         if self._format == "csv":
             with named_errors(self.path), opened_as_csv(self.path, schema.stamps) as (plain, _):
                 text: CsvText[Found] = CsvText(plain)
@@ -157,8 +159,11 @@ class FileRecording:
 
     def __iter__(self) -> Iterator[Sample]:
         """Samples in order of time, equal stamps merged."""
+        return self._some(self.samples())
+
+    def _some(self, read: Iterator[_Piece]) -> Iterator[_Piece]:
         with named_errors(self.path):
-            yield from self.samples()
+            yield from read
             if not self.rows.count:
                 raise TraceError("holds no sample")
 
@@ -183,10 +188,7 @@ class FileRecording:
         Raises:
             TraceError: with file and line.
         """
-        with named_errors(self.path):
-            yield from self.parts()
-            if not self.rows.count:
-                raise TraceError("holds no sample")
+        return self._some(self.parts())
 
     def parts(self) -> Iterator[Batch | Sample]:
         """The same, of which there may be none; its errors do not name the file."""
@@ -221,11 +223,8 @@ class FileRecording:
     def _csv_batches(self, text: CsvText[Found], layout: Layout) -> Iterator[Batch | Iterator[Row]]:
         from rvmon.recordings.csv_batch import csv_batches
 
-        self._lose(frozenset())
-        yield from csv_batches(text, layout, self._schema.ignoring, self._lose)
-
-    def _lose(self, names: frozenset[str]) -> None:
-        self._unended = names
+        self._text = text
+        yield from csv_batches(text, layout, self._schema.ignoring)
 
     def _take_stamps(self, stamps: Stamps) -> None:
         self._stamps = stamps
@@ -272,9 +271,9 @@ class FileRecording:
 
     def _cut_off(self) -> list[Health]:
         """The doubt about the last cell: without an end of line it may have been cut."""
-        if not self._unended:
+        if self._text is None or not self._text.lost:
             return []
-        names = ", ".join(f"`{name}`" for name in sorted(self._unended))
+        names = ", ".join(f"`{name}`" for name in sorted(self._text.lost))
         remark = (
             f"it has no end: if it was cut off, {names} was another value, so it is unknown; "
             "if not, end the line"

@@ -55,15 +55,12 @@ def open_messages(path: Path, form: str, schema: Schema) -> Messages:
                 from rvmon.recordings.messages.tlog import TelemetryMessages
 
                 return TelemetryMessages(path)
-            case "mdf":
-                from rvmon.recordings.messages.mdf import mdf_messages
+            case "mdf" | "can":
+                if form == "mdf":
+                    from rvmon.recordings.messages.mdf import mdf_messages
 
-                if (measured := mdf_messages(path)) is not None:
-                    return measured
-                from rvmon.recordings.messages.can import FrameMessages
-
-                return FrameMessages(path, definitions)
-            case "can":
+                    if (measured := mdf_messages(path)) is not None:
+                        return measured
                 from rvmon.recordings.messages.can import FrameMessages
 
                 return FrameMessages(path, definitions)

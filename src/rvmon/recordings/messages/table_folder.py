@@ -22,7 +22,7 @@ from msgspec.structs import replace
 from rvmon.errors import TraceError
 from rvmon.recordings import TOPICS
 from rvmon.recordings.csv_dialect import opened_as_csv
-from rvmon.recordings.csv_rows import read_layout, split_lines
+from rvmon.recordings.csv_rows import CopiedLines, read_layout, split_lines
 from rvmon.recordings.messages import Message, Messages, Topic
 from rvmon.recordings.places import bounded_lines, endings_of, named_errors
 from rvmon.recordings.values import FALSE_WORDS, TRUE_WORDS, double_of
@@ -114,16 +114,9 @@ def _lines(table: _Table) -> Iterator[Iterator[tuple[int, list[str]]]]:
 
 def _ended(lines: Iterator[str]) -> Iterator[tuple[int, list[str]]]:
     """The lines, split: what lacks its end may be half a line."""
-    last = ""
-
-    def taken() -> Iterator[str]:
-        nonlocal last
-        for line in lines:
-            last = line
-            yield line
-
-    for line, row in split_lines(taken()):
-        if not last.endswith(("\n", "\r")):
+    copied = CopiedLines(lines)
+    for line, row in split_lines(copied):
+        if not copied.taken().endswith(("\n", "\r")):
             raise TraceError(f"line {line}: it has no end: was it cut off? If not, end the line")
         yield line, row
 
