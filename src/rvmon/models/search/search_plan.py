@@ -9,17 +9,8 @@ from enum import IntEnum
 from math import log
 
 from rvmon.models import model_error
-from rvmon.models.network import Edge, Guard, Network
+from rvmon.models.network import Edge, Guard, Network, guards
 from rvmon.models.network import expressions as ex
-from rvmon.models.network.guards import (
-    MOST_PIECES,
-    alternatives_of,
-    has_paths,
-    parts_of,
-    resets_in,
-    speaks_of_deadlock,
-    together,
-)
 from rvmon.models.search.budget import Policy
 from rvmon.models.search.bytecode import Programs
 from rvmon.models.search.clock_bounds import ClockBounds, location_bounds
@@ -56,16 +47,18 @@ class Plan:
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
             due = (ex.ClockCompare(timer, ex.ClockOp.LE, ex.Constant(sought.bound)),)
         self._sets = [
-            {reset.clock for edge in a.edges for reset in resets_in(edge.updates)}
+            {reset.clock for edge in a.edges for reset in guards.resets_in(edge.updates)}
             for a in network.automata
         ]
         # What a query compares clocks with, by automaton and location, or with None everywhere.
         self._asked: dict[int | None, dict[int, list[ex.ClockCompare]]] = {}
-        self.goal = alternatives_of(sought.goal, due)
-        self.inside = alternatives_of(sought.inside, due)
+        self.goal = guards.alternatives_of(sought.goal, due)
+        self.inside = guards.alternatives_of(sought.inside, due)
         states = () if sought.ways is None else sought.ways.states
         self.inside += [
-            guard for state in states for guard in alternatives_of(together(state.label))
+            guard
+            for state in states
+            for guard in guards.alternatives_of(guards.together(state.label))
         ]
         goal = self._alternatives(self.goal)
         inside = self._alternatives(self.inside)
@@ -104,7 +97,7 @@ class Plan:
     def _refuse_too_large(self, pieces: int) -> None:
         if (
             len(self._network.clocks) >= MOST_CLOCKS
-            or pieces > MOST_PIECES
+            or pieces > guards.MOST_PIECES
             or len(self._tree) > 4 * MOST_TREE_ROWS
         ):
             raise model_error("TA019", "the query has too many alternatives, or clocks", None)
@@ -194,7 +187,7 @@ class Plan:
             case ex.UnaryOperation(ex.UnaryOp.NOT, ex.Deadlock()):
                 return self._row(_NEXT, -1)
             case ex.BinaryOperation(ex.BinaryOp.AND | ex.BinaryOp.OR as op, left, right) if (
-                has_paths(formula) or speaks_of_deadlock(formula)
+                guards.has_paths(formula) or guards.speaks_of_deadlock(formula)
             ):
                 kind = _AND if op is ex.BinaryOp.AND else _OR
                 return self._row(kind, self._grow(left), self._grow(right))
@@ -202,7 +195,7 @@ class Plan:
                 return self._path(op, self._grow(body), left, -1 if bound is None else bound)
             case _:
                 first = len(self._pieces) // 3
-                self._pieces += self._alternatives(alternatives_of(formula))
+                self._pieces += self._alternatives(guards.alternatives_of(formula))
                 return self._row(_PLAIN, first, len(self._pieces) // 3 - first)
 
     def _path(self, op: ex.PathOp, body: int, until: ex.Expression, bound: int) -> int:
@@ -318,7 +311,7 @@ class Sought:
     @property
     def has_timer(self) -> bool:
         """Whether one more clock belongs to the query."""
-        nested = () if self.nested is None else parts_of(self.nested)
+        nested = () if self.nested is None else guards.parts_of(self.nested)
         return (
             self.bound is not None
             or self.progress

@@ -18,17 +18,9 @@ from rvmon.models.network import (
     QueryFormula,
     Simulation,
     check_clocks,
+    guards,
 )
 from rvmon.models.network import expressions as ex
-from rvmon.models.network.guards import (
-    compares_of,
-    has_paths,
-    is_linear,
-    is_plain,
-    normal_form,
-    together,
-    with_deadlock,
-)
 from rvmon.models.runs import Ending, Run
 from rvmon.models.runs.moves import check_start
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Outcome, Policy, Watch
@@ -90,12 +82,12 @@ def compares_in(formula: QueryFormula) -> Iterator[ex.ClockCompare]:
     """All comparisons of clocks in what a query asks."""
     match formula:
         case LeadsToFormula(left, right):
-            yield from compares_of(left)
-            yield from compares_of(right)
+            yield from guards.compares_of(left)
+            yield from guards.compares_of(right)
         case Chance() | Mean() | Simulation() | Extremes():
             pass
         case _:
-            yield from compares_of(formula)
+            yield from guards.compares_of(formula)
 
 
 def _remark(run: Run | None) -> str:
@@ -135,7 +127,7 @@ _OUTERMOST = (
 
 def _search(question: _Question, query: Query) -> _Found:
     match query.formula:
-        case LeadsToFormula(left, right) if is_linear(left) or is_linear(right):
+        case LeadsToFormula(left, right) if guards.is_linear(left) or guards.is_linear(right):
             check_linear(ex.PathFormula(ex.PathOp.EVENTUALLY, left), query.span)
         case LeadsToFormula():
             pass
@@ -145,17 +137,20 @@ def _search(question: _Question, query: Query) -> _Found:
         case Extremes():
             fix = "`rvmon verify` answers it, as does `extremes`"
             raise model_error("TA020", "a value is no decision", query.span, fix)
-        case formula if is_linear(formula):
+        case formula if guards.is_linear(formula):
             return _on_runs(question, query, formula)
     match query.formula:
         case LeadsToFormula(left, right, bound):
-            if is_plain(left) and is_plain(right):
+            if guards.is_plain(left) and guards.is_plain(right):
                 return _Found(False, _unanswered(question, left, right, bound))
             answered = ex.PathFormula(ex.PathOp.EVENTUALLY, right, bound)
             implied = ex.BinaryOperation(ex.BinaryOp.IMPLY, left, answered)
             return _at_start(question, ex.PathFormula(ex.PathOp.INVARIANTLY, implied))
         case ex.PathFormula(op, body, None, until) if (
-            until != ex.TRUE and op in _OUTERMOST and is_plain(body) and is_plain(until)
+            until != ex.TRUE
+            and op in _OUTERMOST
+            and guards.is_plain(body)
+            and guards.is_plain(until)
         ):
             shows = op in (ex.PathOp.POSSIBLY, ex.PathOp.POTENTIALLY_ALWAYS)
             ends = op in (ex.PathOp.POSSIBLY, ex.PathOp.EVENTUALLY)
@@ -163,27 +158,27 @@ def _search(question: _Question, query: Query) -> _Found:
                 ex.PathOp.FINALLY if ends else ex.PathOp.GLOBALLY, body, None, until
             )
             return _Found(
-                shows, _accepted(question, normal_form(linear, positive=shows), query.span)
+                shows, _accepted(question, guards.normal_form(linear, positive=shows), query.span)
             )
         case ex.PathFormula(op, body, bound, until) if until == ex.TRUE and op in _OUTERMOST:
             if op in (ex.PathOp.POSSIBLY, ex.PathOp.POTENTIALLY_ALWAYS):
-                sought, shows = normal_form(body), True
+                sought, shows = guards.normal_form(body), True
             else:
-                sought, shows = normal_form(body, positive=False), False
+                sought, shows = guards.normal_form(body, positive=False), False
             match op:
                 case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if (
-                    has_paths(sought) and bound is None
+                    guards.has_paths(sought) and bound is None
                 ):
                     return _reach_nested(question, sought, shows)
-                case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if is_plain(sought):
+                case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if guards.is_plain(sought):
                     return _Found(shows, *_reach(question, sought, bound))
-                case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if not has_paths(sought):
+                case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if not guards.has_paths(sought):
                     return _Found(shows, _reach_deadlock(question, sought, bound))
-                case ex.PathOp.EVENTUALLY | ex.PathOp.POTENTIALLY_ALWAYS if is_plain(sought):
+                case ex.PathOp.EVENTUALLY | ex.PathOp.POTENTIALLY_ALWAYS if guards.is_plain(sought):
                     return _Found(shows, _staying(question, None, sought, bound))
                 case _:
                     return _at_start(question, query.formula)
-        case formula if has_paths(formula):
+        case formula if guards.has_paths(formula):
             return _at_start(question, formula)
         case _:
             fix = "begin it with E<>, A[], A<> or E[], or write p --> q"
@@ -195,7 +190,7 @@ def _at_start(question: _Question, formula: ex.Expression) -> _Found:
     # Going backwards meets no run that leaves a variable's range: going forwards does.
     question.run(Sought(Seek.GOAL, ex.FALSE))
     if not question.meter.stopped:
-        found = question.run(Sought(Seek.START, nested=normal_form(formula))) is not None
+        found = question.run(Sought(Seek.START, nested=guards.normal_form(formula))) is not None
         if found or not question.meter.stopped:
             return _Found(True, None, holds=found)
     return _Found(True, None)
@@ -207,9 +202,9 @@ def _at_start(question: _Question, formula: ex.Expression) -> _Found:
 def _alternatives(formula: ex.Expression) -> list[list[ex.Expression]]:
     """A normalised formula as alternatives of parts that hold together; plain parts stay whole."""
     match formula:
-        case ex.BinaryOperation(ex.BinaryOp.OR, left, right) if has_paths(formula):
+        case ex.BinaryOperation(ex.BinaryOp.OR, left, right) if guards.has_paths(formula):
             return [*_alternatives(left), *_alternatives(right)]
-        case ex.BinaryOperation(ex.BinaryOp.AND, left, right) if has_paths(formula):
+        case ex.BinaryOperation(ex.BinaryOp.AND, left, right) if guards.has_paths(formula):
             return [
                 [*some, *others] for some in _alternatives(left) for others in _alternatives(right)
             ]
@@ -219,9 +214,9 @@ def _alternatives(formula: ex.Expression) -> list[list[ex.Expression]]:
 
 def _lasting_part(parts: Sequence[ex.Expression]) -> ex.PathFormula | None:
     """The only part that speaks of runs, if it is `E[]` with a plain formula inside."""
-    match [part for part in parts if has_paths(part)]:
+    match [part for part in parts if guards.has_paths(part)]:
         case [ex.PathFormula(ex.PathOp.POTENTIALLY_ALWAYS, body, _, left) as lasting] if (
-            left == ex.TRUE and is_plain(body)
+            left == ex.TRUE and guards.is_plain(body)
         ):
             return lasting
         case _:
@@ -248,7 +243,7 @@ def _reach(
 
 
 def _reach_deadlock(question: _Question, formula: ex.Expression, within: int | None) -> Run | None:
-    alive, dead = (with_deadlock(formula, value=value) for value in (False, True))
+    alive, dead = (guards.with_deadlock(formula, value=value) for value in (False, True))
     return question.run(Sought(Seek.DEADLOCK, alive, dead, bound=within))
 
 
@@ -258,11 +253,11 @@ def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _
     for parts in _alternatives(formula):
         lasting = _lasting_part(parts)
         first = [part for part in parts if part is not lasting]
-        if lasting is None or not all(map(is_plain, first)):
-            run = question.run(Sought(Seek.NESTED, nested=together(parts)))
+        if lasting is None or not all(map(guards.is_plain, first)):
+            run = question.run(Sought(Seek.NESTED, nested=guards.together(parts)))
         else:
-            away = normal_form(lasting.body, positive=False)
-            run = _unanswered(question, together(first), away, lasting.bound)
+            away = guards.normal_form(lasting.body, positive=False)
+            run = _unanswered(question, guards.together(first), away, lasting.bound)
         if run is not None or question.meter.stopped:
             break
     return _Found(shows, run)
@@ -275,8 +270,8 @@ def _unanswered(
     question: _Question, left: ex.Expression, right: ex.Expression, bound: int | None
 ) -> Run | None:
     """A run on which `left` holds, but `right` not from there on, or not within the bound."""
-    inside = normal_form(normal_form(right), positive=False)
-    return _staying(question, normal_form(left), inside, bound)
+    inside = guards.normal_form(guards.normal_form(right), positive=False)
+    return _staying(question, guards.normal_form(left), inside, bound)
 
 
 def _staying(
@@ -309,7 +304,7 @@ def _on_runs(question: _Question, query: Query, formula: ex.Expression) -> _Foun
     ):
         body, shows = formula.body, formula.op is ex.PathOp.SOME_RUN
     check_linear(body, query.span)
-    return _Found(shows, _accepted(question, normal_form(body, positive=shows), query.span))
+    return _Found(shows, _accepted(question, guards.normal_form(body, positive=shows), query.span))
 
 
 def _accepted(question: _Question, formula: ex.Expression, span: Span | None) -> Run | None:

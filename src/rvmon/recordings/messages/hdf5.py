@@ -10,15 +10,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.errors import TraceError, needed
-from rvmon.recordings.messages import Topic, errors_as_damage
-from rvmon.recordings.messages.column_topics import (
-    ColumnMessages,
-    ColumnTopic,
-    LateColumn,
-    distinct,
-    kind_of_type,
-    path_of,
-)
+from rvmon.recordings.messages import Topic, column_topics, errors_as_damage
 from rvmon.recordings.table_recording import ticks_of_column
 from rvmon.texts import did_you_mean
 from rvmon.trace.schema import Stamps
@@ -34,7 +26,7 @@ _TIMES = ("t", "time", "timestamp", "timestamps", "t_ns", "time_ns", "timestamp_
 _UNITS = {"seconds": "s", "sec": "s", "milliseconds": "ms", "microseconds": "us", "µs": "us"}
 
 
-class _Array(LateColumn):
+class _Array(column_topics.LateColumn):
     """An array whose first axis is time."""
 
     def __init__(
@@ -51,7 +43,7 @@ _Tree = dict[str, Any]
 """Arrays, and trees of them, by name."""
 
 
-def array_messages(path: Path, stamps: Stamps | None) -> ColumnMessages:
+def array_messages(path: Path, stamps: Stamps | None) -> column_topics.ColumnMessages:
     """Open a file: each group, or structure, that has stamps is a topic.
 
     Args:
@@ -84,7 +76,7 @@ def array_messages(path: Path, stamps: Stamps | None) -> ColumnMessages:
         )
     with errors_as_damage(_FORM):
         end = max(int(topic.load()[0].max()) for topic in topics)
-    return ColumnMessages(topics, end, close=close)
+    return column_topics.ColumnMessages(topics, end, close=close)
 
 
 def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
@@ -150,7 +142,7 @@ def _listed(tree: _Tree, prefix: str) -> Iterator[tuple[str, _Array]]:
             yield f"{prefix}{name}", inner
 
 
-def _topics(tree: _Tree, place: str, stamps: Stamps | None) -> Iterator[ColumnTopic]:
+def _topics(tree: _Tree, place: str, stamps: Stamps | None) -> Iterator[column_topics.ColumnTopic]:
     """A topic for each group with stamps; groups in it without any are part of it."""
     own = {name: array for name, array in tree.items() if isinstance(array, _Array)}
     for name, array in own.items():
@@ -163,7 +155,7 @@ def _topics(tree: _Tree, place: str, stamps: Stamps | None) -> Iterator[ColumnTo
             yield from _topics(inner, f"{place}{name}/", stamps)
 
 
-def _topic(tree: _Tree, place: str, time: str, stamps: Stamps | None) -> ColumnTopic:
+def _topic(tree: _Tree, place: str, time: str, stamps: Stamps | None) -> column_topics.ColumnTopic:
     array = tree[time]
     [count] = array.shape
     if stamps is None:
@@ -174,14 +166,16 @@ def _topic(tree: _Tree, place: str, time: str, stamps: Stamps | None) -> ColumnT
         for name, one in _within(tree)
         if one is not array and one.shape[0] == count and len(one.shape) <= 2
     }
-    paths = distinct([path_of(name) for name in found])
+    paths = column_topics.distinct([column_topics.path_of(name) for name in found])
     columns = dict(zip(paths, found.values(), strict=True))
     arrays = {path + "[]" * (len(column.shape) - 1): column for path, column in columns.items()}
-    leaves = {leaf: kind_of_type(array.dtype) for leaf, array in arrays.items()}
+    leaves = {leaf: column_topics.kind_of_type(array.dtype) for leaf, array in arrays.items()}
     units = {leaf: array.unit for leaf, array in arrays.items() if array.unit}
-    name = "/" + "/".join(path_of(step) for step in place.strip("/").split("/") if step)
+    name = "/" + "/".join(
+        column_topics.path_of(step) for step in place.strip("/").split("/") if step
+    )
     topic = Topic(name if place else "/data", "arrays", leaves, units=units)
-    return ColumnTopic(topic, count, lambda: (_ticks(array, stamps), columns))
+    return column_topics.ColumnTopic(topic, count, lambda: (_ticks(array, stamps), columns))
 
 
 def _within(tree: _Tree) -> Iterator[tuple[str, _Array]]:

@@ -14,15 +14,7 @@ from typing import Any
 import numpy as np
 
 from rvmon.errors import TraceError, needed
-from rvmon.recordings.messages import Topic, errors_as_damage
-from rvmon.recordings.messages.column_topics import (
-    ColumnMessages,
-    ColumnTopic,
-    LateColumn,
-    distinct,
-    kind_of_type,
-    path_of,
-)
+from rvmon.recordings.messages import Topic, column_topics, errors_as_damage
 from rvmon.recordings.table_recording import ticks_of_column
 from rvmon.trace.schema import Stamps
 
@@ -56,7 +48,7 @@ def open_measurement(path: Path) -> Any:
         return MDF(path)
 
 
-def mdf_messages(path: Path) -> ColumnMessages | None:
+def mdf_messages(path: Path) -> column_topics.ColumnMessages | None:
     """Open a measurement; `None` if it holds frames of CAN and no signals.
 
     Stamps are those of the file, which count from its start. Errors are those of
@@ -69,10 +61,10 @@ def mdf_messages(path: Path) -> ColumnMessages | None:
         if groups and not kept:
             file.close()
             return None
-        names = distinct([_name(file.groups[one], one) for one in kept])
+        names = column_topics.distinct([_name(file.groups[one], one) for one in kept])
         topics = [_topic(file, name, one) for name, one in zip(names, kept, strict=True)]
         ends = [int(_times(file, one).max()) for one in kept if _counts_time(file, one)]
-    return ColumnMessages(topics, max(ends, default=None), close=file.close)
+    return column_topics.ColumnMessages(topics, max(ends, default=None), close=file.close)
 
 
 def _holds_frames(group: Any) -> bool:
@@ -133,7 +125,7 @@ def _quietly_freed() -> Iterator[None]:
 
 def _name(group: Any, number: int) -> str:
     called = group.channel_group.acq_name or group.channel_group.comment or f"group_{number}"
-    return f"/{path_of(called.partition(chr(10))[0])}"
+    return f"/{column_topics.path_of(called.partition(chr(10))[0])}"
 
 
 def _counts_time(file: Any, group: int) -> bool:
@@ -161,29 +153,29 @@ def _channel(file: Any, group: int, index: int) -> tuple[Any, Any]:
     return values, None if invalid is None else invalid.tolist()
 
 
-def _topic(file: Any, name: str, group: int) -> ColumnTopic:
+def _topic(file: Any, name: str, group: int) -> column_topics.ColumnTopic:
     """A group of channels with one clock."""
     counted = file.groups[group].channel_group.cycles_nr
     kind = file.groups[group].channel_group.acq_source
     type_name = kind.name if kind is not None and kind.name else "MDF"
     if not _counts_time(file, group):
         topic = Topic(name, type_name, {}, "its channels do not count by time")
-        return ColumnTopic(topic, counted, lambda: (np.zeros(0, np.int64), {}))
+        return column_topics.ColumnTopic(topic, counted, lambda: (np.zeros(0, np.int64), {}))
     listed = [
         (place, channel)
         for place, channel in enumerate(file.groups[group].channels)
         if place != file.masters_db[group]
     ]
-    paths = distinct([path_of(channel.name) for _, channel in listed])
+    paths = column_topics.distinct([column_topics.path_of(channel.name) for _, channel in listed])
     columns, leaves, units = {}, {}, {}
     for path, (place, _) in zip(paths, listed, strict=True):
         first = file.get(group=group, index=place, record_count=1)
         if first.samples.dtype.names:
             continue  # a structure, whose members are channels as well
-        columns[path] = LateColumn("MDF", partial(_channel, file, group, place))
+        columns[path] = column_topics.LateColumn("MDF", partial(_channel, file, group, place))
         leaf = path + "[]" * (first.samples.ndim - 1)
-        leaves[leaf] = kind_of_type(first.samples.dtype)
+        leaves[leaf] = column_topics.kind_of_type(first.samples.dtype)
         if first.unit:
             units[leaf] = first.unit.strip()
     topic = Topic(name, type_name, leaves, units=units)
-    return ColumnTopic(topic, counted, lambda: (_times(file, group), columns))
+    return column_topics.ColumnTopic(topic, counted, lambda: (_times(file, group), columns))
