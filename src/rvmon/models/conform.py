@@ -272,13 +272,9 @@ def labels_of(network: Network) -> tuple[str, ...]:
         name
         for automaton in network.automata
         for edge in automaton.edges
-        for name in (edge.label, _channel_name(network, edge.sync.slot.first) if edge.sync else "")
+        for name in (edge.label, network.channels[edge.sync.slot.first].name if edge.sync else "")
     )
     return tuple(name for name in names if name)
-
-
-def _channel_name(network: Network, first: int) -> str:
-    return network.channels[first].name
 
 
 def actions_in(
@@ -333,5 +329,5 @@ def recording_of(
 
 def _names(network: Network, action: Action) -> list[str]:
     sync = action.edges[0][1].sync
-    channel = _channel_name(network, sync.slot.first) if sync is not None else ""
+    channel = network.channels[sync.slot.first].name if sync is not None else ""
     return [name for name in (*(edge.label for _, edge in action.edges), channel) if name]

@@ -182,16 +182,14 @@ def _values(edge: Edge, diagonal: Diagonal) -> dict[int, int]:
     found: dict[int, int] = {}
     for reset in resets_in(edge.updates):
         if reset.clock in (diagonal.first, diagonal.second):
-            if not isinstance(reset.value, ex.Constant) or not _stands_on(edge, reset):
+            if not isinstance(reset.value, ex.Constant) or all(
+                one is not reset for one in edge.updates
+            ):
                 fix = "set it to a number, in the update of the edge itself"
                 message = "a clock that is compared with another one is set to what is computed"
                 raise model_error("TA008", message, edge.span, fix)
             found[reset.clock] = reset.value.value
     return found
-
-
-def _stands_on(edge: Edge, reset: ex.Reset) -> bool:
-    return any(update is reset for update in edge.updates)
 
 
 def _meet(edge: Edge, other: Edge) -> bool:

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
 
-from rvmon.diagnostics import Span
 from rvmon.models import model_error
 from rvmon.models.language import automaton_syntax, symbols, syntax
 from rvmon.models.language.automaton_syntax import Document
@@ -16,7 +15,6 @@ from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.statements import is_price, updates_of
 from rvmon.models.network import (
     Automaton,
-    Channel,
     Edge,
     Guard,
     Location,
@@ -325,8 +323,11 @@ def _edges(
             raise model_error("TA019", message, written.span, "write several edges")
         sync = None if written.sync is None else _sync(written.sync, inner, resolver)
         if sync is not None:
-            for guard in guards:
-                _refuse_clock_guard(guard, parts.channels[sync.slot.first], sync, written.span)
+            channel = parts.channels[sync.slot.first]
+            joins = channel.urgent and (sync.sends or not channel.broadcast)
+            if joins and any(guard.clocks for guard in guards):
+                fix = "move the clock guard to an edge before, or make the channel not urgent"
+                raise model_error("TA011", "a clock guard on an urgent channel", written.span, fix)
         updates = updates_of(written.updates, inner, resolver)
         weight = _weight(written, inner, resolver)
         if weight == 0:
@@ -374,9 +375,3 @@ def _sync(written: automaton_syntax.SyncText, scope: Scope, resolver: Resolver) 
         case _:
             fix = f"declare it: chan {written.channel.span.text}"
             raise model_error("TA004", "this is no channel", written.span, fix)
-
-
-def _refuse_clock_guard(guard: Guard, channel: Channel, sync: Sync, span: Span) -> None:
-    if guard.clocks and channel.urgent and (sync.sends or not channel.broadcast):
-        fix = "move the clock guard to an edge before, or make the channel not urgent"
-        raise model_error("TA011", "a clock guard on an urgent channel", span, fix)

@@ -65,7 +65,9 @@ class Plan:
         if sought.nested is not None:
             self._grow(sought.nested)
         automata, locations, edges = self._automata()
-        self._refuse_too_large(len(self.inside))
+        pieces, rows = len(self.inside), len(self._tree) // 4
+        if timer >= MOST_CLOCKS or pieces > guards.MOST_PIECES or rows > MOST_TREE_ROWS:
+            raise model_error("TA019", "the query has too many alternatives, or clocks", None)
         variables, ranks = (*network.variables, *network.locals), network.priorities
         sections = [
             (4, [x for v in variables for x in (v.low, v.high, v.initial, v.is_bool)]),
@@ -93,14 +95,6 @@ class Plan:
         self.numbers = _packed(head, sections)
         weights = (network.automata[a].edges[number].weight for a, number in self.edges)
         self.costs = array("d", (-log(weight) for weight in weights)).tobytes()
-
-    def _refuse_too_large(self, pieces: int) -> None:
-        if (
-            len(self._network.clocks) >= MOST_CLOCKS
-            or pieces > guards.MOST_PIECES
-            or len(self._tree) > 4 * MOST_TREE_ROWS
-        ):
-            raise model_error("TA019", "the query has too many alternatives, or clocks", None)
 
     def _automata(self) -> tuple[list[int], list[int], list[int]]:
         """The rows of automata, locations and edges; edges stand by their source."""

@@ -143,13 +143,10 @@ def is_clear(wanted: Wanted, found: Sequence[tuple[float, Candidate]]) -> bool:
 
 def _is_alike(first: Candidate, second: Candidate, *, is_exact: bool) -> bool:
     """Whether the first must be better by a whole word: of twins, and of ambiguous codes."""
-    is_own = is_exact and first.topic.name == second.topic.name
-    return _is_twin(first, second) or (first.is_code and not is_own)
-
-
-def _is_twin(first: Candidate, second: Candidate) -> bool:
-    is_same = (first.value, first.topic.type) == (second.value, second.topic.type)
-    return is_same and first.topic.name != second.topic.name
+    if first.topic.name == second.topic.name:
+        return first.is_code and not is_exact
+    is_twin = (first.value, first.topic.type) == (second.value, second.topic.type)
+    return is_twin or first.is_code
 
 
 def _fits(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
