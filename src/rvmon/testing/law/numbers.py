@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import product
 from typing import assert_never
@@ -229,39 +230,31 @@ def _result(op: NumericOp, args: list[int | float]) -> int | float | None:
         return _OF_BITS[op](whole[0], whole[1]) if len(whole) == len(args) else None
     if op in _OF_REALS:
         return _of_reals(op, *args)
-    match op:
-        case NumericOp.ADD:
-            return args[0] + args[1]
-        case NumericOp.SUB:
-            return args[0] - args[1]
-        case NumericOp.MUL:
-            return args[0] * args[1]
-        case NumericOp.DIV:
-            return args[0] / args[1]
-        case NumericOp.NEG:
-            return -args[0]
-        case NumericOp.ABS:
-            return abs(args[0])
-        case NumericOp.MIN:
-            return min(args)
-        case NumericOp.MAX:
-            return max(args)
-        case NumericOp.FLOOR:
-            return math.floor(args[0])
-        case NumericOp.CEIL:
-            return math.ceil(args[0])
-        case NumericOp.ROUND:
-            down = math.floor(abs(args[0]))
-            size = down + 1 if abs(args[0]) - down >= 0.5 else down
-            return -size if args[0] < 0 else size
-        case NumericOp.SIGN:
-            return (args[0] > 0) - (args[0] < 0)
-        case NumericOp.MOD:
-            return args[0] % args[1]
-        case NumericOp.CLAMP:
-            return min(max(args[0], args[1]), args[2])
-        case _:
-            raise AssertionError(op)
+    return _OF_NUMBERS[op](*args)
+
+
+def _rounded(x: float) -> float:
+    """The nearest whole number, halves away from 0."""
+    down = math.floor(abs(x))
+    size = down + 1 if abs(x) - down >= 0.5 else down
+    return -size if x < 0 else size
+
+
+_OF_NUMBERS: dict[NumericOp, Callable[..., int | float]] = {
+    NumericOp.ADD: operator.add,
+    NumericOp.SUB: operator.sub,
+    NumericOp.MUL: operator.mul,
+    NumericOp.NEG: operator.neg,
+    NumericOp.ABS: abs,
+    NumericOp.MIN: min,
+    NumericOp.MAX: max,
+    NumericOp.FLOOR: math.floor,
+    NumericOp.CEIL: math.ceil,
+    NumericOp.ROUND: _rounded,
+    NumericOp.SIGN: lambda x: (x > 0) - (x < 0),
+    NumericOp.MOD: operator.mod,
+    NumericOp.CLAMP: lambda x, low, high: min(max(x, low), high),
+}
 
 
 def _of_reals(op: NumericOp, x: float, y: float = 0.0, *more: float) -> float:
