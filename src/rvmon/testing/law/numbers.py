@@ -6,7 +6,7 @@ import math
 import operator
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import product
-from typing import assert_never
+from typing import Any, assert_never
 
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.formula import (
@@ -284,21 +284,17 @@ def _distance(lat1: float, lon1: float, lat2: float, lon2: float) -> float:
     return 2 * 6371008.8 * math.asin(min(math.sqrt(share), 1.0))
 
 
+_RELATIONS: dict[CompareOp, Callable[[Any, Any], bool]] = {
+    CompareOp.EQ: operator.eq,
+    CompareOp.NE: operator.ne,
+    CompareOp.LT: operator.lt,
+    CompareOp.LE: operator.le,
+    CompareOp.GE: operator.ge,
+    CompareOp.GT: operator.gt,
+}
+
+
 def _related(op: CompareOp, left: Scalar, right: Scalar) -> bool:
-    if op is CompareOp.EQ:
-        return left == right
-    if op is CompareOp.NE:
-        return left != right
-    if left is None or right is None or isinstance(left, str) or isinstance(right, str):
+    if op not in (CompareOp.EQ, CompareOp.NE) and (isinstance(left, str) or isinstance(right, str)):
         raise TypeError(f"`{left}` {op} `{right}`: labels have no order")
-    match op:
-        case CompareOp.LT:
-            return left < right
-        case CompareOp.LE:
-            return left <= right
-        case CompareOp.GE:
-            return left >= right
-        case CompareOp.GT:
-            return left > right
-        case _:
-            assert_never(op)
+    return _RELATIONS[op](left, right)
