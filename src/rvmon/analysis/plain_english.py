@@ -286,7 +286,9 @@ def _judge(compiled: CompiledRequirement, automaton: Automaton | None, *, chaine
     if automaton is None:
         kind = "windows" if chained else "delay network"
         if compiled.automaton is not None:
-            return f"{kind}: its automaton would step each open attempt by itself"
+            return (
+                f"{kind}: its automaton would step open attempts in groups, these step all at once"
+            )
         return f"{kind}: as an automaton it would have {compiled.refusal}"
     return (
         f"automaton of {counted(len(automaton.locations), 'location')}, "
@@ -307,8 +309,10 @@ def _memory(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
         reach = horizon(compiled.obligation.required)
         span = "while an attempt is open" if reach is None else f"over {format_duration(reach)}"
         return f"where its parts are known to hold or not, a stretch per change, {span}"
-    if compiled.in_runs(automaton):
-        return "20 bytes per open attempt, in runs: those that wait alike take one step together"
+    one = compiled.requirement
+    alone = one.mode is Mode.WHENEVER or one.captures or one.for_each is not None
+    if compiled.obligation.trigger is not None and not alone:
+        return "16 bytes per open attempt, in runs: those that wait alike take one step together"
     stamps = f", {counted(automaton.clocks, 'time stamp')}" if automaton.clocks else ""
     return f"per open attempt its location{stamps}"
 

@@ -67,7 +67,7 @@ _VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGG
 _DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
 
 _LETTER, _TRIGGER, _DETERMINED = 1, 2, 4
-_PULSE, _EPISODIC, _HIDDEN, _BLURS_ANYWHERE, _IN_RUNS, _TRACED = 1, 2, 4, 8, 16, 32
+_PULSE, _EPISODIC, _HIDDEN, _BLURS_ANYWHERE, _TRACED = 1, 2, 4, 8, 16
 
 _NOTHING = ((0, 0, 0), (0, 0, 0))
 
@@ -168,7 +168,7 @@ def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkP
     """The machine that judges a rule: an automaton, or a network, with its chain if it is one.
 
     For nested windows a chain is preferred: it steps all open attempts at once, an automaton that
-    does not move in runs each one on its own.
+    does not move in runs those that share their clocks.
     """
     automaton = rule.automaton
     if automaton is not None and (rule.in_runs or rule.trigger is None or rule.stepped):
@@ -187,8 +187,7 @@ def _flags(rule: PlannedRule, *, hidden: bool) -> int:
     found |= _EPISODIC if hidden or requirement.mode is Mode.WHENEVER else 0
     found |= _HIDDEN if hidden else 0
     found |= _BLURS_ANYWHERE if rule.blurs_anywhere else 0
-    found |= _TRACED if rule.traced else 0
-    return found | (_IN_RUNS if rule.in_runs else 0)
+    return found | (_TRACED if rule.traced else 0)
 
 
 @cache

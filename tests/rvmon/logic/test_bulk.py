@@ -51,7 +51,7 @@ def test_one_clock_from_the_trigger_is_proved(body):
     ],
 )
 def test_a_clock_that_is_started_later_is_none(body):
-    """A run could lose its order: such attempts are driven one by one."""
+    """A run could lose its order: only attempts that share their clocks are stepped together."""
     assert not proved(body)
 
 

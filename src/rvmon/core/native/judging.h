@@ -132,24 +132,35 @@ typedef struct {
     bool parted;
 } chain;
 
-/* An attempt in a queue: its one clock is its trigger, its location that of its segment. */
+/* An attempt in a queue: its location and clocks are those of its segment. */
 typedef struct {
     int64_t triggered;
     uint32_t number;
     int32_t spare;
 } queued;
 
-/* `count` consecutive attempts of a queue that are in one location. */
+/* The most clocks of an automaton whose attempts may stand in a queue; the plan's maker stops there. */
+#define QUEUED_CLOCKS 6
+
+/* Clocks of a segment that are no common instant: reset at each attempt's trigger; and reset at each
+ * tick so far, of which the last is the judge's `position`. */
+#define OF_TRIGGER RV_NEVER
+#define OF_EACH_TICK (RV_NEVER - 1)
+
+/* `count` consecutive attempts of a queue in one location, with the same clocks. */
 typedef struct {
     int32_t location;
     int32_t count;
+    int64_t clocks[QUEUED_CLOCKS];
 } segment;
 
-/* Bound on segments. The plan's maker explores the orders in which locations can occur in a queue
- * and allows a queue (JUDGE_IN_RUNS) only below this bound. */
-#define SEGMENTS_MOST 16
+typedef struct {
+    segment *at;
+    int32_t room;
+    int32_t count;
+} segments;
 
-/* Where an attempt of a queue stands that begins by a letter. Its clock begins with it, so whenever it
+/* Where an attempt of a queue stands that begins by a letter. Its clocks begin with it, so whenever it
  * begins, equal letters begin it alike. */
 typedef struct {
     int64_t due;               /* ticks until its region changes; NEVER */
@@ -163,8 +174,8 @@ typedef struct {
     int32_t room;              /* a power of two, or 0 */
     int32_t head;
     int32_t count;
-    int32_t segment_count;
-    segment segments[SEGMENTS_MOST];
+    segments now;
+    segments next;             /* scratch: what a step makes of them */
     beginning latest;          /* of the attempt that began last */
 } queue;
 

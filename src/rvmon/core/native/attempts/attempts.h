@@ -72,7 +72,7 @@ void visit_judge(run *r, int32_t index, int64_t t);
 void reach_judge(run *r, int32_t index, int64_t t);
 bool drive_from(run *r, int32_t index, int32_t at, int64_t t);
 
-/* ---- queue.c: attempts of which age alone decides */
+/* ---- queue.c: attempts in bulk */
 bool make_queue(run *r, int32_t index);
 void clear_queue(judge *j);
 bool queue_is_empty(const judge *j);
@@ -81,7 +81,7 @@ void queue_visit(run *r, int32_t index, int64_t t);
 void queue_pass(run *r, int32_t index, int64_t t);
 void queue_reach(run *r, int32_t index, int64_t t);
 bool queue_begin(run *r, int32_t index, int64_t t);
-void dissolve_queue(run *r, int32_t index);
+void dissolve_queue(run *r, int32_t index, int64_t tick);
 void queue_close(run *r, int32_t index, int64_t end, int64_t reached);
 const queued *queue_item(const judge *j, int32_t i);
 const attempt *queued_attempt(const run *r, int32_t index, int32_t i);
@@ -120,9 +120,17 @@ static inline queued *item(const queue *q, int32_t i)
     return &q->items[(q->head + i) & (q->room - 1)];
 }
 
+/* The instant at which a clock of a segment was reset, of an attempt of it; `tick`: the last one by which
+ * clocks were reset that each tick resets. */
+static inline int64_t instant_of_clock(int64_t clock, int64_t triggered, int64_t tick)
+{
+    return (clock < LIMIT) ? clock : ((clock == OF_TRIGGER) ? triggered : tick);
+}
+
 /* ---- queue.c */
 queued *queue_slot(rv_monitor *m, queue *q, int32_t i, bool append);
-void report_queued(const queueing *g, const queued *one, int32_t location, bool passed, int64_t t);
+segment *next_segment(rv_monitor *m, segments *all);
+void report_queued(const queueing *g, const queued *one, const segment *s, bool passed, int64_t t);
 
 /* ---- queue_steps.c */
 void count_edge(const queueing *g, int32_t location, int32_t target, int32_t count, int64_t t);

@@ -250,7 +250,7 @@ void pass_ticks(run *r, int32_t index, int64_t t)
 {
     judge *j = &r->judges[index];
     if (!queue_is_empty(j)) {
-        dissolve_queue(r, index);
+        dissolve_queue(r, index, j->position);
     }
     if (has_attempts(j)) {
         drive_all(r, index, BY_RUN, j->position + 1, t, false);
@@ -299,7 +299,7 @@ void visit_judge(run *r, int32_t index, int64_t t)
             queue_pass(r, index, t - 1);
         }
         if (letter != other) {
-            dissolve_queue(r, index);
+            dissolve_queue(r, index, t - 1);
         }
     }
     if (!was || !has_attempts(j) || (r->rules.due[index] <= t) || j->restless || j->slides) {

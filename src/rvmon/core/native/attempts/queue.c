@@ -1,17 +1,17 @@
-/* Attempts in bulk: a queue in the order of their triggers, divided into segments of equal location.
+/* Attempts in bulk: a queue in the order of their triggers, divided into segments of equal state.
  *
- * The plan's maker has proved for such an automaton (JUDGE_IN_RUNS) that it has at most one clock,
- * which is reset at the trigger, and that its locations have an order which every letter preserves:
- * read from the oldest attempt to the youngest, locations never go back in it. So attempts of one
- * location stand together and differ in age alone; a letter moves a whole segment, split where an age
- * region ends (binary search). A position costs O(segments * regions * log attempts) plus the attempts
- * it decides, and an open attempt takes 16 bytes.
+ * A state is a location and its clocks, each an instant that all attempts of a segment share, or the
+ * trigger of each. An edge takes a clock from another or resets it now: so what attempts share, they
+ * share behind it, too, if they took the same edge, and these differ only where an age that counts from
+ * the trigger is in another region. The ages of a segment fall from its first attempt to its last, so
+ * the attempts of one region stand together, and a letter moves a whole segment, split where such a
+ * region ends (binary search). Neighbours that come to the same state become one segment; mostly they
+ * soon do, as a letter that is good or bad for one is for all. A position costs O(segments * regions *
+ * log attempts) plus the attempts it decides, and an open attempt takes 16 bytes.
  *
- * Readings of the unknown would break the order: at the first unknown letter the queue is dissolved
+ * Readings of the unknown would double the states: at the first unknown letter the queue is dissolved
  * into attempts of the pool, which drive.c takes one by one. The judge's list is empty while its queue
- * is not, and the other way round.
- *
- * The proof: `moves_in_runs` in logic/automaton.py. Steps are in queue_steps.c. */
+ * is not, and the other way round. Steps are in queue_steps.c. */
 #include "attempts/attempts.h"
 #include "notes/notes.h"
 #include "results/results.h"
@@ -28,14 +28,14 @@ bool queue_is_empty(const judge *j)
     return (j->queue == NULL) || (j->queue->count == 0);
 }
 
-/* Give a judge an empty queue if its automaton allows one; false: memory is short. */
+/* Give a judge an empty queue if its attempts can stand in one: several at a time, each sure and triggered
+ * by an instant of its own, which nothing but letters and time moves. False: memory is short. */
 bool make_queue(run *r, int32_t index)
 {
-    const judge_plan *plan_of_judge = &r->part->judges[index];
-    const int32_t flags = plan_of_judge->flags & (JUDGE_IN_RUNS | JUDGE_EPISODIC);
+    const judge_plan *own = &r->part->judges[index];
     judge *j = &r->judges[index];
-    if ((flags != JUDGE_IN_RUNS) || (plan_of_judge->automaton < 0)
-        || (r->part->machines[index].clocks > 1) || (GAP(r) > 1)
+    if (((own->flags & JUDGE_EPISODIC) != 0) || (own->trigger < 0) || (own->automaton < 0)
+        || (r->part->machines[index].clocks > QUEUED_CLOCKS) || (GAP(r) > 1)
         || (r->part->plan->captured > 0) || (j->queue != NULL)) {
         return true;
     }
@@ -52,33 +52,38 @@ void clear_queue(judge *j)
     if (j->queue != NULL) {
         j->queue->head = 0;
         j->queue->count = 0;
-        j->queue->segment_count = 0;
+        j->queue->now.count = 0;
     }
 }
 
 /* A queued attempt in the form of the pool's, in the part's scratch slot: valid until the next call.
- * `due` is in the past, so that it is driven when it is put into the pool. */
-static const attempt *attempt_of_queued(const run *r, const queued *one, int32_t location)
+ * `tick`: the last one by which clocks were reset that each tick resets. `due` is in the past, so that it
+ * is driven when it is put into the pool. */
+static const attempt *attempt_of_queued(const run *r, const machine *a, const queued *one,
+                                        const segment *s, int64_t tick)
 {
     attempt *x = r->home->scratch_attempt;
+    int32_t c;
     x->triggered = one->triggered;
     x->due = -LIMIT;
     x->number = one->number;
     x->next = -1;
-    x->location = location;
+    x->location = s->location;
     x->sure = true;
     x->doubted_at = RV_NO_TIME;
-    x->clocks[0] = one->triggered;
+    for (c = 0; c < a->widths[s->location]; c++) {
+        x->clocks[c] = instant_of_clock(s->clocks[c], one->triggered, tick);
+    }
     return x;
 }
 
-/* Report a queued attempt that is decided at `t`; `location`: where it stood just before. */
-void report_queued(const queueing *g, const queued *one, int32_t location, bool passed, int64_t t)
+/* Report a queued attempt that is decided at `t`; `s`: as it stood just before. */
+void report_queued(const queueing *g, const queued *one, const segment *s, bool passed, int64_t t)
 {
-    const attempt *x = attempt_of_queued(g->r, one, location);
+    const attempt *x = attempt_of_queued(g->r, g->a, one, s, t - 1);
     int64_t note = -1;
     if (g->r->truth_log != NULL) {
-        hold_token(g->r->home->monitor, g->a, location, x->clocks);
+        hold_token(g->r->home->monitor, g->a, s->location, x->clocks);
         note = note_decision(g->r, g->index, x, t);
     }
     report(g->r, g->index, x, x->number, passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX, t, note);
@@ -112,17 +117,35 @@ queued *queue_slot(rv_monitor *m, queue *q, int32_t i, bool append)
     return item(q, i);
 }
 
+/* Append a segment without attempts; NULL: memory is short. */
+segment *next_segment(rv_monitor *m, segments *all)
+{
+    if (all->count == all->room) {
+        segment *made = widened(m, all->at, &all->room, (int64_t)all->count + 1, sizeof *made);
+        if (made == NULL) {
+            return NULL;
+        }
+        all->at = made;
+    }
+    all->count++;
+    return &all->at[all->count - 1];
+}
+
 /* Where an attempt stands that begins at `t` by the letter there. */
 static const beginning *begun_at(const queueing *g, int64_t t)
 {
     beginning *b = &g->q->latest;
     if (b->letter != g->j->letter) {
-        int64_t clock = t;
+        int64_t clocks[QUEUED_CLOCKS];
         int64_t due = NEVER;
         bool slides = false;
         token k;
+        int32_t c;
+        for (c = 0; c < QUEUED_CLOCKS; c++) {
+            clocks[c] = t;
+        }
         k.location = g->a->initial;
-        k.clocks = &clock;
+        k.clocks = clocks;
         k.moves = NULL;
         (void)step_token(g->a, &k, t, g->j->letter);
         b->letter = g->j->letter;
@@ -133,6 +156,27 @@ static const beginning *begun_at(const queueing *g, int64_t t)
     return b;
 }
 
+/* Whether an attempt that begins at `t` in a location is in the state of a segment. */
+static bool begins_in(const queueing *g, const segment *s, int32_t location, int64_t t)
+{
+    bool same = s->location == location;
+    int32_t c;
+    for (c = 0; same && (c < g->a->widths[location]); c++) {
+        same = (s->clocks[c] == OF_TRIGGER) || (s->clocks[c] == t);
+    }
+    return same;
+}
+
+/* The state in a location all of whose clocks began with the trigger. */
+static void set_begun(segment *s, int32_t location)
+{
+    int32_t c;
+    s->location = location;
+    for (c = 0; c < QUEUED_CLOCKS; c++) {
+        s->clocks[c] = OF_TRIGGER;
+    }
+}
+
 /* Start an attempt at `t`: step it once, report it if that decides it, else append it. The last segment
  * is where the youngest stand. False: memory is short. */
 bool queue_begin(run *r, int32_t index, int64_t t)
@@ -140,6 +184,7 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     const queueing g = queueing_of(r, index);
     const beginning *begun = begun_at(&g, t);
     queue *q = g.q;
+    segment *last = (q->now.count > 0) ? &q->now.at[q->now.count - 1] : NULL;
     queued *made;
     int64_t due;
     queued x;
@@ -150,24 +195,25 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     x.number = g.j->count;
     x.spare = 0;
     if (begun->location <= PASSED) {
-        report_queued(&g, &x, g.a->initial, begun->location == PASSED, t);
+        segment initial;
+        set_begun(&initial, g.a->initial);
+        report_queued(&g, &x, &initial, begun->location == PASSED, t);
         return true;
+    }
+    if ((last == NULL) || !begins_in(&g, last, begun->location, t)) {
+        last = next_segment(r->home->monitor, &q->now);
+        if (last == NULL) {
+            return false;
+        }
+        set_begun(last, begun->location);
+        last->count = 0;
     }
     made = queue_slot(r->home->monitor, q, q->count, true);
     if (made == NULL) {
         return false;
     }
     *made = x;
-    if ((q->segment_count > 0) && (q->segments[q->segment_count - 1].location == begun->location)) {
-        q->segments[q->segment_count - 1].count++;
-    } else if (q->segment_count < SEGMENTS_MOST) {
-        q->segments[q->segment_count].location = begun->location;
-        q->segments[q->segment_count].count = 1;
-        q->segment_count++;
-    } else {
-        r->home->monitor->spoilt = true; /* only a forged plan gets here */
-        return false;
-    }
+    last->count++;
     due = sum(t, begun->due);
     if (!begun->rests) {
         set_restless(r, index);
@@ -177,14 +223,14 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     return true;
 }
 
-/* Move all queued attempts to the judge's list: the letter is unknown. */
-void dissolve_queue(run *r, int32_t index)
+/* Move all queued attempts to the judge's list, as they stand at `tick`: the letter behind it is unknown. */
+void dissolve_queue(run *r, int32_t index, int64_t tick)
 {
     const queueing g = queueing_of(r, index);
     int32_t from = 0;
     int32_t k;
-    for (k = 0; k < g.q->segment_count; k++) {
-        const int32_t end = from + g.q->segments[k].count;
+    for (k = 0; k < g.q->now.count; k++) {
+        const int32_t end = from + g.q->now.at[k].count;
         for (; from < end; from++) {
             const queued *one = item(g.q, from);
             const int32_t at = new_attempt(r);
@@ -193,7 +239,7 @@ void dissolve_queue(run *r, int32_t index)
                 break;
             }
             x = attempt_at(r->home, at);
-            (void)memcpy(x, attempt_of_queued(r, one, g.q->segments[k].location), r->home->stride);
+            (void)memcpy(x, attempt_of_queued(r, g.a, one, &g.q->now.at[k], tick), r->home->stride);
             if (g.j->last < 0) {
                 g.j->first = at;
             } else {
@@ -214,11 +260,11 @@ void queue_close(run *r, int32_t index, int64_t end, int64_t reached)
     const queueing g = queueing_of(r, index);
     int32_t from = 0;
     int32_t k;
-    for (k = 0; k < g.q->segment_count; k++) {
-        const int32_t behind = from + g.q->segments[k].count;
+    for (k = 0; k < g.q->now.count; k++) {
+        const int32_t behind = from + g.q->now.at[k].count;
         for (; from < behind; from++) {
             const queued *one = item(g.q, from);
-            const attempt *x = attempt_of_queued(r, one, g.q->segments[k].location);
+            const attempt *x = attempt_of_queued(r, g.a, one, &g.q->now.at[k], g.j->position);
             const int64_t now = stamp_of_end(end, reached);
             const int32_t outcome =
                 own->outcomes[holds_at_end(g.a, x->location, x->clocks, end, reached) ? 1 : 0];
@@ -239,10 +285,11 @@ const attempt *queued_attempt(const run *r, int32_t index, int32_t i)
 {
     const queue *q = r->judges[index].queue;
     int32_t k = 0;
-    int32_t end = q->segments[0].count;
+    int32_t end = q->now.at[0].count;
     while (i >= end) {
         k++;
-        end += q->segments[k].count;
+        end += q->now.at[k].count;
     }
-    return attempt_of_queued(r, item(q, i), q->segments[k].location);
+    return attempt_of_queued(r, &r->part->machines[index], item(q, i), &q->now.at[k],
+                             r->judges[index].position);
 }

@@ -1,8 +1,8 @@
 /* Steps of a queue (queue.c): a letter, or time, moves whole segments.
  *
- * A step goes through the segments from the oldest to the youngest attempt, splits each at the age
- * regions, looks the edge of each piece up once, and writes new segments; pieces that go to the same
- * location as the one before them are merged. The ring is compacted in place. */
+ * A step goes through the segments from the oldest to the youngest attempt, splits each where an age is
+ * in another region, looks the edge of each piece up once, and writes new segments; a piece that comes to
+ * the state of the one before it is merged. The ring is compacted in place. */
 #include "attempts/attempts.h"
 #include "results/results.h"
 
@@ -32,17 +32,12 @@ static int32_t first_after(const queue *q, int32_t from, int32_t end, int64_t t)
     return low + ((item(q, low)->triggered <= t) ? 1 : 0);
 }
 
-/* The ages at which the clock of a location enters the next region. */
-static const int64_t *cuts_of(const machine *a, int32_t location, int32_t *count)
+/* The ages at which a clock of a location enters the next region. */
+static const int64_t *cuts_of(const machine *a, int32_t location, int32_t c, int32_t *count)
 {
-    const int32_t at = location * a->clocks;
-    *count = (a->widths[location] > 0) ? a->cut_first[at + 1] - a->cut_first[at] : 0;
+    const int32_t at = location * a->clocks + c;
+    *count = a->cut_first[at + 1] - a->cut_first[at];
     return &a->cuts[a->cut_first[at]];
-}
-
-static int32_t row_of_region(const machine *a, int32_t location, int32_t region)
-{
-    return a->bases[location] + region * a->strides[location * a->clocks];
 }
 
 /* Where time alone leads from a row, whatever the next letter is. */
@@ -52,28 +47,41 @@ static int32_t settled_at(const machine *a, int32_t row, int32_t location)
     return (truth == IS_UNKNOWN) ? location : ((truth == IS_TRUE) ? PASSED : FAILED);
 }
 
-/* The age region of item `from` at `t`, and the end of the items of [from, end) that share it. Items
- * are sorted by age, the oldest first, so regions come in falling order. */
-static int32_t end_of_region(const queueing *g, int32_t location, int32_t from, int32_t end, int64_t t,
-                             int32_t *region)
+/* The row of item `from` of a segment at `t`, and the end of the items of [from, end) that share it: ages
+ * from the trigger fall along them, so that they come to lower regions, if to others. */
+static int32_t end_of_row(const queueing *g, const segment *s, int32_t from, int32_t end, int64_t t,
+                          int32_t *row)
 {
-    int32_t count;
-    const int64_t *cuts = cuts_of(g->a, location, &count);
-    for (*region = count; *region > 0; (*region)--) {
-        const int64_t latest = t - cuts[*region - 1];
-        if (item(g->q, from)->triggered <= latest) {
-            return first_after(g->q, from, end, latest);
+    const machine *a = g->a;
+    int32_t until = end;
+    int32_t c;
+    *row = a->bases[s->location];
+    for (c = 0; c < a->widths[s->location]; c++) {
+        int32_t region;
+        const int64_t *cuts = cuts_of(a, s->location, c, &region);
+        const int64_t clock = instant_of_clock(s->clocks[c], item(g->q, from)->triggered, t - 1);
+        while ((region > 0) && (clock > t - cuts[region - 1])) {
+            region--;
+        }
+        *row += region * a->strides[s->location * a->clocks + c];
+        if ((region > 0) && (s->clocks[c] == OF_TRIGGER)) {
+            until = first_after(g->q, from, until, t - cuts[region - 1]);
         }
     }
-    return end;
+    return until;
 }
 
-static void tell_decided(const queueing *g, int32_t location, int32_t from, int32_t end, bool passed,
+static int32_t edge_at(const queueing *g, int32_t row)
+{
+    return g->a->edges[row * g->a->classes + g->j->letter];
+}
+
+static void tell_decided(const queueing *g, const segment *s, int32_t from, int32_t end, bool passed,
                          int64_t t)
 {
     int32_t i;
     for (i = from; i < end; i++) {
-        report_queued(g, item(g->q, i), location, passed, t);
+        report_queued(g, item(g->q, i), s, passed, t);
     }
 }
 
@@ -86,76 +94,121 @@ void count_edge(const queueing *g, int32_t location, int32_t target, int32_t cou
     }
 }
 
-/* The segments that a step has made so far. */
+/* The items that a step has kept so far. */
 typedef struct {
-    segment made[SEGMENTS_MOST];
-    int32_t count;             /* of segments */
-    int32_t base;              /* the place of the first item that stays: the new head */
-    int32_t kept;              /* items that stay */
-} regrouping;
+    int32_t base;              /* the place of the first one: the new head */
+    int32_t count;
+} remaining;
 
-/* Keep the items [from, end), which are in `location` now; they move up over decided ones. */
-static void keep_items(const queueing *g, regrouping *s, int32_t location, int32_t from, int32_t end)
+/* Keep the items [from, end), which are in state `s` now; they move up over decided ones. */
+static void keep_items(const queueing *g, remaining *kept, const segment *s, int32_t from, int32_t end)
 {
-    const int32_t count = end - from;
+    segments *all = &g->q->next;
+    segment *last = (all->count > 0) ? &all->at[all->count - 1] : NULL;
+    bool same = (last != NULL) && (last->location == s->location);
     int32_t i;
-    if ((s->count > 0) && (s->made[s->count - 1].location == location)) {
-        s->made[s->count - 1].count += count;
-    } else if (s->count < SEGMENTS_MOST) {
-        s->made[s->count].location = location;
-        s->made[s->count].count = count;
-        s->count++;
-    } else {
-        g->r->home->monitor->spoilt = true; /* only a forged plan gets here */
-        return;
+    for (i = 0; same && (i < g->a->widths[s->location]); i++) {
+        same = last->clocks[i] == s->clocks[i];
     }
-    if (s->kept == 0) {
-        s->base = from;
+    if (!same) {
+        last = next_segment(g->r->home->monitor, all);
+        if (last == NULL) {
+            return;
+        }
+        *last = *s;
+        last->count = 0;
     }
-    for (i = from; (s->base + s->kept != from) && (i < end); i++) {
-        *item(g->q, s->base + s->kept + (i - from)) = *item(g->q, i);
+    last->count += end - from;
+    if (kept->count == 0) {
+        kept->base = from;
     }
-    s->kept += count;
+    for (i = from; (kept->base + kept->count != from) && (i < end); i++) {
+        *item(g->q, kept->base + kept->count + (i - from)) = *item(g->q, i);
+    }
+    kept->count += end - from;
 }
 
-static void replace_segments(const queueing *g, const regrouping *s)
+static void replace_segments(queue *q, const remaining *kept)
 {
-    queue *q = g->q;
+    const segments was = q->now;
     if (q->room > 0) {
-        q->head = (q->head + s->base) & (q->room - 1);
+        q->head = (q->head + kept->base) & (q->room - 1);
     }
-    q->count = s->kept;
-    q->segment_count = s->count;
-    (void)memcpy(q->segments, s->made, sizeof q->segments);
+    q->count = kept->count;
+    q->now = q->next;
+    q->next = was;
 }
 
-/* Whether all items of a segment stay in its location at the next position if the letter stays. */
-static bool rests_all(const queueing *g, int32_t location, int32_t from, int32_t end, int64_t t)
+/* The state behind an edge that is taken at `t`. */
+static segment moved_by(const machine *a, const segment *s, int32_t number, int64_t t)
 {
+    const int32_t *sources = &a->sources[number * a->clocks];
+    segment made;
+    int32_t c;
+    made.location = a->targets[number];
+    for (c = 0; c < a->widths[made.location]; c++) {
+        const int64_t clock = (sources[c] < 0) ? t : s->clocks[sources[c]];
+        made.clocks[c] = (clock == OF_EACH_TICK) ? t - 1 : clock;
+    }
+    return made;
+}
+
+/* Whether all items of a segment, which was stepped at `t`, stay in its state at the next position if the
+ * letter stays, and so at all up to its next region. Clocks that each tick resets do not hinder that, if
+ * they are the same for all items: they become OF_EACH_TICK. */
+static bool rests_all(const queueing *g, segment *s, int32_t from, int32_t end, int64_t t)
+{
+    const machine *a = g->a;
+    uint32_t sliding = 0;
     int32_t at = from;
+    int32_t c;
     while (at < end) {
-        int32_t region;
-        const int32_t until = end_of_region(g, location, at, end, t + 1, &region);
-        const int32_t row = row_of_region(g->a, location, region);
-        if (g->a->targets[g->a->edges[row * g->a->classes + g->j->letter]] != location) {
+        int32_t row;
+        const int32_t until = end_of_row(g, s, at, end, t + 1, &row);
+        const int32_t number = edge_at(g, row);
+        const int32_t *sources = &a->sources[number * a->clocks];
+        uint32_t slid = 0;
+        if (a->targets[number] != s->location) {
             return false;
         }
+        for (c = 0; c < a->widths[s->location]; c++) {
+            if ((sources[c] < 0) && (GAP(g->r) == 1) && (s->clocks[c] == t)) {
+                slid |= (uint32_t)1 << c;
+            } else if ((sources[c] < 0) || (s->clocks[sources[c]] != s->clocks[c])) {
+                return false;
+            } else {
+                /* The clock stays. */
+            }
+        }
+        if ((at > from) && (slid != sliding)) {
+            return false;
+        }
+        sliding = slid;
         at = until;
+    }
+    for (c = 0; c < a->widths[s->location]; c++) {
+        s->clocks[c] = (((sliding >> c) & 1U) != 0U) ? OF_EACH_TICK : s->clocks[c];
     }
     return true;
 }
 
-/* The first instant after `t` at which an item of a segment enters another age region. */
-static int64_t next_region(const queueing *g, int32_t location, int32_t from, int32_t end, int64_t t)
+/* The first instant after `t` at which an item of a segment enters another region. A clock that each tick
+ * resets enters none. */
+static int64_t next_region(const queueing *g, const segment *s, int32_t from, int32_t end, int64_t t)
 {
-    int32_t count;
-    const int64_t *cuts = cuts_of(g->a, location, &count);
     int64_t found = NEVER;
+    int32_t c;
     int32_t i;
-    for (i = 0; i < count; i++) {
-        const int32_t one = first_after(g->q, from, end, t - cuts[i]);
-        if (one < end) {
-            found = least(found, item(g->q, one)->triggered + cuts[i]);
+    for (c = 0; c < g->a->widths[s->location]; c++) {
+        int32_t count;
+        const int64_t *cuts = cuts_of(g->a, s->location, c, &count);
+        for (i = 0; (i < count) && (s->clocks[c] != OF_EACH_TICK); i++) {
+            int64_t clock = s->clocks[c];
+            if (clock == OF_TRIGGER) {
+                const int32_t one = first_after(g->q, from, end, t - cuts[i]);
+                clock = (one < end) ? item(g->q, one)->triggered : -LIMIT;
+            }
+            found = (clock + cuts[i] > t) ? least(found, clock + cuts[i]) : found;
         }
     }
     return found;
@@ -168,15 +221,15 @@ static void set_queue_due(const queueing *g, int64_t t, bool moving)
     int64_t due = NEVER;
     int32_t from = 0;
     int32_t k;
-    for (k = 0; k < g->q->segment_count; k++) {
-        const segment *s = &g->q->segments[k];
+    for (k = 0; k < g->q->now.count; k++) {
+        segment *s = &g->q->now.at[k];
         const int32_t end = from + s->count;
-        if (moving && !rests_all(g, s->location, from, end, t)) {
+        if (moving && !rests_all(g, s, from, end, t)) {
             set_restless(g->r, g->index);
             due = t + 1;
             break;
         }
-        due = least(due, next_region(g, s->location, from, end, t));
+        due = least(due, next_region(g, s, from, end, t));
         from = end;
     }
     set_rule_due(g->r, g->index, due);
@@ -185,30 +238,31 @@ static void set_queue_due(const queueing *g, int64_t t, bool moving)
 /* One step of the queue at `t`: by the letter if it is a position, else by time alone. */
 static void step_queue(const queueing *g, int64_t t, bool is_position)
 {
-    regrouping s;
+    remaining kept = {0, 0};
     int32_t from = 0;
     int32_t k;
-    s.count = s.base = s.kept = 0;
-    for (k = 0; k < g->q->segment_count; k++) {
-        const int32_t location = g->q->segments[k].location;
-        const int32_t end = from + g->q->segments[k].count;
+    g->q->next.count = 0;
+    for (k = 0; k < g->q->now.count; k++) {
+        const segment *s = &g->q->now.at[k];
+        const int32_t end = from + s->count;
         while (from < end) {
-            int32_t region;
-            const int32_t until = end_of_region(g, location, from, end, t, &region);
-            const int32_t row = row_of_region(g->a, location, region);
-            const int32_t target = is_position
-                ? g->a->targets[g->a->edges[row * g->a->classes + g->j->letter]]
-                : settled_at(g->a, row, location);
-            count_edge(g, location, target, until - from, t);
+            int32_t row;
+            const int32_t until = end_of_row(g, s, from, end, t, &row);
+            const int32_t number = is_position ? edge_at(g, row) : -1;
+            const int32_t target = is_position ? g->a->targets[number] : settled_at(g->a, row, s->location);
+            count_edge(g, s->location, target, until - from, t);
             if (target <= PASSED) {
-                tell_decided(g, location, from, until, target == PASSED, t);
+                tell_decided(g, s, from, until, target == PASSED, t);
+            } else if (is_position) {
+                const segment moved = moved_by(g->a, s, number, t);
+                keep_items(g, &kept, &moved, from, until);
             } else {
-                keep_items(g, &s, target, from, until);
+                keep_items(g, &kept, s, from, until);
             }
             from = until;
         }
     }
-    replace_segments(g, &s);
+    replace_segments(g->q, &kept);
     set_queue_due(g, t, is_position);
 }
 

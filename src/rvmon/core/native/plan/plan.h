@@ -235,11 +235,10 @@ typedef struct {
 } link_plan;
 
 /* EPISODIC: an attempt lasts while its trigger holds; HIDDEN: judges attempts in doubt; BLURS_ANYWHERE:
- * in a doubted instance any position may capture other values; IN_RUNS: may have a queue; TRACED: its
- * moves are counted. */
+ * in a doubted instance any position may capture other values; TRACED: its moves are counted. */
 enum {
     JUDGE_PULSE = 1, JUDGE_EPISODIC = 2, JUDGE_HIDDEN = 4, JUDGE_BLURS_ANYWHERE = 8,
-    JUDGE_IN_RUNS = 16, JUDGE_TRACED = 32
+    JUDGE_TRACED = 16
 };
 
 /* A judge: what decides the attempts of a requirement, or its attempts in doubt. The first six

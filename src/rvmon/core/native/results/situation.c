@@ -228,19 +228,15 @@ static void sort_unique(situation *s, int64_t start, int64_t width)
 static void put_queue(situation *s, run *r, int32_t index)
 {
     const machine *a = &r->part->machines[index];
-    const queue *q = r->judges[index].queue;
-    int32_t from = 0;
+    int64_t clocks[QUEUED_CLOCKS];
     int32_t i;
-    for (i = 0; i < q->segment_count; i++) {
-        const int32_t end = from + q->segments[i].count;
-        for (; from < end; from++) {
-            int64_t clocks[1];
-            clocks[0] = queue_item(&r->judges[index], from)->triggered;
-            put_word(s, 1);
-            put_token(s, a, q->segments[i].location, clocks);
-            put_token(s, a, q->segments[i].location, clocks);
-            note_next_cut(s, a, q->segments[i].location, clocks);
-        }
+    for (i = 0; i < r->judges[index].queue->count; i++) {
+        const attempt *x = queued_attempt(r, index, i);
+        (void)memcpy(clocks, x->clocks, (size_t)a->clocks * sizeof *clocks);
+        put_word(s, 1);
+        put_token(s, a, x->location, clocks);
+        put_token(s, a, x->location, clocks);
+        note_next_cut(s, a, x->location, clocks);
     }
 }
 

@@ -102,12 +102,23 @@ static int32_t carry_attempts(carrier *c, run *r, int32_t index, int32_t *first)
     return last;
 }
 
+/* The clocks of a segment, as many as its location has. */
+static void carry_segment_clocks(carrier *c, const machine *a, segment *s)
+{
+    int32_t i;
+    for (i = 0; !is_lost(c) && (i < a->widths[s->location]); i++) {
+        carry_long(c, &s->clocks[i], 1 - LIMIT, OF_TRIGGER);
+        demand(c, (s->clocks[i] < LIMIT) || (s->clocks[i] >= OF_EACH_TICK));
+    }
+}
+
 /* A queue: its attempts, oldest first, then its segments, which have to add up to them. */
 static void carry_queue(carrier *c, run *r, int32_t index)
 {
     queue *q = r->judges[index].queue;
     const int32_t locations = automaton_of(r, index)->locations;
     int32_t count = q->count;
+    int32_t segment_count = q->now.count;
     int32_t left;
     int64_t before = -LIMIT;
     int32_t i;
@@ -121,12 +132,16 @@ static void carry_queue(carrier *c, run *r, int32_t index)
             before = one->triggered;
         }
     }
-    carry_int(c, &q->segment_count, 0, SEGMENTS_MOST + 1);
+    carry_size(c, &segment_count, MOST, 8);
     left = count;
-    for (i = 0; (i < q->segment_count) && !is_lost(c); i++) {
-        carry_int(c, &q->segments[i].location, WAITING, locations);
-        carry_int(c, &q->segments[i].count, 1, (int64_t)left + 1);
-        left -= q->segments[i].count;
+    for (i = 0; (i < segment_count) && !is_lost(c); i++) {
+        segment *one = c->reading ? next_segment(c->m, &q->now) : &q->now.at[i];
+        if (one != NULL) {
+            carry_int(c, &one->location, WAITING, locations);
+            carry_int(c, &one->count, 1, (int64_t)left + 1);
+            left -= one->count;
+            carry_segment_clocks(c, &r->part->machines[index], one);
+        }
     }
     demand(c, left == 0);
 }
