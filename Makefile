@@ -23,7 +23,7 @@ core: | $(BIN)/python  ## compile the native code in place, 6 seconds; warnings 
 test: $(VENV)/.dev  ## run all tests, 6 minutes on 2 cores; ends with the seconds of each folder
 	@$(TESTED)
 
-quick: $(VENV)/.dev  ## run the tests that need no compiler, browser, robot or patience, 30 seconds on 2 cores
+quick: $(VENV)/.dev  ## run the tests that need no compiler, browser, robot or patience, 25 seconds on 2 cores
 	@$(TESTED) -m "not (browser or campaign or compiler or law or process or slow)" tests
 
 check: $(VENV)/.dev $(VENV)/.docs  ## lint, types, layers, C by gcc and clang, the documentation without warnings

@@ -37,7 +37,7 @@ def outcomes(spec, samples, end=None):
     [
         ("upon e then within 3 s b", "automaton"),
         (RESPAWNED, "windows: as an automaton it would have"),
-        ("upon e then within 5 s for 3 s b", "windows: its automaton would step each open attempt"),
+        ("upon e then within 5 s for 3 s b", "windows: its automaton would step open attempts in"),
         ("upon e then within 3 s once (a and within 1 s b)", "delay network: as an automaton"),
     ],
 )

@@ -38,17 +38,17 @@ class Editor:
         """What requests call a document."""
         return lsp.TextDocumentIdentifier((self.folder / name).as_uri())
 
-    async def notified(self):
-        """Wait for the next findings."""
-        method = lsp.TEXT_DOCUMENT_PUBLISH_DIAGNOSTICS
-        return await asyncio.wait_for(self.client.wait_for_notification(method), 60)
+    async def until(self, seen):
+        """Wait for findings; one looks again and again, as they may come before one waits."""
+        async with asyncio.timeout(60):
+            while not seen():
+                await asyncio.sleep(0.01)
 
     async def open(self, name, text):
         """Open a document, and give what was found in it, each by code and place."""
         item = lsp.TextDocumentItem(self.document(name).uri, "rv", 1, text)
         self.client.text_document_did_open(lsp.DidOpenTextDocumentParams(item))
-        while item.uri not in self.client.diagnostics:
-            await self.notified()
+        await self.until(lambda: item.uri in self.client.diagnostics)
         return self.found(name)
 
     def type(self, name, line, start, end, text):
@@ -85,9 +85,10 @@ def test_a_session(tmp_path):
         async with editor(tmp_path) as of:
             assert await of.open("signals.rv", "event ask\n") == []
             assert await of.open("main.rv", MAIN) == [("RV012", "2:44-2:49")]
-            of.type("signals.rv", 0, 9, 9, ", answer")
-            await of.notified()
             document = of.document("main.rv")
+            before = of.client.diagnostics[document.uri]
+            of.type("signals.rv", 0, 9, 9, ", answer")
+            await of.until(lambda: of.client.diagnostics[document.uri] is not before)
             at = lsp.Position(2, 45)
             context = lsp.CodeActionContext([])
             (fix,) = await of.client.text_document_code_action_async(
@@ -98,8 +99,7 @@ def test_a_session(tmp_path):
             for number, letter in enumerate("answer"):
                 place = 44 + number
                 of.type("main.rv", 2, place, place if number else 49, letter)
-            while of.found("main.rv"):
-                await of.notified()
+            await of.until(lambda: not of.found("main.rv"))
             shown = await of.client.text_document_hover_async(
                 lsp.HoverParams(document, lsp.Position(2, 12))
             )
@@ -131,9 +131,10 @@ def test_a_session(tmp_path):
                 lsp.DocumentSymbolParams(document)
             )
             assert [(one.name, one.detail) for one in outline] == [("R", "😋")]
+            of.type("main.rv", 2, 0, 1, "")
+            await of.until(lambda: of.found("main.rv"))
             of.client.text_document_did_close(lsp.DidCloseTextDocumentParams(document))
-            await of.notified()
-            assert of.client.diagnostics[document.uri] in ([], ())
+            await of.until(lambda: not of.found("main.rv"))
 
     asyncio.run(session())
 
@@ -158,8 +159,7 @@ def test_layout_and_another_encoding(tmp_path):
             (tmp_path / "b.rv").write_text("event asked\n", encoding="utf-8")
             saved = lsp.DidSaveTextDocumentParams(of.document("c.rv"))
             of.client.text_document_did_save(saved)
-            while not of.found("c.rv"):
-                await of.notified()
+            await of.until(lambda: of.found("c.rv"))
 
     asyncio.run(session())
 
