@@ -187,3 +187,20 @@ def test_a_captured_attempt_that_is_not_looked_after_stays_so():
         torn = spec.restore(torn.snapshot())
         assert torn.open == whole.open
     assert torn.finish_ns() == whole.finish_ns()
+
+
+@pytest.mark.parametrize("changing", [63, 64, 65, 128])
+def test_a_run_goes_on_however_many_letters_its_reasons_refer_to(changing):
+    """Letters are stored in pieces; the last one may be full, or hold none yet."""
+    spec = rvmon.loads(
+        "time sampled every 500 ms\nsignal x, y : real\nevent e\nrequirement R\n  upon e\n"
+        "  then F[1 s, 3 s] ((x > 2) U[2 s, 4 s] (y < 4))\n"
+    )
+    plain, taken_up = spec.monitor(), spec.monitor()
+    for place in range(changing + 20):
+        value = float(min(place, changing) % 2)
+        sample = {"x": 3 * value, "y": 5 * value, "e": True}
+        plain.step(place / 2, sample)
+        taken_up.step(place / 2, sample)
+        taken_up = spec.restore(taken_up.snapshot())
+    assert taken_up.finish().to_json() == plain.finish().to_json()

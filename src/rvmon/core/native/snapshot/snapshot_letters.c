@@ -186,7 +186,7 @@ static void carry_span(carrier *c, const numbered_piece *places, int32_t count, 
     int32_t last = c->reading ? 0 : own->last->number;
     carry_int(c, &first, 0, count);
     carry_int(c, &last, 0, count);
-    carry_int(c, &own->last_count, 1, (int64_t)MOST);
+    carry_int(c, &own->last_count, 0, (int64_t)MOST); /* 0: a piece whose first letter is yet to come */
     if (c->reading && !c->refused) {
         const rv_piece *end = places[last].piece;
         demand(c, (places[first].chain == places[last].chain)
