@@ -105,7 +105,7 @@ class CompiledRequirement:
         return str(self._built) if isinstance(self._built, DoesNotCloseError) else ""
 
     def in_runs(self, automaton: Automaton | None) -> bool:
-        """Whether the open attempts of an automaton are kept in runs (`moves_in_runs`)."""
+        """Whether there are never more runs of open attempts than locations (`moves_in_runs`)."""
         requirement = self.requirement
         return (
             automaton is not None

@@ -260,18 +260,19 @@ def _badness(compiled: Compilation) -> tuple[int, int]:
     return sum(diagnostic.severity is Severity.ERROR for diagnostic in findings), len(findings)
 
 
-@cache
 def _page(code: str) -> lsp.CodeDescription | None:
-    """The page of a code as a file that editors open; `None` if it cannot be kept."""
+    """The page of a code as a file that editors open; `None` if it cannot be kept now."""
     folder = cache_folder()
-    if folder is None:
-        return None
-    path = folder / "codes" / f"{code}.md"
     with suppress(OSError):
-        path.parent.mkdir(mode=0o700, exist_ok=True)
-        write_whole(str(path), page_of(code))
-        return lsp.CodeDescription(path.as_uri())
+        return None if folder is None else _kept_page(folder / "codes" / f"{code}.md", code)
     return None
+
+
+@cache
+def _kept_page(path: Path, code: str) -> lsp.CodeDescription:
+    path.parent.mkdir(mode=0o700, exist_ok=True)
+    write_whole(str(path), page_of(code))
+    return lsp.CodeDescription(path.as_uri())
 
 
 def _address(source: Source) -> str:

@@ -177,6 +177,20 @@ def test_findings():
     assert unused.tags, "what is not needed is shown so"
 
 
+def test_the_page_of_a_code_is_there_once_it_can_be_kept(monkeypatch, tmp_path):
+    """An editor runs for days: what could not be written at first is tried again."""
+
+    def described():
+        of = document("event a\nevent a\nrequirement R upon a then within 2 s a\n")
+        return of.diagnostics[of.uri][0].code_description
+
+    monkeypatch.setenv("RVMON_CACHE", "off")
+    assert described() is None
+    monkeypatch.delenv("RVMON_CACHE")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert Path(to_fs_path(described().href)).is_relative_to(tmp_path)
+
+
 def test_findings_of_other_files():
     of = document('import "a.rv"\nrequirement R always p\n', {"a.rv": "signal p : boo\n"})
     assert [(uri, len(found)) for uri, found in of.diagnostics.items()] == [

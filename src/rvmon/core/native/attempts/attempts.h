@@ -84,7 +84,16 @@ bool queue_begin(run *r, int32_t index, int64_t t);
 void dissolve_queue(run *r, int32_t index, int64_t tick);
 void queue_close(run *r, int32_t index, int64_t end, int64_t reached);
 const queued *queue_item(const judge *j, int32_t i);
-const attempt *queued_attempt(const run *r, int32_t index, int32_t i);
+
+/* How far the attempts of a queue were gone through: those before `item`, of so many segments, the last of
+ * which ends before item `end`. */
+typedef struct {
+    int32_t item;
+    int32_t segments;
+    int32_t end;
+} queue_place;
+
+attempt *next_queued(const run *r, int32_t index, queue_place *p, int64_t tick);
 
 /* Whether a judge has attempts that a position may concern. */
 static inline bool has_attempts(const judge *j)

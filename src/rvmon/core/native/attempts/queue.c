@@ -59,8 +59,8 @@ void clear_queue(judge *j)
 /* A queued attempt in the form of the pool's, in the part's scratch slot: valid until the next call.
  * `tick`: the last one by which clocks were reset that each tick resets. `due` is in the past, so that it
  * is driven when it is put into the pool. */
-static const attempt *attempt_of_queued(const run *r, const machine *a, const queued *one,
-                                        const segment *s, int64_t tick)
+static attempt *attempt_of_queued(const run *r, const machine *a, const queued *one,
+                                  const segment *s, int64_t tick)
 {
     attempt *x = r->home->scratch_attempt;
     int32_t c;
@@ -223,33 +223,46 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     return true;
 }
 
+/* The next attempt of a judge's queue from a place on, which starts as zeros, oldest first, as it stands at
+ * `tick`, in the form of the pool's; NULL: there is none. It is valid until the next call. */
+attempt *next_queued(const run *r, int32_t index, queue_place *p, int64_t tick)
+{
+    const queue *q = r->judges[index].queue;
+    attempt *x;
+    if ((q == NULL) || (p->item == q->count)) {
+        return NULL;
+    }
+    while (p->item == p->end) {
+        p->end += q->now.at[p->segments].count;
+        p->segments++;
+    }
+    x = attempt_of_queued(r, &r->part->machines[index], item(q, p->item), &q->now.at[p->segments - 1], tick);
+    p->item++;
+    return x;
+}
+
 /* Move all queued attempts to the judge's list, as they stand at `tick`: the letter behind it is unknown. */
 void dissolve_queue(run *r, int32_t index, int64_t tick)
 {
-    const queueing g = queueing_of(r, index);
-    int32_t from = 0;
-    int32_t k;
-    for (k = 0; k < g.q->now.count; k++) {
-        const int32_t end = from + g.q->now.at[k].count;
-        for (; from < end; from++) {
-            const queued *one = item(g.q, from);
-            const int32_t at = new_attempt(r);
-            attempt *x;
-            if (at < 0) {
-                break;
-            }
-            x = attempt_at(r->home, at);
-            (void)memcpy(x, attempt_of_queued(r, g.a, one, &g.q->now.at[k], tick), r->home->stride);
-            if (g.j->last < 0) {
-                g.j->first = at;
-            } else {
-                attempt_at(r->home, g.j->last)->next = at;
-            }
-            g.j->last = at;
+    judge *j = &r->judges[index];
+    queue_place place = {0, 0, 0};
+    const attempt *one = next_queued(r, index, &place, tick);
+    while (one != NULL) {
+        const int32_t at = new_attempt(r);
+        if (at < 0) {
+            break;
         }
+        (void)memcpy(attempt_at(r->home, at), one, r->home->stride);
+        if (j->last < 0) {
+            j->first = at;
+        } else {
+            attempt_at(r->home, j->last)->next = at;
+        }
+        j->last = at;
+        one = next_queued(r, index, &place, tick);
     }
-    g.j->sorted = false;
-    clear_queue(g.j);
+    j->sorted = false;
+    clear_queue(j);
 }
 
 /* Report the queued attempts, which are open at the end of the trace. They are sure, so that `outcomes`
@@ -257,20 +270,16 @@ void dissolve_queue(run *r, int32_t index, int64_t tick)
 void queue_close(run *r, int32_t index, int64_t end, int64_t reached)
 {
     const judge_plan *own = &r->part->judges[index];
-    const queueing g = queueing_of(r, index);
-    int32_t from = 0;
-    int32_t k;
-    for (k = 0; k < g.q->now.count; k++) {
-        const int32_t behind = from + g.q->now.at[k].count;
-        for (; from < behind; from++) {
-            const queued *one = item(g.q, from);
-            const attempt *x = attempt_of_queued(r, g.a, one, &g.q->now.at[k], g.j->position);
-            const int64_t now = stamp_of_end(end, reached);
-            const int32_t outcome =
-                own->outcomes[holds_at_end(g.a, x->location, x->clocks, end, reached) ? 1 : 0];
-            report(r, index, x, x->number, (uint8_t)(outcome & 3), (uint8_t)(outcome >> 2), end,
-                   (r->truth_log == NULL) ? -1 : note_open(r, index, x, now, false, end));
-        }
+    const machine *a = &r->part->machines[index];
+    const int64_t tick = r->judges[index].position;
+    const int64_t now = stamp_of_end(end, reached);
+    queue_place place = {0, 0, 0};
+    const attempt *x = next_queued(r, index, &place, tick);
+    while (x != NULL) {
+        const int32_t outcome = own->outcomes[holds_at_end(a, x->location, x->clocks, end, reached) ? 1 : 0];
+        report(r, index, x, x->number, (uint8_t)(outcome & 3), (uint8_t)(outcome >> 2), end,
+               (r->truth_log == NULL) ? -1 : note_open(r, index, x, now, false, end));
+        x = next_queued(r, index, &place, tick);
     }
 }
 
@@ -278,18 +287,4 @@ void queue_close(run *r, int32_t index, int64_t end, int64_t reached)
 const queued *queue_item(const judge *j, int32_t i)
 {
     return item(j->queue, i);
-}
-
-/* The same in the form of the pool's attempts; valid until the next call. */
-const attempt *queued_attempt(const run *r, int32_t index, int32_t i)
-{
-    const queue *q = r->judges[index].queue;
-    int32_t k = 0;
-    int32_t end = q->now.at[0].count;
-    while (i >= end) {
-        k++;
-        end += q->now.at[k].count;
-    }
-    return attempt_of_queued(r, &r->part->machines[index], item(q, i), &q->now.at[k],
-                             r->judges[index].position);
 }

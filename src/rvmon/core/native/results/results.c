@@ -66,16 +66,18 @@ static rv_record open_record(run *r, int32_t index, const attempt *x, uint32_t n
 static bool each_open_of(run *r, int32_t index, rv_take take, void *user)
 {
     const rv_number *captured = (r->part->plan->captured > 0) ? r->captured : NULL;
+    queue_place place = {0, 0, 0};
+    const attempt *x;
     bool more = true;
     int32_t at;
     if (r->truth_log != NULL) {
         note_open_count(r, index);
     }
-    for (at = 0; more && !queue_is_empty(&r->judges[index]) && (at < r->judges[index].queue->count);
-         at++) {
-        const attempt *x = queued_attempt(r, index, at);
+    x = next_queued(r, index, &place, r->judges[index].position);
+    while (more && (x != NULL)) {
         const rv_record one = open_record(r, index, x, x->number);
         more = take(user, &one, NULL);
+        x = next_queued(r, index, &place, r->judges[index].position);
     }
     for (at = next_open(r, index, -1); more && (at >= 0); at = next_open(r, index, at)) {
         const rv_record one = open_record(r, index, attempt_at(r->home, at), reported_number(r, at));

@@ -225,25 +225,12 @@ static void sort_unique(situation *s, int64_t start, int64_t width)
     put_word(s, kept);
 }
 
-static void put_queue(situation *s, run *r, int32_t index)
-{
-    const machine *a = &r->part->machines[index];
-    int64_t clocks[QUEUED_CLOCKS];
-    int32_t i;
-    for (i = 0; i < r->judges[index].queue->count; i++) {
-        const attempt *x = queued_attempt(r, index, i);
-        (void)memcpy(clocks, x->clocks, (size_t)a->clocks * sizeof *clocks);
-        put_word(s, 1);
-        put_token(s, a, x->location, clocks);
-        put_token(s, a, x->location, clocks);
-        note_next_cut(s, a, x->location, clocks);
-    }
-}
-
 /* The state of a judge and its attempts. */
 static void put_judge(situation *s, run *r, int32_t index)
 {
     judge *j = &r->judges[index];
+    queue_place place = {0, 0, 0};
+    attempt *x;
     const bool networked = is_networked(r, index);
     const int64_t width = networked ? 4 : 1 + 2 * (1 + (int64_t)r->part->machines[index].clocks);
     int64_t start;
@@ -261,8 +248,9 @@ static void put_judge(situation *s, run *r, int32_t index)
     for (at = j->first; at >= 0; at = attempt_at(r->home, at)->next) {
         put_attempt(s, r, index, attempt_at(r->home, at));
     }
-    if (!queue_is_empty(j)) {
-        put_queue(s, r, index);
+    for (x = next_queued(r, index, &place, j->position); x != NULL;
+         x = next_queued(r, index, &place, j->position)) {
+        put_attempt(s, r, index, x);
     }
     sort_unique(s, start, width);
 }

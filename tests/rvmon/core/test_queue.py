@@ -1,0 +1,49 @@
+"""Open attempts of automata with several clocks stand in a queue, and the law decides them too."""
+
+import random
+
+import pytest
+from tests.tools.differential import disagreements
+from tests.tools.forms import FORMS, Compiler, Maker
+
+import rvmon
+from rvmon.testing.generate.trace import Case
+from rvmon.trace.sample import Sample
+
+NAMES = "signal p, q : bool\nevent e\n"
+REQUIRED = [
+    "G[0 ns, 20 ns] (p -> F[0 ns, 7 ns] q)",
+    "G[3 ns, 9 ns] (p U[2 ns, 8 ns] q)",
+    "F[3 ns, 18 ns] (p U[0 ns, 3 ns] not q)",
+    "(F[3 ns, 6 ns] q) U (p and not q)",
+    "(F[0 ns, 6 ns] p) U[0 ns, 20 ns] (G[0 ns, 6 ns] q)",
+    "p U (q U[3 ns, 6 ns] not p)",
+]
+"""Nested so that they reset clocks at their triggers, at changes, and at each tick."""
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 3 ns"])
+def test_attempts_in_a_queue_are_judged_as_one_by_one(time):
+    for required in REQUIRED:
+        text = f"time {time}\n{NAMES}requirement R\n  upon e\n  then {required}\n"
+        spec, compiler = rvmon.loads(text).checked, Compiler()
+        for place, form in enumerate((*FORMS, "c+interrupt") * 3):
+            case = random_case(spec, random.Random(f"{time} {required} {place}"))
+            wrong = disagreements(case, Maker(form, compiler), online=place == 0)
+            assert wrong == [], (required, form)
+
+
+def random_case(spec, rng):
+    """Triggers at most samples; signals that change often, seldom, or are unknown now and then."""
+    hold, unknown = rng.choice([0.2, 0.7, 0.95]), rng.choice([0, 0, 0.15])
+    now, said, actions = 0, {}, []
+    for _ in range(40):
+        for name in "pq":
+            if name not in said or rng.random() > hold:
+                said[name] = None if rng.random() < unknown else rng.random() < 0.6
+        actions.append(Sample(now, {**said, **({"e": True} if rng.random() < 0.8 else {})}))
+        now += rng.choice([1, 1, 1, 2, 3, 11])
+        if rng.random() < 0.1:
+            actions.append(now - 1)
+    return Case(spec, tuple(actions), now + rng.choice([0, 2, 30]))
