@@ -78,6 +78,14 @@ def _open(count: int, attempts: int) -> Sequence[Row]:
     return [*first, *drawn(count)]
 
 
+def _pulses(count: int, high: float) -> list[Row]:
+    """Triggers; x pulses, and pauses for as long; y rises for 3 of 1,900 samples."""
+    return [
+        {"x": high * (n // 3000 % 2 == 0 and n % 2), "y": 10.0 * (n % 1900 < 3), "e": True}
+        for n in range(count)
+    ]
+
+
 def cells(count: int) -> Iterator[tuple[str, Stream, str, Stream, float]]:
     """What is hard, its quiet neighbour, and the most times that it may cost."""
     every, rare = drawn(count, events=1), drawn(count, events=0.02)
@@ -94,6 +102,9 @@ def cells(count: int) -> Iterator[tuple[str, Stream, str, Stream, float]]:
     for name, texts in FORMS["later"].items():
         hard, quiet = (Stream(HEAD + text, every, MILLISECOND) for text in texts)
         yield f"{name}, each sample a trigger", hard, "the window opens at once", quiet, 3
+    for name, text in FORMS["pulses"].items():
+        hard, quiet = (Stream(HEAD + text, _pulses(count, high), MILLISECOND) for high in (10, 0))
+        yield f"{name}, each sample a trigger, pulses that pause", hard, "no pulses", quiet, 3
     for name, form in FORMS["nested"].items():
         hard, quiet = (Stream(HEAD + form.format(long=n, short=n // 5), some) for n in (1000, 10))
         yield f"nested: {name}, 1,000 samples", hard, "10 samples", quiet, 3

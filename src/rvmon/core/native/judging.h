@@ -94,6 +94,7 @@ typedef struct {
     uint8_t *leaf;             /* by leaf, bits: 1, true in the worse reading; 2, in the better */
     uint8_t *next_leaf;        /* the leaves from position `turn` on */
     int64_t turn;
+    int64_t searched;          /* when it was last searched for a decision, or a letter came */
     int32_t visits;
     bool begun;
     bool parted;

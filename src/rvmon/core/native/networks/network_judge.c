@@ -8,9 +8,10 @@
 
 #include <string.h>
 
-/* How far to look ahead: a letter is expected to stay so many times as long as it has so far. So the
- * number of searches is logarithmic in how long it does, at little cost where it changes soon. */
-#define STAYS 16
+/* How far to look ahead: so many times as long as since the last search, or the last letter. So the
+ * number of searches is logarithmic in how long nothing happens, and where they come often, as new
+ * attempts or decisions do, none looks much further than the next. */
+#define FURTHER 4
 /* Letters between two prunings, whose cost they share. */
 #define TIDY_EVERY 8
 
@@ -117,11 +118,11 @@ int64_t earliest(const judging *g, int64_t now)
 /* Up to which instant to look ahead. */
 static int64_t ahead_of(const judging *g, int64_t now)
 {
-    const int64_t stayed = now - g->j->position;
+    const int64_t since = now - g->net->searched;
     if (g->f.gap == 0) {
         return now;
     }
-    return (stayed < LIMIT / (2 * STAYS)) ? least(now + STAYS * stayed, LIMIT - 1) : LIMIT - 1;
+    return (since < LIMIT / (2 * FURTHER)) ? least(now + FURTHER * since, LIMIT - 1) : LIMIT - 1;
 }
 
 /* Set a judge due at the next instant up to `until` at which an attempt is decided if the letter stays,
@@ -144,10 +145,11 @@ void network_foresee(run *r, int32_t index, int64_t now)
 }
 
 /* Let time come to `now`, with the letter as it is for positions up to `last`, and decide attempts on
- * the way, each at its instant. If letters are known up to `now`, look ahead to `until` at once. */
-static void pass(judging *g, int64_t now, int64_t last, int64_t until)
+ * the way, each at its instant. If letters are known up to `now`, look ahead for the next one. */
+static void pass(judging *g, int64_t now, int64_t last)
 {
     const bool complete = last == last_at(g, now); /* else the letter at `now` is still to be read */
+    int64_t decided = NEVER;
     if ((g->f.gap > 0) && complete) {
         const int64_t due = earliest(g, now);
         if (due > now) {
@@ -155,17 +157,25 @@ static void pass(judging *g, int64_t now, int64_t last, int64_t until)
             return;
         }
     }
-    while (g->j->first >= 0) {
-        const int64_t decided = step_to_decision(g, until, complete ? last_at(g, until) : last);
-        if (decided > now) {
-            unlearn_all(g);
-            set_due(g, !complete ? now : (decided < NEVER) ? decided : until + 1);
-            return;
+    do {
+        decided = (g->j->first < 0) ? NEVER : step_to_decision(g, now, last);
+        if (decided < NEVER) {
+            judge_added(g, decided);
+            set_due(g, decided);
         }
-        judge_added(g, decided);
-        set_due(g, decided);
+    } while (decided < NEVER);
+    if (g->j->first < 0) {
+        set_due(g, NEVER);
+    } else if (complete) {
+        const int64_t until = ahead_of(g, now);
+        g->net->searched = now;
+        set_due(g, now + 1);
+        if (until > now) {
+            foresee(g, until);
+        }
+    } else {
+        set_due(g, now);
     }
-    set_due(g, NEVER);
 }
 
 /* Let time come to `now`; `is_position`: the letter stays up to there, else it is unknown at `now`. */
@@ -173,8 +183,7 @@ void network_pass(run *r, int32_t index, int64_t now, bool is_position)
 {
     judging g = judging_of(r, index);
     if (!is_given_up(&g)) {
-        pass(&g, now, last_at(&g, is_position ? now : now - 1),
-             is_position ? ahead_of(&g, now) : now);
+        pass(&g, now, last_at(&g, is_position ? now : now - 1));
     }
 }
 
@@ -235,13 +244,14 @@ static void come_to(judging *g, int64_t t)
     } else if (g->j->position == t) {
         return;
     } else if ((g->f.gap > 0) && !changed) {
-        pass(g, t, position, ahead_of(g, t));
+        pass(g, t, position);
         return;
     } else {
         position = (g->f.gap > 0) ? position : w->last + 1;
         prune_sometimes(g, position);
     }
     g->j->position = t;
+    g->net->searched = t;
     g->j->restless = false;
     if (g->f.gap == 0) {
         set_restless(g->r, g->index);
@@ -263,7 +273,7 @@ static void come_to(judging *g, int64_t t)
         /* Something may have been decided before `t`, by the letter of before: undo, and find that. */
         unlearn_all(g);
         g->net->turn = NEVER;
-        pass(g, t - 1, position - 1, t - 1);
+        pass(g, t - 1, position - 1);
         g->net->turn = position;
         learn_all(g, t, position);
     }

@@ -350,6 +350,7 @@ void carry_networks(carrier *c, const form *f, networks **own)
         net->begun = true;
     }
     carry_bytes(c, net->leaf, f->form->leaves, 3);
+    carry_long(c, &net->searched, -LIMIT, LIMIT);
     carry_int(c, &net->visits, 0, MOST / 2);
     carry_flag(c, &net->parted);
     for (i = 0; (i < (net->parted ? 2 : 1)) && !is_lost(c); i++) {
