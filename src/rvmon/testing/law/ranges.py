@@ -1,28 +1,36 @@
-"""The robustness of formulas of the present and past as intervals, from its definition."""
+"""The robustness of formulas as intervals, from its definition."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 from itertools import product
 
 from rvmon.language.checked.formula import (
     Amount,
     Binary,
-    BinaryOp,
     Compare,
     CompareOp,
     Formula,
     Interval,
     Unary,
-    UnaryOp,
     windows_in,
 )
 from rvmon.testing.law.numbers import events_of, number
-from rvmon.testing.law.past import is_within, lasted
-from rvmon.testing.law.truths import EVER, Truths
-from rvmon.testing.law.word import Letter, Truth, Word, conjunction, negation
+from rvmon.testing.law.operators import At, Operators
+from rvmon.testing.law.syntax import is_composed
+from rvmon.testing.law.truths import Truths
+from rvmon.testing.law.word import (
+    Letter,
+    Rest,
+    Truth,
+    Word,
+    conjunction,
+    disjunction,
+    negation,
+    truth_of,
+)
 from rvmon.trace.sample import Payload, Scalar
 
 Range = tuple[float, float]
@@ -31,6 +39,8 @@ Range = tuple[float, float]
 TOP: Range = (math.inf, math.inf)
 BOTTOM: Range = (-math.inf, -math.inf)
 ANY: Range = (-math.inf, math.inf)
+AS_UNBORN = (BOTTOM, ANY, TOP)
+"""The ranges of what is UNBORN, read as FALSE, as UNKNOWN, and as TRUE."""
 OF_TRUTH = {Truth.FALSE: BOTTOM, Truth.UNKNOWN: ANY, Truth.TRUE: TOP}
 
 
@@ -52,212 +62,197 @@ def most(values: Iterable[Range]) -> Range:
 
 
 @dataclass(frozen=True, slots=True)
-class Operand:
-    """A formula at a position.
+class Margin:
+    """The robustness of a formula at a position.
 
     Attributes:
         state: its truth, UNBORN included.
-        read: gives its robustness; the argument is the truth that UNBORN is read as.
+        ranges: its range if UNBORN is read as FALSE, as UNKNOWN, and as TRUE.
     """
 
     state: Truth
-    read: Callable[[Truth], Range]
+    ranges: tuple[Range, Range, Range]
 
 
-class Past:
-    """The robustness of formulas of the present and past at the positions of a word.
+class Margins(Operators[Margin]):
+    """The robustness of formulas at the positions of a word.
 
     Args:
         word: the trace.
         captured: values of `let` and `for each`.
         first: the first sure position; before it, letters may be anything; 0: nothing is before it.
+        rest: the assumption about pending operators.
         held: whether time is held: then measures that change between samples have no distance.
+        favour: whether an unborn proposition counts as met; else it is UNKNOWN.
 
     Source: SEMANTICS, sections 1 (Birth), 2 and 5; decision record 4.
     """
 
     def __init__(
-        self, word: Word, captured: Mapping[str, Scalar], first: int, *, held: bool
+        self,
+        word: Word,
+        captured: Mapping[str, Scalar],
+        first: int,
+        rest: Rest,
+        *,
+        held: bool,
+        favour: bool,
     ) -> None:
-        self._letters = word.letters
-        self._held_time = held
-        self._first = first
+        super().__init__(word, rest)
         self._captured = captured
+        self._first = first
+        self._held_time = held
+        self._favour = favour
         self._truths = Truths(word, captured)
-        self._known: dict[tuple[int, int, Truth], Range] = {}
+        self._found: dict[tuple[int, int, bool], Margin] = {}
+        self._states: dict[tuple[int, int], Margin] = {}
 
-    def range(self, formula: Formula, i: int, unborn: Truth) -> Range:
-        """The robustness at a position; UNBORN is read as `unborn`."""
-        key = (id(formula), i, unborn)
-        if key not in self._known:
-            self._known[key] = self._range(formula, i, unborn)
-        return self._known[key]
+    def required(self, formula: Formula, i: int) -> Range:
+        """The robustness of a formula that is required at a position."""
+        return self._required(formula, i, True).ranges[Truth.UNKNOWN]
 
-    def _operand(self, formula: Formula, i: int) -> Operand:
-        return Operand(
-            self._truths.state(formula, i), lambda unborn: self.range(formula, i, unborn)
-        )
+    def _required(self, formula: Formula, i: int, positive: bool) -> Margin:
+        key = (id(formula), i, positive)
+        if key not in self._found:
+            inside = i >= self._first
+            self._found[key] = self._margin(formula, i, positive) if inside else _always(ANY)
+        return self._found[key]
 
-    def _range(self, formula: Formula, i: int, unborn: Truth) -> Range:
-        state = self._truths.state(formula, i)
+    def _margin(self, formula: Formula, i: int, positive: bool) -> Margin:
+        if is_composed(formula):
+
+            def sub(part: Formula, k: int, same: bool = True) -> Margin:
+                return self._required(part, k, positive is same)
+
+            return self.operator(formula, i, sub, positive=positive)
+        unborn = truth_of(positive) if self._favour else Truth.UNKNOWN
+        return _always(self.state(formula, i).ranges[unborn])
+
+    def state(self, formula: Formula, i: int) -> Margin:
+        """The robustness of a formula of the present and past; it may be UNBORN."""
+        key = (id(formula), i)
+        if key not in self._states:
+            truth = self._truths.state(formula, i)
+            found = self._state(formula, i, truth) if i >= self._first else _always(ANY)
+            self._states[key] = Margin(truth, found.ranges)
+        return self._states[key]
+
+    def _state(self, formula: Formula, i: int, truth: Truth) -> Margin:
         match formula:
-            case Unary():
-                return self._unary(formula, i, unborn)
-            case Binary():
-                return self._binary(formula, i, unborn)
-            case _ if state is Truth.UNBORN:
-                return OF_TRUTH[unborn]
+            case Unary() | Binary():
+                return self.operator(formula, i, lambda part, k, _=True: self.state(part, k))
+            case _ if truth is Truth.UNBORN:
+                return self.of_truth(truth)
             case Amount() if formula.has_distance(held=self._held_time):
                 return self._of_windows(formula.comparison, i)
             case Compare(left=left, right=right) if windows_in(left, right):
                 return self._of_windows(formula, i)
             case Compare():
-                return _compared(formula, self._letters[i], self._captured)
+                return _always(_compared(formula, self._letters[i], self._captured))
             case _:
-                return OF_TRUTH[state]
+                return self.of_truth(truth)
 
-    def _of_windows(self, formula: Compare, i: int) -> Range:
+    def _of_windows(self, formula: Compare, i: int) -> Margin:
         left, right = (self._truths.settled(side, i) for side in (formula.left, formula.right))
         settled = Compare(formula.op, left, right)
-        return _compared(settled, self._letters[i], self._captured)
+        return _always(_compared(settled, self._letters[i], self._captured))
 
-    def _unary(self, formula: Unary, i: int, unborn: Truth) -> Range:
-        operand, window = formula.operand, formula.interval or EVER
-        here = self._operand(operand, i)
-        is_unborn = self._truths.state(formula, i) is Truth.UNBORN
-        match formula.op:
-            case UnaryOp.NOT:
-                return _not(here).read(unborn)
-            case UnaryOp.PREVIOUS:
-                return self._before(operand, i).read(unborn)
-            case UnaryOp.RISE:
-                return _all([here, _not(_settled(self._before(operand, i)))]).read(unborn)
-            case UnaryOp.FALL:
-                return _all([_not(here), _settled(self._before(operand, i))]).read(unborn)
-            case UnaryOp.ONCE:
-                value = self._since(None, self._candidate(operand), i, window)
-                return _or_unborn(value, is_unborn, unborn)
-            case UnaryOp.HISTORICALLY:
-                value = self._since(None, self._candidate(operand, positive=False), i, window)
-                return negated(_or_unborn(value, is_unborn, negation(unborn)))
-            case UnaryOp.HELD:
-                return self._held(operand, i, window, unborn)
-            case _:
-                raise AssertionError("a future operator is no proposition")
+    def of_truth(self, truth: Truth) -> Margin:
+        """See `Operators`."""
+        return Margin(truth, AS_UNBORN) if truth is Truth.UNBORN else _always(OF_TRUTH[truth])
 
-    def _binary(self, formula: Binary, i: int, unborn: Truth) -> Range:
-        left, right = self._operand(formula.left, i), self._operand(formula.right, i)
-        match formula.op:
-            case BinaryOp.AND:
-                return _all([left, right]).read(unborn)
-            case BinaryOp.OR:
-                return _any([left, right]).read(unborn)
-            case BinaryOp.IMPLIES:
-                return _any([_not(left), right]).read(unborn)
-            case BinaryOp.IFF:
-                same = [_all([left, right]), _all([_not(left), _not(right)])]
-                return _any(same).read(unborn)
-            case BinaryOp.XOR:
-                other = [_all([left, _not(right)]), _all([_not(left), right])]
-                return _any(other).read(unborn)
-            case BinaryOp.SINCE:
-                window = formula.interval or EVER
-                value = self._since(formula.left, self._candidate(formula.right), i, window)
-                return self._unless_unborn(value, formula.right, i, window, unborn)
-            case _:
-                raise AssertionError("a future operator is no proposition")
+    def negation(self, value: Margin) -> Margin:
+        """See `Operators`."""
+        of_false, unknown, of_true = map(negated, value.ranges)
+        return Margin(negation(value.state), (of_true, unknown, of_false))
 
-    def _candidate(self, formula: Formula, *, positive: bool = True) -> Callable[[int], Range]:
-        """The robustness of the operand sought in a window, which UNBORN does not satisfy."""
-        if positive:
-            return lambda k: self.range(formula, k, Truth.FALSE)
-        return lambda k: negated(self.range(formula, k, Truth.TRUE))
+    def both(self, left: Margin, right: Margin) -> Margin:
+        """See `Operators`; next to an UNKNOWN operand, an unborn one does not make it FALSE."""
+        _, unknown, of_true = map(least, zip(left.ranges, right.ranges, strict=True))
+        truth = conjunction([left.state, right.state])
+        of_false = BOTTOM if _is_unborn(left, right) else unknown
+        return Margin(truth, (of_false, unknown, of_true))
 
-    def _since(
-        self, left: Formula | None, right: Callable[[int], Range], i: int, window: Interval
-    ) -> Range:
-        """The robustness of `since`; positions at which `left` is unborn are skipped."""
-        now = self._letters[i].instant
-        own = range(self._first, i + 1)
-        kept = [TOP if left is None else self.range(left, k, Truth.TRUE) for k in own]
+    def either(self, left: Margin, right: Margin) -> Margin:
+        """See `Operators`; next to an UNKNOWN operand, an unborn one does not make it TRUE."""
+        of_false, unknown, _ = map(most, zip(left.ranges, right.ranges, strict=True))
+        truth = disjunction([left.state, right.state])
+        of_true = TOP if _is_unborn(left, right) else unknown
+        return Margin(truth, (of_false, unknown, of_true))
+
+    def born_or_false(self, value: Margin) -> Margin:
+        """See `Operators`."""
+        state = Truth.FALSE if value.state is Truth.UNBORN else value.state
+        return _always(value.ranges[Truth.FALSE], state)
+
+    def previous(self, operand: At[Margin], i: int) -> Margin:
+        """See `Operators`."""
+        if i == 0:
+            return self.of_truth(Truth.FALSE)
+        before = operand(i - 1)
+        return _unless_unborn(before.ranges[Truth.FALSE], before.state)
+
+    def since(
+        self,
+        left: At[Margin],
+        right: At[Margin],
+        i: int,
+        interval: Interval,
+        *,
+        can_be_unborn: bool,
+    ) -> Margin:
+        """See `Operators`."""
+        kept = [left(k).ranges[Truth.TRUE] for k in range(i + 1)]
         ways = [
-            least([right(j), *kept[j + 1 - self._first :]])
-            for j in own
-            if is_within(now - self._letters[j].instant, window)
+            least([right(j).ranges[Truth.FALSE], *kept[j + 1 :]]) for j in self._window(i, interval)
         ]
-        if self.reaches_out(i, window):
+        if self._reaches_out(i, interval):
             ways.append(least([ANY, *kept]))
-        return most(ways)
+        states = {right(k).state for k in self._window(i, interval)}
+        return _of_window(most(ways), states, can_be_unborn)
 
-    def reaches_out(self, i: int, window: Interval) -> bool:
+    def held(
+        self, operand: At[Margin], i: int, interval: Interval, *, can_be_unborn: bool
+    ) -> Margin:
+        """See `Operators`."""
+        begun = OF_TRUTH[self._lasted(i, interval.high or 0)]
+        rest = ANY if self._reaches_out(i, interval) else TOP
+        values = [operand(k) for k in self._window(i, interval)]
+        value = least([begun, rest, *(value.ranges[Truth.FALSE] for value in values)])
+        return _of_window(value, {value.state for value in values}, can_be_unborn)
+
+    def _reaches_out(self, i: int, window: Interval) -> bool:
         """Whether a window of the past extends before the first sure position."""
         if self._first == 0:
             return False
         outside = self._letters[i].instant - self._letters[self._first - 1].instant
         return window.high is None or outside <= window.high
 
-    def _before(self, operand: Formula, i: int) -> Operand:
-        if i == 0:
-            return Operand(Truth.FALSE, lambda _: BOTTOM)
-        state = self._truths.state(operand, i - 1)
-        value = ANY if i == self._first else self.range(operand, i - 1, Truth.FALSE)
-        return Operand(state, lambda unborn: _or_unborn(value, state is Truth.UNBORN, unborn))
 
-    def _held(self, operand: Formula, i: int, window: Interval, unborn: Truth) -> Range:
-        now = self._letters[i].instant
-        own = range(self._first, i + 1)
-        inside = [k for k in own if is_within(now - self._letters[k].instant, window)]
-        begun = OF_TRUTH[lasted(self._letters, i, window.high or 0)]
-        rest = ANY if self.reaches_out(i, window) else TOP
-        value = least([begun, rest, *(self.range(operand, k, Truth.FALSE) for k in inside)])
-        return self._unless_unborn(value, operand, i, window, unborn)
-
-    def _unless_unborn(
-        self, value: Range, sought: Formula, i: int, window: Interval, unborn: Truth
-    ) -> Range:
-        """`value`, or that of UNBORN if the sought operand may be unborn throughout the window."""
-        now = self._letters[i].instant
-        states = {
-            self._truths.state(sought, k)
-            for k in range(i + 1)
-            if is_within(now - self._letters[k].instant, window)
-        }
-        if Truth.UNKNOWN in states and not states & {Truth.TRUE, Truth.FALSE}:
-            return most([value, ANY])
-        return _or_unborn(value, states == {Truth.UNBORN}, unborn)
+def _always(value: Range, state: Truth = Truth.UNKNOWN) -> Margin:
+    """A range, however UNBORN is read."""
+    return Margin(state, (value, value, value))
 
 
-def _or_unborn(value: Range, is_unborn: bool, unborn: Truth) -> Range:
-    """A range, raised to that of `unborn` if the formula is unborn."""
-    return most([value, OF_TRUTH[unborn]]) if is_unborn else value
+def _is_unborn(left: Margin, right: Margin) -> bool:
+    """Whether one of two operands is unborn, and the other one surely known or unborn, too."""
+    states = left.state, right.state
+    return Truth.UNBORN in states and Truth.UNKNOWN not in states
 
 
-def _settled(operand: Operand) -> Operand:
-    """The operand with UNBORN read as FALSE, as before the beginning of the trace."""
-    state = Truth.FALSE if operand.state is Truth.UNBORN else operand.state
-    return Operand(state, lambda _: operand.read(Truth.FALSE))
+def _unless_unborn(value: Range, state: Truth) -> Margin:
+    """A range, raised to that of UNBORN if that is the state."""
+    if state is not Truth.UNBORN:
+        return _always(value, state)
+    of_false, unknown, of_true = (most([value, unborn]) for unborn in AS_UNBORN)
+    return Margin(state, (of_false, unknown, of_true))
 
 
-def _not(operand: Operand) -> Operand:
-    return Operand(negation(operand.state), lambda unborn: negated(operand.read(negation(unborn))))
-
-
-def _any(parts: Sequence[Operand]) -> Operand:
-    return _not(_all([_not(part) for part in parts]))
-
-
-def _all(parts: Sequence[Operand]) -> Operand:
-    """The conjunction of parts; next to an UNKNOWN part, unborn ones do not make it FALSE."""
-    states = {part.state for part in parts}
-
-    def read(unborn: Truth) -> Range:
-        if unborn is not Truth.FALSE:
-            return least(part.read(unborn) for part in parts)
-        if Truth.UNBORN in states and Truth.UNKNOWN not in states:
-            return BOTTOM
-        return least(part.read(Truth.UNKNOWN) for part in parts)
-
-    return Operand(conjunction(states), read)
+def _of_window(value: Range, states: Set[Truth], can_be_unborn: bool) -> Margin:
+    """A range, or that of UNBORN if the sought operand may be unborn throughout the window."""
+    if can_be_unborn and Truth.UNKNOWN in states and not states & {Truth.TRUE, Truth.FALSE}:
+        return _always(most([value, ANY]))
+    return _unless_unborn(value, Truth.UNBORN if states == {Truth.UNBORN} else Truth.UNKNOWN)
 
 
 def _compared(comparison: Compare, letter: Letter, captured: Mapping[str, Scalar]) -> Range:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import TypeGuard
 
 from rvmon.language.checked.formula import (
     Amount,
@@ -74,11 +75,11 @@ def looks_back_at_future(formula: Formula) -> bool:
     )
 
 
-def is_proposition(formula: Formula) -> bool:
-    """Whether a formula has no future operator, and is no Boolean combination."""
+def is_composed(formula: Formula) -> TypeGuard[Unary | Binary]:
+    """Whether a formula is a Boolean combination, or has a future operator: no proposition."""
     if isinstance(formula, Unary | Binary):
-        return formula.op not in _BOOLEAN and not speaks_of_future(formula)
-    return True
+        return formula.op in _BOOLEAN or speaks_of_future(formula)
+    return False
 
 
 def intervals(formula: Formula) -> Iterator[Interval]:

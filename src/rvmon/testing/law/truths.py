@@ -1,18 +1,13 @@
-"""The truth of formulas after a prefix, computed from the definitions of their operators.
-
-The meaning of each operator is written here as SEMANTICS gives it, and not taken from the table of
-operators (`rvmon.language.checked.operators`), so that errors of the table are found.
-"""
+"""The truth of formulas after a prefix, computed from the definitions of their operators."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Protocol, assert_never
+from typing import assert_never
 
 from rvmon.language.checked.formula import (
     Amount,
     Binary,
-    BinaryOp,
     Bound,
     BoundAtom,
     Compare,
@@ -25,23 +20,12 @@ from rvmon.language.checked.formula import (
     ProbeAtom,
     SignalAtom,
     Unary,
-    UnaryOp,
     windows_in,
 )
 from rvmon.testing.law.amounts import UNKNOWN, Past
 from rvmon.testing.law.numbers import as_ticks, compare, number
-from rvmon.testing.law.past import (
-    Operand,
-    always_false,
-    always_true,
-    held,
-    historically,
-    inverted,
-    is_within,
-    since,
-    unless_constant,
-)
-from rvmon.testing.law.syntax import is_proposition, speaks_of_future
+from rvmon.testing.law.operators import At, Operators, is_within
+from rvmon.testing.law.syntax import is_composed
 from rvmon.testing.law.word import (
     Rest,
     Truth,
@@ -58,10 +42,8 @@ from rvmon.testing.law.word import (
 )
 from rvmon.trace.sample import Scalar
 
-EVER = Interval(0, None)
 
-
-class Truths:
+class Truths(Operators[Truth]):
     """The truth of formulas at positions of a word, after a prefix of it.
 
     A truth other than UNKNOWN is final: it stays the same for longer prefixes, so it is cached.
@@ -75,6 +57,11 @@ class Truths:
     Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
     """
 
+    negation = staticmethod(negation)
+    both = staticmethod(both)
+    either = staticmethod(either)
+    born_or_false = staticmethod(born_or_false)
+
     def __init__(
         self,
         word: Word,
@@ -83,16 +70,12 @@ class Truths:
         *,
         favour: bool = False,
     ) -> None:
-        self._letters = word.letters
-        self._end = word.end
+        super().__init__(word, rest)
         self._captured = captured
-        self._rest = rest
         self._favour = favour
         self._settled: dict[tuple[int, int, bool], Truth] = {}
         self._pending: dict[tuple[int, int, bool], Truth] = {}
         self._states: dict[tuple[int, int], Truth] = {}
-        self._reached = word.reached
-        self._known = 0
         self.reach(word.reached)
 
     def reach(self, reached: int) -> None:
@@ -130,16 +113,16 @@ class Truths:
         return value
 
     def _truth(self, formula: Formula, i: int, positive: bool) -> Truth:
-        if is_proposition(formula):
-            value = self.state(formula, i)
-            if value is not Truth.UNBORN:
-                return value
-            return truth_of(positive) if self._favour else Truth.UNKNOWN
+        if is_composed(formula):
 
-        def sub(part: Formula, k: int, same: bool = True) -> Truth:
-            return self.truth(part, k, positive=positive is same)
+            def sub(part: Formula, k: int, same: bool = True) -> Truth:
+                return self.truth(part, k, positive=positive is same)
 
-        return self._composed(formula, i, positive, sub)
+            return self.operator(formula, i, sub, positive=positive)
+        value = self.state(formula, i)
+        if value is not Truth.UNBORN:
+            return value
+        return truth_of(positive) if self._favour else Truth.UNKNOWN
 
     def state(self, formula: Formula, i: int) -> Truth:
         """The truth of a formula of the present and past at a position; it may be UNBORN.
@@ -177,7 +160,7 @@ class Truths:
                     raise ValueError("`end` stands alone as a trigger, never inside a formula")
                 return self._is_first(i)
             case Unary() | Binary():
-                return self._composed(formula, i, True, lambda part, k, _=True: self.state(part, k))
+                return self.operator(formula, i, lambda part, k, _=True: self.state(part, k))
             case Amount():
                 return Past(self._letters, self._captured, self.state).truth(formula, i)
             case Passed():
@@ -208,171 +191,37 @@ class Truths:
         before = {letter.sure for letter in self._letters[:i]}
         return Truth.FALSE if True in before else Truth.UNKNOWN if before else Truth.TRUE
 
-    def release_rest(self, opened: bool) -> Truth:
-        """The assumed truth of a pending unbounded `R`; `opened`: whether its window has opened."""
-        match self._rest:
-            case Rest.UNKNOWN:
-                return Truth.UNKNOWN
-            case Rest.END:
-                return Truth.TRUE if opened else Truth.UNKNOWN
-            case Rest.WEAK:
-                return Truth.TRUE
-            case Rest.STRONG:
-                return Truth.FALSE
+    def of_truth(self, truth: Truth) -> Truth:
+        """The truth itself."""
+        return truth
 
-    def _other_rest(self) -> Truth:
-        """The assumed truth of any other pending operator."""
-        return self.release_rest(opened=False)
+    def previous(self, operand: At[Truth], i: int) -> Truth:
+        """See `Operators`."""
+        return operand(i - 1) if i else Truth.FALSE
 
-    def _composed(self, formula: Formula, i: int, positive: bool, sub: Sub) -> Truth:
-        """The truth of an operator from the truths of its operands."""
-        match formula:
-            case Unary():
-                return self._unary(formula, i, positive, sub)
-            case Binary():
-                return self._binary(formula, i, positive, sub)
-            case _:
-                raise AssertionError("atoms are not composed")
-
-    def _unary(self, formula: Unary, i: int, positive: bool, sub: Sub) -> Truth:
-        interval = formula.interval or EVER
-
-        def operand(k: int) -> Truth:
-            return sub(formula.operand, k)
-
-        def negated(k: int) -> Truth:
-            return negation(sub(formula.operand, k, False))
-
-        match formula.op:
-            case UnaryOp.NOT:
-                return negated(i)
-            case UnaryOp.NEXT:
-                return self._next(operand, i, positive)
-            case UnaryOp.EVENTUALLY:
-                return self._until(always_true, operand, i, interval, positive)
-            case UnaryOp.ALWAYS:
-                return self._release(always_false, operand, i, interval, positive)
-            case UnaryOp.PREVIOUS:
-                return operand(i - 1) if i else Truth.FALSE
-            case UnaryOp.ONCE:
-                return since(self._letters, always_true, operand, i, interval)
-            case UnaryOp.HISTORICALLY:
-                return historically(self._letters, operand, i, interval)
-            case UnaryOp.HELD:
-                can_be_unborn = not speaks_of_future(formula.operand)
-                return held(self._letters, operand, i, interval, can_be_unborn=can_be_unborn)
-            case UnaryOp.RISE:  # φ and not previous φ
-                before = born_or_true(negated(i - 1)) if i else Truth.TRUE
-                return conjunction([operand(i), before])
-            case UnaryOp.FALL:  # not φ and previous φ
-                before = born_or_false(operand(i - 1)) if i else Truth.FALSE
-                return conjunction([negated(i), before])
-            case _:
-                assert_never(formula.op)
-
-    def _binary(self, formula: Binary, i: int, positive: bool, sub: Sub) -> Truth:
-        interval = formula.interval or EVER
-
-        def left(k: int) -> Truth:
-            return sub(formula.left, k)
-
-        def right(k: int) -> Truth:
-            return sub(formula.right, k)
-
-        def not_left(k: int) -> Truth:
-            return negation(sub(formula.left, k, False))
-
-        def not_right(k: int) -> Truth:
-            return negation(sub(formula.right, k, False))
-
-        match formula.op:
-            case BinaryOp.AND:
-                return conjunction([left(i), right(i)])
-            case BinaryOp.OR:
-                return disjunction([left(i), right(i)])
-            case BinaryOp.IMPLIES:
-                return disjunction([not_left(i), right(i)])
-            case BinaryOp.IFF:
-                same = conjunction([left(i), right(i)])
-                return disjunction([same, conjunction([not_left(i), not_right(i)])])
-            case BinaryOp.XOR:
-                one = conjunction([left(i), not_right(i)])
-                return disjunction([one, conjunction([not_left(i), right(i)])])
-            case BinaryOp.UNTIL:
-                lasting = unless_constant(formula.left, left, Truth.TRUE)
-                return self._until(lasting, right, i, interval, positive)
-            case BinaryOp.RELEASE:
-                lasting = unless_constant(formula.left, left, Truth.FALSE)
-                return self._release(lasting, right, i, interval, positive)
-            case BinaryOp.WEAK_UNTIL:  # ψ R (φ | ψ)
-                lasting = unless_constant(formula.right, right, Truth.FALSE)
-                return self._release(
-                    lasting, lambda k: disjunction([left(k), right(k)]), i, interval, positive
-                )
-            case BinaryOp.STRONG_RELEASE:  # ψ U (φ & ψ)
-                lasting = unless_constant(formula.right, right, Truth.TRUE)
-                return self._until(
-                    lasting, lambda k: conjunction([left(k), right(k)]), i, interval, positive
-                )
-            case BinaryOp.SINCE:
-                lasting = unless_constant(formula.left, left, Truth.TRUE)
-                can_be_unborn = not speaks_of_future(formula)
-                return since(
-                    self._letters, lasting, right, i, interval, can_be_unborn=can_be_unborn
-                )
-            case _:
-                assert_never(formula.op)
-
-    def _next(self, operand: Operand, i: int, positive: bool) -> Truth:
-        if i + 1 < self._known:
-            return operand(i + 1)
-        rest = self._other_rest()
-        return rest if positive else negation(rest)
-
-    def _until(
-        self, left: Operand, right: Operand, i: int, interval: Interval, positive: bool
+    def since(
+        self, left: At[Truth], right: At[Truth], i: int, interval: Interval, *, can_be_unborn: bool
     ) -> Truth:
-        """`left U right`: in negation normal form an `R` if it stands below a negation."""
-        if positive:
-            return self._some(left, right, i, interval, self._other_rest())
-        rest = self._rest_of_release(i, interval)
-        return self._some(left, right, i, interval, negation(rest))
-
-    def _release(
-        self, left: Operand, right: Operand, i: int, interval: Interval, positive: bool
-    ) -> Truth:
-        """`left R right` = `!(!left U !right)`."""
-        rest = self._rest_of_release(i, interval) if positive else negation(self._other_rest())
-        until = self._some(inverted(left), inverted(right), i, interval, negation(rest))
-        return negation(until)
-
-    def _rest_of_release(self, i: int, interval: Interval) -> Truth:
-        if interval.high is not None:
-            return self._other_rest()
-        opens = self._letters[i].instant + interval.low
-        return self.release_rest(opened=self._end is not None and opens <= self._end)
-
-    def _some(
-        self, left: Operand, right: Operand, i: int, interval: Interval, rest: Truth
-    ) -> Truth:
-        """Some position of the window has `right`, and all before it, from `i` on, have `left`.
-
-        As long as the window is not over, that position may be yet to come: then `rest` counts.
-        """
+        """See `Operators`."""
+        shows_birth = {Truth.TRUE, Truth.FALSE} if can_be_unborn else {*Truth} - {Truth.UNBORN}
         now = self._letters[i].instant
         value, so_far = Truth.FALSE, Truth.TRUE
-        for j in range(i, self._known):
-            if is_within(self._letters[j].instant - now, interval):
-                value = either(value, both(so_far, right(j)))
-            so_far = both(so_far, left(j))
-            if value is Truth.TRUE or so_far is Truth.FALSE:
+        seen: set[Truth] = set()
+        for j in range(i, -1, -1):
+            if is_within(now - self._letters[j].instant, interval):
+                there = right(j)
+                seen.add(there)
+                if there is not Truth.UNBORN:
+                    value = either(value, both(so_far, there))
+            so_far = both(so_far, born_or_true(left(j)))
+            if value is Truth.TRUE or (so_far is Truth.FALSE and seen & shows_birth):
                 return value
-        over = interval.high is not None and self._reached > now + interval.high
-        return value if over else disjunction([value, conjunction([so_far, rest])])
+        return disjunction(seen) if seen and not seen & shows_birth else value
 
-
-class Sub(Protocol):
-    """Gives the truth of an operand at a position; `same`: no negation stands above it."""
-
-    def __call__(self, part: Formula, k: int, same: bool = True, /) -> Truth:
-        """Evaluate the operand."""
+    def held(self, operand: At[Truth], i: int, interval: Interval, *, can_be_unborn: bool) -> Truth:
+        """See `Operators`."""
+        values = [operand(k) for k in self._window(i, interval)]
+        if can_be_unborn and not {Truth.TRUE, Truth.FALSE}.intersection(values):
+            return disjunction(values)
+        long_enough = self._lasted(i, interval.high or 0)
+        return conjunction([long_enough, *map(born_or_false, values)])
