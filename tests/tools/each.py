@@ -15,7 +15,8 @@ Test = Callable[..., None]
 def each(names: str | Sequence[str], cases: Iterable[Any]) -> Callable[[Test], Test]:
     """A test of all cases, one after the other, instead of a test for each.
 
-    They share its fixtures, and the first that fails ends it, with a note that names it.
+    They share its fixtures. All are tried; each that fails has a note that names it, and several
+    are raised as a group.
 
     Args:
         names: of the arguments that a case is, as `pytest.mark.parametrize` takes them.
@@ -28,13 +29,18 @@ def each(names: str | Sequence[str], cases: Iterable[Any]) -> Callable[[Test], T
     def decorated(test: Test) -> Test:
         @wraps(test)
         def run(**fixtures: Any) -> None:
+            failed: list[BaseException] = []
             for number, row in enumerate(rows, 1):
                 try:
                     test(**fixtures, **dict(zip(given, row.values, strict=True)))
-                except BaseException as error:
+                except (Exception, pytest.fail.Exception) as error:  # noqa: BLE001 - raised below
                     name = row.id or ", ".join(map(repr, row.values))
                     error.add_note(f"case {number} of {len(rows)}: {name}")
-                    raise
+                    failed.append(error)
+            if len(failed) > 1:
+                raise BaseExceptionGroup(f"{len(failed)} of {len(rows)} cases failed", failed)
+            for error in failed:
+                raise error
 
         own = inspect.signature(test)
         kept = [one for name, one in own.parameters.items() if name not in given]
