@@ -8,14 +8,14 @@ Source: Bryant, Graph-based algorithms for Boolean function manipulation, 1986.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from enum import Enum
 from typing import TypeAlias
 
 from msgspec import Struct
 
 from rvmon.logic.formula import Core, Literal, Sense, literals
-from rvmon.logic.residual import FAILS, HOLDS, Atom, Residual, substitute
+from rvmon.logic.residual import Atom, Residual, decided
 from rvmon.logic.state_formula import State
 
 
@@ -184,12 +184,17 @@ class Node(Struct, frozen=True, eq=False):
     edge: Edge | None = None
 
 
+Choice = tuple[int, frozenset[Atom], list[frozenset[Atom]]]
+"""A proposition by its place in the alphabet, its literals, and those that are true per digit."""
+
+
 class Diagrams:
     """All diagrams of one construction; the last proposition of the alphabet is decided first."""
 
     def __init__(self, alphabet: Alphabet) -> None:
         self.alphabet = alphabet
         self._known: dict[tuple[int, tuple[Node, ...], Edge | None], Node] = {}
+        self._choices: dict[frozenset[Atom], list[Choice]] = {}
 
     def of(self, opened: Residual, leaf: Callable[[Residual], Edge]) -> Node:
         """The diagram of a residual in which literals are still open.
@@ -198,42 +203,53 @@ class Diagrams:
             opened: a residual with literals as atoms.
             leaf: the edge that belongs to a residual without literals.
         """
-        return self._of(opened, leaf, len(self.alphabet.propositions) - 1, {})
+        atoms = frozenset[Atom]().union(*opened)
+        read = frozenset(atom for atom in atoms if isinstance(atom[0], Literal))
+        choices = self._choices.get(read)
+        if choices is None:
+            choices = self._choices[read] = list(self._choices_among(read))
+        return self._of(opened, leaf, choices, len(choices) - 1, {})
+
+    def _choices_among(self, read: frozenset[Atom]) -> Iterator[Choice]:
+        senses: dict[State, dict[Atom, Sense]] = {}
+        for atom in read:
+            if isinstance(literal := atom[0], Literal):
+                senses.setdefault(literal.proposition, {})[atom] = literal.sense
+        pairs = zip(self.alphabet.propositions, self.alphabet.truths, strict=True)
+        for level, (proposition, truths) in enumerate(pairs):
+            if own := senses.get(proposition):
+                true = [
+                    frozenset(atom for atom, sense in own.items() if holds(sense, truth))
+                    for truth in truths
+                ]
+                yield level, frozenset(own), true
 
     def _of(
         self,
         opened: Residual,
         leaf: Callable[[Residual], Edge],
-        level: int,
-        made: dict[tuple[Residual, int], Node],
+        choices: list[Choice],
+        place: int,
+        made: dict[Residual, Node],
     ) -> Node:
-        if level < 0:
-            return self._node(-1, (), leaf(opened))
-        key = (opened, level)
-        found = made.get(key)
+        found = made.get(opened)
         if found is not None:
             return found
-        proposition = self.alphabet.propositions[level]
-        read: dict[Atom, Sense] = {
-            (node, clock): node.sense
-            for clause in opened
-            for node, clock in clause
-            if isinstance(node, Literal) and node.proposition is proposition
-        }
-        if not read:
-            result = self._of(opened, leaf, level - 1, made)
+        while place >= 0 and all(map(choices[place][1].isdisjoint, opened)):
+            place -= 1
+        if place < 0:
+            found = self._node(-1, (), leaf(opened))
         else:
-            children = []
-            for truth in self.alphabet.truths[level]:
-                values = {
-                    atom: HOLDS if holds(sense, truth) else FAILS for atom, sense in read.items()
-                }
-                children.append(self._of(substitute(opened, values), leaf, level - 1, made))
+            level, atoms, trues = choices[place]
+            children = tuple(
+                self._of(decided(opened, true, atoms - true), leaf, choices, place - 1, made)
+                for true in trues
+            )
             first = children[0]
             same = all(child is first for child in children)
-            result = first if same else self._node(level, tuple(children), None)
-        made[key] = result
-        return result
+            found = first if same else self._node(level, children, None)
+        made[opened] = found
+        return found
 
     def _node(self, level: int, children: tuple[Node, ...], edge: Edge | None) -> Node:
         key = (level, children, edge)

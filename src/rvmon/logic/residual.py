@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import lru_cache
 
-from rvmon.logic.formula import Literal, Next, Release, Until
+from rvmon.logic.formula import Core, Literal, Next, Release, Until
 
 NO_CLOCK = -1
 """The clock of an atom that does not depend on when it was instantiated."""
@@ -93,37 +93,48 @@ def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
 
 def _conjunction(clause: Clause) -> Clause:
     """The conjunction without atoms that others in it imply."""
-    implied = [atom for atom in clause.difference(_rigid(clause)) if _follows(atom, clause)]
+    if len(frozenset(map(_family, clause))) == len(clause):  # no atom implies another
+        return clause
+    implied = [atom for atom in clause if _follows(atom, clause)]
     return clause.difference(implied) if implied else clause
 
 
 @lru_cache(_KEPT)
 def _reduced(clauses: Residual) -> Residual:
     """The residual of clauses without implied atoms: clauses that imply another one are dropped."""
+    if len(clauses) < 2:
+        return clauses
     # Shortest first: mostly the shorter clause is the implied one, and a longer one goes at once.
-    # Not always: `_follows` lets a short clause imply a longer one, so kept ones are looked at
-    # again.
     ordered = sorted(clauses, key=len)
-    if ordered and not ordered[0]:
+    if not ordered[0]:
         return HOLDS
     kept: list[Clause] = []
-    rigid: dict[Clause, Clause] = {}
+    atoms = frozenset[Atom]().union(*ordered)
+    if len(frozenset(map(_family, atoms))) == len(atoms):  # no atom implies another
+        for clause in ordered:
+            if not any(map(clause.issuperset, kept)):
+                kept.append(clause)
+        return frozenset(kept)
+    families: dict[Clause, frozenset[Atom | Core]] = {}
     for clause in ordered:
         if any(map(clause.issuperset, kept)):
             continue
-        rigid[clause] = _rigid(clause)
-        # The subset test is cheap and settles most pairs; `_clause_implies` is quadratic in the
+        own = families[clause] = frozenset(map(_family, clause))
+        # The subset tests are cheap and settle most pairs; `_clause_implies` is quadratic in the
         # atoms.
-        if not any(rigid[one] <= clause and _clause_implies(clause, one) for one in kept):
-            own = rigid[clause]
-            kept = [one for one in kept if not (own <= one and _clause_implies(one, clause))]
+        if not any(families[one] <= own and _clause_implies(clause, one) for one in kept):
+            # `_follows` lets a short clause imply a longer one, so kept ones are looked at again.
+            kept = [
+                one for one in kept if not (own <= families[one] and _clause_implies(one, clause))
+            ]
             kept.append(clause)
     return frozenset(kept)
 
 
-def _rigid(clause: Clause) -> Clause:
-    """The atoms that no other atom implies; a clause that implies this one must contain them."""
-    return frozenset([atom for atom in clause if not isinstance(atom[0], (Until, Release))])
+def _family(atom: Atom) -> Atom | Core:
+    """What an atom has in common with those that may imply it."""
+    node = atom[0]
+    return node.opened or node if isinstance(node, Until | Release) else atom
 
 
 def _clause_implies(strong: Clause, weak: Clause) -> bool:
@@ -150,6 +161,12 @@ def substitute(
         if limit is not None and len(found) > limit:
             found = set(_reduced(frozenset(found)))
     return _reduced(frozenset(found))
+
+
+def decided(residual: Residual, true: Clause, false: Clause) -> Residual:
+    """The residual in which some of its atoms are true and others false."""
+    left = filter(false.isdisjoint, residual)
+    return _reduced(frozenset(clause.difference(true) for clause in left))
 
 
 def _by_number(atom: Atom) -> tuple[int, int]:
