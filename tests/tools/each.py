@@ -39,8 +39,8 @@ def each(names: str | Sequence[str], cases: Iterable[Any]) -> Callable[[Test], T
                     failed.append(error)
             if len(failed) > 1:
                 raise BaseExceptionGroup(f"{len(failed)} of {len(rows)} cases failed", failed)
-            for error in failed:
-                raise error
+            for only in failed:
+                raise only
 
         own = inspect.signature(test)
         kept = [one for name, one in own.parameters.items() if name not in given]
