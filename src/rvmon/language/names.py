@@ -14,10 +14,10 @@ from typing import TypeVar
 from msgspec import Struct
 from msgspec.structs import replace
 
-from rvmon.diagnostics import Diagnostic, Source, Span
+from rvmon.diagnostics import Diagnostic, Source
 from rvmon.language.checked.functions import FUNCTIONS
 from rvmon.language.checked.names_read import names_of_spec
-from rvmon.language.checked.specification import CheckedSpec, Event, Role, Signal
+from rvmon.language.checked.specification import CheckedSpec, Event, Signal
 from rvmon.language.rules import Findings
 from rvmon.language.rules import names as rules
 from rvmon.language.rules import requirements as trigger_rules
@@ -25,26 +25,7 @@ from rvmon.language.syntax import items
 from rvmon.language.syntax.expressions import Call, Expression, Ident, Name, expressions_in
 from rvmon.language.syntax.parse import parse_expression
 
-
-class DeclaredSignal(Struct, frozen=True):
-    """One signal of an item."""
-
-    name: Ident
-    type: items.TypeSyntax
-    role: Role | None
-    ignored: Span | None
-    stale_after: Expression | None
-
-
-class DeclaredEvent(Struct, frozen=True):
-    """One event of an item."""
-
-    name: Ident
-    event: items.EventSyntax
-    role: Role | None
-
-
-Declared = DeclaredSignal | DeclaredEvent | items.DefineItem | items.ConstItem
+Declared = items.SignalSyntax | items.EventSyntax | items.DefineItem | items.ConstItem
 
 
 class ResolvedSpec(Struct, frozen=True):
@@ -133,14 +114,9 @@ class _Resolver:
                 if earlier is not item:
                     word = item.span.text.split(maxsplit=1)[0]
                     self._findings.add(rules.double_item(word, item.span, earlier.span))
-            case items.SignalItem(names=names):
-                for name in names:
-                    self._declare(
-                        DeclaredSignal(name, item.type, item.role, item.ignored, item.stale_after)
-                    )
-            case items.EventItem(events=events):
-                for event in events:
-                    self._declare(DeclaredEvent(event.name, event, item.role))
+            case items.Declarations(each=each):
+                for declared in each:
+                    self._declare(declared)
             case items.DefineItem(parameters=parameters):
                 for parameter, other in combinations(parameters or (), 2):
                     if parameter.text == other.text:

@@ -28,7 +28,7 @@ from rvmon.diagnostics import Diagnostic, Severity, Source, Span
 from rvmon.files import cache_folder, write_whole
 from rvmon.language.compile import Compilation, compilation
 from rvmon.language.syntax.expressions import Ident
-from rvmon.language.syntax.items import EventItem, ImportItem, Item, SignalItem
+from rvmon.language.syntax.items import Declarations, ImportItem, Item, SignalSyntax
 from rvmon.language.syntax.keywords import split_items
 from rvmon.texts import proposed, shown
 
@@ -283,18 +283,14 @@ def _address(source: Source) -> str:
 
 
 def _declared(item: Item) -> list[Ident]:
-    match item:
-        case SignalItem(names=names):
-            return list(names)
-        case EventItem(events=events):
-            return [event.name for event in events]
-        case _:
-            return [item.name] if hasattr(item, "name") else []
+    if isinstance(item, Declarations):
+        return [one.name for one in item.each]
+    return [item.name] if hasattr(item, "name") else []
 
 
 def _detail(item: Item) -> str:
-    if isinstance(item, SignalItem):
-        return item.type.span.text
+    if isinstance(item, Declarations) and isinstance(item.each[0], SignalSyntax):
+        return item.each[0].type.span.text
     return getattr(item, "text", "")
 
 

@@ -15,15 +15,15 @@ from rvmon.language.syntax.items import (
     CoverItem,
     CoverpointItem,
     CrossItem,
+    Declarations,
     DefineItem,
-    EventItem,
+    EventSyntax,
     ForEachClause,
     Item,
     LetClause,
     ParsedSpec,
     PropertyItem,
     RequirementItem,
-    SignalItem,
     TypeSyntax,
 )
 
@@ -148,15 +148,14 @@ class Names:
 
     def _declare(self, item: Item) -> None:
         match item:
-            case SignalItem(names=names):
-                for name in names:
-                    self._add(name.text, name, item)
-                    self.types.setdefault(name.text, item.type)
-            case EventItem(events=events):
-                for event in events:
-                    self._add(event.name.text, event.name, item)
-                    for field in event.fields:
-                        key = f"{event.name.text}.{field.name.text}"
+            case Declarations(each=each):
+                for one in each:
+                    self._add(one.name.text, one.name, item)
+                    if not isinstance(one, EventSyntax):
+                        self.types.setdefault(one.name.text, one.type)
+                        continue
+                    for field in one.fields:
+                        key = f"{one.name.text}.{field.name.text}"
                         self._add(key, field.name, item)
                         self.types.setdefault(key, field.type)
             case DefineItem(name=name) | ConstItem(name=name):

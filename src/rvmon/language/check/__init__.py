@@ -19,12 +19,19 @@ from rvmon.language.checked.specification import (
     TimeModel,
     Type,
 )
-from rvmon.language.names import DeclaredEvent, DeclaredSignal, ResolvedSpec, find_cycles
+from rvmon.language.names import ResolvedSpec, find_cycles
 from rvmon.language.rules import Findings
 from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import types as type_rules
 from rvmon.language.syntax.expressions import Expression, Name, expressions_in
-from rvmon.language.syntax.items import ConstItem, CoverMonitor, DefineItem, TypeSyntax
+from rvmon.language.syntax.items import (
+    ConstItem,
+    CoverMonitor,
+    DefineItem,
+    EventSyntax,
+    SignalSyntax,
+    TypeSyntax,
+)
 from rvmon.trace.schema import Kind
 from rvmon.units import Unit, UnknownUnitError, parse_unit
 
@@ -40,7 +47,7 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
     checker = Checker(table, findings, sum(len(source.text) for source in spec.sources))
     signals = dict(table.signals)
     for declared in spec.declared.values():
-        if isinstance(declared, DeclaredSignal) and declared.stale_after is not None:
+        if isinstance(declared, SignalSyntax) and declared.stale_after is not None:
             name = declared.name.text
             if name in signals:
                 what = "the age at which a signal is stale"
@@ -108,7 +115,7 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
     units: dict[str, Unit] = {}
     for name, declared in spec.declared.items():
         match declared:
-            case DeclaredSignal():
+            case SignalSyntax():
                 type_and_unit = _type(declared.type, findings)
                 if type_and_unit is not None:
                     type_, units[name] = type_and_unit
@@ -121,9 +128,9 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
                         ignores_nan=declared.ignored is not None,
                         span=declared.name.span,
                     )
-            case DeclaredEvent():
+            case EventSyntax():
                 fields = {}
-                for field in declared.event.fields:
+                for field in declared.fields:
                     # A signal may have a dotted name: `pick.id` would be ambiguous, signal or field
                     # of `pick`.
                     taken = spec.declared.get(f"{name}.{field.name.text}")

@@ -21,9 +21,9 @@ from rvmon.language.checked.formula import (
     since_trigger,
 )
 from rvmon.language.checked.specification import Capture, Event, Signal, TimeModel, Type
-from rvmon.language.names import Declared, DeclaredEvent, DeclaredSignal
+from rvmon.language.names import Declared
 from rvmon.language.syntax.expressions import Expression
-from rvmon.language.syntax.items import ConstItem, DefineItem
+from rvmon.language.syntax.items import ConstItem, DefineItem, EventSyntax, SignalSyntax
 from rvmon.texts import nearest
 from rvmon.units import PLAIN, Unit, unit_table
 
@@ -247,8 +247,8 @@ def close_name(table: Table, name: str, local: tuple[str, ...] = ()) -> str:
 def _described(table: Table, name: str) -> str:
     declared = table.declared.get(name)
     match declared:
-        case DeclaredSignal(role=role) | DeclaredEvent(role=role):
-            kind = "event" if isinstance(declared, DeclaredEvent) else "signal"
+        case SignalSyntax(role=role) | EventSyntax(role=role):
+            kind = "event" if isinstance(declared, EventSyntax) else "signal"
             parts = [kind, *([str(role)] if role else []), f"line {declared.name.span.line}"]
         case DefineItem() | ConstItem():
             kind = "define" if isinstance(declared, DefineItem) else "const"

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from msgspec import Struct
+from msgspec.structs import astuple
 
 from rvmon.diagnostics import Span
 from rvmon.language.checked.arithmetic import NumericOp
@@ -19,7 +20,11 @@ class Ident(Struct, frozen=True):
     span: Span
 
 
-class Number(Struct, frozen=True):
+class _Node(Struct, frozen=True):
+    """What an expression is made of; its parts stand in the order of the text."""
+
+
+class Number(_Node, frozen=True):
     """A number with its unit, "" if it has none; `value` is `None` if it is out of range."""
 
     value: Fraction | None
@@ -27,28 +32,28 @@ class Number(Struct, frozen=True):
     span: Span
 
 
-class Name(Struct, frozen=True):
+class Name(_Node, frozen=True):
     """A name of a signal, event, payload field, label, constant, macro or parameter."""
 
     text: str
     span: Span
 
 
-class Truth(Struct, frozen=True):
+class Truth(_Node, frozen=True):
     """`true` or `false`."""
 
     value: bool
     span: Span
 
 
-class Edge(Struct, frozen=True):
+class Edge(_Node, frozen=True):
     """`start` or `end`."""
 
     bound: Bound
     span: Span
 
 
-class Call(Struct, frozen=True):
+class Call(_Node, frozen=True):
     """A built-in function or a macro with its arguments."""
 
     function: Ident
@@ -56,14 +61,14 @@ class Call(Struct, frozen=True):
     span: Span
 
 
-class Group(Struct, frozen=True):
+class Group(_Node, frozen=True):
     """An expression in round brackets."""
 
     inner: Expression
     span: Span
 
 
-class Window(Struct, frozen=True):
+class Window(_Node, frozen=True):
     """An interval of durations; `high` is `None` if it has no end."""
 
     low: Expression | None
@@ -73,38 +78,38 @@ class Window(Struct, frozen=True):
     span: Span
 
 
-class Prefix(Struct, frozen=True):
+class Prefix(_Node, frozen=True):
     """`not` or a temporal operator before a formula.
 
     `within D` is `eventually` and `for D` is `always` with a window from 0.
     """
 
     op: UnaryOp
-    operand: Expression
     window: Window | None
+    operand: Expression
     op_span: Span
     span: Span
 
 
-class Immediately(Struct, frozen=True):
+class Immediately(_Node, frozen=True):
     """`immediately φ`: φ itself, stated on purpose."""
 
     operand: Expression
     span: Span
 
 
-class Infix(Struct, frozen=True):
+class Infix(_Node, frozen=True):
     """A connective or temporal operator between two formulas."""
 
     op: BinaryOp
     left: Expression
-    right: Expression
     window: Window | None
+    right: Expression
     op_span: Span
     span: Span
 
 
-class Comparison(Struct, frozen=True):
+class Comparison(_Node, frozen=True):
     """A comparison of two expressions."""
 
     op: CompareOp
@@ -114,7 +119,7 @@ class Comparison(Struct, frozen=True):
     span: Span
 
 
-class Choice(Struct, frozen=True):
+class Choice(_Node, frozen=True):
     """`if φ then x else y`."""
 
     condition: Expression
@@ -123,7 +128,7 @@ class Choice(Struct, frozen=True):
     span: Span
 
 
-class Operation(Struct, frozen=True):
+class Operation(_Node, frozen=True):
     """Arithmetic on one or two expressions."""
 
     op: NumericOp
@@ -131,7 +136,7 @@ class Operation(Struct, frozen=True):
     span: Span
 
 
-class Path(Struct, frozen=True):
+class Path(_Node, frozen=True):
     """A path quantifier with a temporal operator: `AG p`, `E<> p`.
 
     Attributes:
@@ -141,14 +146,14 @@ class Path(Struct, frozen=True):
 
     universal: bool
     op: UnaryOp
-    operand: Expression
     window: Window | None
+    operand: Expression
     reaching: bool
     op_span: Span
     span: Span
 
 
-class Quantified(Struct, frozen=True):
+class Quantified(_Node, frozen=True):
     """`A[φ U ψ]`, `E[φ U ψ]`; `path` is what stands in the brackets."""
 
     universal: bool
@@ -156,12 +161,12 @@ class Quantified(Struct, frozen=True):
     span: Span
 
 
-class LeadsTo(Struct, frozen=True):
+class LeadsTo(_Node, frozen=True):
     """`φ --> ψ`: on all paths φ is always followed by ψ."""
 
     left: Expression
-    right: Expression
     window: Window | None
+    right: Expression
     span: Span
 
 
@@ -185,39 +190,16 @@ Expression = (
 
 
 def expressions_in(expression: Expression) -> Iterator[Expression]:
-    """The expression and all below it, those of windows too."""
-    waiting = [expression]
+    """The expression and all below it, those of windows too, from left to right."""
+    waiting: list[object] = [expression]
     while waiting:
         node = waiting.pop()
-        yield node
-        waiting += reversed(operands(node))
-
-
-def operands(expression: Expression) -> tuple[Expression, ...]:
-    """The expressions that one is made of, from left to right."""
-    match expression:
-        case Group(inner=inner) | Immediately(operand=inner) | Quantified(path=inner):
-            return (inner,)
-        case Prefix(operand=operand, window=window) | Path(operand=operand, window=window):
-            return (*_bounds(window), operand)
-        case Infix(left=left, right=right, window=window):
-            return (left, *_bounds(window), right)
-        case LeadsTo(left=left, right=right, window=window):
-            return (left, *_bounds(window), right)
-        case Comparison(left=left, right=right):
-            return (left, right)
-        case Choice(condition=condition, chosen=chosen, otherwise=otherwise):
-            return (condition, chosen, otherwise)
-        case Call(args=args) | Operation(args=args):
-            return args
-        case _:
-            return ()
-
-
-def _bounds(window: Window | None) -> tuple[Expression, ...]:
-    if window is None:
-        return ()
-    return tuple(bound for bound in (window.low, window.high) if bound is not None)
+        if isinstance(node, tuple):
+            waiting += reversed(node)
+        elif isinstance(node, _Node):
+            waiting += reversed(astuple(node))
+            if not isinstance(node, Window):
+                yield node  # type: ignore[misc]  # all nodes but windows are expressions
 
 
 def ungrouped(expression: Expression) -> Expression:

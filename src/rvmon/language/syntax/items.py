@@ -50,15 +50,14 @@ class ImportItem(Struct, frozen=True):
     span: Span
 
 
-class SignalItem(Struct, frozen=True):
-    """`signal a, b : TYPE ROLE ignore NaN stale after D`; `ignored` is where the words are."""
+class SignalSyntax(Struct, frozen=True):
+    """One signal, declared with its neighbours; `ignored` is the place of `ignore NaN`."""
 
-    names: tuple[Ident, ...]
+    name: Ident
     type: TypeSyntax
     role: Role | None
     ignored: Span | None
     stale_after: Expression | None
-    span: Span
 
 
 class FieldSyntax(Struct, frozen=True):
@@ -69,17 +68,17 @@ class FieldSyntax(Struct, frozen=True):
 
 
 class EventSyntax(Struct, frozen=True):
-    """One event of an item, with its payload's fields."""
+    """One event, declared with its neighbours, with its payload's fields."""
 
     name: Ident
     fields: tuple[FieldSyntax, ...]
-
-
-class EventItem(Struct, frozen=True):
-    """`event a, pick(id: int) ROLE`."""
-
-    events: tuple[EventSyntax, ...]
     role: Role | None
+
+
+class Declarations(Struct, frozen=True):
+    """`signal a, b : TYPE ROLE ignore NaN stale after D`, `event a, pick(id: int) ROLE`."""
+
+    each: tuple[SignalSyntax | EventSyntax, ...]
     span: Span
 
 
@@ -306,8 +305,7 @@ Item = (
     | TimeItem
     | DelayItem
     | ImportItem
-    | SignalItem
-    | EventItem
+    | Declarations
     | DefineItem
     | ConstItem
     | PropertyItem

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import lark
-from lark.exceptions import UnexpectedInput, VisitError
+from lark.exceptions import UnexpectedInput
 
 from rvmon.diagnostics import Diagnostic, Source, Span
 from rvmon.language.rules import Findings, Refusal
@@ -98,13 +98,11 @@ def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
         if (part := _too_deep(tree)) is not None:
             place = Span(source, start + part.meta.start_pos, start + part.meta.end_pos)
             return None, [rules.too_deep(place, DEEPEST)]
-        return builder.transform(tree), builder.findings
+        return builder.built(tree), builder.findings
     except UnexpectedInput as error:
         return None, [explain_unexpected(error, grammar(), source, start, end, rule)]
-    except VisitError as error:
-        if isinstance(error.orig_exc, Refusal):
-            return None, [error.orig_exc.finding]
-        raise
+    except Refusal as refusal:
+        return None, [refusal.finding]
 
 
 @lru_cache(KEPT)
