@@ -13,14 +13,7 @@ from rvmon.logic.residual import NO_CLOCK, Residual
 from rvmon.logic.state_formula import UNKNOWN
 from rvmon.monitor.cause import Cause, CauseFinder, Sentence, TruthValues, rendered
 from rvmon.monitor.compile import CompiledRequirement
-from rvmon.monitor.explanation import (
-    Explanation,
-    Undecided,
-    earlier,
-    longer,
-    still_required,
-    unborn,
-)
+from rvmon.monitor.explanation import Alone, Explanation, Undecided
 from rvmon.monitor.obligation_words import deadline, settled_alone
 from rvmon.verdicts import Verdict
 
@@ -141,34 +134,22 @@ class MachineRuns(Struct, frozen=True):
     position: int
     gap: int | None
 
-    def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
+    def required(self, attempt: Undecided, now: int, *, optimistic: bool) -> str | None:
         """See `Judged`."""
-        # The pessimistic run requires the most; once it failed, only the optimistic one still says
-        # what for.
-        token = attempt.worse if attempt.worse[0] != FAILED else attempt.better
-        if token[0] <= PASSED:
-            return Explanation(f"left open by the input: {attempt.doubt}")
-        location, anchors = token
-        ages = [now // 2 - anchor for anchor in anchors]
-        compiled = attempt.compiled
-        required = compiled.words.required(
-            after(self.residuals[location], ages), anchors, attempt.origin
-        )
-        doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-        lasting = longer(compiled.obligation.required, attempt.triggered, end)
-        waiting = still_required(required, end, attempt.origin)
-        reason = f"{waiting}{lasting}{doubt}{unborn(attempt.unborn, end, attempt.origin)}"
-        worse = self._alone(attempt.worse)
-        better = worse if attempt.better == attempt.worse else self._alone(attempt.better)
-        return Explanation(
-            reason, required, deadline=earlier(worse, better, cannot_pass=attempt.cannot_pass)
-        )
-
-    def _alone(self, token: Token) -> tuple[int, bool] | None:
-        """The last instant before time alone decides a run, and its value; `None` if never."""
-        if token[0] <= PASSED:
+        location, anchors = attempt.better if optimistic else attempt.worse
+        if location <= PASSED:
             return None
-        return settled_alone(self.residuals[token[0]], token[1])
+        residual = after(self.residuals[location], [now // 2 - anchor for anchor in anchors])
+        return attempt.compiled.words.required(residual, anchors, attempt.origin)
+
+    def alone(self, attempt: Undecided) -> tuple[Alone, Alone]:
+        """See `Judged`."""
+        worse = self._alone(attempt.worse)
+        return worse, worse if attempt.better == attempt.worse else self._alone(attempt.better)
+
+    def _alone(self, token: Token) -> Alone:
+        location, anchors = token
+        return None if location <= PASSED else settled_alone(self.residuals[location], anchors)
 
     def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
         """See `Judged`; never folded into the verdict.

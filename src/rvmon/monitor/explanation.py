@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from typing import NamedTuple, Protocol
 
@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from rvmon.language.checked.specification import EndPolicy
 from rvmon.language.print import format_duration
 from rvmon.logic.automaton import FAILED, Token
-from rvmon.logic.formula import Core, horizon
+from rvmon.logic.formula import horizon
 from rvmon.logic.state_formula import TRUE, UNKNOWN
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.trace.sample import HealthKind, Scalar
@@ -101,29 +101,6 @@ class Explanation(NamedTuple):
     blame: Blame | None = None
 
 
-def earlier(
-    worse: tuple[int, bool] | None, better: tuple[int, bool] | None, *, cannot_pass: bool
-) -> int | None:
-    """The last instant before time alone decides an attempt; `None` if it never does.
-
-    It decides if the pessimistic run passes or the optimistic run fails.
-
-    Args:
-        worse: for the pessimistic run, the last instant before time decides it, and its value.
-        better: the same for the optimistic run.
-        cannot_pass: whether the attempt can no longer pass.
-    """
-    instants = [worse[0]] if worse is not None and worse[1] and not cannot_pass else []
-    instants += [better[0]] if better is not None and not better[1] else []
-    return min(instants, default=None)
-
-
-def still_required(required: str, end: int | None, origin: int) -> str:
-    """The clause that names the open obligation, now or when the trace ended at `end`."""
-    when = "" if end is None else f" when the recording ended at {format_instant(end, origin)}"
-    return f"still required{when}: {required}"
-
-
 def unborn_of(
     names: Iterable[str], outages: Mapping[str, Outage], doubt: Doubt | None
 ) -> tuple[Outage, ...]:
@@ -131,25 +108,6 @@ def unborn_of(
     named = set() if doubt is None else {outage.name for outage in doubt.outages}
     missing = (outages[name] for name in sorted(set(names) & outages.keys() - named))
     return tuple(outage for outage in missing if outage.why is HealthKind.MISSING)
-
-
-def unborn(outages: Sequence[Outage], end: int | None, origin: int) -> str:
-    """The clauses for signals that have had no value so far; `end` as for `still_required`."""
-    ended = "" if end is not None else " so far"
-    return "".join(f"; {outage_in_words(outage, origin)}{ended}" for outage in outages)
-
-
-def longer(required: Core, triggered: int, end: int | None) -> str:
-    """The clause by how much a longer trace would have decided an attempt; "" before the end."""
-    if end is None:
-        return ""
-    reach = horizon(required)
-    if reach is None:
-        return "; it has no deadline"
-    latest = triggered + reach
-    if latest <= end:
-        return "; 1 ns more would have decided it"
-    return f"; a recording more than {format_ticks(latest - end)} longer would have decided it"
 
 
 @lru_cache(maxsize=1024)
@@ -190,11 +148,18 @@ class Undecided(Struct, frozen=True):
     cut: bool
 
 
+Alone = tuple[int, bool] | None
+"""The last instant before time alone decides a run, and its value; `None` if it never does."""
+
+
 class Judged(Protocol):
     """The judge of an attempt (automaton or network), in its state at a stamp."""
 
-    def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
-        """The open obligation of an attempt, or why none is left; see `why_open`."""
+    def required(self, attempt: Undecided, now: int, *, optimistic: bool) -> str | None:
+        """What the optimistic or pessimistic run still requires; `None` if it is decided."""
+
+    def alone(self, attempt: Undecided) -> tuple[Alone, Alone]:
+        """By what time alone decides the pessimistic and the optimistic run."""
 
     def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
         """The verdict that every continuation leads to; `None` if they differ or it is unknown."""
@@ -210,7 +175,7 @@ def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = Non
         end: the last instant of the trace, if it has ended.
     """
     if attempt.sure:
-        why = judged.why_open(attempt, now, end)
+        why = _obligation(judged, attempt, now, end)
         # Obligations on unborn signals do not fail, and time alone gives these no value.
         is_unborn = attempt.cannot_pass and not attempt.cut
         return why._replace(deadline=None) if is_unborn else why
@@ -218,7 +183,47 @@ def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = Non
         cause = f"; {attempt.doubt}" if attempt.doubt else ""
         return Explanation(f"it is not known whether there was a trigger{cause}")
     alone = replace(attempt, better=attempt.worse, cannot_pass=False)
-    return judged.why_open(alone, now, end)._replace(deadline=None)
+    return _obligation(judged, alone, now, end)._replace(deadline=None)
+
+
+def _obligation(judged: Judged, attempt: Undecided, now: int, end: int | None) -> Explanation:
+    """The open obligation of an attempt, or why none is left."""
+    # The pessimistic run requires the most; once it failed, only the optimistic one still says what
+    # for.
+    is_failed = attempt.worse[0] == FAILED
+    required = judged.required(attempt, now, optimistic=is_failed)
+    if required is None:
+        return Explanation(f"left open by the input: {attempt.doubt}")
+    origin, when, so_far = attempt.origin, "", " so far"
+    if end is not None:
+        when, so_far = f" when the recording ended at {format_instant(end, origin)}", ""
+    clauses = [f"still required{when}: {required or 'what lies ahead'}"]
+    clauses += [] if end is None else [_longer(attempt, end)]
+    clauses += [] if attempt.doubt is None else [str(attempt.doubt)]
+    clauses += [outage_in_words(outage, origin) + so_far for outage in attempt.unborn]
+    return Explanation("; ".join(clauses), required, _deadline(judged, attempt))
+
+
+def _longer(attempt: Undecided, end: int) -> str:
+    """By how much a longer trace would have decided an attempt."""
+    reach = horizon(attempt.compiled.obligation.required)
+    if reach is None:
+        return "it has no deadline"
+    latest = attempt.triggered + reach
+    if latest <= end:
+        return "1 ns more would have decided it"
+    return f"a recording more than {format_ticks(latest - end)} longer would have decided it"
+
+
+def _deadline(judged: Judged, attempt: Undecided) -> int | None:
+    """The last instant before time alone decides an attempt; `None` if it never does.
+
+    It decides if the pessimistic run passes or the optimistic run fails.
+    """
+    worse, better = judged.alone(attempt)
+    instants = [worse[0]] if worse is not None and worse[1] and not attempt.cannot_pass else []
+    instants += [better[0]] if better is not None and not better[1] else []
+    return min(instants, default=None)
 
 
 def forecast_of(judged: Judged, attempt: Undecided, now: int) -> Verdict | None:

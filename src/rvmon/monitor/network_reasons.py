@@ -22,14 +22,7 @@ from rvmon.logic.formula import (
 from rvmon.logic.residual import TooManyClausesError
 from rvmon.monitor.cause import Cause, TruthValues, rendered
 from rvmon.monitor.compile import CompiledRequirement
-from rvmon.monitor.explanation import (
-    Explanation,
-    Undecided,
-    earlier,
-    longer,
-    still_required,
-    unborn,
-)
+from rvmon.monitor.explanation import Alone, Explanation, Undecided
 from rvmon.monitor.network import Network, settled
 from rvmon.monitor.network.piecewise import FAR
 from rvmon.monitor.network.remaining import Remaining
@@ -39,12 +32,9 @@ from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Blame
 
 
-def required_at(network: Network, core: Core, position: int, words: Words, origin: int) -> str:
-    """The pending part of a formula at a position, in words; "" if it is decided."""
-    return _PendingText(network, words, origin).at(core, position)
-
-
 class _PendingText:
+    """The pending part of formulas at positions, in words; "" if it is decided."""
+
     def __init__(self, network: Network, words: Words, origin: int) -> None:
         self.network = network
         self.words = words
@@ -262,24 +252,19 @@ class NetworkRuns(Struct, frozen=True):
                 worse = (ended, token[1])
         return worse, better
 
-    def why_open(self, attempt: Undecided, now: int, end: int | None) -> Explanation:
+    def required(self, attempt: Undecided, now: int, *, optimistic: bool) -> str | None:
         """See `Judged`."""
         del now  # the networks were evaluated for it
-        network, token = self.worse, attempt.worse
-        if token[0] == FAILED and attempt.better != attempt.worse:
-            network, token = self.better, attempt.better
+        network = self.better if optimistic else self.worse
+        token = attempt.better if optimistic else attempt.worse
         if network is None or token[0] != WAITING:
-            return Explanation(f"left open by the input: {attempt.doubt}")
-        compiled = attempt.compiled
-        position = token[1][0] // network.positions.gap
-        core = compiled.obligation.required
-        required = required_at(network, core, position, compiled.words, attempt.origin)
-        doubt = f"; {attempt.doubt}" if attempt.doubt else ""
-        waiting = still_required(required or "what lies ahead", end, attempt.origin)
-        lasting = longer(core, attempt.triggered, end)
-        reason = f"{waiting}{lasting}{doubt}{unborn(attempt.unborn, end, attempt.origin)}"
-        alone = (_alone(self.worse, attempt.worse), _alone(self.better, attempt.better))
-        return Explanation(reason, required, earlier(*alone, cannot_pass=attempt.cannot_pass))
+            return None
+        pending = _PendingText(network, attempt.compiled.words, attempt.origin)
+        return pending.at(attempt.compiled.obligation.required, token[1][0] // pending.gap)
+
+    def alone(self, attempt: Undecided) -> tuple[Alone, Alone]:
+        """See `Judged`."""
+        return _alone(self.worse, attempt.worse), _alone(self.better, attempt.better)
 
     def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
         """See `Judged`; `None` also if too much is undecided.
@@ -313,8 +298,7 @@ class NetworkRuns(Struct, frozen=True):
         return forecaster.admits(residual, ages, self.gap)
 
 
-def _alone(network: Network | None, token: Token) -> tuple[int, bool] | None:
-    """The last instant before time alone decides a run, and its value; `None` if it never does."""
+def _alone(network: Network | None, token: Token) -> Alone:
     if network is None or token[0] != WAITING:
         return None
     return settled(network.alone, token[1][0] // network.positions.gap)
