@@ -286,9 +286,7 @@ def _judge(compiled: CompiledRequirement, automaton: Automaton | None, *, chaine
     if automaton is None:
         kind = "windows" if chained else "delay network"
         if compiled.automaton is not None:
-            return (
-                f"{kind}: its automaton would step open attempts in groups, these step all at once"
-            )
+            return f"{kind}: its automaton would step open attempts one by one, not all at once"
         return f"{kind}: as an automaton it would have {compiled.refusal}"
     return (
         f"automaton of {counted(len(automaton.locations), 'location')}, "

@@ -167,18 +167,18 @@ class Judges:
 def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkPlan, Chain | None]:
     """The machine that judges a rule: an automaton, or a network, with its chain if it is one.
 
-    For nested windows a chain is preferred: it steps all open attempts at once, an automaton that
-    does not move in runs those that share their clocks.
+    An automaton that would step open attempts one by one is left: networks and chains judge all
+    of them at once.
     """
-    automaton = rule.automaton
-    if automaton is not None and (rule.in_runs or rule.trigger is None or rule.stepped):
-        return automaton
+    if rule.automaton is not None and (rule.stepped or not rule.scatters):
+        return rule.automaton
     network = plan_of(rule.required, gap)
     chain = None if rule.stepped else chain_of(network, gap)
-    # A single window moves in runs as an automaton, or costs one comparison per attempt either way.
-    if automaton is None or (chain is not None and len(chain.windows) > 1):
-        return network, chain
-    return automaton
+    nested = chain is not None and len(chain.windows) > 1
+    # An outage may hold any number of samples: automata read its letter at each instant.
+    if rule.automaton is not None and gap is None and not nested:
+        return rule.automaton
+    return network, chain
 
 
 def _flags(rule: PlannedRule, *, hidden: bool) -> int:

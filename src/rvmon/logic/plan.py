@@ -35,7 +35,7 @@ class PlannedRule(Struct, frozen=True, eq=False):
         required: the formula an attempt must satisfy.
         alphabet: of `required`.
         automaton: judges the attempts; `None` if a network does.
-        in_runs: whether its open attempts are at most a run for each location (`moves_in_runs`).
+        scatters: whether its open attempts may come to ever more states of the automaton.
         again: of a `whenever`, not FALSE where an episode resumes after a failure; `None` if it
             never resumes, or the requirement is no `whenever`.
         unborn: of a level `whenever`, TRUE while a signal of its consequent had no value.
@@ -60,7 +60,7 @@ class PlannedRule(Struct, frozen=True, eq=False):
     required: Core
     alphabet: Alphabet
     automaton: Automaton | None
-    in_runs: bool = False
+    scatters: bool = False
     again: State | None = None
     unborn: State | None = None
     determined: State | None = None

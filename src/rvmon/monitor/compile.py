@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, partial
 
 from rvmon.errors import RvmonError
-from rvmon.language.checked.formula import Compare
+from rvmon.language.checked.classify import has_future
+from rvmon.language.checked.formula import BoundAtom, Compare, Constant
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.logic.alphabet import Alphabet, alphabet_of
 from rvmon.logic.automaton import Automaton, moves_in_runs
@@ -20,12 +21,9 @@ from rvmon.logic.normal_form import expanded
 from rvmon.logic.reduce import reduce
 from rvmon.logic.residual import Residual
 from rvmon.logic.state_formula import State, events_of, inputs_of
-from rvmon.logic.state_graph import graph_of, leaf_count, leaf_texts
+from rvmon.logic.state_graph import graph_of, leaf_texts
 from rvmon.logic.window_chains import reach_of
 from rvmon.monitor.obligation_words import Words
-
-MOST_SEEN = 19
-"""The most truth values at the trigger that the core packs into 32 bits."""
 
 _DOUBT_BUDGET = Budget(locations=30, clocks=3, rows=200, clauses=12)
 """The budget of the automata for attempts in doubt: they are rarely used, so kept small."""
@@ -104,17 +102,19 @@ class CompiledRequirement:
         """Why it has no automaton; empty if it has one."""
         return str(self._built) if isinstance(self._built, DoesNotCloseError) else ""
 
-    def in_runs(self, automaton: Automaton | None) -> bool:
-        """Whether there are never more runs of open attempts than locations (`moves_in_runs`)."""
-        requirement = self.requirement
-        return (
-            automaton is not None
-            and self.obligation.trigger is not None
-            and not requirement.captures
-            and requirement.for_each is None
-            and leaf_count(self._read) <= MOST_SEEN
-            and moves_in_runs(automaton)
-        )
+    def scatters(self, automaton: Automaton | None) -> bool:
+        """Whether open attempts may come to ever more states of an automaton, each stepped apart.
+
+        Not where there is one at a time, or each has values of its own and is judged by itself, and
+        not where they move in runs, which the core does for those of an `upon`.
+        """
+        one = self.requirement
+        once = isinstance(one.trigger, Constant | BoundAtom)
+        if automaton is None or once or one.captures or one.for_each:
+            return False
+        if one.mode is Mode.WHENEVER:
+            return has_future(one.consequent)  # else it is decided when its episode ends
+        return not moves_in_runs(automaton)
 
     @cached_property
     def hidden(self) -> CompiledRequirement | None:

@@ -41,7 +41,7 @@ def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> Pl
         required,
         alphabet,
         automaton,
-        compiled.in_runs(automaton),
+        compiled.scatters(automaton),
         again=obligation.again,
         unborn=obligation.unborn,
         determined=obligation.determined,
@@ -60,8 +60,7 @@ def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> Pl
 def _traced(compiled: CompiledRequirement) -> PlannedRule:
     """A requirement judged by the automaton shown to users, whose edges coverage counts."""
     rule, automaton = planned_rule(compiled), compiled.automaton
-    in_runs = compiled.in_runs(automaton)
-    return replace(rule, automaton=automaton, in_runs=in_runs, stepped=True, traced=True)
+    return replace(rule, automaton=automaton, stepped=True, traced=True)
 
 
 def _stepped(rule: PlannedRule) -> PlannedRule:

@@ -37,7 +37,10 @@ def outcomes(spec, samples, end=None):
     [
         ("upon e then within 3 s b", "automaton"),
         (RESPAWNED, "windows: as an automaton it would have"),
-        ("upon e then within 5 s for 3 s b", "windows: its automaton would step open attempts in"),
+        ("whenever a then within 3 s b", "windows: its automaton would step"),
+        ("whenever a then not b", "automaton"),
+        ("upon e then (a and within 3 s b) or (not a and within 2 s b)", "delay network: its"),
+        ("upon e then within 5 s for 3 s b", "windows: its automaton would step"),
         ("upon e then within 3 s once (a and within 1 s b)", "delay network: as an automaton"),
     ],
 )
@@ -54,6 +57,13 @@ def test_the_future_below_the_past():
     assert outcomes(spec, samples) == [(2 * SECOND, 4 * SECOND, "F")]
     met = [*samples[:3], (3.5, {"b": True})]
     assert outcomes(spec, met) == [(2 * SECOND, 3_500_000_000, "P")]
+
+
+def test_time_alone_may_decide_one_reading_of_an_attempt():
+    """It is settled as one that cannot pass, whatever its policy says of what is open."""
+    spec = spec_of("upon e then eventually[1 s, 3 s] (a and for 1 s a)\n  at end weak")
+    assert outcomes(spec, [(0, {}), (1, {"e": True}), (9, {"b": True})]) == [(SECOND, None, "I")]
+    assert outcomes(spec, [(0, {}), (1, {"e": True})], 9) == [(SECOND, None, "I")]
 
 
 def test_what_only_led_on_is_settled_together():

@@ -144,12 +144,22 @@ void network_foresee(run *r, int32_t index, int64_t now)
     }
 }
 
-/* Let time come to `now`, with the letter as it is for positions up to `last`, and decide attempts on
- * the way, each at its instant. If letters are known up to `now`, look ahead for the next one. */
+/* Step to `now`, with the letter as it is for positions up to `last`, and decide attempts on the way,
+ * each at its instant. */
+static void decide_up_to(judging *g, int64_t now, int64_t last)
+{
+    int64_t decided = -LIMIT;
+    while ((g->j->first >= 0) && (decided < NEVER)) {
+        decided = step_to_decision(g, now, last);
+        judge_added(g, least(decided, now)); /* if nothing is decided, a reading may be */
+        set_due(g, least(decided, now));
+    }
+}
+
+/* Let time come to `now`; see decide_up_to(). If letters are known up to there, look ahead. */
 static void pass(judging *g, int64_t now, int64_t last)
 {
     const bool complete = last == last_at(g, now); /* else the letter at `now` is still to be read */
-    int64_t decided = NEVER;
     if ((g->f.gap > 0) && complete) {
         const int64_t due = earliest(g, now);
         if (due > now) {
@@ -157,13 +167,7 @@ static void pass(judging *g, int64_t now, int64_t last)
             return;
         }
     }
-    do {
-        decided = (g->j->first < 0) ? NEVER : step_to_decision(g, now, last);
-        if (decided < NEVER) {
-            judge_added(g, decided);
-            set_due(g, decided);
-        }
-    } while (decided < NEVER);
+    decide_up_to(g, now, last);
     if (g->j->first < 0) {
         set_due(g, NEVER);
     } else if (complete) {
@@ -273,7 +277,7 @@ static void come_to(judging *g, int64_t t)
         /* Something may have been decided before `t`, by the letter of before: undo, and find that. */
         unlearn_all(g);
         g->net->turn = NEVER;
-        pass(g, t - 1, position - 1);
+        decide_up_to(g, t - 1, position - 1);
         g->net->turn = position;
         learn_all(g, t, position);
     }

@@ -203,7 +203,7 @@ int32_t range_from(const ranges *r, int64_t position)
 {
     int32_t low = r->first;
     int32_t left = r->end - low;
-    if (left == 0) {
+    if ((left == 0) || (r->at[low].last >= position)) {
         return low;
     }
     if ((left > 1) && (r->at[r->end - 2].last < position)) { /* the usual case: the last range */
@@ -251,11 +251,17 @@ static bool widen(rv_monitor *m, ranges *r)
     return true;
 }
 
-/* Open a slot before range `place`; returns its index, which changes where dropped ranges are
- * reclaimed, or -1: memory is short. */
+/* Open a slot before range `place`; returns its index, which changes where the slots of dropped ranges
+ * are used, or -1: memory is short. Those before it move if they are fewer and can: what a network
+ * learns is mostly near one end. */
 static int32_t opened(rv_monitor *m, ranges *r, int32_t place)
 {
     int32_t i = place;
+    if ((r->first > 0) && (place - r->first < r->end - place)) {
+        r->first--;
+        (void)memmove(&r->at[r->first], &r->at[r->first + 1], (size_t)(place - 1 - r->first) * sizeof *r->at);
+        return place - 1;
+    }
     if (r->end == r->room) {
         if (r->first > r->room / 2) {
             (void)memmove(r->at, &r->at[r->first], (size_t)(r->end - r->first) * sizeof *r->at);
@@ -286,11 +292,16 @@ void ranges_put(rv_monitor *m, ranges *r, int32_t place, int64_t first, int64_t 
     }
 }
 
-/* Remove a range. */
+/* Remove a range; those before or behind it move, whichever are fewer. */
 static void take_out(ranges *r, int32_t i)
 {
-    (void)memmove(&r->at[i], &r->at[i + 1], (size_t)(r->end - i - 1) * sizeof *r->at);
-    r->end--;
+    if (i - r->first < r->end - i) {
+        (void)memmove(&r->at[r->first + 1], &r->at[r->first], (size_t)(i - r->first) * sizeof *r->at);
+        r->first++;
+    } else {
+        (void)memmove(&r->at[i], &r->at[i + 1], (size_t)(r->end - i - 1) * sizeof *r->at);
+        r->end--;
+    }
 }
 
 /* Add positions that are in no range, merged with neighbours; `i`: the first range behind them. */
