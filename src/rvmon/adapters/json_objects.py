@@ -234,14 +234,18 @@ def read_lines(file: int) -> Iterator[bytes]:
     Args:
         file: the descriptor of a pipe, a file or a terminal.
     """
-    rest, mark = b"", BOM_UTF8
+    begun: list[bytes] = []  # the pieces of a line without its end, joined once
+    length, mark = 0, BOM_UTF8
     while piece := os.read(file, _PIECE):
-        *whole, rest = (rest + piece).split(b"\n")
+        *whole, rest = piece.split(b"\n")
         if whole:
-            whole[0], mark = whole[0].removeprefix(mark), b""
-        yield from whole
-        if len(rest) > LONGEST_LINE:
-            yield rest
-            rest = b""
-    if rest := rest.removeprefix(mark):
+            whole[0] = b"".join([*begun, whole[0]]).removeprefix(mark)
+            begun, length, mark = [], 0, b""
+            yield from whole
+        begun.append(rest)
+        length += len(rest)
+        if length > LONGEST_LINE:
+            yield b"".join(begun)
+            begun, length = [], 0
+    if rest := b"".join(begun).removeprefix(mark):
         yield rest

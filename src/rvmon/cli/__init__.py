@@ -97,8 +97,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     0
     """
     words = sys.argv[1:] if arguments is None else list(arguments)
-    if sys.stdout is None:  # closed by who called
-        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - as long as the process
     return guarded(lambda: _parser(words).parse_args(with_values(words)))
 
 
@@ -108,6 +106,7 @@ def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
     Args:
         parsed: gives the words of the command line.
     """
+    _open_closed()
     spell()  # a narrow encoding costs signs, not the answer
     try:
         with interrupted_by_sigterm():
@@ -147,6 +146,18 @@ def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
         )
         return 3
     return int(code)
+
+
+def _open_closed() -> None:
+    """Let nothing come from a standard stream, or go to one, that who called has closed.
+
+    What is opened gets the lowest free number: else that of a recording, to which libraries that
+    complain would write.
+    """
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            stream = open(os.devnull, mode, encoding="utf-8")  # noqa: SIM115 - as long as the process
+            setattr(sys, name, stream)
 
 
 def _drop_output() -> None:

@@ -183,6 +183,18 @@ def test_a_line_without_a_time_among_those_that_have_one_is_lost(live):
     assert source.unread == 1
 
 
+def test_a_line_longer_than_any_is_given_up(tmp_path, monkeypatch):
+    """It fills no memory, and what follows is read."""
+    monkeypatch.setattr("rvmon.adapters.json_objects.LONGEST_LINE", 1 << 18)
+    path = tmp_path / "run.jsonl"
+    path.write_bytes(b'{"t": 0}\n' + b"x" * (1 << 20) + b'\n{"t": 1}\n')
+    with path.open("rb") as file:
+        lines = list(read_lines(file.fileno()))
+    assert (lines[0], lines[-1]) == (b'{"t": 0}', b'{"t": 1}')
+    assert max(map(len, lines)) < 1 << 19
+    assert b"".join(lines[1:-1]) == b"x" * (1 << 20)
+
+
 def test_what_is_no_object_says_what_is_wanted():
     """Rows of a CSV, which a pipe gives as well, lead to what reads them."""
     with pytest.raises(TraceError, match="`rvmon run` reads CSV"):

@@ -68,9 +68,19 @@ def test_a_full_disk_is_told(folder):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="closes a descriptor")
-def test_a_closed_output_costs_nothing_but_the_output(folder):
-    done = rvmon(folder, "run", "door.rv", "run.jsonl", preexec_fn=lambda: os.close(1))
+@pytest.mark.parametrize("closed", [1, 2])
+def test_a_closed_output_costs_nothing_but_the_output(folder, closed):
+    words = ("run", "door.rv", "run.jsonl")
+    done = rvmon(folder, *words, stdout=subprocess.PIPE, preexec_fn=lambda: os.close(closed))
     assert (done.returncode, done.stderr) == (1, b"")
+    assert done.stdout.startswith(b"run.jsonl") == (closed != 1)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="closes a descriptor")
+def test_a_closed_input_is_an_empty_one(folder):
+    words = ("run", "door.rv", "-")
+    done = rvmon(folder, *words, stdout=subprocess.PIPE, preexec_fn=lambda: os.close(0))
+    assert (done.returncode, done.stderr) == (2, b"error: -: holds no sample\n")
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="file names are bytes")
