@@ -42,10 +42,9 @@ def run_clip(arguments: argparse.Namespace) -> int:
         raise RvmonError("name what to cut out: an attempt such as R1#3, or --from T and --to T")
     spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
     refuse_place(data, out)
+    refuse_over([out, case], [data, arguments.spec, arguments.binding])
     for one in (out, case):
         if one is not None:
-            read = [data, arguments.spec] + [arguments.binding] * bool(arguments.binding)
-            refuse_over([one], read)
             refuse_no_file(one)
     attempt = None
     if arguments.attempt is not None:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon import __version__
+from rvmon.cli.options import refuse_over
 from rvmon.cli.output import busy, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.files import write_file
@@ -23,6 +24,7 @@ def run_cover(arguments: argparse.Namespace) -> int:
     from rvmon.coverage.database import merge, read
     from rvmon.report.coverage_summary import Summary
 
+    refuse_over([arguments.report, arguments.ucis], [*arguments.databases, arguments.compare])
     with busy("reading databases"):
         # All are read before merging, so that contradicting models change no file.
         coverage = read(arguments.databases)

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import asked_ids, constants_of, model_constants_of
+from rvmon.cli.options import asked_ids, constants_of, model_constants_of, refuse_over
 from rvmon.cli.output import say, warn
 from rvmon.errors import RvmonError
 from rvmon.files import write_file
@@ -23,6 +23,7 @@ _OF_MODELS = ("dot", "uppaal")
 
 def run_export(arguments: argparse.Namespace) -> int:
     """Make the texts, write or print them, and return the exit code."""
+    refuse_over([arguments.output], [arguments.subject])
     if Path(arguments.subject).suffix in (".ta", ".xml"):
         text = _model_text(arguments)
     else:

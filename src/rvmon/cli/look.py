@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.options import constants_of
+from rvmon.cli.options import constants_of, refuse_over
 from rvmon.cli.output import busy, say, warn
 from rvmon.cli.reading import reading_spec, time_words
 from rvmon.errors import RvmonError
@@ -26,6 +26,7 @@ def run_look(arguments: argparse.Namespace) -> int:
     from rvmon.report.printer import Printer
     from rvmon.session import load
 
+    _refuse_output(arguments)
     spec = None
     if arguments.spec is not None:
         loaded = load(arguments.spec, const=constants_of(arguments.const))
@@ -39,6 +40,13 @@ def run_look(arguments: argparse.Namespace) -> int:
         return 0
     print_look(profile, requirements, Printer())
     return 0
+
+
+def _refuse_output(arguments: argparse.Namespace) -> None:
+    """Say before a recording is looked over that what is written would be in its place."""
+    from rvmon.recordings.places import files_of
+
+    refuse_over([arguments.output], [arguments.spec, *files_of(arguments.data)])
 
 
 def _looked(arguments: argparse.Namespace, spec: Spec | None) -> Profile:
@@ -61,6 +69,7 @@ def run_init(arguments: argparse.Namespace) -> int:
     from rvmon.recordings.starter.profile import profile_of
     from rvmon.recordings.starter.skeletons import starter_text
 
+    _refuse_output(arguments)
     output = arguments.output or Path(arguments.data).with_suffix(".rv").name
     if output != "-" and Path(output).exists() and not arguments.force:
         raise RvmonError(

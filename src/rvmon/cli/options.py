@@ -210,16 +210,25 @@ def named_values(option: str, texts: Iterable[str], form: str) -> Iterator[tuple
         yield name.strip(), value
 
 
-def refuse_over(written: Iterable[str | None], read: Iterable[str]) -> None:
-    """Say before anything is done that it would write over what it reads.
+def refuse_over(written: Iterable[str | None], read: Iterable[str | None]) -> None:
+    """Say before anything is done that it would write over what it reads, or has written.
+
+    Args:
+        written: files; `None`: the user named none.
+        read: files, likewise.
 
     Raises:
         RvmonError: one is the same as another.
     """
-    known = list(read)
-    for one in written:
-        if one is not None and any(_is_same_file(one, other) for other in known):
+    known = list(filter(None, read))
+    taken = set()
+    for one in filter(None, written):
+        if any(_is_same_file(one, other) for other in known):
             raise RvmonError(f"cannot write {one}: it is an input: name another")
+        place = os.path.realpath(one)
+        if place in taken:
+            raise RvmonError(f"cannot write {one}: two results would go there: name another")
+        taken.add(place)
 
 
 def _is_same_file(one: str, other: str) -> bool:

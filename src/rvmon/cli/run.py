@@ -6,6 +6,7 @@ import argparse
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from functools import partial
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,7 +25,7 @@ from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
 from rvmon.execute import shards_beside
 from rvmon.files import refuse_no_file
-from rvmon.recordings.places import JOINT, found_recordings
+from rvmon.recordings.places import JOINT, files_of, found_recordings
 from rvmon.session import Spec
 from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict
@@ -184,7 +185,8 @@ def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: S
         if len(traces) > 1:
             raise RvmonError(f"--mcap shows one recording, and there are {len(traces)}")
         files.append(layout_path(arguments.mcap))
-    refuse_over(files, (arguments.spec, *traces))
+    read = [arguments.spec, arguments.binding, arguments.known]
+    refuse_over(files, [*read, *chain.from_iterable(map(files_of, traces))])
     if arguments.coverage is not None:
         from rvmon.coverage.database import Database
 

@@ -16,6 +16,7 @@ from rich.live import Live as Screen
 from rich.text import Text
 
 from rvmon.adapters.json_objects import decoded_object
+from rvmon.cli.options import refuse_over
 from rvmon.cli.output import say, say_json, warn
 from rvmon.diagnostics import wants_colour
 from rvmon.errors import RvmonError, TraceError
@@ -269,6 +270,7 @@ def refuse_others(arguments: argparse.Namespace) -> None:
     Raises:
         RvmonError: there is one.
     """
+    refuse_over([arguments.state], [arguments.spec, arguments.source, arguments.binding])
     if "://" in arguments.source or arguments.source.startswith(("ros1:", "dds:")):
         raise RvmonError("--state: a run that is kept is of lines: a pipe or a file")
     for name in ("realtime", "robot", "publish"):
