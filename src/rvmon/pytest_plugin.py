@@ -144,18 +144,20 @@ def _without_frames(call: Callable[[], _T]) -> _T:
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Generator[None]:
     """Judge what a test did, when it did not fail by itself."""
+    __tracebackhide__ = True
     yield
-    for judge in item.stash.get(_judges, []):
-        _conclude(item, judge)
+    _conclude(item, item.stash.get(_judges, []))
 
 
-def _conclude(item: pytest.Item, judge: Judge) -> None:
+def _conclude(item: pytest.Item, judges: list[Judge]) -> None:
+    __tracebackhide__ = True  # the message says what is wrong, and these lines nothing
     texts = []
-    for report in judge.finish():
-        for name, verdict in report.verdicts.items():
-            item.user_properties.append((_PROPERTY + name, verdict.value))
-        if wrong := judge.wrong(report):
-            texts.append(_explained(report, judge.spec, wrong))
+    for judge in judges:
+        for report in judge.finish():
+            for name, verdict in report.verdicts.items():
+                item.user_properties.append((_PROPERTY + name, verdict.value))
+            if wrong := judge.wrong(report):
+                texts.append(_explained(report, judge.spec, wrong))
     if texts:
         raise RequirementError("\n".join(texts))
 
@@ -223,7 +225,7 @@ class RequirementItem(pytest.Item):
     def runtest(self) -> None:
         """Judge it."""
         self._judge.check(self._recording, allow_missing=True)
-        _conclude(self, self._judge)
+        _conclude(self, [self._judge])
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
         """The explanation alone."""
