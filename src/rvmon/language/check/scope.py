@@ -240,8 +240,12 @@ class Table(Struct, frozen=True):
 def close_name(table: Table, name: str, local: tuple[str, ...] = ()) -> str:
     """A proposal in place of an unknown name, in words; empty if no name is similar."""
     fields = [f"{e.name}.{f}" for e in table.events.values() for f in e.fields]
-    close = nearest(name, [*local, *table.declared, *fields])
-    return f"did you mean `{close}`?{_described(table, close)}" if close else ""
+    if close := nearest(name, [*local, *table.declared, *fields]):
+        return f"did you mean `{close}`?{_described(table, close)}"
+    if event := table.events.get(name.rpartition(".")[0]):
+        listed = ", ".join(f"`{field}`" for field in event.fields) or "none"
+        return f"the fields of `{event.name}` are {listed}"
+    return ""
 
 
 def _described(table: Table, name: str) -> str:

@@ -15,6 +15,7 @@ from rvmon.language.syntax.keywords import ITEM_WORDS, NOT_UNITS, RESERVED
 from rvmon.texts import nearest
 from rvmon.units import SPOKEN, unit_table
 
+COMMENT = "a comment begins with `#`"
 _FIX = {
     "≤": "write `<=`",
     "≥": "write `>=`",
@@ -33,6 +34,7 @@ _FIX = {
     "`": "a quoted name ends on the line it starts on, with a second backtick",
     "%": "`%` is a unit and stands behind a number",
     ";": "items and clauses need no `;`",
+    "/": COMMENT,
     "becomes": "write `rise(…)` for the instant at which something comes true",
 }
 _TRIGGER_WORDS = "for `{}` write `upon` (an instant) or `whenever` (as long as it holds)"
@@ -68,6 +70,8 @@ _WRITTEN = (
     (r"([^\W\d]\w*)[ \t]+\0\(\Z", "", "a call has no space before its bracket: `{0}(`"),
     (r"\0([AE][\[<].*)", "LPAR", "put brackets around `{0} …`"),
     ("", "THEN", "the consequent stands after `then`"),
+    (r"\Arequirement.*\0then\Z", "", "a trigger stands before `then`: `upon … then …`"),
+    (r"/\0\*\Z", "", COMMENT),
     (r"\Arequirement\s*\0", "NAME", 'its name comes first: `requirement R1 "text"`'),
     (r"\Asignal\b", "COLON", "a signal has a type, as in `signal x : real [m]`"),
     (

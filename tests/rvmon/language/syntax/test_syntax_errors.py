@@ -72,6 +72,11 @@ def test_what_is_owed(required, fix):
         ("requirement R for each k in ks released", "a clause, as `for each …`, stands behind"),
         ("requirement R in at least 9 % of runs released", "a clause, as `in at …`, stands behind"),
         ("requirement R property released", "a clause, as `property …`, stands behind"),
+        ("requirement R then within 3 s released", "a trigger stands before `then`"),
+        ("// signals\nsignal x : bool", "a comment begins with `#`"),
+        ("signal x : bool // a signal", "a comment begins with `#`"),
+        ("/* signals */", "a comment begins with `#`"),
+        ("event e(id: int)\nrequirement R\n  upon e then e.place > 3", "of `e` are `id`"),
     ],
 )
 def test_items(item, fix):
