@@ -5,7 +5,7 @@ This module has the random choices, and the names that random specifications dec
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from typing import Protocol, TypeVar
 
 from rvmon.language.checked.specification import Event, Signal, Type
@@ -39,6 +39,11 @@ def weighted(rng: Rng, options: Sequence[tuple[int, T]]) -> T:
             return option
         rest -= weight
     raise AssertionError("the weights add up")
+
+
+def drawn(rng: Rng, *ways: tuple[int, Callable[[], T]]) -> T:
+    """What one of several functions makes, chosen in proportion to their weights."""
+    return weighted(rng, ways)()
 
 
 BOOLS = ("p", "q", "r")

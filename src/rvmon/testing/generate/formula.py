@@ -26,6 +26,7 @@ from rvmon.testing.generate import (
     FURTHER,
     Rng,
     chance,
+    drawn,
     pick,
     weighted,
 )
@@ -50,30 +51,16 @@ def interval(rng: Rng, shape: Shape, *, from_zero: bool = False) -> Interval:
 
 def atom(rng: Rng, shape: Shape) -> Formula:
     """A random proposition."""
-    kind = weighted(
+    compares = (60 if shape.wide else 18) if shape.numbers else 0
+    return drawn(
         rng,
-        (
-            (50, "signal"),
-            (22 if shape.events else 0, "event"),
-            ((60 if shape.wide else 18) if shape.numbers else 0, "compare"),
-            (6 if shape.numbers else 0, "probe"),
-            (shape.constants, "constant"),
-            (2, "start"),
-        ),
+        (50, lambda: SignalAtom(pick(rng, BOOLS))),
+        (22 if shape.events else 0, lambda: EventAtom(pick(rng, (*EVENTS, CARRIER, FURTHER)))),
+        (compares, lambda: comparison(rng, shape)),
+        (6 if shape.numbers else 0, lambda: probe(rng, shape)),
+        (shape.constants, lambda: Constant(chance(rng, 50))),
+        (2, lambda: BoundAtom(Bound.START)),
     )
-    match kind:
-        case "signal":
-            return SignalAtom(pick(rng, BOOLS))
-        case "event":
-            return EventAtom(pick(rng, (*EVENTS, CARRIER, FURTHER)))
-        case "compare":
-            return comparison(rng, shape)
-        case "probe":
-            return probe(rng, shape)
-        case "constant":
-            return Constant(chance(rng, 50))
-        case _:
-            return BoundAtom(Bound.START)
 
 
 _LIKELY: dict[UnaryOp | BinaryOp, int] = {
@@ -101,7 +88,9 @@ def _unary_of(tense: Tense) -> tuple[tuple[int, UnaryOp], ...]:
 def consequent(rng: Rng, shape: Shape, depth: int) -> Formula:
     """A random formula, mostly with a future operator at its top."""
     if shape.future and chance(rng, 50):
-        return (_future_unary if chance(rng, 50) else _future_binary)(rng, shape, depth)
+        if chance(rng, 50):
+            return _future_unary(rng, shape, depth)
+        return _binary(rng, shape, depth, Tense.FUTURE)
     return formula(rng, shape, depth)
 
 
@@ -109,45 +98,28 @@ def formula(rng: Rng, shape: Shape, depth: int) -> Formula:
     """A random formula whose operators nest at most `depth` deep."""
     if depth == 0:
         return atom(rng, shape)
-    kind = weighted(
-        rng,
-        (
-            (8, "atom"),
-            (12, "not"),
-            (26, "connective"),
-            (24 if shape.future else 0, "future unary"),
-            (18 if shape.future else 0, "future binary"),
-            (8 if shape.future and shape.step else 0, "next"),
-            (17 if shape.past else 0, "past unary"),
-            (6 if shape.past else 0, "since"),
-            (4 if shape.past and shape.step else 0, "previous"),
-            (shape.amounts if shape.past else 0, "amount"),
-        ),
-    )
     below = shape if shape.mixed else replace(shape, future=False)
-    match kind:
-        case "atom":
-            return atom(rng, shape)
-        case "not":
-            return Unary(UnaryOp.NOT, formula(rng, shape, depth - 1))
-        case "connective":
-            return _binary(rng, shape, depth, Tense.PRESENT)
-        case "future unary":
-            return _future_unary(rng, shape, depth)
-        case "future binary":
-            return _future_binary(rng, shape, depth)
-        case "next":
-            return Unary(UnaryOp.NEXT, formula(rng, shape, depth - 1))
-        case "past unary":
-            return past_unary(rng, below, depth)
-        case "amount" if shape.numbers and not shape.wide and not shape.form and chance(rng, 20):
-            return late(rng, shape)
-        case "amount":
-            return amount(rng, shape, partial(_below, depth - 1))
-        case "since":
-            return _binary(rng, below, depth, Tense.PAST)
-        case _:
-            return Unary(UnaryOp.PREVIOUS, formula(rng, below, depth - 1))
+    future, past, step = int(shape.future), int(shape.past), int(shape.step)
+    return drawn(
+        rng,
+        (8, lambda: atom(rng, shape)),
+        (12, lambda: Unary(UnaryOp.NOT, formula(rng, shape, depth - 1))),
+        (26, lambda: _binary(rng, shape, depth, Tense.PRESENT)),
+        (24 * future, lambda: _future_unary(rng, shape, depth)),
+        (18 * future, lambda: _binary(rng, shape, depth, Tense.FUTURE)),
+        (8 * future * step, lambda: Unary(UnaryOp.NEXT, formula(rng, shape, depth - 1))),
+        (17 * past, lambda: past_unary(rng, below, depth)),
+        (6 * past, lambda: _binary(rng, below, depth, Tense.PAST)),
+        (4 * past * step, lambda: Unary(UnaryOp.PREVIOUS, formula(rng, below, depth - 1))),
+        (shape.amounts * past, lambda: _measured(rng, shape, depth)),
+    )
+
+
+def _measured(rng: Rng, shape: Shape, depth: int) -> Formula:
+    """A measure of a window, or of the time since an instant."""
+    if shape.numbers and not shape.wide and not shape.form and chance(rng, 20):
+        return late(rng, shape)
+    return amount(rng, shape, partial(_below, depth - 1))
 
 
 def _below(depth: int, rng: Rng, shape: Shape) -> Formula:
@@ -158,10 +130,6 @@ def _future_unary(rng: Rng, shape: Shape, depth: int) -> Formula:
     op = weighted(rng, _unary_of(Tense.FUTURE))
     window = interval(rng, shape)
     return Unary(op, formula(rng, shape, depth - 1), window)
-
-
-def _future_binary(rng: Rng, shape: Shape, depth: int) -> Formula:
-    return _binary(rng, shape, depth, Tense.FUTURE)
 
 
 def _binary(rng: Rng, shape: Shape, depth: int, tense: Tense) -> Formula:

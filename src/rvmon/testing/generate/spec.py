@@ -42,10 +42,10 @@ from rvmon.testing.generate import (
     NUMBERS,
     Rng,
     chance,
+    drawn,
     events,
     pick,
     signals,
-    weighted,
 )
 from rvmon.testing.generate.formula import consequent, formula, past_unary
 from rvmon.testing.generate.numbers import Shape, arithmetic, comparison, number_of_windows
@@ -160,7 +160,6 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         for_each = ForEach("each", FieldValue(CARRIER, FIELD))
     instance = (for_each.name,) if for_each else ()
     instants = ("t0",) if captures and profile.amounts and (since or chance(rng, 50)) else ()
-    captures += tuple(Capture(name, NowValue()) for name in instants)
     shape = Shape(
         step=time is not TimeModel.HELD,
         past=profile.past,
@@ -168,28 +167,15 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         mixed=profile.mixed,
         numbers=profile.numbers,
         events=profile.events,
-        captured=(
-            *instance,
-            *(capture.name for capture in captures if capture.name not in instants),
-        ),
+        captured=(*instance, *(capture.name for capture in captures)),
         wide=profile.wide > 0,
         constants=profile.constants,
         amounts=profile.amounts,
         instants=instants,
         form=profile.form,
     )
-    seen = Shape(
-        step=shape.step,
-        past=profile.past,
-        future=False,
-        numbers=profile.numbers,
-        events=profile.events,
-        captured=instance,
-        wide=profile.wide > 0,
-        constants=profile.constants,
-        amounts=0 if since else profile.amounts,
-        form=profile.form,
-    )
+    amounts = 0 if since else profile.amounts
+    seen = replace(shape, future=False, captured=instance, amounts=amounts, instants=())
     trigger = _trigger(rng, seen, for_each)
     at_end = is_end(trigger)
     how = Mode.WHENEVER if not at_end and chance(rng, 35) else Mode.UPON
@@ -207,7 +193,7 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
         required,
         at_end=policy,
         pulse=is_pulse(trigger),
-        captures=captures,
+        captures=(*captures, *(Capture(name, NowValue()) for name in instants)),
         for_each=for_each,
     )
 
@@ -256,31 +242,17 @@ def _trigger(rng: Rng, shape: Shape, for_each: ForEach | None) -> Formula:
                 Binary(BinaryOp.OR, earlier, compared),
             )
         return pick(rng, options)
-    kind = weighted(
+    return drawn(
         rng,
-        (
-            (28 if shape.events else 0, "event"),
-            (16 if shape.events else 0, "event and"),
-            (12, "level"),
-            (14, "start"),
-            (18, "any"),
-            (10 if shape.past else 0, "since when"),
-            (6, "end"),
-        ),
+        (28 if shape.events else 0, lambda: EventAtom(pick(rng, EVENTS))),
+        (16 if shape.events else 0, lambda: _with_event(rng, shape)),
+        (12, lambda: SignalAtom(pick(rng, BOOLS))),
+        (14, lambda: BoundAtom(Bound.START)),
+        (18, lambda: formula(rng, shape, rng.randint(1, 2))),
+        (10 if shape.past else 0, lambda: past_unary(rng, shape, 1)),
+        (6, lambda: BoundAtom(Bound.END)),
     )
-    match kind:
-        case "event":
-            return EventAtom(pick(rng, EVENTS))
-        case "event and":
-            occurs = EventAtom(pick(rng, EVENTS))
-            return Binary(BinaryOp.AND, occurs, formula(rng, shape, 1))
-        case "level":
-            return SignalAtom(pick(rng, BOOLS))
-        case "start":
-            return BoundAtom(Bound.START)
-        case "any":
-            return formula(rng, shape, rng.randint(1, 2))
-        case "since when":
-            return past_unary(rng, shape, 1)
-        case _:
-            return BoundAtom(Bound.END)
+
+
+def _with_event(rng: Rng, shape: Shape) -> Formula:
+    return Binary(BinaryOp.AND, EventAtom(pick(rng, EVENTS)), formula(rng, shape, 1))
