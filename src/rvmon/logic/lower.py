@@ -9,16 +9,8 @@ from typing import assert_never
 from msgspec import Struct
 
 from rvmon.errors import RvmonError
+from rvmon.language.checked import formula as formulas
 from rvmon.language.checked.classify import has_future, looks_back_at_future, subformulas
-from rvmon.language.checked.formula import (
-    Bound,
-    BoundAtom,
-    Compare,
-    Formula,
-    SignalAtom,
-    itself,
-    windows_in,
-)
 from rvmon.language.checked.specification import Mode, Requirement
 from rvmon.logic.formula import (
     And,
@@ -103,11 +95,13 @@ def lower(
     lowering = begin()
     truth_reader = begin(measured=False).reader if measured else lowering.reader
     of_windows = [
-        itself(capture.value) for capture in requirement.captures if windows_in(capture.value)
+        formulas.itself(capture.value)
+        for capture in requirement.captures
+        if formulas.windows_in(capture.value)
     ]
     captures_known = tuple(truth_reader.four(window).read(UNKNOWN) for window in of_windows)
     match requirement.trigger:
-        case BoundAtom(bound=Bound.END):
+        case formulas.BoundAtom(bound=formulas.Bound.END):
             required = lowering.core(requirement.consequent, True)
             return Obligation(None, required, lowering.origins, captures_known=captures_known)
         case formula if has_future(formula):
@@ -170,11 +164,11 @@ def _determined(trigger: Four, factory: Factory) -> State:
     return factory.since(factory.state_true, known, 0, None)
 
 
-def _unborn(consequent: Formula, factory: Factory) -> State | None:
+def _unborn(consequent: formulas.Formula, factory: Factory) -> State | None:
     """TRUE while some signal that the consequent reads had no value; `None` if it reads none."""
     found: dict[str, bool] = {}
     for atom in subformulas(consequent):
-        if isinstance(atom, SignalAtom | Compare):
+        if isinstance(atom, formulas.SignalAtom | formulas.Compare):
             for name, moved in signals_of(atom).items():
                 found[name] = found.get(name, False) or moved
     return factory.leaf(Unborn(tuple(sorted(found.items())))) if found else None

@@ -7,73 +7,62 @@ from enum import Enum
 
 from msgspec import Struct
 
-from rvmon.language.checked.formula import (
-    Amount,
-    Arithmetic,
-    BoundAtom,
-    Captured,
-    Compare,
-    Constant,
-    EventAtom,
-    FieldValue,
-    Numeric,
-    Passed,
-    ProbeAtom,
-    SignalAtom,
-    SignalValue,
-    UpdateValue,
-    WindowValue,
-)
+from rvmon.language.checked import formula as formulas
 
 
-def operands(expression: Numeric) -> Iterator[Numeric]:
+def operands(expression: formulas.Numeric) -> Iterator[formulas.Numeric]:
     """The non-arithmetic leaves of a numeric expression."""
     match expression:
-        case Arithmetic(args=args):
+        case formulas.Arithmetic(args=args):
             for arg in args:
                 yield from operands(arg)
         case _:
             yield expression
 
 
-def signals_of(atom: SignalAtom | Compare) -> dict[str, bool]:
+def signals_of(atom: formulas.SignalAtom | formulas.Compare) -> dict[str, bool]:
     """The signals an atom reads; the value says whether it needs an update after the birth.
 
     Source: SEMANTICS, section 1 (Birth).
     """
-    if isinstance(atom, SignalAtom):
+    if isinstance(atom, formulas.SignalAtom):
         return {atom.name: False}
     found: dict[str, bool] = {}
     for part in (*operands(atom.left), *operands(atom.right)):
-        if isinstance(part, SignalValue | UpdateValue):
-            found[part.name] = found.get(part.name, False) or isinstance(part, UpdateValue)
+        if isinstance(part, formulas.SignalValue | formulas.UpdateValue):
+            found[part.name] = found.get(part.name, False) or isinstance(part, formulas.UpdateValue)
     return found
 
 
-def reads_fields(atom: SignalAtom | Compare) -> bool:
+def reads_fields(atom: formulas.SignalAtom | formulas.Compare) -> bool:
     """Whether an atom reads a payload field of an event."""
-    return isinstance(atom, Compare) and any(
-        isinstance(part, FieldValue) for part in (*operands(atom.left), *operands(atom.right))
+    return isinstance(atom, formulas.Compare) and any(
+        isinstance(part, formulas.FieldValue)
+        for part in (*operands(atom.left), *operands(atom.right))
     )
 
 
-def inputs_of(*expressions: Numeric) -> frozenset[str]:
+def inputs_of(*expressions: formulas.Numeric) -> frozenset[str]:
     """The signals and events that expressions read."""
     parts = [part for expression in expressions for part in operands(expression)]
-    signals = {part.name for part in parts if isinstance(part, SignalValue | UpdateValue)}
+    signals = {
+        part.name for part in parts if isinstance(part, formulas.SignalValue | formulas.UpdateValue)
+    }
     return frozenset(signals) | frozenset(events_of(*expressions))
 
 
-def events_of(*expressions: Numeric) -> tuple[str, ...]:
+def events_of(*expressions: formulas.Numeric) -> tuple[str, ...]:
     """The events whose fields expressions read, each once."""
     parts = [part for expression in expressions for part in operands(expression)]
-    return tuple(dict.fromkeys(part.event for part in parts if isinstance(part, FieldValue)))
+    return tuple(
+        dict.fromkeys(part.event for part in parts if isinstance(part, formulas.FieldValue))
+    )
 
 
-def captured_of(*expressions: Numeric) -> frozenset[str]:
+def captured_of(*expressions: formulas.Numeric) -> frozenset[str]:
     """The captured values that expressions read."""
     parts = [part for expression in expressions for part in operands(expression)]
-    return frozenset(part.name for part in parts if isinstance(part, Captured))
+    return frozenset(part.name for part in parts if isinstance(part, formulas.Captured))
 
 
 FALSE, UNKNOWN, TRUE = 0, 1, 2
@@ -107,10 +96,16 @@ class Lapsed(Struct, frozen=True):
 InputState = Lost | Unborn | Lapsed
 """Leaves about the state of knowledge, not about values of the input."""
 
-Shown = SignalAtom | EventAtom | Compare | ProbeAtom | BoundAtom
+Shown = (
+    formulas.SignalAtom
+    | formulas.EventAtom
+    | formulas.Compare
+    | formulas.ProbeAtom
+    | formulas.BoundAtom
+)
 """Leaves that can be written in a specification."""
 
-Leaf = InputState | Shown | Constant | Elapsed
+Leaf = InputState | Shown | formulas.Constant | Elapsed
 """A leaf of a state formula; without spans, so that equal leaves are interned as one."""
 
 
@@ -159,9 +154,9 @@ class State(Struct, frozen=True, eq=False):
     leaf: Leaf | None = None
     low: int = 0
     high: int | None = None
-    amount: Amount | WindowValue | None = None
-    compared: Compare | None = None
-    passed: Passed | None = None
+    amount: formulas.Amount | formulas.WindowValue | None = None
+    compared: formulas.Compare | None = None
+    passed: formulas.Passed | None = None
     unborn: int = UNKNOWN
     pulse: bool = False
     every: bool = False

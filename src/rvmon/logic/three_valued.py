@@ -8,24 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rvmon.language.checked.formula import (
-    Amount,
-    Atom,
-    Binary,
-    BinaryOp,
-    Compare,
-    Constant,
-    Formula,
-    Interval,
-    Measured,
-    Passed,
-    Read,
-    SignalAtom,
-    Unary,
-    UnaryOp,
-    itself,
-    windows_in,
-)
+from rvmon.language.checked import formula as formulas
 from rvmon.language.checked.operators import Reading, Tense
 from rvmon.language.checked.rewrite import read, rewritten, without_spans
 from rvmon.logic.formula import Factory
@@ -69,9 +52,9 @@ class Reader(Reading[Four]):
         self.measured = measured
         self.held = held
         self._truth_reader = Reader(factory, period) if measured else self
-        self._literals: dict[tuple[int, int], tuple[Formula, State]] = {}
+        self._literals: dict[tuple[int, int], tuple[formulas.Formula, State]] = {}
 
-    def literal(self, formula: Formula, unborn: int) -> State:
+    def literal(self, formula: formulas.Formula, unborn: int) -> State:
         """The state formula with each unborn proposition, not the whole, replaced by `unborn`.
 
         A proposition is an atom or a past operator with its operands.
@@ -81,49 +64,51 @@ class Reader(Reading[Four]):
             self._literals[key] = formula, self._literal(formula, unborn)
         return self._literals[key][1]
 
-    def _literal(self, formula: Formula, unborn: int) -> State:
+    def _literal(self, formula: formulas.Formula, unborn: int) -> State:
         factory = self.factory
         match formula:
-            case Unary(op=UnaryOp.NOT, operand=operand):
+            case formulas.Unary(op=formulas.UnaryOp.NOT, operand=operand):
                 # Under a negation unborn counts in favour by the other value.
                 return factory.negation(self.literal(operand, TRUE - unborn))
-            case Binary(op=BinaryOp.AND | BinaryOp.OR as op, left=left, right=right):
-                join = factory.state_all if op is BinaryOp.AND else factory.state_any
+            case formulas.Binary(
+                op=formulas.BinaryOp.AND | formulas.BinaryOp.OR as op, left=left, right=right
+            ):
+                join = factory.state_all if op is formulas.BinaryOp.AND else factory.state_any
                 return join([self.literal(left, unborn), self.literal(right, unborn)])
-            case Binary(op=op) if op.entry.tense is Tense.PRESENT:
+            case formulas.Binary(op=op) if op.entry.tense is Tense.PRESENT:
                 return self.literal(rewritten(formula), unborn)
             case _:
                 return self.four(formula).read(unborn)
 
-    def four(self, formula: Formula) -> Four:
+    def four(self, formula: formulas.Formula) -> Four:
         """The four-valued reading of a formula."""
         match formula:
             # Rewriting these would lose the birth at the previous position, or of the window.
-            case Unary(op=UnaryOp.RISE, operand=operand):
+            case formulas.Unary(op=formulas.UnaryOp.RISE, operand=operand):
                 arg = self.four(operand)
                 return self._all([arg, self.no(self._before(arg))])
-            case Unary(op=UnaryOp.FALL, operand=operand):
+            case formulas.Unary(op=formulas.UnaryOp.FALL, operand=operand):
                 arg = self.four(operand)
                 return self._all([self.no(arg), self._before(arg)])
-            case Unary(op=UnaryOp.HELD, operand=operand, interval=interval):
+            case formulas.Unary(op=formulas.UnaryOp.HELD, operand=operand, interval=interval):
                 return self._held(self.four(operand), self._truth_reader.four(operand), interval)
-            case Unary() | Binary():
+            case formulas.Unary() | formulas.Binary():
                 return read(formula, self.four, self)
-            case Amount() if self.measured and formula.has_distance(held=self.held):
+            case formulas.Amount() if self.measured and formula.has_distance(held=self.held):
                 return self._compared(formula.comparison)
-            case Amount():
+            case formulas.Amount():
                 return self._amount(formula)
-            case Compare(left=left, right=right) if windows_in(left, right):
+            case formulas.Compare(left=left, right=right) if formulas.windows_in(left, right):
                 return self._compared(formula)
-            case Passed(known=known):
+            case formulas.Passed(known=known):
                 value = self.factory.passed(formula, self.four(known).read(UNKNOWN))
                 return self._unborn_until(value, (self._unborn(known),))
-            case Constant(value=value):
+            case formulas.Constant(value=value):
                 return self.constant(value)
             case _:
                 return self._atom(formula)
 
-    def _amount(self, formula: Amount) -> Four:
+    def _amount(self, formula: formulas.Amount) -> Four:
         """A window against a limit: unborn members add nothing; unborn until the limit is born."""
         states = [
             self._truth_reader.four(part).read(UNKNOWN if part is formula.known else FALSE)
@@ -132,29 +117,29 @@ class Reader(Reading[Four]):
         value = self.factory.amount(formula, *states)
         return self._unborn_until(value, map(self._unborn, formula.born_with))
 
-    def _compared(self, formula: Compare) -> Four:
+    def _compared(self, formula: formulas.Compare) -> Four:
         """A comparison of windows: unknown where a side has no known number."""
         factory, leaf = self.factory, without_spans(formula)
         parts = [part for side in (leaf.left, leaf.right) for part in operands(side)]
-        known = [itself(part) for part in parts if isinstance(part, Read)]
+        known = [formulas.itself(part) for part in parts if isinstance(part, formulas.Read)]
         states, asked = (
             [self.four(comparison).read(UNKNOWN) for comparison in known],
             [*map(self._unborn, known)],
         )
-        for window in windows_in(leaf.left, leaf.right):
+        for window in formulas.windows_in(leaf.left, leaf.right):
             own = (self._truth_reader.four(part).read(FALSE) for part in window.operands)
             states.append(factory.window(window, *own))
             for unborn in map(self._unborn, window.born_with):
-                if window.measured is Measured.AGO:  # the birth must lie that far back
+                if window.measured is formulas.Measured.AGO:  # the birth must lie that far back
                     ago, born = window.window or 0, factory.negation(unborn)
                     early = factory.since(factory.state_true, born, ago, ago)
                     unborn = factory.negation(early)
                 asked.append(unborn)
         return self._unborn_until(factory.compared(leaf, *dict.fromkeys(states)), asked)
 
-    def _unborn(self, part: SignalAtom | Compare) -> State:
+    def _unborn(self, part: formulas.SignalAtom | formulas.Compare) -> State:
         """Two-valued: some signal that `part` reads is unborn."""
-        if isinstance(part, Compare) and windows_in(part.left, part.right):
+        if isinstance(part, formulas.Compare) and formulas.windows_in(part.left, part.right):
             return self._compared(part).unborn
         signals = tuple(sorted(signals_of(part).items()))
         return self.factory.leaf(Unborn(signals)) if signals else self.factory.state_false
@@ -175,10 +160,10 @@ class Reader(Reading[Four]):
 
         return Four(factory, read, stays_born=True, unborn=unborn)
 
-    def _atom(self, atom: Atom) -> Four:
+    def _atom(self, atom: formulas.Atom) -> Four:
         factory = self.factory
         leaf = without_spans(atom)
-        if not isinstance(leaf, SignalAtom | Compare) or not signals_of(leaf):
+        if not isinstance(leaf, formulas.SignalAtom | formulas.Compare) or not signals_of(leaf):
             return Four(factory, lambda _: factory.leaf(leaf), born_late=False)
         unborn = None if reads_fields(leaf) else self._unborn(leaf)
         return Four(
@@ -263,7 +248,7 @@ class Reader(Reading[Four]):
             states.append(factory.leaf(Unborn(tuple(sorted(signals.items())))))
         return factory.state_any(states)
 
-    def since(self, left: Four, right: Four, interval: Interval) -> Four:
+    def since(self, left: Four, right: Four, interval: formulas.Interval) -> Four:
         """`since`, which skips positions where an operand is unborn."""
         factory = self.factory
         low, high = self._window(interval)
@@ -335,7 +320,7 @@ class Reader(Reading[Four]):
         """The value at the previous position; FALSE if unborn there, or if there is none."""
         return Four(self.factory, always_read_as(self.previous(arg).read(FALSE)), born_late=False)
 
-    def _held(self, arg: Four, truth: Four, interval: Interval | None) -> Four:
+    def _held(self, arg: Four, truth: Four, interval: formulas.Interval | None) -> Four:
         """`held` is unborn unless its operand was born throughout."""
         factory = self.factory
         elapsed = factory.leaf(Elapsed(interval.high if interval and interval.high else 0))
@@ -353,14 +338,14 @@ class Reader(Reading[Four]):
 
         return Four(factory, read)
 
-    def _historically(self, arg: State, interval: Interval | None) -> State:
+    def _historically(self, arg: State, interval: formulas.Interval | None) -> State:
         factory = self.factory
         low, high = self._window(interval)
         if high is not None and low > high:
             return factory.state_true
         return factory.negation(factory.since(factory.state_true, factory.negation(arg), low, high))
 
-    def _window(self, interval: Interval | None) -> tuple[int, int | None]:
+    def _window(self, interval: formulas.Interval | None) -> tuple[int, int | None]:
         low, high = (interval.low, interval.high) if interval else (0, None)
         if self.period:
             low = -(-low // self.period) * self.period

@@ -11,19 +11,8 @@ from typing import NamedTuple, assert_never
 
 from msgspec import Struct
 
+from rvmon.logic import formula
 from rvmon.logic.alphabet import TruthValue, holds
-from rvmon.logic.formula import (
-    And,
-    Constant,
-    Core,
-    Literal,
-    Next,
-    Or,
-    Previous,
-    Release,
-    Since,
-    Until,
-)
 from rvmon.logic.progress import Phase, after, instance, phase, step
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual
 from rvmon.logic.state_formula import FALSE, TRUE, State
@@ -45,10 +34,10 @@ class Cause(Struct, frozen=True):
         literal: the proposition that decided it, if a single one did.
     """
 
-    node: Literal | Until | Release
+    node: formula.Literal | formula.Until | formula.Release
     start: int
     over: bool
-    literal: Literal | None
+    literal: formula.Literal | None
 
 
 class CauseFinder:
@@ -101,41 +90,43 @@ class CauseFinder:
                 return cause
         return None
 
-    def _read(self, literal: Literal) -> Residual:
+    def _read(self, literal: formula.Literal) -> Residual:
         return HOLDS if holds(literal.sense, self.valuation[literal.proposition]) else FAILS
 
-    def _of_atom(self, node: Literal | Next | Until | Release, clock: int) -> Cause | None:
+    def _of_atom(
+        self, node: formula.Literal | formula.Next | formula.Until | formula.Release, clock: int
+    ) -> Cause | None:
         match node:
-            case Literal():
+            case formula.Literal():
                 return Cause(node, AT_DECISION, False, node)
-            case Next(operand=operand):
+            case formula.Next(operand=operand):
                 return self._of_instance(operand)
-            case Until() | Release():
+            case formula.Until() | formula.Release():
                 if clock > NO_CLOCK and phase(node, self.ages[clock]) is Phase.OVER:
                     return Cause(node, clock, True, None)
                 # `U` passes and `R` fails by its right operand, at the position where that is
                 # decided; the other decision comes from the left operand.
-                ends_it = isinstance(node, Until) is self.verdict
+                ends_it = isinstance(node, formula.Until) is self.verdict
                 part = node.right if ends_it else node.left
-                if isinstance(part, Literal):
+                if isinstance(part, formula.Literal):
                     return Cause(node, clock, False, part)
                 return self._of_instance(part) or Cause(node, clock, False, None)
             case _:
                 assert_never(node)
 
-    def _of_instance(self, node: Core) -> Cause | None:
+    def _of_instance(self, node: formula.Core) -> Cause | None:
         match node:
-            case Constant():
+            case formula.Constant():
                 return None
-            case And(args=args) | Or(args=args):
+            case formula.And(args=args) | formula.Or(args=args):
                 decided = [arg for arg in args if instance(arg, self._read) == self.wanted]
                 # A temporal operand explains more than a literal next to it.
-                decided.sort(key=lambda arg: isinstance(arg, Literal))
+                decided.sort(key=lambda arg: isinstance(arg, formula.Literal))
                 causes = (self._of_instance(arg) for arg in decided)
                 return next((cause for cause in causes if cause is not None), None)
-            case Literal() | Next() | Until() | Release():
+            case formula.Literal() | formula.Next() | formula.Until() | formula.Release():
                 return self._of_atom(node, AT_DECISION)
-            case Since() | Previous():
+            case formula.Since() | formula.Previous():
                 raise AssertionError("a residual has no past operators")
             case _:
                 assert_never(node)

@@ -9,20 +9,8 @@ from itertools import islice
 from rvmon.diagnostics import snippet
 from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import CheckedSpec, Requirement
+from rvmon.report import wording
 from rvmon.report.printer import Piece, Printer
-from rvmon.report.wording import (
-    MARKS,
-    SHOWN,
-    SHOWN_PER_REQUIREMENT,
-    first_of,
-    forecast_sentence,
-    full_reason,
-    health_facts,
-    instants_of,
-    verdict_text,
-    without_attempts,
-    wrapped,
-)
 from rvmon.texts import counted
 from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict
@@ -64,9 +52,10 @@ def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:
             if covered_bin.hits
         ]
         covered = f"{group.name}: {len(wanted) - len(holes):,} of {len(wanted):,} covered"
-        yield f"{covered}; hit: {first_of(hit, SHOWN)}" if hit else covered
+        yield f"{covered}; hit: {wording.first_of(hit, wording.SHOWN)}" if hit else covered
         if holes:
-            yield f"{group.name}: not covered: {first_of([*map(_missing, holes)], SHOWN)}"
+            missing = wording.first_of([*map(_missing, holes)], wording.SHOWN)
+            yield f"{group.name}: not covered: {missing}"
 
 
 def _name(covered_bin: CoveredBin) -> str:
@@ -113,13 +102,17 @@ def print_report(report: Report, spec: CheckedSpec, printer: Printer) -> None:
         _print_verdicts(report, spec, printer)
     for name, verdict in report.verdicts.items():
         if name in report.misses:
-            why = wrapped(without_attempts(verdict, report.misses[name]), printer.width)
-            printer.line((f"{name} ", "bold"), verdict_text(verdict), f"\n{why}\n")
+            why = wording.wrapped(
+                wording.without_attempts(verdict, report.misses[name]), printer.width
+            )
+            printer.line((f"{name} ", "bold"), wording.verdict_text(verdict), f"\n{why}\n")
         for shown in (Verdict.FAIL, Verdict.INCONCLUSIVE):
             count = report.counts.get(name, {}).get(shown, 0)
-            for attempt in islice(report.of(name, shown) if count else (), SHOWN_PER_REQUIREMENT):
+            for attempt in islice(
+                report.of(name, shown) if count else (), wording.SHOWN_PER_REQUIREMENT
+            ):
                 _print_attempt(attempt, spec.requirements[name], report, printer)
-            rest = count - SHOWN_PER_REQUIREMENT
+            rest = count - wording.SHOWN_PER_REQUIREMENT
             if rest > 0:
                 printer.line((f"… and {rest} more {shown} of {name}", "dim"))
     _print_goals(report.goals, printer)
@@ -128,15 +121,15 @@ def print_report(report: Report, spec: CheckedSpec, printer: Printer) -> None:
         printer.line((hit.sentence(report.origin), "bold red"))
     if report.health:
         printer.line("input health:")
-    for names, fact in health_facts(report.health, report.origin):
-        printer.line(wrapped(f"{names}  {fact}", printer.width))
+    for names, fact in wording.health_facts(report.health, report.origin):
+        printer.line(wording.wrapped(f"{names}  {fact}", printer.width))
 
 
 def _print_coverage(groups: Sequence[CoveredGroup], printer: Printer) -> None:
     if groups:
         printer.line("coverage:")
     for line in coverage_lines(groups):
-        printer.line(wrapped(line, printer.width))
+        printer.line(wording.wrapped(line, printer.width))
 
 
 def _print_verdicts(report: Report, spec: CheckedSpec, printer: Printer) -> None:
@@ -149,7 +142,7 @@ def _print_verdicts(report: Report, spec: CheckedSpec, printer: Printer) -> None
     for name, verdict in report.verdicts.items():
         counts = report.counts[name]
         listed = "  ".join(f"{count} {kind}" for kind, count in counts.items() if count)
-        row: list[Piece] = [name, verdict_text(verdict), listed or "–"]
+        row: list[Piece] = [name, wording.verdict_text(verdict), listed or "–"]
         row += [least.get(name, "–")] if least else []
         requirement = spec.requirements[name]
         row += [requirement.severity or "–"] if levels else []
@@ -177,7 +170,7 @@ def _print_goals(goals: Mapping[str, Verdict], printer: Printer) -> None:
     words = {Verdict.PASS: "shown", Verdict.INCONCLUSIVE: "not shown, still possible at the end"}
     printer.line("cover goals:")
     for name, verdict in goals.items():
-        sign = MARKS[verdict].sign
+        sign = wording.MARKS[verdict].sign
         printer.line(f"  {name}  {verdict} {sign}  {words.get(verdict, 'not shown')}")
     printer.line()
 
@@ -185,15 +178,17 @@ def _print_goals(goals: Mapping[str, Verdict], printer: Printer) -> None:
 def _print_attempt(
     attempt: Attempt, requirement: Requirement, report: Report, printer: Printer
 ) -> None:
-    first, *rest = instants_of(attempt)
+    first, *rest = wording.instants_of(attempt)
     when = "\n  ".join([f"attempt {attempt.numbered}, {first}", *rest])
     if attempt.robustness is not None:
         when += f", robustness {attempt.robustness:.4g}"
-    printer.line((f"{attempt.requirement} ", "bold"), verdict_text(attempt.verdict), f"  {when}")
+    printer.line(
+        (f"{attempt.requirement} ", "bold"), wording.verdict_text(attempt.verdict), f"  {when}"
+    )
     if attempt.reason:
-        printer.line(wrapped(full_reason(attempt, report), printer.width))
+        printer.line(wording.wrapped(wording.full_reason(attempt, report), printer.width))
     if attempt.forecast is not None:
-        printer.line(f"  {forecast_sentence(attempt.forecast)}")
+        printer.line(f"  {wording.forecast_sentence(attempt.forecast)}")
     span = requirement.span
     if attempt.blame is not None and span is not None:
         span = type(span)(span.source, attempt.blame.start, attempt.blame.end)

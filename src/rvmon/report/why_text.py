@@ -7,16 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from rvmon.analysis.subformulas import Breakdown, PartTruth
 from rvmon.language.checked.specification import Requirement
+from rvmon.report import wording
 from rvmon.report.printer import Line
 from rvmon.report.tracks import Track, signal_texts
-from rvmon.report.wording import (
-    MARKS,
-    forecast_sentence,
-    instants_of,
-    reason_text,
-    verdict_text,
-    wrapped,
-)
 from rvmon.trace.time import format_instant
 from rvmon.verdicts.attempt import Attempt
 
@@ -36,9 +29,9 @@ def why_lines(
 ) -> Iterator[Line]:
     """The verdict with its reason, a row for the trigger and each part required, and values."""
     attempt = breakdown.attempt
-    yield [(f"{attempt.name}  ", "bold"), verdict_text(attempt.verdict)]
+    yield [(f"{attempt.name}  ", "bold"), wording.verdict_text(attempt.verdict)]
     for line in _sentences(breakdown, requirement):
-        yield [wrapped(line, WIDTH)]
+        yield [wording.wrapped(line, WIDTH)]
     yield []
     yield from _axis(breakdown)
     part = ""
@@ -78,13 +71,13 @@ def _sentences(breakdown: Breakdown, requirement: Requirement) -> Iterator[str]:
     attempt = breakdown.attempt
     if requirement.text:
         yield requirement.text
-    yield from instants_of(attempt)
+    yield from wording.instants_of(attempt)
     for name, value in attempt.captured.items():
         yield f"{name} = {value}"
     if attempt.reason:
-        yield reason_text(attempt, breakdown.late)
+        yield wording.reason_text(attempt, breakdown.late)
     if attempt.forecast is not None:
-        yield forecast_sentence(attempt.forecast)
+        yield wording.forecast_sentence(attempt.forecast)
 
 
 def _axis(breakdown: Breakdown) -> Iterator[Line]:
@@ -94,7 +87,7 @@ def _axis(breakdown: Breakdown) -> Iterator[Line]:
     marks[_column(attempt.triggered, breakdown)] = "▼"
     if attempt.decided is not None:
         column = _column(attempt.decided, breakdown)
-        marks[column] = MARKS[attempt.verdict].sign
+        marks[column] = wording.MARKS[attempt.verdict].sign
     first, last = (format_instant(t, attempt.origin) for t in (breakdown.start, breakdown.end))
     margin = " " * (WIDTH - PLOT)
     yield [(f"{margin}{first}{last:>{PLOT - len(first)}}", "dim")]

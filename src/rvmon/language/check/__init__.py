@@ -10,15 +10,8 @@ from rvmon.language.check.ctl import checked_goal, checked_property
 from rvmon.language.check.expressions import Checker
 from rvmon.language.check.requirements import check_clauses, checked_requirement
 from rvmon.language.check.scope import EVERYWHERE, Table, close_name, close_unit
+from rvmon.language.checked import specification
 from rvmon.language.checked.properties import Cover
-from rvmon.language.checked.specification import (
-    CheckedSpec,
-    Event,
-    Requirement,
-    Signal,
-    TimeModel,
-    Type,
-)
 from rvmon.language.names import ResolvedSpec, find_cycles
 from rvmon.language.rules import Findings
 from rvmon.language.rules import names as name_rules
@@ -36,7 +29,7 @@ from rvmon.trace.schema import Kind
 from rvmon.units import Unit, UnknownUnitError, parse_unit
 
 
-def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
+def check(spec: ResolvedSpec, findings: Findings) -> specification.CheckedSpec:
     """Check everything that a specification says.
 
     Returns:
@@ -58,7 +51,7 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
         period = _positive(checker, spec.time.period, "the period")
     if spec.delay is not None:
         delay = checker.collected(checker.duration, spec.delay.delay, EVERYWHERE)
-    requirements: dict[str, Requirement] = {}
+    requirements: dict[str, specification.Requirement] = {}
     goals: dict[str, Cover] = {}
     for name, item in spec.requirements.items():
         check_clauses(checker, item)
@@ -71,7 +64,7 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
             requirements[name] = requirement
     # Macros used by requirements were checked with these; unused ones may have errors, too.
     check_unused(checker, spec)
-    stated: list[Requirement | Cover] = [*requirements.values(), *goals.values()]
+    stated: list[specification.Requirement | Cover] = [*requirements.values(), *goals.values()]
     properties = {part.id: part.ctl for part in stated if part.ctl is not None}
     for name, alone in spec.properties.items():
         if property_ := checked_property(checker, name, alone.formula):
@@ -92,7 +85,7 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
         for name, syntax in spec.crosses.items()
         if (cross := checker.collected(checked_cross, checker, syntax, coverpoints, written))
     }
-    return CheckedSpec(
+    return specification.CheckedSpec(
         spec.header.name.text if spec.header else "spec",
         spec.header.title if spec.header else "",
         table.time,
@@ -110,8 +103,8 @@ def check(spec: ResolvedSpec, findings: Findings) -> CheckedSpec:
 
 
 def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) -> Table:
-    signals: dict[str, Signal] = {}
-    events: dict[str, Event] = {}
+    signals: dict[str, specification.Signal] = {}
+    events: dict[str, specification.Event] = {}
     units: dict[str, Unit] = {}
     for name, declared in spec.declared.items():
         match declared:
@@ -121,7 +114,7 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
                     type_, units[name] = type_and_unit
                     if declared.ignored is not None and type_.kind is not Kind.REAL:
                         findings.add(type_rules.ignored_nan(declared.ignored, str(type_.kind)))
-                    signals[name] = Signal(
+                    signals[name] = specification.Signal(
                         name,
                         type_,
                         declared.role,
@@ -141,12 +134,12 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
                     type_and_unit = _type(field.type, findings)
                     if type_and_unit is not None:
                         fields[field.name.text], units[f"{name}.{field.name.text}"] = type_and_unit
-                events[name] = Event(name, fields, declared.role, declared.name.span)
-    time = spec.time.model if spec.time is not None else TimeModel.HELD
+                events[name] = specification.Event(name, fields, declared.role, declared.name.span)
+    time = spec.time.model if spec.time is not None else specification.TimeModel.HELD
     return Table(time, signals, events, units, spec.declared, recursive, spec.doubtful)
 
 
-def _type(syntax: TypeSyntax, findings: Findings) -> tuple[Type, Unit] | None:
+def _type(syntax: TypeSyntax, findings: Findings) -> tuple[specification.Type, Unit] | None:
     """A type with its unit; `None` if there is no such unit, and then that is recorded."""
     labels = tuple(label.text for label in syntax.labels)
     firsts: dict[str, Span] = {}
@@ -159,7 +152,7 @@ def _type(syntax: TypeSyntax, findings: Findings) -> tuple[Type, Unit] | None:
     except UnknownUnitError as error:
         findings.add(type_rules.unknown_unit(syntax.span, str(error), close_unit(str(error))))
         return None
-    return Type(Kind(syntax.name), syntax.unit, labels), unit
+    return specification.Type(Kind(syntax.name), syntax.unit, labels), unit
 
 
 def _positive(checker: Checker, expression: Expression, what: str) -> int | None:

@@ -7,18 +7,8 @@ from fractions import Fraction
 from math import ceil
 
 from rvmon.diagnostics import Diagnostic, Span
+from rvmon.language.check import quantities
 from rvmon.language.check.moving_windows import above, brought_alone, by_limits
-from rvmon.language.check.quantities import (
-    Placed,
-    arithmetic,
-    brought_to,
-    compare,
-    decided,
-    either,
-    seconds_of,
-    spread,
-    ticks_of,
-)
 from rvmon.language.check.scope import (
     Age,
     Chosen,
@@ -78,8 +68,8 @@ def compared(operands: Operands, node: Comparison, scope: Scope) -> Formula:
     """
     sides = _sides(operands, node, scope)
     time = operands.table.time
-    formulas = spread(sides, node.span, lambda values: _compared(time, node, *values))
-    return decided(formulas, node.span)
+    formulas = quantities.spread(sides, node.span, lambda values: _compared(time, node, *values))
+    return quantities.decided(formulas, node.span)
 
 
 def _compared(time: TimeModel, node: Comparison, left: Value, right: Value) -> Formula:
@@ -116,7 +106,7 @@ def _compared(time: TimeModel, node: Comparison, left: Value, right: Value) -> F
     return comparison
 
 
-def _windows_of(placed: Placed) -> tuple[WindowValue, ...]:
+def _windows_of(placed: quantities.Placed) -> tuple[WindowValue, ...]:
     node = placed[0].node
     return () if node is None else windows_in(node)
 
@@ -144,14 +134,14 @@ def _may_be_signal(operands: Operands, expression: Expression, scope: Scope) -> 
     return not isinstance(expression, Name) or operands.known(expression.text, scope)
 
 
-def _amount(lone: Lone, unit: Unit, op: CompareOp, limit: Placed, span: Span) -> Formula:
+def _amount(lone: Lone, unit: Unit, op: CompareOp, limit: quantities.Placed, span: Span) -> Formula:
     if lone.added is None and limit[0].constant is not None:
         return by_limits(op, lambda strict: _counted(lone, limit, strict, span), span)
     bound = _bound(lone, unit, limit, span)
     return by_limits(op, lambda strict: above(lone.of, bound, strict, span), span)
 
 
-def _counted(lone: Lone, limit: Placed, strict: bool, span: Span) -> Formula:
+def _counted(lone: Lone, limit: quantities.Placed, strict: bool, span: Span) -> Formula:
     """A comparison of a count or duration with a constant, in whole numbers."""
     value, place = limit
     exact = (value.constant or 0) * value.unit.factor
@@ -160,7 +150,7 @@ def _counted(lone: Lone, limit: Placed, strict: bool, span: Span) -> Formula:
             raise Refusal(rules.mismatch(span, "no unit", value.unit.symbol, "compared with"))
         exact *= lone.of.window or 1 if lone.share else 1
     else:
-        exact = Fraction(ticks_of(value, place))
+        exact = Fraction(quantities.ticks_of(value, place))
     # A count is whole: more than 2.5 is at least 3.
     if exact.denominator > 1:
         exact, strict = Fraction(ceil(exact)), False
@@ -168,7 +158,7 @@ def _counted(lone: Lone, limit: Placed, strict: bool, span: Span) -> Formula:
     return Constant(True, span) if always else Amount(lone.of, Literal(int(exact)), strict, span)
 
 
-def _bound(lone: Lone, unit: Unit, limit: Placed, span: Span) -> Numeric:
+def _bound(lone: Lone, unit: Unit, limit: quantities.Placed, span: Span) -> Numeric:
     """A limit that does not move between samples, in the unit of what is measured."""
     value, place = limit
     if value.node is not None and any(fields_in(value.node)):
@@ -176,11 +166,11 @@ def _bound(lone: Lone, unit: Unit, limit: Placed, span: Span) -> Numeric:
     if lone.share:
         unit = parse_unit("s")
         whole = Quantity(constant=Fraction(lone.of.window or 0, TICKS_PER_SECOND), unit=unit)
-        limit = arithmetic(NumericOp.MUL, (limit, (whole, place)), span), place
-    return brought_to(unit, limit, span)
+        limit = quantities.arithmetic(NumericOp.MUL, (limit, (whole, place)), span), place
+    return quantities.brought_to(unit, limit, span)
 
 
-def _extreme(lone: Lone, op: CompareOp, limit: Placed, span: Span) -> Formula | None:
+def _extreme(lone: Lone, op: CompareOp, limit: quantities.Placed, span: Span) -> Formula | None:
     """`max(x, D) <= c` is: `x <= c` all through the last D; `max(x, D) >= c`: at some instant.
 
     `ago(x, D) <= c` is that comparison D ago: false where there was no such instant. `None`: it is
@@ -191,7 +181,7 @@ def _extreme(lone: Lone, op: CompareOp, limit: Placed, span: Span) -> Formula | 
         return None
     of = lone.of
     if of.measured is Measured.AGO:
-        then = compare(op, (added, span), limit, span)
+        then = quantities.compare(op, (added, span), limit, span)
         return Unary(UnaryOp.ONCE, then, Interval(of.window or 0, of.window), span)
     greatest = of.measured is Measured.MAX
     every = (CompareOp.LT, CompareOp.LE) if greatest else (CompareOp.GT, CompareOp.GE)
@@ -202,7 +192,7 @@ def _extreme(lone: Lone, op: CompareOp, limit: Placed, span: Span) -> Formula | 
         # its event does not occur. So "all are" is written as "none is not".
         if how in every and (lone.begun or of.most or occurs):
             return Unary(UnaryOp.NOT, over(how.denied), None, span)
-        one: Formula = compare(how, (added, span), limit, span)
+        one: Formula = quantities.compare(how, (added, span), limit, span)
         if of.most is not None:
             counted = WindowValue(Measured.COUNT, of.operand, None, most=of.most, counted=one)
             return Amount(counted, Literal(1), span=span)
@@ -242,7 +232,9 @@ def formula_of(value: Value, span: Span) -> Formula:
         case Quantity(labels=labels):
             raise Refusal(rules.needs_formula(span, "a label" if labels else "a number"))
         case Chosen(condition=condition, chosen=chosen, otherwise=otherwise):
-            return either(condition, formula_of(chosen, span), formula_of(otherwise, span), span)
+            return quantities.either(
+                condition, formula_of(chosen, span), formula_of(otherwise, span), span
+            )
         case _:
             return value
 
@@ -266,7 +258,7 @@ def number_of(value: Value, span: Span) -> Quantity:
             raise Refusal(rules.needs_number(span))
 
 
-def _comparable(value: Value, span: Span) -> Placed:
+def _comparable(value: Value, span: Span) -> quantities.Placed:
     if isinstance(value, TimeValue):
         raise Refusal(alone(value, span))
     if not isinstance(value, Quantity) or value.truth:
@@ -274,10 +266,12 @@ def _comparable(value: Value, span: Span) -> Placed:
     return value, span
 
 
-def _quantities(op: CompareOp, left: Placed, right: Placed, span: Span) -> Compare | Constant:
+def _quantities(
+    op: CompareOp, left: quantities.Placed, right: quantities.Placed, span: Span
+) -> Compare | Constant:
     (first, first_span), (second, second_span) = left, right
     if not first.labels and not second.labels:
-        return compare(op, left, right, span)
+        return quantities.compare(op, left, right, span)
     if op not in _EQUALITY:
         raise Refusal(rules.label_use(first_span if first.labels else second_span))
     if not (first.labels and second.labels) or first.node is None or second.node is None:
@@ -313,21 +307,21 @@ def _now(now: Now, op: CompareOp, limit: Value, place: Span, span: Span) -> Form
     strict = op in (CompareOp.GT, CompareOp.LE)
     late = op in (CompareOp.GT, CompareOp.GE)
     if now.since is None and value.constant is not None:
-        ticks = ticks_of(value, place) + strict
+        ticks = quantities.ticks_of(value, place) + strict
         begun: Formula = Unary(UnaryOp.ONCE, Constant(True, span), Interval(ticks), span)
     else:
-        begun = passed(now.since, seconds_of((value, place)), strict, span)
+        begun = passed(now.since, quantities.seconds_of((value, place)), strict, span)
     return begun if late else Unary(UnaryOp.NOT, begun, None, span)
 
 
-def _age(age: Age, op: CompareOp, limit: Placed, span: Span) -> Formula:
+def _age(age: Age, op: CompareOp, limit: quantities.Placed, span: Span) -> Formula:
     """`age(x) > D` is: neither an update within the last D, nor the beginning of the trace.
 
     In whole ticks, `>= D` is `> D - 1 tick`.
     """
     if op in _EQUALITY:
         raise Refusal(rules.age_alone(span))
-    ticks = ticks_of(*limit)
+    ticks = quantities.ticks_of(*limit)
     window = ticks if op in (CompareOp.GT, CompareOp.LE) else ticks - 1
     older = op in (CompareOp.GT, CompareOp.GE)
     if window < 0:

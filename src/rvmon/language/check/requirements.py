@@ -27,16 +27,7 @@ from rvmon.language.check.traps import (
     traps_at_start,
     traps_at_trigger,
 )
-from rvmon.language.checked.classify import (
-    end_part,
-    future_part,
-    is_end,
-    is_pulse,
-    is_timeless,
-    mixed_disjunction,
-    subformulas,
-    windows_of,
-)
+from rvmon.language.checked import classify
 from rvmon.language.checked.formula import (
     BoundAtom,
     Captured,
@@ -60,33 +51,18 @@ from rvmon.language.rules import Refusal, Reported, short
 from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import requirements as rules
 from rvmon.language.rules import types as type_rules
+from rvmon.language.syntax import items
 from rvmon.language.syntax.expressions import Ident, ungrouped
-from rvmon.language.syntax.items import (
-    AtEndClause,
-    Bare,
-    Clause,
-    CoverMonitor,
-    ForEachClause,
-    LetClause,
-    RequirementItem,
-    ResponseMonitor,
-    RunShareClause,
-    ScopeClause,
-    TagsClause,
-    TextClause,
-    Triggered,
-    WrittenMonitor,
-)
 from rvmon.trace.schema import Kind
 from rvmon.units import PLAIN
 
-_C = TypeVar("_C", bound=Clause)
+_C = TypeVar("_C", bound=items.Clause)
 
 Parts = tuple[Mode, Formula, Formula]
 """Mode, trigger and consequent."""
 
 
-def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement:
+def checked_requirement(checker: Checker, item: items.RequirementItem) -> Requirement:
     """Check a requirement.
 
     Raises:
@@ -104,8 +80,8 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement:
     if for_each is not None:
         _refuse_fields_in_sums((when, consequent), item.span)
     _warn_of_traps(checker, item, parts, captures)
-    texts = {clause.word: clause.text for clause in _clauses(item, TextClause)}
-    scopes = [clause.span.text for clause in _clauses(item, ScopeClause)]
+    texts = {clause.word: clause.text for clause in _clauses(item, items.TextClause)}
+    scopes = [clause.span.text for clause in _clauses(item, items.ScopeClause)]
     return Requirement(
         item.name.text,
         mode,
@@ -113,14 +89,14 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement:
         consequent,
         item.text,
         at_end=policy,
-        pulse=is_pulse(when),
+        pulse=classify.is_pulse(when),
         # The findings of the trigger were collected in `_parts`, while checking the consequent.
         captures=(*captures, *trigger.captures),
         for_each=for_each,
         source=texts.get("source", ""),
         rationale=texts.get("rationale", ""),
         severity=texts.get("severity", ""),
-        tags=tuple(tag for clause in _clauses(item, TagsClause) for tag in clause.tags),
+        tags=tuple(tag for clause in _clauses(item, items.TagsClause) for tag in clause.tags),
         span=item.span,
         ctl=ctl,
         scope=scopes[0] if scopes else "",
@@ -130,11 +106,11 @@ def checked_requirement(checker: Checker, item: RequirementItem) -> Requirement:
 
 def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
     """Refuse fields where occurrences are added up: each has to tell by itself if it counts."""
-    for window in windows_of(*formulas):
+    for window in classify.windows_of(*formulas):
         events = {value.event for value in fields_in(window.value)} if window.value else None
         if not events:
             continue
-        for subformula in subformulas(window.operand):
+        for subformula in classify.subformulas(window.operand):
             read = {*names_read(subformula)} & events if isinstance(subformula, Compare) else set()
             is_itself = (
                 isinstance(subformula, Compare)
@@ -144,12 +120,12 @@ def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
                 raise Refusal(type_rules.sum_of_instances(window.operand.span or place))
 
 
-def check_clauses(checker: Checker, item: RequirementItem) -> None:
+def check_clauses(checker: Checker, item: items.RequirementItem) -> None:
     """Report clauses that stand twice, and names that are taken."""
     first: dict[str, Span] = {}
     named: dict[str, Ident] = {}
     for clause in item.clauses:
-        if isinstance(clause, LetClause | ForEachClause):
+        if isinstance(clause, items.LetClause | items.ForEachClause):
             _check_name(checker, clause.name, named)
         word = clause.span.text.split(maxsplit=1)[0]
         if word == "let":
@@ -169,104 +145,106 @@ def _check_name(checker: Checker, name: Ident, named: dict[str, Ident]) -> None:
 
 def _parts(
     checker: Checker,
-    item: RequirementItem,
+    item: items.RequirementItem,
     outer: Scope,
     inner: Scope,
     ctl: Property | None,
 ) -> Parts:
     match item.body:
-        case Bare(formula=expression):
+        case items.Bare(formula=expression):
             # The trigger of a bare formula is known only after normalisation.
             formula = checker.top(expression, replace(inner, trigger=None))
             if formula is None:
                 raise Reported
-            if end := end_part(formula):
+            if end := classify.end_part(formula):
                 raise Refusal(rules.end_not_alone(end.span or expression.span))
             if at_start_by_mistake(expression, formula):
                 checker.report(rules.bare_instant(ungrouped(expression).span))
             return normalised(formula)
-        case Triggered():
+        case items.Triggered():
             return _triggered(checker, item.body, outer, inner)
-        case ResponseMonitor(within=within, span=span):
+        case items.ResponseMonitor(within=within, span=span):
             ticks = checker.duration(within, EVERYWHERE)
             if ctl is None:
                 raise Refusal(rules.no_property(span))
             return Mode.UPON, *derived_response(checker.table, ctl, ticks, span)
-        case WrittenMonitor(span=span):
+        case items.WrittenMonitor(span=span):
             if ctl is None:
                 raise Refusal(rules.nothing_written(span))
             return normalised(linear_form(ctl, span, checker.table.time))
-        case CoverMonitor():
+        case items.CoverMonitor():
             raise AssertionError("a goal is no requirement")
 
 
-def _scoped(checker: Checker, item: RequirementItem, outer: Scope, parts: Parts) -> Parts:
+def _scoped(checker: Checker, item: items.RequirementItem, outer: Scope, parts: Parts) -> Parts:
     """Trigger and consequent with the `scope` clause worked in."""
     mode, trigger, consequent = parts
-    for clause in _clauses(item, ScopeClause):
+    for clause in _clauses(item, items.ScopeClause):
         ends = [
             None if expression is None else present(checker.formula(expression, outer))
             for expression in (clause.opening, clause.closing)
         ]
-        if end_part(trigger):
+        if classify.end_part(trigger):
             raise Refusal(rules.end_in_scope(clause.span))
         required = scoped_consequent(consequent, ends[1], must_close=clause.must_close)
         return mode, scoped_trigger(trigger, *ends), required
     return parts
 
 
-def _triggered(checker: Checker, body: Triggered, outer: Scope, inner: Scope) -> Parts:
+def _triggered(checker: Checker, body: items.Triggered, outer: Scope, inner: Scope) -> Parts:
     trigger = checker.top(body.trigger, outer)
     at_once = replace(inner, at_once=body.mode is Mode.UPON)
     consequent = checker.top(body.consequent, at_once)
-    if trigger and (ahead := future_part(trigger)):
+    if trigger and (ahead := classify.future_part(trigger)):
         checker.report(rules.future_trigger(ahead.span or body.trigger.span))
         raise Reported
     if trigger is None or consequent is None:
         raise Reported
     alone = isinstance(trigger, BoundAtom) and body.mode is Mode.UPON
     for formula, place in ((trigger, body.trigger), (consequent, body.consequent)):
-        end = end_part(formula)
+        end = classify.end_part(formula)
         if end and not (alone and formula is trigger):
             raise Refusal(rules.end_not_alone(end.span or place.span))
     _warn(checker, body, trigger, consequent)
     return body.mode, trigger, consequent
 
 
-def _warn(checker: Checker, body: Triggered, trigger: Formula, consequent: Formula) -> None:
-    instant = body.mode is Mode.UPON and not is_end(trigger) and is_timeless(consequent)
+def _warn(checker: Checker, body: items.Triggered, trigger: Formula, consequent: Formula) -> None:
+    instant = (
+        body.mode is Mode.UPON and not classify.is_end(trigger) and classify.is_timeless(consequent)
+    )
     if instant and not on_purpose(body.consequent):
         checker.report(rules.one_instant(body.consequent.span))
-    if mixed := mixed_disjunction(trigger):
+    if mixed := classify.mixed_disjunction(trigger):
         pulse, level = (part.span or body.trigger.span for part in mixed)
         checker.report(rules.mixed_trigger(pulse, level, short(level.text)))
 
 
 def _warn_of_traps(
-    checker: Checker, item: RequirementItem, parts: Parts, captures: Iterable[Capture]
+    checker: Checker, item: items.RequirementItem, parts: Parts, captures: Iterable[Capture]
 ) -> None:
     mode, trigger, consequent = parts
     time = checker.table.time
     traps = [*traps_at_trigger(trigger, consequent, time, item.span)]
-    if not any(_clauses(item, ScopeClause)):  # else the start is where the scope opens
+    if not any(_clauses(item, items.ScopeClause)):  # else the start is where the scope opens
         traps += traps_at_start(mode, trigger, consequent, item.span)
-    lets = zip(_clauses(item, LetClause), captures, strict=True)
+    lets = zip(_clauses(item, items.LetClause), captures, strict=True)
     traps += capture_traps(mode, trigger, lets, time)
     for diagnostic in traps:
         checker.report(diagnostic)
 
 
-def _policy(checker: Checker, item: RequirementItem) -> EndPolicy:
+def _policy(checker: Checker, item: items.RequirementItem) -> EndPolicy:
     policies = [str(policy) for policy in EndPolicy]
-    for clause in _clauses(item, AtEndClause):
+    for clause in _clauses(item, items.AtEndClause):
         if clause.policy.text in policies:
             return EndPolicy(clause.policy.text)
         checker.report(rules.unknown_policy(clause.policy.span, policies))
     return EndPolicy.DEFAULT
 
 
-def _run_share(checker: Checker, item: RequirementItem) -> RunShare | None:
-    for clause in _clauses(item, RunShareClause):
+def _run_share(checker: Checker, item: items.RequirementItem) -> RunShare | None:
+    for clause in _clauses(item, items.RunShareClause):
         number = clause.share
         if number.value is not None and number.unit == "%" and 0 < number.value < 100:
             return RunShare(clause.at_least, float(number.value))
@@ -274,9 +252,9 @@ def _run_share(checker: Checker, item: RequirementItem) -> RunShare | None:
     return None
 
 
-def _instances(checker: Checker, item: RequirementItem) -> tuple[ForEach | None, Scope]:
+def _instances(checker: Checker, item: items.RequirementItem) -> tuple[ForEach | None, Scope]:
     """The `for each` clause, and the scope of the trigger: what it names."""
-    for clause in _clauses(item, ForEachClause):
+    for clause in _clauses(item, items.ForEachClause):
         field = checker.table.field(clause.field.text)
         if field is None:
             # An undeclared name is refused here, with a suggestion.
@@ -295,12 +273,12 @@ def _instances(checker: Checker, item: RequirementItem) -> tuple[ForEach | None,
 
 
 def _captures(
-    checker: Checker, item: RequirementItem, outer: Scope
+    checker: Checker, item: items.RequirementItem, outer: Scope
 ) -> tuple[tuple[Capture, ...], Scope]:
     """The `let` clauses, and the scope of the consequent: what they and `for each` name."""
     captures = []
     values, names = dict(outer.names), dict(outer.names)
-    for clause in _clauses(item, LetClause):
+    for clause in _clauses(item, items.LetClause):
         (value,) = checker.values((clause.value,), Scope(values))
         if value == Now():
             captures.append(Capture(clause.name.text, NowValue()))
@@ -316,5 +294,5 @@ def _captures(
     return tuple(captures), Scope(names)
 
 
-def _clauses(item: RequirementItem, kind: type[_C]) -> Iterable[_C]:
+def _clauses(item: items.RequirementItem, kind: type[_C]) -> Iterable[_C]:
     return (clause for clause in item.clauses if isinstance(clause, kind))

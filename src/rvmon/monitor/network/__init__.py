@@ -10,17 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cached_property
 
+from rvmon.logic import network_plan
 from rvmon.logic.formula import Core
-from rvmon.logic.network_plan import (
-    Junction,
-    Leaf,
-    NetworkPlan,
-    Node,
-    Shift,
-    Sweep,
-    Window,
-    operands_of,
-)
 from rvmon.monitor.network.piecewise import (
     EVER,
     FAR,
@@ -42,16 +33,16 @@ from rvmon.monitor.network.piecewise import (
 from rvmon.monitor.network.sweep import Carried, Known, since, until
 
 
-def evaluated(node: Node, operands: Sequence[Known], positions: Positions) -> Known:
+def evaluated(node: network_plan.Node, operands: Sequence[Known], positions: Positions) -> Known:
     """The known values of a node (not a leaf), from those of its operands."""
     match node:
-        case Junction():
+        case network_plan.Junction():
             return _junction(node, operands)
-        case Sweep():
+        case network_plan.Sweep():
             return _sweep(node, operands, positions)
-        case Window():
+        case network_plan.Window():
             return _swapped(_window(node, _swapped(operands[0], node.every), positions), node.every)
-        case Shift(offset=offset):
+        case network_plan.Shift(offset=offset):
             true, false = operands[0]
             if offset < 0:
                 true, false = positions.extended(true), positions.extended(false)
@@ -61,7 +52,7 @@ def evaluated(node: Node, operands: Sequence[Known], positions: Positions) -> Kn
             raise ValueError("a leaf has no operands to evaluate")
 
 
-def _junction(node: Junction, operands: Sequence[Known]) -> Known:
+def _junction(node: network_plan.Junction, operands: Sequence[Known]) -> Known:
     """The conjunction or disjunction of the operands."""
     every = node.every
     all_: Pieces = EVER
@@ -72,7 +63,7 @@ def _junction(node: Junction, operands: Sequence[Known]) -> Known:
     return (all_, some) if every else (some, all_)
 
 
-def _sweep(node: Sweep, operands: Sequence[Known], positions: Positions) -> Known:
+def _sweep(node: network_plan.Sweep, operands: Sequence[Known], positions: Positions) -> Known:
     """`until` or `since`."""
     dual = node.dual
     left, right = operands
@@ -82,7 +73,7 @@ def _sweep(node: Sweep, operands: Sequence[Known], positions: Positions) -> Know
     return _swapped(sweep(stays, meets), dual)
 
 
-def _window(node: Window, operand: Known, positions: Positions) -> Known:
+def _window(node: network_plan.Window, operand: Known, positions: Positions) -> Known:
     """Whether the operand is true at some position of a window."""
     true = some_of_window(positions.at_positions(operand[0]), node.low, node.high)
     false = all_of_window(positions.or_no_position(operand[1]), node.low, node.high)
@@ -127,7 +118,7 @@ class Network:
 
     def __init__(
         self,
-        plan: NetworkPlan,
+        plan: network_plan.NetworkPlan,
         gap: int | None,
         noted: Noted,
         first: int,
@@ -214,13 +205,17 @@ class Network:
         leaves = iter(self._leaves)
         known: list[Known] = []
         for node in nodes:
-            if isinstance(node, Leaf):
+            if isinstance(node, network_plan.Leaf):
                 true, false = next(leaves)
                 known.append((up_to(true, limit), up_to(false, limit)))
                 continue
-            operands = [known[operand] for operand in operands_of(node)]
+            operands = [known[operand] for operand in network_plan.operands_of(node)]
             known.append(evaluated(node, operands, positions))
-        if isinstance(nodes[-1], Sweep) and nodes[-1].future and positions.first < self.start:
+        if (
+            isinstance(nodes[-1], network_plan.Sweep)
+            and nodes[-1].future
+            and positions.first < self.start
+        ):
             true, false = known[-1]
             known[-1] = self._extended_back(true), self._extended_back(false)
         return known

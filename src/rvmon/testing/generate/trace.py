@@ -5,15 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
+from rvmon.language.checked import specification
 from rvmon.language.checked.formula import Interval, Literal
-from rvmon.language.checked.specification import (
-    CheckedSpec,
-    EndPolicy,
-    Requirement,
-    Signal,
-    TimeModel,
-    Type,
-)
 from rvmon.language.print import format_formula, format_numeric
 from rvmon.testing.generate import Rng, chance, pick
 from rvmon.testing.law.syntax import intervals, numerics
@@ -34,7 +27,7 @@ class Case:
         outages: the outages, in any order.
     """
 
-    spec: CheckedSpec
+    spec: specification.CheckedSpec
     actions: tuple[Sample | int, ...]
     end: int | None = None
     names: frozenset[str] | None = None
@@ -68,9 +61,9 @@ def show_case(case: Case) -> str:
     return "\n".join(lines)
 
 
-def show_spec(spec: CheckedSpec) -> str:
+def show_spec(spec: specification.CheckedSpec) -> str:
     """A checked specification as `.rv` text."""
-    period = f" {spec.period} ns" if spec.time is TimeModel.CLOCKED else ""
+    period = f" {spec.period} ns" if spec.time is specification.TimeModel.CLOCKED else ""
     lines = [f'spec {spec.name} "{spec.title}"', f"time {spec.time.value}{period}", ""]
     lines += [_signal(signal) for signal in spec.signals.values()]
     for event in spec.events.values():
@@ -81,7 +74,7 @@ def show_spec(spec: CheckedSpec) -> str:
     return "\n".join(lines)
 
 
-def _signal(signal: Signal) -> str:
+def _signal(signal: specification.Signal) -> str:
     labels = f"{{{', '.join(signal.type.labels)}}}"
     type_ = labels if signal.type.kind is Kind.LABEL else signal.type.kind.value
     ignoring = " ignore NaN" if signal.ignores_nan else ""
@@ -89,7 +82,7 @@ def _signal(signal: Signal) -> str:
     return f"signal {signal.name} : {type_}{ignoring}{stale}"
 
 
-def _requirement(requirement: Requirement) -> Iterator[str]:
+def _requirement(requirement: specification.Requirement) -> Iterator[str]:
     yield f"requirement {requirement.id}"
     yield f"  {requirement.mode.value} {format_formula(requirement.trigger)}"
     yield f"  then {format_formula(requirement.consequent)}"
@@ -98,7 +91,7 @@ def _requirement(requirement: Requirement) -> Iterator[str]:
         yield f"  for each {requirement.for_each.name} in {field.event}.{field.field}"
     for capture in requirement.captures:
         yield f"  let {capture.name} = {format_numeric(capture.value)}"
-    if requirement.at_end is not EndPolicy.DEFAULT:
+    if requirement.at_end is not specification.EndPolicy.DEFAULT:
         yield f"  at end {requirement.at_end.value}"
 
 
@@ -129,7 +122,7 @@ class TraceProfile:
     outages: int = 0
 
 
-def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
+def random_trace(rng: Rng, spec: specification.CheckedSpec, profile: TraceProfile) -> Case:
     """A random trace for a specification, with `advance`, `finish`, sources and outages.
 
     Gaps between samples are often a bound of the specification, or one tick longer; numbers are its
@@ -176,7 +169,7 @@ def random_trace(rng: Rng, spec: CheckedSpec, profile: TraceProfile) -> Case:
     return Case(spec, tuple(actions), end, names, outages)
 
 
-def _outage(rng: Rng, spec: CheckedSpec, read: Sequence[int]) -> Outage:
+def _outage(rng: Rng, spec: specification.CheckedSpec, read: Sequence[int]) -> Outage:
     """A random outage of one or more ticks and some names, often from or up to a sample.
 
     It may lie before or after all samples.
@@ -196,7 +189,7 @@ def _gap(rng: Rng, gaps: Sequence[int]) -> int:
     return pick(rng, gaps) if chance(rng, 40) else rng.randint(1, 3)
 
 
-def _gaps(spec: CheckedSpec) -> list[int]:
+def _gaps(spec: specification.CheckedSpec) -> list[int]:
     """One tick; and each bound and staleness of the specification, exactly and one tick more."""
     gaps = {1}
     for window in _intervals(spec):
@@ -209,7 +202,7 @@ def _gaps(spec: CheckedSpec) -> list[int]:
     return sorted(gap for gap in gaps if gap > 0)
 
 
-def _intervals(spec: CheckedSpec) -> list[Interval]:
+def _intervals(spec: specification.CheckedSpec) -> list[Interval]:
     return [
         window
         for requirement in spec.requirements.values()
@@ -218,7 +211,7 @@ def _intervals(spec: CheckedSpec) -> list[Interval]:
     ]
 
 
-def _numbers(spec: CheckedSpec) -> list[int | float]:
+def _numbers(spec: specification.CheckedSpec) -> list[int | float]:
     """The literals of all comparisons with their neighbours, and a few small numbers."""
     found: set[int | float] = {0, 1}
     for requirement in spec.requirements.values():
@@ -232,7 +225,7 @@ def _numbers(spec: CheckedSpec) -> list[int | float]:
     return sorted(found)
 
 
-def _several(spec: CheckedSpec) -> frozenset[str]:
+def _several(spec: specification.CheckedSpec) -> frozenset[str]:
     """The events that may occur more than once at an instant, if each requirement is `for each`."""
     found = [requirement.for_each for requirement in spec.requirements.values()]
     return frozenset() if None in found else frozenset(each.value.event for each in found if each)
@@ -246,7 +239,7 @@ class _Values:
     then on `often` per cent of the samples update it. In `sparse` traces events are rare.
     """
 
-    spec: CheckedSpec
+    spec: specification.CheckedSpec
     numbers: Sequence[int | float]
     names: frozenset[str] | None
     unknown: int
@@ -275,7 +268,7 @@ class _Values:
     def _has_source(self, name: str) -> bool:
         return self.names is None or name in self.names
 
-    def _scalar(self, rng: Rng, type_: Type) -> Scalar:
+    def _scalar(self, rng: Rng, type_: specification.Type) -> Scalar:
         if chance(rng, self.unknown):
             return float("nan") if type_.kind is Kind.REAL and chance(rng, 50) else None
         match type_.kind:
@@ -291,7 +284,7 @@ class _Values:
                     return value
                 return float(value) + pick(rng, (-0.5, 0.0, 0.5))  # beside whole numbers
 
-    def _occurrence(self, rng: Rng, name: str, fields: Mapping[str, Type]) -> Value:
+    def _occurrence(self, rng: Rng, name: str, fields: Mapping[str, specification.Type]) -> Value:
         if chance(rng, self.unknown):
             return None
         if chance(rng, 5):

@@ -7,24 +7,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import assert_never
 
-from rvmon.language.checked.formula import (
-    Amount,
-    Binary,
-    BinaryOp,
-    BoundAtom,
-    Compare,
-    Constant,
-    EventAtom,
-    FieldValue,
-    Formula,
-    Passed,
-    Probe,
-    ProbeAtom,
-    SignalAtom,
-    Unary,
-    UnaryOp,
-    windows_in,
-)
+from rvmon.language.checked import formula as formulas
 from rvmon.language.checked.specification import Mode, Requirement
 from rvmon.testing.law.numbers import events_of, is_born, known_scalar, number
 from rvmon.testing.law.syntax import is_upon_end, subformulas
@@ -42,38 +25,41 @@ from rvmon.testing.law.word import (
 from rvmon.trace.sample import Payload, Scalar
 
 
-def is_pulse(formula: Formula, *, negated: bool = False) -> bool:
+def is_pulse(formula: formulas.Formula, *, negated: bool = False) -> bool:
     """Whether the negation normal form of a trigger (or of its negation) is a pulse.
 
     Source: SEMANTICS, section 3 (Requirements, `upon`).
 
-    >>> is_pulse(Binary(BinaryOp.AND, EventAtom("sensed"), SignalAtom("ready")))
+    >>> sensed, ready = formulas.EventAtom("sensed"), formulas.SignalAtom("ready")
+    >>> is_pulse(formulas.Binary(formulas.BinaryOp.AND, sensed, ready))
     True
-    >>> is_pulse(Unary(UnaryOp.NOT, EventAtom("sensed")))
+    >>> is_pulse(formulas.Unary(formulas.UnaryOp.NOT, sensed))
     False
     """
     match formula:
-        case Constant(value=value):
+        case formulas.Constant(value=value):
             return value is negated
-        case EventAtom():
+        case formulas.EventAtom():
             return not negated
-        case Compare(left=left, right=right):
+        case formulas.Compare(left=left, right=right):
             return not negated and bool([*events_of(left), *events_of(right)])
-        case ProbeAtom(probe=probe):
-            return not negated and probe is not Probe.KNOWN
-        case SignalAtom() | BoundAtom() | Amount() | Passed():
+        case formulas.ProbeAtom(probe=probe):
+            return not negated and probe is not formulas.Probe.KNOWN
+        case formulas.SignalAtom() | formulas.BoundAtom() | formulas.Amount() | formulas.Passed():
             return False
-        case Unary(op=UnaryOp.NOT, operand=operand):
+        case formulas.Unary(op=formulas.UnaryOp.NOT, operand=operand):
             return is_pulse(operand, negated=not negated)
-        case Unary(op=op):
-            return not negated and op in (UnaryOp.RISE, UnaryOp.FALL)
-        case Binary(op=op, left=left, right=right):
+        case formulas.Unary(op=op):
+            return not negated and op in (formulas.UnaryOp.RISE, formulas.UnaryOp.FALL)
+        case formulas.Binary(op=op, left=left, right=right):
             return _binary(op, left, right, negated)
         case _:
             assert_never(formula)
 
 
-def _binary(op: BinaryOp, left: Formula, right: Formula, negated: bool) -> bool:
+def _binary(
+    op: formulas.BinaryOp, left: formulas.Formula, right: formulas.Formula, negated: bool
+) -> bool:
     def both(left_negated: bool, right_negated: bool) -> bool:
         """A disjunction is a pulse if both operands are."""
         return is_pulse(left, negated=left_negated) and is_pulse(right, negated=right_negated)
@@ -83,19 +69,19 @@ def _binary(op: BinaryOp, left: Formula, right: Formula, negated: bool) -> bool:
         return is_pulse(left, negated=left_negated) or is_pulse(right, negated=right_negated)
 
     match op:
-        case BinaryOp.AND:
+        case formulas.BinaryOp.AND:
             return both(True, True) if negated else either(False, False)
-        case BinaryOp.OR:
+        case formulas.BinaryOp.OR:
             return either(True, True) if negated else both(False, False)
-        case BinaryOp.IMPLIES:
+        case formulas.BinaryOp.IMPLIES:
             return either(False, True) if negated else both(True, False)
-        case BinaryOp.IFF if negated:
+        case formulas.BinaryOp.IFF if negated:
             return both(True, True) or both(False, False)
-        case BinaryOp.IFF:
+        case formulas.BinaryOp.IFF:
             return either(False, False) and either(True, True)
-        case BinaryOp.XOR if negated:
+        case formulas.BinaryOp.XOR if negated:
             return both(True, False) or both(False, True)
-        case BinaryOp.XOR:
+        case formulas.BinaryOp.XOR:
             return either(False, True) and either(True, False)
         case _:
             return False
@@ -237,7 +223,7 @@ class View:
         captured: dict[str, Scalar] = dict(self.captured)
         for capture in self.requirement.captures:
             value = capture.value
-            if windows_in(value):
+            if formulas.windows_in(value):
                 value = Truths(self.word, captured).settled(value, position)
             captured[capture.name] = number(value, letter, payloads, captured)
         return captured
@@ -246,9 +232,9 @@ class View:
         """Whether a signal that the consequent reads has had no value up to a position."""
         letter = self.word.letters[position]
         for part in subformulas(self.requirement.consequent):
-            if isinstance(part, SignalAtom) and not letter.signals[part.name].born:
+            if isinstance(part, formulas.SignalAtom) and not letter.signals[part.name].born:
                 return True
-            if isinstance(part, Compare) and not is_born(part, letter):
+            if isinstance(part, formulas.Compare) and not is_born(part, letter):
                 return True
         return False
 
@@ -379,11 +365,11 @@ def views(requirement: Requirement, word: Word) -> list[View]:
     ]
 
 
-def _field(payload: Payload, field: FieldValue) -> Scalar:
+def _field(payload: Payload, field: formulas.FieldValue) -> Scalar:
     return known_scalar(payload.get(field.field))
 
 
-def _only(letter: Letter, field: FieldValue, value: Scalar) -> Letter:
+def _only(letter: Letter, field: formulas.FieldValue, value: Scalar) -> Letter:
     """The letter with only those occurrences of the event whose field has the value.
 
     If the field is unknown, so is the occurrence for this value, and its payload.

@@ -8,40 +8,20 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import product
 from typing import Any, assert_never
 
+from rvmon.language.checked import formula as formulas
 from rvmon.language.checked.arithmetic import NumericOp
-from rvmon.language.checked.formula import (
-    Arithmetic,
-    Captured,
-    Compare,
-    CompareOp,
-    FieldValue,
-    Literal,
-    NowValue,
-    Numeric,
-    SignalValue,
-    UpdateFunction,
-    UpdateValue,
-    WindowValue,
-)
+from rvmon.testing.law import word
 from rvmon.testing.law.syntax import parts_of
-from rvmon.testing.law.word import (
-    Letter,
-    Occurrence,
-    Truth,
-    conjunction,
-    disjunction,
-    truth_of,
-)
 from rvmon.trace.sample import Payload, Scalar
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 
 
 def compare(
-    comparison: Compare,
-    letter: Letter,
+    comparison: formulas.Compare,
+    letter: word.Letter,
     captured: Mapping[str, Scalar],
-) -> Truth:
+) -> word.Truth:
     """The truth of a comparison; over fields of an event `e` it means `e and comparison`.
 
     With several occurrences (or pairs of occurrences of two events), one has to satisfy it.
@@ -51,41 +31,41 @@ def compare(
     events = sorted({*events_of(comparison.left), *events_of(comparison.right)})
     choices = product(*(letter.events[event].occurrences for event in events))
 
-    def holds(choice: Sequence[Occurrence]) -> Truth:
+    def holds(choice: Sequence[word.Occurrence]) -> word.Truth:
         payloads = {e: o.payload for e, o in zip(events, choice, strict=True)}
         return compare_at(comparison, letter, payloads, captured)
 
-    return disjunction(
-        conjunction([*(occurrence.truth for occurrence in choice), holds(choice)])
+    return word.disjunction(
+        word.conjunction([*(occurrence.truth for occurrence in choice), holds(choice)])
         for choice in choices
     )
 
 
 def compare_at(
-    comparison: Compare,
-    letter: Letter,
+    comparison: formulas.Compare,
+    letter: word.Letter,
     payloads: Mapping[str, Payload],
     captured: Mapping[str, Scalar],
-) -> Truth:
+) -> word.Truth:
     """The truth of a comparison for one occurrence of each event that it reads."""
     if not is_born(comparison, letter):
-        return Truth.UNBORN
+        return word.Truth.UNBORN
     left = number(comparison.left, letter, payloads, captured)
     right = number(comparison.right, letter, payloads, captured)
     if left is None or right is None:
-        return Truth.UNKNOWN
-    return truth_of(_related(comparison.op, left, right))
+        return word.Truth.UNKNOWN
+    return word.truth_of(_related(comparison.op, left, right))
 
 
-def is_born(comparison: Compare, letter: Letter) -> bool:
+def is_born(comparison: formulas.Compare, letter: word.Letter) -> bool:
     """Whether all signals of a comparison have had the values that it reads."""
     return all(
         letter.signals[part.name].moved
-        if isinstance(part, UpdateValue)
+        if isinstance(part, formulas.UpdateValue)
         else letter.signals[part.name].born
         for side in (comparison.left, comparison.right)
         for part in parts_of(side)
-        if isinstance(part, SignalValue | UpdateValue)
+        if isinstance(part, formulas.SignalValue | formulas.UpdateValue)
     )
 
 
@@ -94,12 +74,12 @@ def known_scalar(value: Scalar) -> Scalar:
     return None if isinstance(value, float) and math.isnan(value) else value
 
 
-def events_of(expression: Numeric) -> Iterator[str]:
+def events_of(expression: formulas.Numeric) -> Iterator[str]:
     """The events whose fields the expression reads."""
     match expression:
-        case FieldValue(event=event):
+        case formulas.FieldValue(event=event):
             yield event
-        case Arithmetic(args=args):
+        case formulas.Arithmetic(args=args):
             for arg in args:
                 yield from events_of(arg)
         case _:
@@ -107,8 +87,8 @@ def events_of(expression: Numeric) -> Iterator[str]:
 
 
 def number(
-    expression: Numeric,
-    letter: Letter,
+    expression: formulas.Numeric,
+    letter: word.Letter,
     payloads: Mapping[str, Payload],
     captured: Mapping[str, Scalar],
 ) -> Scalar:
@@ -117,36 +97,36 @@ def number(
     Source: SEMANTICS, sections 2 and 5; decision record 1 (Updates, Arithmetic).
     """
     match expression:
-        case Literal(value=value):
+        case formulas.Literal(value=value):
             return value
-        case SignalValue(name=name):
+        case formulas.SignalValue(name=name):
             return letter.signals[name].value
-        case FieldValue(event=event, field=field):
+        case formulas.FieldValue(event=event, field=field):
             return known_scalar(payloads.get(event, {}).get(field))
-        case NowValue():
+        case formulas.NowValue():
             return None if letter.since is None else letter.instant - letter.since
-        case Captured(name=name):
+        case formulas.Captured(name=name):
             return captured[name]
-        case UpdateValue(function=function, name=name):
+        case formulas.UpdateValue(function=function, name=name):
             return _of_updates(function, name, letter)
-        case Arithmetic(op=op, args=args):
+        case formulas.Arithmetic(op=op, args=args):
             values = (number(arg, letter, payloads, captured) for arg in args)
             return _calculate(op, list(values))
-        case WindowValue():
+        case formulas.WindowValue():
             raise AssertionError("windows are evaluated by `Past`")
         case _:
             assert_never(expression)
 
 
-def _of_updates(function: UpdateFunction, name: str, letter: Letter) -> Scalar:
+def _of_updates(function: formulas.UpdateFunction, name: str, letter: word.Letter) -> Scalar:
     state = letter.signals[name]
     last, before = state.last, state.before
     if state.value is None or last is None or before is None or before.value is None:
         return None
-    if function is UpdateFunction.PREV:
+    if function is formulas.UpdateFunction.PREV:
         return before.value
     delta = _calculate(NumericOp.SUB, [last.value, before.value])
-    if function is UpdateFunction.DELTA:
+    if function is formulas.UpdateFunction.DELTA:
         return delta
     scaled = _calculate(NumericOp.MUL, [delta, float(TICKS_PER_SECOND)])
     return _calculate(NumericOp.DIV, [scaled, last.t - before.t])
@@ -284,17 +264,19 @@ def _distance(lat1: float, lon1: float, lat2: float, lon2: float) -> float:
     return 2 * 6371008.8 * math.asin(min(math.sqrt(share), 1.0))
 
 
-_RELATIONS: dict[CompareOp, Callable[[Any, Any], bool]] = {
-    CompareOp.EQ: operator.eq,
-    CompareOp.NE: operator.ne,
-    CompareOp.LT: operator.lt,
-    CompareOp.LE: operator.le,
-    CompareOp.GE: operator.ge,
-    CompareOp.GT: operator.gt,
+_RELATIONS: dict[formulas.CompareOp, Callable[[Any, Any], bool]] = {
+    formulas.CompareOp.EQ: operator.eq,
+    formulas.CompareOp.NE: operator.ne,
+    formulas.CompareOp.LT: operator.lt,
+    formulas.CompareOp.LE: operator.le,
+    formulas.CompareOp.GE: operator.ge,
+    formulas.CompareOp.GT: operator.gt,
 }
 
 
-def _related(op: CompareOp, left: Scalar, right: Scalar) -> bool:
-    if op not in (CompareOp.EQ, CompareOp.NE) and (isinstance(left, str) or isinstance(right, str)):
+def _related(op: formulas.CompareOp, left: Scalar, right: Scalar) -> bool:
+    if op not in (formulas.CompareOp.EQ, formulas.CompareOp.NE) and (
+        isinstance(left, str) or isinstance(right, str)
+    ):
         raise TypeError(f"`{left}` {op} `{right}`: labels have no order")
     return _RELATIONS[op](left, right)

@@ -5,23 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import assert_never
 
-from rvmon.language.checked.formula import (
-    Amount,
-    Binary,
-    Bound,
-    BoundAtom,
-    Compare,
-    Constant,
-    EventAtom,
-    Formula,
-    Interval,
-    Numeric,
-    Passed,
-    ProbeAtom,
-    SignalAtom,
-    Unary,
-    windows_in,
-)
+from rvmon.language.checked import formula as formulas
 from rvmon.testing.law.amounts import UNKNOWN, Past
 from rvmon.testing.law.numbers import as_ticks, compare, number
 from rvmon.testing.law.operators import At, Operators, is_within
@@ -92,7 +76,7 @@ class Truths(Operators[Truth]):
         """The number of known positions."""
         return self._known
 
-    def truth(self, formula: Formula, i: int, *, positive: bool = True) -> Truth:
+    def truth(self, formula: formulas.Formula, i: int, *, positive: bool = True) -> Truth:
         """The truth of a required formula at a known position: never UNBORN.
 
         Args:
@@ -112,10 +96,10 @@ class Truths(Operators[Truth]):
             (self._pending if value is Truth.UNKNOWN else self._settled)[key] = value
         return value
 
-    def _truth(self, formula: Formula, i: int, positive: bool) -> Truth:
+    def _truth(self, formula: formulas.Formula, i: int, positive: bool) -> Truth:
         if is_composed(formula):
 
-            def sub(part: Formula, k: int, same: bool = True) -> Truth:
+            def sub(part: formulas.Formula, k: int, same: bool = True) -> Truth:
                 return self.truth(part, k, positive=positive is same)
 
             return self.operator(formula, i, sub, positive=positive)
@@ -124,7 +108,7 @@ class Truths(Operators[Truth]):
             return value
         return truth_of(positive) if self._favour else Truth.UNKNOWN
 
-    def state(self, formula: Formula, i: int) -> Truth:
+    def state(self, formula: formulas.Formula, i: int) -> Truth:
         """The truth of a formula of the present and past at a position; it may be UNBORN.
 
         At a possible position every formula is UNKNOWN, even a constant.
@@ -137,43 +121,43 @@ class Truths(Operators[Truth]):
             value = self._states[key] = self._state(formula, i)
         return value
 
-    def _state(self, formula: Formula, i: int) -> Truth:
+    def _state(self, formula: formulas.Formula, i: int) -> Truth:
         letter = self._letters[i]
         match formula:
-            case Constant(value=value):
+            case formulas.Constant(value=value):
                 return truth_of(value)
-            case SignalAtom(name=name):
+            case formulas.SignalAtom(name=name):
                 state = letter.signals[name]
                 if state.value is None:
                     return Truth.UNKNOWN if state.born else Truth.UNBORN
                 return truth_of(bool(state.value))
-            case EventAtom(name=name):
+            case formulas.EventAtom(name=name):
                 return disjunction(o.truth for o in letter.events[name].occurrences)
-            case Compare(left=left, right=right) if windows_in(left, right):
+            case formulas.Compare(left=left, right=right) if formulas.windows_in(left, right):
                 return Past(self._letters, self._captured, self.state).compared(formula, i)
-            case Compare():
+            case formulas.Compare():
                 return compare(formula, letter, self._captured)
-            case ProbeAtom(probe=probe, name=name):
+            case formulas.ProbeAtom(probe=probe, name=name):
                 return probed(probe, name, letter)
-            case BoundAtom(bound=bound):
-                if bound is Bound.END:
+            case formulas.BoundAtom(bound=bound):
+                if bound is formulas.Bound.END:
                     raise ValueError("`end` stands alone as a trigger, never inside a formula")
                 return self._is_first(i)
-            case Unary() | Binary():
+            case formulas.Unary() | formulas.Binary():
                 return self.operator(formula, i, lambda part, k, _=True: self.state(part, k))
-            case Amount():
+            case formulas.Amount():
                 return Past(self._letters, self._captured, self.state).truth(formula, i)
-            case Passed():
+            case formulas.Passed():
                 return self._passed(formula, i)
             case _:
                 assert_never(formula)
 
-    def settled(self, expression: Numeric, i: int) -> Numeric:
+    def settled(self, expression: formulas.Numeric, i: int) -> formulas.Numeric:
         """An expression with each window replaced by its value at a position."""
         past = Past(self._letters, self._captured, self.state)
         return past.settled(expression, i) if self._letters[i].sure else UNKNOWN
 
-    def _passed(self, formula: Passed, i: int) -> Truth:
+    def _passed(self, formula: formulas.Passed, i: int) -> Truth:
         """Whether enough time has passed; UNKNOWN if that depends on when the trace began."""
         after = number(formula.after, self._letters[i], {}, self._captured)
         since = 0 if formula.since is None else self._captured[formula.since]
@@ -200,7 +184,13 @@ class Truths(Operators[Truth]):
         return operand(i - 1) if i else Truth.FALSE
 
     def since(
-        self, left: At[Truth], right: At[Truth], i: int, interval: Interval, *, can_be_unborn: bool
+        self,
+        left: At[Truth],
+        right: At[Truth],
+        i: int,
+        interval: formulas.Interval,
+        *,
+        can_be_unborn: bool,
     ) -> Truth:
         """See `Operators`."""
         shows_birth = {Truth.TRUE, Truth.FALSE} if can_be_unborn else {*Truth} - {Truth.UNBORN}
@@ -218,7 +208,9 @@ class Truths(Operators[Truth]):
                 return value
         return disjunction(seen) if seen and not seen & shows_birth else value
 
-    def held(self, operand: At[Truth], i: int, interval: Interval, *, can_be_unborn: bool) -> Truth:
+    def held(
+        self, operand: At[Truth], i: int, interval: formulas.Interval, *, can_be_unborn: bool
+    ) -> Truth:
         """See `Operators`."""
         values = [operand(k) for k in self._window(i, interval)]
         if can_be_unborn and not {Truth.TRUE, Truth.FALSE}.intersection(values):
