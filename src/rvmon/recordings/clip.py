@@ -22,7 +22,7 @@ from rvmon.recordings.recording import JOINED, format_of
 from rvmon.recordings.tables import arrow_cells
 from rvmon.trace.schema import Stamps
 from rvmon.trace.stamps import ticks_of_stamp
-from rvmon.trace.time import format_stamp
+from rvmon.trace.time import TIME_LIMIT, format_stamp
 
 CLIPPED = {
     "csv": "CSV",
@@ -91,8 +91,10 @@ def clip(path: str, piece: Piece, out: str) -> Copied:
             message = str(error)
             raise TraceError(message if path in message else f"{path}: {message}") from None
         if not copied.count:
-            between = f"{format_stamp(piece.start)} and {format_stamp(piece.stop)}"
-            raise TraceError(f"{path}: there is nothing between {between}")
+            where = f"from {format_stamp(piece.start)} on"
+            if piece.stop < TIME_LIMIT:
+                where = f"between {format_stamp(piece.start)} and {format_stamp(piece.stop)}"
+            raise TraceError(f"{path}: there is nothing {where}")
     return copied
 
 

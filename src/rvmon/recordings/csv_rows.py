@@ -75,7 +75,10 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
     seen: dict[str, int] = {}
     for index, name in enumerate(header):
         if name in seen:
-            raise TraceError(f"column `{shorten(name)}` stands twice in the header")
+            more = ": are these values? Put a line with the names of columns above them"
+            if any(map(str.isalpha, "".join(header))):
+                more = ""
+            raise TraceError(f"column `{shorten(name)}` stands twice in the header{more}")
         seen[name] = index
     stamps = stamps_among(header, schema)
     return layout_of(header, stamps, schema)
@@ -159,11 +162,14 @@ def split_lines(
         except StopIteration:
             return
         except csv.Error as error:
-            more = f"; the row begins on line {began}: close its quotes"
+            why, more = f"not a CSV row ({error})", ""
+            if "field limit" in str(error):
+                why = f"a cell has more than {csv.field_size_limit():,} characters"
+                more = ": leave its column out, or allow more by csv.field_size_limit in Python"
             line = before + reader.line_num
-            raise TraceError(
-                f"line {line}: not a CSV row ({error}){more if began < line else ''}"
-            ) from None
+            if began < line:
+                more = f"; the row begins on line {began}: close its quotes"
+            raise TraceError(f"line {line}: {why}{more}") from None
         if row and not (len(row) == 1 and row[0].isspace()):
             yield before + reader.line_num, [cell.strip() for cell in row]
 

@@ -119,6 +119,7 @@ def test_late_rows_are_found(base, capsys):
         (["R1", "--before=-1s", "-o", "b.csv"], "expected a duration of at least 0"),
         (["R1", "--before", "1 day", "-o", "b.csv"], "expected seconds, or a number with its unit"),
         (["--from", "18", "--to", "19", "-o", "b.csv"], "there is nothing between 18 s and 19 s"),
+        (["--from", "31", "-o", "b.csv"], "there is nothing from 31 s on"),
         (["--from", "18", "--clock", "header", "-o", "b.csv"], "use --map"),
     ],
 )

@@ -269,7 +269,7 @@ def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
     beside = databases_beside(path)
     if not texts and not beside:
         raise TraceError(
-            "holds CAN frames without a description of their signals: put the database (.dbc) "
+            "is read as a log of CAN, and nothing describes its signals: put the database (.dbc) "
             'beside it, or name it in a binding, as `definitions = ["car.dbc"]`'
         )
     found: dict[_Key, Any] = {}
