@@ -78,14 +78,7 @@ def compilation(
     constants: Mapping[str, str],
     read: Callable[[Path], str] = text_of_file,
 ) -> Compilation:
-    """Compile a text as far as that goes; arguments as of `compile_text`.
-
-    Args:
-        source: the text.
-        directory: of imports.
-        constants: to override.
-        read: gives the text of a file that is imported.
-    """
+    """Compile a text as far as that goes; arguments as of `compile_text`."""
     findings = Findings()
     checked: CheckedSpec | None = None
     files: Sequence[ParsedSpec] = ()

@@ -25,11 +25,7 @@ Row = tuple[str, str, str, str, str]
 
 
 def aligned(items: Sequence[Sequence[Piece]]) -> list[str]:
-    """One line per declaration: their names, types and roles stand below each other.
-
-    Args:
-        items: pieces of `signal` and `event` items.
-    """
+    """One line per `signal` or `event`: their names, types and roles stand below each other."""
     rows = [_row(pieces) for pieces in items]
     typed = [row for row in rows if row[2]]
     word = max(len(row[0]) for row in rows) if rows else 0
@@ -228,11 +224,7 @@ class Piece(Struct, frozen=True):
 
 
 def pieces_of(text: str) -> tuple[list[Piece], str]:
-    """The pieces of an item that can be read.
-
-    Returns:
-        The pieces, and what follows the last of them.
-    """
+    """The pieces of an item that can be read, and what follows the last of them."""
     interactive: Any = grammar().parse_interactive(text, start="item")
     tokens = list(interactive.iter_parse())
     pieces: list[Piece] = []
@@ -293,9 +285,7 @@ _OPERANDS = ("NAME", "NUMBER", "RPAR", "RSQB", "TRUTH", "START", "END", "STRING"
 def lines_of(pieces: Sequence[Piece], indent: int) -> list[str]:
     """Lay out what belongs on one line, in several lines if it is long or holds comments.
 
-    Args:
-        pieces: at least one.
-        indent: columns before the first line; further lines have two more.
+    The first is indented by `indent` columns, further ones by two more.
     """
     lines: list[str] = []
     step = indent

@@ -69,11 +69,7 @@ _S = TypeVar("_S", bound=_Stated)
 
 
 def resolve(parsed: Sequence[items.ParsedSpec], findings: Findings) -> ResolvedSpec:
-    """Gather the declarations of a file and of those it imports.
-
-    Returns:
-        The specification with the first declaration of every name.
-    """
+    """Gather the declarations of a file and of those it imports; the first of every name counts."""
     resolver = _Resolver(findings)
     for number, file in enumerate(parsed):
         for item in file.items:

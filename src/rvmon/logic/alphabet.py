@@ -121,11 +121,7 @@ Tree = int | tuple[int, tuple["Tree", ...]]
 
 
 class LetterDiagram(Struct, frozen=True, eq=False):
-    """A decision diagram from letters to classes; it tests only the digits that matter.
-
-    Attributes:
-        root: of the diagram; equal parts are the same object.
-    """
+    """A decision diagram from letters to classes; it tests only the digits that matter."""
 
     root: Tree
 
@@ -197,11 +193,9 @@ class Diagrams:
         self._choices: dict[frozenset[Atom], list[Choice]] = {}
 
     def of(self, opened: Residual, leaf: Callable[[Residual], Edge]) -> Node:
-        """The diagram of a residual in which literals are still open.
+        """The diagram of a residual in which literals are still open atoms.
 
-        Args:
-            opened: a residual with literals as atoms.
-            leaf: the edge that belongs to a residual without literals.
+        `leaf` gives the edge of a residual without literals.
         """
         atoms = frozenset[Atom]().union(*opened)
         read = frozenset(atom for atom in atoms if isinstance(atom[0], Literal))

@@ -108,10 +108,7 @@ def projected(ages: Ages, clocks: Sequence[int]) -> Ages:
 def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:
     """A larger zone within the same regions, so that a search meets finitely many zones.
 
-    Args:
-        ages: a zone within one region of each clock.
-        cuts: of the clocks.
-        differences: whether bounds on differences are kept.
+    Bounds on differences are kept if `differences` says so.
     """
     found = [[*row] for row in ages]
     apart = []

@@ -104,10 +104,7 @@ class Forecaster:
     def admits(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool:
         """Whether a continuation may satisfy a residual; true also if the search is given up.
 
-        Args:
-            residual: over formulas made by `duals`.
-            ages: as for `of`.
-            gap: as for `of`.
+        Arguments as of `of`.
         """
         if len(residual) > MOST_CLAUSES:
             return True

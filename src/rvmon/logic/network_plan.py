@@ -127,22 +127,12 @@ def operands_of(node: Node) -> tuple[int, ...]:
 
 
 def plan_of(required: Core, gap: int | None) -> NetworkPlan:
-    """The network of one formula.
-
-    Args:
-        required: the formula an attempt must satisfy.
-        gap: ticks between two positions; `None` if only samples are positions.
-    """
+    """The network of one formula; `gap`: ticks between positions, `None` if these are samples."""
     return plan_of_all([required], gap)
 
 
 def plan_of_all(formulas: Iterable[Core], gap: int | None) -> NetworkPlan:
-    """One network of several formulas; `NetworkPlan.places` has the place of each.
-
-    Args:
-        formulas: the formulas whose values are needed.
-        gap: as for `plan_of`.
-    """
+    """One network of several formulas; `NetworkPlan.places` has the place of each."""
     planning = _Planning(gap or 1)
     for formula in formulas:
         planning.place(formula)

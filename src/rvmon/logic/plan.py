@@ -114,12 +114,7 @@ class Uses(Struct, frozen=True, eq=False):
 
 
 class Watch(NamedTuple):
-    """A formula counted for coverage: a bin, or an occasion at which bins are sampled.
-
-    Attributes:
-        state: the formula.
-        is_pulse: whether it is a pulse, true at single positions.
-    """
+    """A formula counted for coverage: a bin, or an occasion at which bins are sampled."""
 
     state: State
     is_pulse: bool

@@ -150,9 +150,7 @@ def opened(node: Until | Release, clock: int) -> Atom:
 def after(residual: Residual, ages: Sequence[int]) -> Residual:
     """The residual after time has passed without a position: closed windows are decided.
 
-    Args:
-        residual: the residual after the last position.
-        ages: of each clock now, ticks.
+    `ages` are those of its clocks now, ticks.
     """
     settled: dict[Atom, Residual] = {}
     for clause in residual:
@@ -172,12 +170,7 @@ def value(residual: Residual) -> int:
 
 
 def holds_at_end(residual: Residual, ages: Sequence[int]) -> bool:
-    """Whether the rule for the end of a trace makes the residual true.
-
-    Args:
-        residual: the residual with all closed windows decided (`after`).
-        ages: of each clock at the end of the trace, ticks.
-    """
+    """Whether the rule for the end of a trace makes true what is left by `after`; ages as there."""
     return any(all(_counts_at_end(atom, ages) for atom in clause) for clause in residual)
 
 

@@ -163,13 +163,7 @@ def _text_of(leaf: Shown) -> str:
 
 
 def lasting(graph: Graph, roots: Iterable[State], determined: Collection[State]) -> frozenset[int]:
-    """The nodes that matter once every signal is born and every trigger was true or false.
-
-    Args:
-        graph: has all the roots.
-        roots: the state formulas whose values are needed.
-        determined: the formulas that are TRUE from then on.
-    """
+    """The nodes that matter once every signal is born, and what is `determined` is TRUE."""
     settled: list[int | None] = []
     for state, operands in zip(graph.nodes, graph.operands, strict=True):
         known = (

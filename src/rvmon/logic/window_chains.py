@@ -38,8 +38,7 @@ class Chain(Struct, frozen=True):
 def reach_of(plan: NetworkPlan) -> int | None:
     """The ticks after which a position is decided, or depends on later positions alone.
 
-    Returns:
-        `None` if that is unbounded, or if a node looks back.
+    `None` if that is unbounded, or if a node looks back.
     """
 
     def reach(node: Node) -> int | None:

@@ -21,9 +21,7 @@ from rvmon.verdicts import Verdict
 class Finding(Struct, frozen=True):
     """The explanation shared by decisions that differ only in instants.
 
-    Attributes:
-        cause: the cause of the decision; `None` if no other decision was possible.
-        sentence: the template for the cause.
+    `cause` is `None` if no other decision was possible.
     """
 
     cause: Cause | None
@@ -100,17 +98,7 @@ def explained(
     triggered: int,
     flow: TruthValues,
 ) -> Explanation:
-    """Explain why an attempt was decided.
-
-    Args:
-        reasons: the explanations of the requirement.
-        before: state of the deciding run at the position before the decision.
-        letter: the letter of that run at the decision.
-        verdict: the decision.
-        t: instant of the decision, ticks.
-        triggered: instant of the trigger, ticks.
-        flow: truth values of the propositions, and since when they had them.
-    """
+    """Explain a decision at `t` (ticks); `before` and the letter are those of the deciding run."""
     finding = reasons.of(before, letter, verdict, t)
     cause = finding.cause
     start = finding.start(before[1], t, triggered)

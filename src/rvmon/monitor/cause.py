@@ -146,23 +146,13 @@ class Base(Enum):
 
 
 class Place(Struct, frozen=True):
-    """A placeholder for an instant or a duration in a sentence.
-
-    Attributes:
-        base: its reference point.
-        plus: ticks after the reference point.
-    """
+    """A placeholder for an instant or a duration in a sentence: `plus` ticks after its base."""
 
     base: Base
     plus: int = 0
 
     def ticks(self, decided: int, start: int) -> int:
-        """The value of the placeholder, ticks.
-
-        Args:
-            decided: the instant of the decision.
-            start: the instant at which the deciding obligation was instantiated.
-        """
+        """The value in ticks, for a decision, and the instant at which its obligation began."""
         match self.base:
             case Base.DECISION:
                 return decided + self.plus
@@ -179,11 +169,6 @@ class Turned(Struct, frozen=True):
 
     The history of the proposition is not enough: `whenever` may merge it with the trigger, and the
     merged proposition also changes with that. It did not become so if it was so at the trigger.
-
-    Attributes:
-        proposition: the proposition.
-        text: its text in the specification.
-        seen: `true` or `false`.
     """
 
     proposition: State
@@ -196,13 +181,9 @@ class AfterTrigger(Struct, frozen=True):
 
 
 class LastWith(Struct, frozen=True):
-    """A placeholder: when a proposition last had a truth value.
+    """A placeholder: when a proposition last had a truth value, which may be `lasting`.
 
-    Attributes:
-        proposition: the proposition.
-        value: the truth value.
-        verb: `been true`, `been false` or `occurred`.
-        lasting: whether the value can last longer than single instants.
+    Its verb is `been true`, `been false` or `occurred`.
     """
 
     proposition: State
@@ -258,15 +239,7 @@ Sentence = tuple[Part, ...]
 def rendered(
     sentence: Sentence, decided: int, start: int, triggered: int, flow: TruthValues
 ) -> str:
-    """Fill in a sentence for one decision.
-
-    Args:
-        sentence: the template.
-        decided: the instant of the decision, ticks.
-        start: the instant at which the deciding obligation was instantiated, ticks.
-        triggered: the instant of the trigger of the attempt, ticks.
-        flow: truth values at the decision.
-    """
+    """Fill in a sentence for one decision; instants are ticks, `start` that of its obligation."""
     return "".join(
         [
             part if type(part) is str else _filled(part, decided, start, triggered, flow)

@@ -70,13 +70,7 @@ def compile_spec(checked: CheckedSpec) -> CompiledSpec:
 
 
 class Kept(Struct, frozen=True):
-    """A packed plan, as it is cached.
-
-    Attributes:
-        data: the packed plan.
-        single: events of which only one payload can be judged at one instant.
-        readers: by signal and event, the ids of the requirements that read it.
-    """
+    """A packed plan, as it is cached; fields as of `rvmon.monitor.packed_plan.PlannedCore`."""
 
     data: bytes
     single: frozenset[str] = frozenset()

@@ -74,14 +74,7 @@ def judge_recording(
 
 
 class RecordingRun:
-    """A run of the core over the pieces of a recording.
-
-    Args:
-        checked: the specification.
-        planned: the plan of its requirements.
-        source: the recording that the pieces come from.
-        finds: whether input health is collected.
-    """
+    """A run of the core over the pieces of a recording; `finds` input health if asked."""
 
     def __init__(
         self, checked: CheckedSpec, planned: PlannedCore, source: Source, *, finds: bool

@@ -23,11 +23,7 @@ if TYPE_CHECKING:
 
 
 class HealthLog:
-    """Counts unknown values by name and kind.
-
-    Attributes:
-        began: the instant of the first sample; `None` before it.
-    """
+    """Counts unknown values by name and kind; `began` is the instant of the first sample."""
 
     def __init__(self) -> None:
         self.began: int | None = None
@@ -50,15 +46,7 @@ class HealthLog:
         self.add(HealthKind.NONE if value is None else HealthKind.NAN, shown, name, 1, t)
 
     def add(self, kind: HealthKind, shown: str, name: str, count: int, first: int) -> None:
-        """Count further unknown values of a signal, or of a field `shown` of event `name`.
-
-        Args:
-            kind: the kind of unknown value.
-            shown: the name to report.
-            name: the signal or event.
-            count: of the values.
-            first: the instant of the first of them, ticks.
-        """
+        """Count further unknown values of a signal or field `shown`, `first` in ticks."""
         if count:
             before, since = self._seen.get((kind, shown, name), (0, first))
             self._seen[kind, shown, name] = (before + count, since)

@@ -175,13 +175,8 @@ def _integer(number: Any) -> int:
 def refuse_earlier(t: int, last: int | None, reached: int | None) -> None:
     """Refuse a sample that is not later than the previous one, or that an `advance` excluded.
 
-    Args:
-        t: its instant, ticks.
-        last: the instant of the previous sample; `None` before the first.
-        reached: the instant reached by `advance`; `None` if there was none.
-
     Raises:
-        TimeOrderError: it is not later, or an `advance` ruled it out.
+        TimeOrderError: it is so.
     """
     if last is not None and t <= last:
         raise TimeOrderError(

@@ -107,12 +107,7 @@ def not_passed(verdicts: Mapping[str, Verdict]) -> Mapping[str, Verdict]:
 
 
 def capped(report: Report, interrupted: int) -> Report:
-    """The report of an interrupted run: verdicts that are not `F` are `I`, with a health entry.
-
-    Args:
-        report: the report of the run.
-        interrupted: the instant reached when a call was interrupted, ticks.
-    """
+    """The report of a run interrupted at some ticks: not `F` is `I`, with a health entry."""
     first = None if interrupted == BEFORE_ALL else interrupted
     remark = "what followed was not evaluated in full"
     why = Health(HealthKind.INTERRUPTED, "monitor", 1, first, tuple(report.verdicts), remark)

@@ -186,16 +186,9 @@ def explained_by_network(
     triggered: int,
     flow: TruthValues,
 ) -> Explanation:
-    """Why an attempt was decided.
+    """Why an attempt was decided at `t`; `position` is that whose value is the attempt's, in ticks.
 
-    Args:
-        compiled: the requirement.
-        network: the deciding network at the decision; `None` if no letters were kept.
-        position: the instant of the position whose value is the attempt's, ticks.
-        verdict: the decision.
-        t: the instant of the decision, ticks.
-        triggered: the instant of the trigger, ticks.
-        flow: truth values of the propositions at the decision, with their history.
+    The deciding network is as it was at the decision, or `None` if no letters were kept.
     """
     truth = None if network is None else network.truth(position)
     if network is None or truth is None:
@@ -227,11 +220,7 @@ def _settled_before(network: Network, position: int, at: int) -> int | None:
 class NetworkRuns(Struct, frozen=True):
     """Both networks of an open attempt at a stamp, as `rvmon.monitor.explanation.Judged`.
 
-    Attributes:
-        worse: the network of the pessimistic run; `None` if no letters were kept.
-        better: the network of the optimistic run.
-        count: the number of attempts open in it.
-        gap: ticks between two positions; `None` if only samples are positions.
+    They are `None` if no letters were kept; `count` attempts are open in them.
     """
 
     worse: Network | None

@@ -54,15 +54,7 @@ def _noted(
     *,
     better: bool,
 ) -> Noted:
-    """The letters to replay; those before `position` only if the formula looks back.
-
-    Args:
-        compiled: the requirement.
-        gap: ticks between two positions; `None` if only samples are positions.
-        letters: recorded for the attempt.
-        position: the position whose value is needed, ticks.
-        better: whether UNKNOWN is read optimistically.
-    """
+    """The letters to replay; those before `position` (ticks) only if the formula looks back."""
     plan, propositions = compiled.network_plan, compiled.alphabet.propositions
     place = {state: number for number, state in enumerate(propositions)}
     leaves = [core for _, core in plan.leaves]
@@ -130,15 +122,10 @@ def at_moment(
     now: int,
     count: int,
 ) -> NetworkRuns:
-    """Rebuild both networks, pessimistic and optimistic, of an open attempt.
+    """Rebuild both networks of an open attempt, pessimistic and optimistic, at the stamp `now`.
 
-    Args:
-        compiled: as for `at_decision`.
-        gap: as for `at_decision`.
-        letters: as for `at_decision`.
-        position: as for `at_decision`.
-        now: the stamp, twice the instant in ticks, plus one if its letter is known.
-        count: the number of open attempts of the requirement.
+    That is twice the instant in ticks, plus one if its letter is known; `count` attempts of the
+    requirement are open. Other arguments as of `at_decision`.
     """
     if letters is None:
         return NetworkRuns(None, None, count, gap)

@@ -92,12 +92,9 @@ def note_of(data: bytes, state: bytes | None, pieces: Any, last: bytes | None) -
 
 
 def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes, int]]) -> Note:
-    """A note from the notes of all records of a run.
+    """A note from those of all records, of which it is the `place`-th word on.
 
-    Args:
-        notes: the notes of the run.
-        place: the index of the note's first word.
-        spans: the letters that notes refer to by number, as the core gives them.
+    `spans` are the letters that notes refer to by number, as the core gives them.
     """
     (head,) = _words(1)(notes, 8 * place)
     words = _words(head >> 40)(notes, 8 * place)
@@ -136,12 +133,7 @@ def words_for(count: int) -> int:
 
 
 class NoteExplainer:
-    """Explains the attempts of one judge of the core from their notes.
-
-    Args:
-        compiled: the requirement, or the judge of its attempts in doubt.
-        gap: ticks between two positions; `None` if only samples are positions.
-    """
+    """Explains the attempts of one judge of the core from their notes."""
 
     def __init__(self, compiled: CompiledRequirement, gap: int | None) -> None:
         self.compiled = compiled

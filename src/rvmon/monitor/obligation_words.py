@@ -83,12 +83,7 @@ class _Atom(Struct, frozen=True):
 
 
 class Words:
-    """Words the parts of one requirement by their origins in the specification.
-
-    Args:
-        origins: the source of each part.
-        consequent: of the requirement; names the parts that have no source.
-    """
+    """Words the parts of one requirement by their origins; its consequent names those without."""
 
     def __init__(self, origins: Mapping[Core, Origin], consequent: Formula) -> None:
         self._origins = dict(origins)

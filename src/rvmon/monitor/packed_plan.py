@@ -43,12 +43,7 @@ class CapturedValues:
         self._labels = {number: label for label, number in labels.items()}
 
     def of(self, requirement: int, numbers: Sequence[float | None]) -> dict[str, Scalar]:
-        """The captured values of an attempt, by name.
-
-        Args:
-            requirement: the number of its requirement.
-            numbers: the captured numbers in order, `None` if unknown; surplus ones are ignored.
-        """
+        """The captured values of an attempt, by name; unknown is `None`, the surplus ignored."""
         kinds = self._kinds[requirement].items()
         return {
             name: self._value(number, kind)
@@ -219,13 +214,9 @@ class PlannedCore(Struct, frozen=True):
         note: Callable[[], Note],
         name: str,
     ) -> Mapping[str, Any]:
-        """A lazily computed field of an attempt, and others that come with it.
+        """A lazily computed field `name` of an attempt, and others that come with it.
 
-        Args:
-            attempt: with its other fields set.
-            captured: its captured values; `None` if its requirement captures none.
-            note: gives the note of the core about it.
-            name: the field that is asked for.
+        `note` gives the note of the core about it.
         """
         number = self.packed.numbers[attempt.requirement]
         values = {} if captured is None else self.captured.of(number, captured)
@@ -325,14 +316,7 @@ def _checked(
 def planned_as(
     spec: CheckedSpec, ids: tuple[str, ...], kept: Kept, compiled: CompiledSpec | None = None
 ) -> PlannedCore:
-    """A packed plan with its tables.
-
-    Args:
-        spec: declares the names.
-        ids: the ids of its requirements.
-        kept: the packed plan.
-        compiled: the specification, if it has requirements.
-    """
+    """A packed plan with the tables of the specification that it is of."""
     plan = packed(spec, ids, kept.data)
 
     def labels(type_: Type) -> Mapping[str, int] | None:

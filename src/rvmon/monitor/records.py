@@ -180,10 +180,7 @@ def recorded(
 ) -> RecordedAttempts:
     """The decided attempts among raw records, in the same order.
 
-    Args:
-        planned: the plan of the run.
-        raw: records, captured numbers, notes and letters, as the core gives them.
-        origin: the first instant of the run, ticks.
+    `raw` are records, captured numbers, notes and letters, as the core gives them.
     """
     records, numbers, words, letters = raw
     attempts, captured = _arrays(records, numbers)

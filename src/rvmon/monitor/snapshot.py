@@ -46,15 +46,7 @@ def snapshot_of(
     run: native.Monitor,
     state: Mapping[str, Any],
 ) -> bytes:
-    """The snapshot of a run, as bytes.
-
-    Args:
-        compiled: the specification.
-        options: the options of its monitor.
-        planned: the plan of its requirements.
-        run: the run of the core.
-        state: the part of the state held in Python, as JSON values.
-    """
+    """The snapshot of a run, as bytes; `state` is the part held in Python, as JSON values."""
     document = {
         "rvmon": _version(),
         "spec": digest_of(compiled),

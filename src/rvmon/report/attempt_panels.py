@@ -26,13 +26,7 @@ from rvmon.verdicts.report import Report
 
 
 class JudgedRun(Struct, frozen=True):
-    """A run with its verdicts.
-
-    Attributes:
-        name: its display name, such as that of a test or file.
-        report: the verdicts.
-        samples: the judged samples, in order of time; empty if they were not kept.
-    """
+    """A run by its display name, with its verdicts and its samples, if these were kept."""
 
     name: str
     report: Report

@@ -162,11 +162,7 @@ class RunChanges:
 
 
 class Changes:
-    """The changes of a name: values and instants.
-
-    Args:
-        stale_after: from when on a value counts as unknown, ticks behind its last update.
-    """
+    """The changes of a name: values and instants; stale so many ticks behind an update."""
 
     def __init__(self, stale_after: int | None) -> None:
         self._stale_after = stale_after

@@ -165,13 +165,9 @@ def table_html(
     link: Link | None = None,
     witnesses: Mapping[str, str] | None = None,
 ) -> Markup:
-    """A table of counts, with a line per requirement.
+    """A table of counts, with a line per requirement and further tables by label.
 
-    Args:
-        table: the counts.
-        further: by label, tables whose counts stand in further lines of each row.
-        link: the target of a count.
-        witnesses: by requirement, the address of a run that shows what model checking says.
+    `link` is the target of a count; `witnesses` are addresses of runs that model checking found.
     """
     others = further or {}
     text = render(

@@ -158,12 +158,7 @@ _OPEN = 8
 
 
 def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
-    """The page.
-
-    Args:
-        profile: of the recording.
-        requirements: by which names are grouped first; the others are grouped by topic.
-    """
+    """The page of a recording; names are grouped by requirement first, the others by topic."""
     span = profile.end - profile.start
     groups = [
         {

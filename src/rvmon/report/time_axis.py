@@ -39,10 +39,7 @@ class View(Struct, frozen=True):
 def view_of(attempt: Attempt, report: Report, late: int | None = None) -> View:
     """The view from before the trigger to after the decision and the deadline.
 
-    Args:
-        attempt: the attempt to be shown.
-        report: the report it belongs to.
-        late: the instant of a response after the deadline, ticks; in view if it is near.
+    A late response at `late` (ticks) is in view if it is near.
     """
     instants = [attempt.triggered]
     if attempt.decided is not None:

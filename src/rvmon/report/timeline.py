@@ -193,15 +193,7 @@ LABEL = 0.44
 
 
 class ReferenceAttempt(Struct, frozen=True):
-    """The nearest passing attempt, aligned with the failed one at the trigger.
-
-    Attributes:
-        name: the name of its run.
-        number: the number of the attempt.
-        tracks: of its run, shifted in time.
-        end: the end of its run in ticks, shifted.
-        decided: the instant of its decision in ticks, shifted.
-    """
+    """The nearest passing attempt, its instants (ticks) moved to the trigger of the failed one."""
 
     name: str
     number: int

@@ -118,13 +118,7 @@ def matrix_csv(matrix: Sequence[Traced]) -> bytes:
 
 
 def matrix_page(title: str, facts: Mapping[str, str], matrix: Sequence[Traced]) -> bytes:
-    """The matrix as a page that needs nothing but itself.
-
-    Args:
-        title: of the page.
-        facts: the first lines; one that is empty is left out.
-        matrix: the matrix.
-    """
+    """The matrix as a page that needs nothing but itself; facts that are empty are left out."""
     sections: dict[str, list[_Row]] = {}
     for (robot, _), rows in groupby(matrix, key=lambda one: (one.robot, one.requirement)):
         sections.setdefault(robot, []).append(_row(list(rows)))

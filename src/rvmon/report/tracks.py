@@ -183,13 +183,7 @@ class Stretch(Struct, frozen=True):
 
 
 def stretches(track: Track, view: View, end: int) -> list[Stretch]:
-    """The values of a signal from a view's left edge to the end of the run or of the view.
-
-    Args:
-        track: of a signal.
-        view: the shown part.
-        end: the last instant of the run, ticks.
-    """
+    """The values of a signal from a view's left edge to the end of the run or of the view."""
     stop = min(view.end, end)
     inside = track.between(view.start + 1, stop - 1)
     if track.kind is TrackKind.NUMBER:

@@ -57,12 +57,9 @@ _FORMULA = ("=", "+", "-", "@")
 
 
 def tables_csv(tables: Mapping[str, VerdictTable]) -> str:
-    """Several tables as one CSV text; names are escaped by `plain`.
+    """Several tables, by their names in the first column, as one CSV text; `plain` escapes names.
 
     Bounds of intervals are shares from 0 to 1, empty for a table that shows none.
-
-    Args:
-        tables: by their names in the first column.
     """
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")

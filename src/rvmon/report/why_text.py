@@ -52,10 +52,7 @@ def why_lines(
 def attempt_values(tracks: Sequence[Track], attempt: Attempt, end: int) -> dict[str, Sequence[str]]:
     """By signal, its value at the trigger, and at the end of the attempt if that is later.
 
-    Args:
-        tracks: of the names that the requirement reads.
-        attempt: gives the instants.
-        end: the last instant of the run, ticks, where an open attempt ends.
+    An open attempt ends with the run, at `end` (ticks).
     """
     last = end if attempt.decided is None else attempt.decided
     texts = [signal_texts(tracks, t) for t in sorted({attempt.triggered, last})]

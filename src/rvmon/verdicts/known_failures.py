@@ -47,12 +47,7 @@ class KnownFailure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class KnownFailures(Struct, frozen=True):
-    """The failures accepted on a day.
-
-    Attributes:
-        known: in the order of the file.
-        today: the day; an entry whose `until` is earlier accepts nothing.
-    """
+    """The failures accepted on a day; an entry whose `until` is earlier accepts nothing."""
 
     known: Sequence[KnownFailure] = ()
     today: datetime.date = field(default_factory=datetime.date.today)

@@ -39,13 +39,7 @@ class CoveredBin:
 
 @dataclass(frozen=True, slots=True)
 class CoveredGroup:
-    """A coverpoint or a cross on one run.
-
-    Attributes:
-        name: of the coverpoint or cross.
-        subject: `coverpoint` or `cross`.
-        bins: all bins or combinations, in the order of the specification.
-    """
+    """A `coverpoint` or `cross` on one run, with its bins or combinations in the file's order."""
 
     name: str
     subject: str

@@ -182,13 +182,7 @@ def _ends(op: CompareOp, bound: float, *, whole: bool) -> tuple[float, float]:
 
 
 class _Point(Struct, frozen=True):
-    """A coverpoint, whose bins are formulas.
-
-    Attributes:
-        checker: of the file.
-        expression: the expression whose values the bins are; `None`: each bin is a formula.
-        labelled: whether its values are labels.
-    """
+    """A coverpoint, whose bins are formulas, or values of its expression if it has one."""
 
     checker: Checker
     expression: expressions.Expression | None

@@ -232,12 +232,7 @@ def _foreign(checker: Checker, expression: expressions.Expression) -> list[expre
 
 
 class _States(Struct, frozen=True):
-    """Makes state formulas of expressions.
-
-    Attributes:
-        checker: of the file.
-        foreign: names of a model, which the file does not declare.
-    """
+    """Makes state formulas of expressions; `foreign` names of a model need no declaration."""
 
     checker: Checker
     foreign: frozenset[str]

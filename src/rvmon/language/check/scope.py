@@ -57,22 +57,13 @@ class Chosen(Struct, frozen=True):
 
 
 class Now(Struct, frozen=True):
-    """`now`, `now - t0`: the time since an instant; only compared, or captured by `let`.
-
-    Attributes:
-        since: the name of a captured instant; `None`: the first one.
-    """
+    """`now`, `now - t0`: the time since an instant, else the first; only compared, or captured."""
 
     since: str | None = None
 
 
 class Moment(Struct, frozen=True):
-    """An instant that was captured, or some time behind it; `now` is compared with it.
-
-    Attributes:
-        name: of the captured value.
-        later: so much time behind it; `None`: none.
-    """
+    """An instant that was captured, or so much `later`; `now` is compared with it."""
 
     name: str
     later: Quantity | None = None

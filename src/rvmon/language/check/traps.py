@@ -40,11 +40,7 @@ def traps_at_trigger(
 ) -> Iterator[Diagnostic]:
     """Find parts that are required at the trigger and cannot hold there.
 
-    Args:
-        trigger: without the part that a scope adds.
-        consequent: the same.
-        time: the time model.
-        span: of the requirement, for parts without a place of their own.
+    Trigger and consequent are without the parts of a scope; `span` is for parts without a place.
     """
     facts = {about: truth for about, truth in facts_of(trigger).items() if about is not Bound.START}
     for part in _required_at_once(consequent):
@@ -58,11 +54,7 @@ def traps_at_start(
 ) -> Iterator[Diagnostic]:
     """Find parts that are required from the start of the run on and cannot hold there.
 
-    Args:
-        mode: of the requirement.
-        trigger: the same.
-        consequent: the same.
-        span: of the requirement, for parts without a place of their own.
+    Arguments as of `traps_at_trigger`.
     """
     always = mode is Mode.WHENEVER and isinstance(trigger, Constant) and trigger.value
     if not always and not (isinstance(trigger, BoundAtom) and trigger.bound is Bound.START):

@@ -246,12 +246,7 @@ def _both_facts(formula: Formula) -> Both:
 
 
 def truth_at(formula: Formula, facts: Facts) -> bool | None:
-    """The truth value of a formula at an instant; `None` if the facts do not decide it.
-
-    Args:
-        formula: of any tense.
-        facts: of the instant; `FIRST` if it is the first one.
-    """
+    """The truth of a formula at an instant with such facts; `None` if they do not decide it."""
     match formula:
         case Constant(value=value):
             return value

@@ -28,12 +28,7 @@ from rvmon.trace.time import TICKS_PER_SECOND
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A number in the unit that the comparison is made in, or a label.
-
-    Attributes:
-        value: the number or label.
-        unit: the symbol of that unit, for people; "" if it has none.
-    """
+    """A label, or a number in the unit of its comparison, whose symbol `unit` is for people."""
 
     value: float | int | str
     unit: str = field(default="", compare=False)

@@ -16,12 +16,9 @@ Part = TypeVar("Part", bound=Formula | Numeric | Interval)
 
 
 def read(formula: Unary | Binary, of: Callable[[Formula], T], reading: Connectives[T]) -> T:
-    """The reading of a formula, from the readings of its operands.
+    """The reading of a formula, from the readings of its operands, each asked for once.
 
-    Args:
-        formula: any.
-        of: reads an operand; called once for each.
-        reading: a `Reading`, unless the operator is a connective.
+    A connective needs no `Reading`.
     """
     operands = (formula.operand,) if isinstance(formula, Unary) else (formula.left, formula.right)
     window = formula.interval or Interval()

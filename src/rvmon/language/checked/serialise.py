@@ -121,11 +121,7 @@ def _from_plain(data: Any, sources: list[Source]) -> Any:
 def identity_text(spec: specification.CheckedSpec, *, without: Collection[str] = ()) -> str:
     """A text that two specifications share if they are equal but for where things stand in files.
 
-    It is the same in all processes.
-
-    Args:
-        spec: the specification.
-        without: names of attributes that are passed over.
+    It is the same in all processes; attributes named in `without` are passed over.
     """
     return json.dumps(spec, default=partial(_parts, without), separators=(",", ":"))
 

@@ -14,13 +14,7 @@ from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 
 
 class Rule(Struct, frozen=True):
-    """A rule; `rvmon/analysis/pages` says why it matters, with an example.
-
-    Attributes:
-        code: stable, never used again for another rule.
-        name: the code in words.
-        severity: of a breach.
-    """
+    """A rule; `rvmon/analysis/pages` says why it matters. Its code never comes to mean another."""
 
     code: str
     name: str
@@ -40,14 +34,7 @@ class Reported(Exception):  # noqa: N818 - it never leaves this package
 
 
 def finding(rule: Rule, message: str, *places: Span | Label, fix: str = "") -> Diagnostic:
-    """A breach of a rule.
-
-    Args:
-        rule: the rule.
-        message: one sentence: what is wrong here.
-        places: the offending place first.
-        fix: a way to fix it, or empty.
-    """
+    """A breach of a rule: what is wrong in one sentence, the offending place first, and a fix."""
     labels = tuple(place if isinstance(place, Label) else Label(place) for place in places)
     return Diagnostic(rule.code, rule.name, rule.severity, message, labels, fix)
 

@@ -36,14 +36,7 @@ def reach(operator: Span, operand: Span, end: Span) -> Diagnostic:
 
 
 def two_sides(whole: Span, operator: Span, connective: Span, near: Span) -> Diagnostic:
-    """`a unless b and c`: the connective may belong to its neighbour alone.
-
-    Args:
-        whole: the operator with both its sides.
-        operator: of the `until` family.
-        connective: the neighbouring connective.
-        near: the side that both may claim.
-    """
+    """`a unless b and c`: the connective may belong to its neighbour `near` alone."""
     first, second = short(operator.text), short(connective.text)
     behind = connective.start >= whole.end
     text, side = short(whole.text), short(near.text)

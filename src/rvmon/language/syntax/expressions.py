@@ -137,12 +137,7 @@ class Operation(_Node, frozen=True):
 
 
 class Path(_Node, frozen=True):
-    """A path quantifier with a temporal operator: `AG p`, `E<> p`.
-
-    Attributes:
-        universal: whether it is `A`.
-        reaching: whether it is written as `A[]`, which reaches to the end of the formula.
-    """
+    """`AG p`, `E<> p`: `universal` if `A`; `reaching` if, like `A[]`, to the end of the formula."""
 
     universal: bool
     op: UnaryOp

@@ -319,8 +319,7 @@ Item = (
 class ParsedSpec(Struct, frozen=True):
     """One file, item by item; its names are not looked at yet.
 
-    Attributes:
-        doubtful: words of items that could not be read; they may have declared any of these.
+    What could not be read may have declared any of the `doubtful` words.
     """
 
     source: Source

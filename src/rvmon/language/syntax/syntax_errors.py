@@ -98,11 +98,7 @@ _TYPES = {
 def fix_of(unexpected: str, accepted: set[str], parser: lark.Lark, before: Span) -> str:
     """The fix for a syntax error; empty if none is known.
 
-    Args:
-        unexpected: the word or sign that could not stand there; empty at the end of the item.
-        accepted: the terminals that could have.
-        parser: knows their patterns.
-        before: the part of the item before it.
+    `accepted` are the terminals that could stand at `unexpected`, which is empty at the item's end.
     """
     return (
         # Ordered from certain to guessed: the first that knows a fix is used.
@@ -299,16 +295,7 @@ _SWALLOWED = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[ \t]+([^\W\d]\w*)\s*\Z")
 def explain_unexpected(
     error: UnexpectedInput, parser: lark.Lark, source: Source, start: int, end: int, rule: str
 ) -> Diagnostic:
-    """Say what was found and what could have stood there.
-
-    Args:
-        error: raised by the parser.
-        parser: the parser.
-        source: the file.
-        start: the start in it of the text given to the parser.
-        end: its end.
-        rule: the start rule.
-    """
+    """Say what was found between `start` and `end` of a file, and what could have stood there."""
     place = _place(error, source, start, end)
     accepted, _ = accepted_terminals(parser, source.text[start:end], rule)
     unexpected = place.text
@@ -351,10 +338,9 @@ def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span
 
 
 def accepted_terminals(parser: lark.Lark, text: str, rule: str) -> tuple[set[str], bool]:
-    """The terminals with which a text could really go on; the list of an error is too long.
+    """The terminals with which a text could really go on, and whether it can be read up to its end.
 
-    Returns:
-        They, and whether the text can be read up to its end.
+    The list of an error is too long.
     """
     interactive: Any = parser.parse_interactive(text, start=rule)
     try:

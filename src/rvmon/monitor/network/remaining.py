@@ -39,9 +39,7 @@ _FEW = 8
 class Remaining:
     """Computes residuals of the formulas of a network, or of their negations.
 
-    Args:
-        network: the network at the present stamp.
-        duals: makes the formulas of the residuals, over known propositions.
+    They are formulas of `duals`, over known propositions.
     """
 
     def __init__(self, network: Network, duals: Duals) -> None:

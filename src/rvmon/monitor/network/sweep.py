@@ -64,12 +64,7 @@ def _until_on(first: int, last: int, stays: _Side, meets: _Side, beyond: Carried
 
 
 def since(left: Known, right: Known) -> Known:
-    """`left S right` at all integers, false before the first; the mirror image of `until`.
-
-    Args:
-        left: operand that has held since then; true at integers that are no positions.
-        right: operand that was met; false at integers that are no positions.
-    """
+    """`left S right` at all integers, false before the first; the mirror image of `until`."""
     found: list[Known] = []
     carried: Carried = (False, PAST)
     for first, last, stays, meets in _stretches(left, right):

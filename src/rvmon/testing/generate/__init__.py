@@ -65,12 +65,7 @@ WIDE = (-(2**63), -(2**53) - 1, 0, 2**53, 2**53 + 1, 2**62, 2**63 - 1)
 def signals(
     stale: Mapping[str, int] | None = None, ignoring: Container[str] = ()
 ) -> dict[str, Signal]:
-    """The declared signals.
-
-    Args:
-        stale: the signals that are `stale after` a number of ticks.
-        ignoring: the signals for which NaN and null are no update.
-    """
+    """The declared signals; some `stale after` so many ticks, some `ignore NaN`."""
     kinds = {
         **dict.fromkeys(BOOLS, Type(Kind.BOOL)),
         **dict(zip(NUMBERS, (Type(Kind.REAL), Type(Kind.INT)), strict=True)),

@@ -62,13 +62,7 @@ class Member:
 
 @dataclass(frozen=True, slots=True)
 class Past:
-    """Evaluates windows on the letters of a word.
-
-    Attributes:
-        letters: the letters.
-        captured: values of `let` and `for each`.
-        state: gives the truth of a formula at a position.
-    """
+    """Evaluates windows on letters; `state` gives the truth of a formula at a position."""
 
     letters: Sequence[Letter]
     captured: Mapping[str, Scalar]

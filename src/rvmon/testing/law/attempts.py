@@ -244,12 +244,7 @@ def _same(one: Mapping[str, Scalar], other: Mapping[str, Scalar], names: Iterabl
 
 
 class Readings:
-    """The truth of formulas on a word, cached by captured values.
-
-    Args:
-        word: the trace.
-        rest: the assumption about pending operators.
-    """
+    """The truth of formulas on a word, cached by captured values."""
 
     def __init__(self, word: Word, rest: Rest) -> None:
         self._word = word

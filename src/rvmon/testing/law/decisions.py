@@ -44,11 +44,9 @@ class Followed:
 
 @dataclass(frozen=True, slots=True)
 class Followings:
-    """The attempts of one requirement, followed to their decisions.
+    """The attempts of one requirement, followed to their decisions, in the order of their starts.
 
-    Attributes:
-        attempts: in the order of their starts.
-        is_determined: whether the trigger was ever TRUE or FALSE.
+    Its trigger `is_determined` if it was ever TRUE or FALSE.
     """
 
     attempts: Sequence[Followed]

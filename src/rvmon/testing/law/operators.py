@@ -89,11 +89,7 @@ class Operators(ABC, Generic[V]):
     def operator(self, formula: Unary | Binary, i: int, sub: Sub[V], *, positive: bool = True) -> V:
         """The value of an operator from the values of its operands.
 
-        Args:
-            formula: the operator with its operands.
-            i: the position.
-            sub: gives the values of operands.
-            positive: whether an even number of negations stands above the formula.
+        `positive` tells whether an even number of negations stands above it.
         """
         if isinstance(formula, Unary):
             return self._unary(formula, i, sub, positive)
