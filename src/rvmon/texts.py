@@ -136,7 +136,7 @@ def shown_json(text: str) -> str:
     >>> print(shown_json('"\x9b0m"'))
     "\u009b0m"
     """
-    if text.isascii() and "\x7f" not in text:
+    if (text.isascii() and "\x7f" not in text) or text.isprintable():
         return text
     return _STEERS_JSON.sub(lambda shown: f"\\u{ord(shown[0]):04x}", text)
 

@@ -139,7 +139,7 @@ class Arrivals:
         waits = self._open[text]
         answered = 0
         for deadline, key in waits:
-            came = first_after(max(deadline, at), truth.sure, positions)
+            came = first_after(max(deadline, at), truth.true, positions)
             if came is None:
                 break
             self.found[key] = came

@@ -10,9 +10,6 @@ import numpy as np
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-FOREVER = (1 << 63) - 1
-"""Later than any tick."""
-
 
 def joined(intervals: Any) -> NDArray[np.int64]:
     """The set of some intervals, with adjacent ones merged.
@@ -23,9 +20,9 @@ def joined(intervals: Any) -> NDArray[np.int64]:
     >>> joined([(1, 2), (3, 4), (6, 7)]).tolist()
     [[1, 4], [6, 7]]
     """
+    if len(intervals) == 1:
+        return np.asarray(intervals, np.int64)
     spans = np.asarray(intervals, np.int64).reshape(-1, 2)
-    if len(spans) < 2:
-        return spans
     apart = np.ones(len(spans) + 1, np.bool_)
     apart[1:-1] = spans[1:, 0] > spans[:-1, 1] + 1
     if apart.all():
@@ -39,28 +36,13 @@ def within(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
     >>> within(joined([(1, 4), (6, 7), (9, 9)]), 3, 6).tolist()
     [[3, 4], [6, 6]]
     """
-    if len(spans) and low <= spans[0, 0] and spans[-1, 1] <= high:
+    if len(spans) and low <= spans.item(0) and spans.item(-1) <= high:
         return spans
     part = spans[spans[:, 1].searchsorted(low) : spans[:, 0].searchsorted(high, "right")].copy()
     if len(part):
         part[0, 0] = max(part[0, 0], low)
         part[-1, 1] = min(part[-1, 1], high)
     return part
-
-
-def outside(spans: NDArray[np.int64], low: int, high: int) -> NDArray[np.int64]:
-    """The complement of the set within [low, high], which must contain it.
-
-    >>> outside(joined([(2, 3)]), 0, 5).tolist()
-    [[0, 1], [4, 5]]
-    """
-    gaps = np.empty((len(spans) + 1, 2), np.int64)
-    gaps[0, 0], gaps[-1, 1] = low, high
-    if len(spans):
-        gaps[1:, 0] = spans[:, 1] + 1
-        gaps[:-1, 1] = spans[:, 0] - 1
-    # Between spans there is a gap, as they are not adjacent; before and behind them may be none.
-    return gaps[int(gaps[0, 0] > gaps[0, 1]) : len(gaps) - int(gaps[-1, 0] > gaps[-1, 1])]
 
 
 def hold(spans: NDArray[np.int64], ticks: Any) -> NDArray[np.bool_]:

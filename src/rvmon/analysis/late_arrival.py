@@ -80,7 +80,7 @@ def late_in(
             continue
         (truth,) = seen.truths(waits[attempt.number])
         deadline = attempt.blame.window[1] or 0
-        came = first_after(deadline, truth.sure, seen.positions)
+        came = first_after(deadline, truth.true, seen.positions)
         if came is not None:
             responses[attempt.number] = came
     return responses

@@ -10,7 +10,7 @@ import numpy as np
 from msgspec import Struct
 
 from rvmon.analysis.example import small_step
-from rvmon.analysis.interval_sets import distinct, hold, outside, within
+from rvmon.analysis.interval_sets import distinct, hold, within
 from rvmon.analysis.late_arrival import late_in, waits_of
 from rvmon.analysis.truths import (
     Question,
@@ -127,9 +127,8 @@ def part_truths_of(
     for part, whole in parts:
         for depth, formula in subformulas(whole, 0):
             truth = truths[id(formula)]
-            true = within(truth.sure, start, stop)
-            false = outside(within(truth.may, start, stop), start, stop)
-            shown = [tuple((low, high) for low, high in one.tolist()) for one in (true, false)]
+            spans = (within(one, start, stop).tolist() for one in (truth.true, truth.false))
+            shown = [tuple((low, high) for low, high in one) for one in spans]
             part_truths.append(PartTruth(depth, format_formula(formula), part, *shown))
     return tuple(part_truths)
 
@@ -218,7 +217,7 @@ class TriggerParts:
         misses = [_miss(parts, truths) for parts in self._options]
         best = min(misses, key=lambda miss: len(miss.missing))
         if best.missing and best.at is None:
-            return "; ".join(_apart(best.missing, truths, seen, seen.begin))
+            return "; ".join(_apart(best.missing, truths, seen))
         return _sentence(best, truths, seen.begin)
 
 
@@ -252,11 +251,11 @@ def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
 
 def _miss(parts: tuple[_Part, ...], truths: Sequence[Truth]) -> _Miss:
     """The instant with the most true operands; ties go to more events, then to the first."""
-    sure = [truths[part.place].sure for part in parts]
-    if not any(map(len, sure)):
+    spans = [truths[part.place].true for part in parts]
+    if not any(map(len, spans)):
         return _Miss((), parts, None)
-    instants = distinct([spans[:, 0] for spans in sure])
-    true = np.array([hold(spans, instants) for spans in sure])
+    instants = distinct([one[:, 0] for one in spans])
+    true = np.array([hold(one, instants) for one in spans])
     events = true[[isinstance(part.formula, EventAtom) for part in parts]].sum(axis=0)
     best = int(np.argmax(true.sum(axis=0) * (len(parts) + 1) + events))
     is_there = true[:, best].tolist()
@@ -274,26 +273,26 @@ def _sentence(miss: _Miss, truths: Sequence[Truth], origin: int) -> str:
     rest = miss.there[0].formula
     for part in miss.there[1:]:
         rest = Binary(BinaryOp.AND, rest, part.formula)
-    unknown = any(hold(truths[part.place].may, at) for part in miss.missing)
+    unknown = any(not hold(truths[part.place].false, at) for part in miss.missing)
     lacking = "was never known to be true" if unknown else "was never true"
     while_ = f"while `{format_formula(rest)}` was (first at {format_instant(at, origin)})"
     return f"{_either(miss.missing)} {lacking} {while_}"
 
 
 def _apart(
-    parts: tuple[_Part, ...], truths: Sequence[Truth], seen: RecordedTruths, start: int
+    parts: tuple[_Part, ...], truths: Sequence[Truth], seen: RecordedTruths
 ) -> Iterator[str]:
     """The clauses if no operand was ever true, with those on signals without a value."""
     valueless = _without_values(parts, seen)
     groups: dict[str, list[_Part]] = {}
     for part in parts:
         word = "was never true"
-        low, high = truths[part.place].may[0].tolist()
+        spans = truths[part.place].false.tolist()
         if isinstance(part.formula, SignalAtom) and part.formula.name in valueless:
             word = valueless[part.formula.name]
-        elif low <= start and high >= seen.end:
+        elif not spans:
             word = "was never known"
-        elif low <= seen.end:
+        elif spans[0] != [seen.begin, seen.end]:
             word = "was never known to be true"
         elif isinstance(part.formula, EventAtom):
             word = "never occurred"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 from msgspec import Struct, field
 
-from rvmon.analysis.interval_sets import FOREVER, distinct, joined, outside, within
+from rvmon.analysis.interval_sets import distinct, joined, within
 from rvmon.language.checked.classify import is_end
 from rvmon.language.checked.formula import (
     Amount,
@@ -48,10 +48,10 @@ if TYPE_CHECKING:
 
 
 class Truth(Struct, frozen=True):
-    """The ticks at which a formula is TRUE, and those at which it is TRUE or UNKNOWN (`may`)."""
+    """The ticks at which a formula is TRUE, and those at which it is FALSE."""
 
-    sure: NDArray[np.int64]
-    may: NDArray[np.int64]
+    true: NDArray[np.int64]
+    false: NDArray[np.int64]
 
 
 class Question(Struct, frozen=True, dict=True):
@@ -230,12 +230,12 @@ class _Group:
         assert self._made is not None, "it began"
         known = [] if self._run is None else self._run.known()
         truths: dict[Core | None, Truth] = {
-            core: Truth(ticks.spans(one.true), ticks.others(one.false))
+            core: Truth(ticks.spans(one.true), ticks.spans(one.false))
             for core, one in zip(self._made.order, known, strict=True)
         }
         if None in self._made.cores.values():
             nowhere = np.empty((0, 2), np.int64)
-            truths[None] = Truth(nowhere, ticks.others(nowhere))
+            truths[None] = Truth(nowhere, nowhere)
         return {text: truths[core] for text, core in self._made.cores.items()}
 
 
@@ -284,10 +284,6 @@ class _Ticks:
         if self._positions is not None:
             ranges = self._lasting(ranges - self._first, self._positions)
         return within(joined(ranges), self._begin, self.end)
-
-    def others(self, ranges: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The ticks outside of ranges of positions, including all after the end."""
-        return outside(self.spans(ranges), self._begin, FOREVER)
 
     def _lasting(
         self, ranges: NDArray[np.int64], positions: range | NDArray[np.int64]

@@ -132,7 +132,8 @@ class Findings:
         columns = dict(batch.signals)
         for event, occurrences in batch.events.items():
             columns |= {f"{event}.{field}": cells for field, cells in occurrences.fields.items()}
-            self._add(HealthKind.NONE, event, event, occurrences.unknown_at(times))
+            if (unknown := occurrences.unknown) is not None:
+                self._add(HealthKind.NONE, event, event, times[unknown])
         for shown, cells in columns.items():
             is_signal = shown in batch.signals
             name = shown if is_signal else shown.rpartition(".")[0]

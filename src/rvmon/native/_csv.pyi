@@ -11,8 +11,8 @@ def read(
     start: int,
     is_last: bool,
     longest: int,
-    slots: NDArray[Any],
-    kinds: NDArray[Any],
+    slots: bytes,
+    kinds: bytes,
     absent: bytes | None,
     numbers: NDArray[Any],
     says: NDArray[Any],
@@ -58,3 +58,9 @@ def as_plain(text: bytes, separator: int, has_commas: int, /) -> bytes | None:
     Returns:
         `None` if a line needs a closer look: a quote, a comma that stays, a row without a value.
     """
+
+def all_are(says: NDArray[Any], entry: int, /) -> bool:
+    """Whether each of these uint8 is that entry."""
+
+def rise(times: NDArray[Any], /) -> bool:
+    """Whether each of these int64 is more than the one before."""

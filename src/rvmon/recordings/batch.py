@@ -132,10 +132,10 @@ class Occurrences(Struct, frozen=True):
         fields = {name: cells.spread(rows, count) for name, cells in self.fields.items()}
         return Occurrences(_spread(self.says, rows, count), fields)
 
-    def unknown_at(self, times: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The instants at which it may occur."""
-        found: NDArray[np.int64] = times[self.says == UNKNOWN]
-        return found
+    @property
+    def unknown(self) -> NDArray[np.bool_] | None:
+        """The rows at which it may occur; `None`: there is none."""
+        return self.says == UNKNOWN if UNKNOWN in self.says.tobytes() else None
 
     def of_rows(self, start: int, stop: int) -> Iterator[Any]:
         """As `Cells.of_rows`."""
@@ -269,13 +269,15 @@ def holds_nan(values: NDArray[Any]) -> bool:
     return isnan(values[values.argmax()])  # NaN is above all
 
 
-def note_batch(batch: Batch, alternations: Alternations, conflicts: Conflicts) -> None:
-    """Note how unknown values alternate with known ones, and where there are two of one instant."""
-    some_again = bool((batch.times[1:] == batch.times[:-1]).any())
+def note_batch(batch: Batch, rise: bool, alternations: Alternations, conflicts: Conflicts) -> None:
+    """Note how unknown values alternate with known ones, and where there are two of one instant.
+
+    `rise`: whether it is known that each row has an instant of its own.
+    """
     for name, cells in batch.signals.items():
-        if some_again:
+        if not rise:
             _note_conflicts(batch, name, cells, conflicts)
-        said = last_said(batch, cells) if some_again else _said(cells)
+        said = _said(cells) if rise else last_said(batch, cells)
         _note(alternations, name, cells.unknown, said, len(batch.times))
     for name, event in batch.events.items():
         bare = event.says != NO_UPDATE
@@ -283,7 +285,7 @@ def note_batch(batch: Batch, alternations: Alternations, conflicts: Conflicts) -
             said = _said(cells)
             bare &= cells.says == NO_UPDATE if cells.says is not None else np.False_
             _note(alternations, f"{name}.{path}", cells.unknown, said, len(batch.times))
-        _note(alternations, name, event.says == UNKNOWN, bare, len(batch.times))
+        _note(alternations, name, event.unknown, bare, len(batch.times))
 
 
 def _note(
@@ -301,7 +303,7 @@ def _note(
             return
         count = len(looked_at)
     elif said is not None:
-        count = int(said.sum()) if said.dtype.kind == "b" else len(said)
+        count = int(np.count_nonzero(said)) if said.dtype.kind == "b" else len(said)
     if count:
         alternations.found[name].add_known(count)
 

@@ -27,11 +27,6 @@ if TYPE_CHECKING:
 _ALL, _ROW = 0, 2
 """The ways a call ends: with the text, or at an odd row; else its room is used up."""
 
-_KINDS = {Kind.BOOL: 0, Kind.INT: 1, Kind.REAL: 2, Kind.LABEL: 3}
-
-_STAMPS = {"iso": 4, "s": 14, "ms": 11, "us": 8, "ns": 5}
-"""By their unit, as `csv.h` numbers them."""
-
 _ODD = 4096
 """Cells of a call that are read one by one."""
 
@@ -96,22 +91,16 @@ class Found(Struct, frozen=True):
 class _Reader:
     def __init__(self, layout: Layout) -> None:
         self.layout = layout
-        slots = [-1] * len(layout.header)
-        slots[layout.time] = 0
-        for place, column in enumerate(layout.columns, 1):
-            slots[column.index] = place
-        self._slots = np.array(slots, np.int32)
-        kinds = [_STAMPS[layout.stamps.unit], *(_KINDS[column.kind] for column in layout.columns)]
-        self._kinds = np.array(kinds, np.int32)
         no_update = layout.gaps.no_update
         self._absent = None if no_update is None else str(no_update).encode()
         self._row_bytes = 2.0 * len(layout.header)
-        self._labels = max(_LABELS, len(kinds))
+        has_labels = any(column.kind is Kind.LABEL for column in layout.columns)
+        self._labels = max(_LABELS if has_labels else 0, 1 + len(layout.columns))
 
     def read(self, text: bytes, start: int = 0, *, is_ended: bool = False) -> Found:
         """Find rows in a text from a place on, as far as one call can."""
         room = self._room_for(len(text) - start)
-        columns = len(self._kinds)
+        columns = 1 + len(self.layout.columns)
         numbers = np.empty((columns, room), np.int64)
         says = np.empty((columns, room), np.uint8)
         lines = np.empty(room, np.int64)
@@ -119,7 +108,7 @@ class _Reader:
         labels = np.empty((self._labels, 3), np.int64)
         table = np.zeros(2 * len(labels), np.int32)
         counts = native_csv.read(
-            text, start, is_ended, csv.field_size_limit(), self._slots, self._kinds, self._absent,
+            text, start, is_ended, csv.field_size_limit(), *self.layout.numbers, self._absent,
             numbers, says, lines, odd, labels, table,
         )  # fmt: skip
         return Found(numbers, says, lines, odd, labels, counts)
@@ -222,7 +211,7 @@ class _Reader:
             if gaps.nan:
                 says[says == UNKNOWN] = NO_UPDATE
             says[~kept(made, gaps) & (says == YES)] = NO_UPDATE
-        return Cells(made, None if (says == YES).all() else says)
+        return Cells(made, None if native_csv.all_are(says, YES) else says)
 
 
 def _cell(text: bytes, start: int, end: int) -> str:

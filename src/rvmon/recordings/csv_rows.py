@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
+from struct import pack
 from typing import Any
 
 from msgspec import Struct
@@ -15,6 +17,11 @@ from rvmon.texts import shorten
 from rvmon.trace.sample import Scalar, Value
 from rvmon.trace.schema import Gaps, Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_among, ticks_of_cell
+
+_KINDS = {Kind.BOOL: 0, Kind.INT: 1, Kind.REAL: 2, Kind.LABEL: 3}
+
+_STAMPS = {"iso": 4, "s": 14, "ms": 11, "us": 8, "ns": 5}
+"""By their unit, as `csv.h` numbers them."""
 
 
 class Column(Struct, frozen=True):
@@ -31,7 +38,7 @@ class Column(Struct, frozen=True):
         return self.name if self.field is None else f"{self.name}.{self.field}"
 
 
-class Layout(Struct, frozen=True):
+class Layout(Struct, frozen=True, dict=True):
     """The columns of a header, and the way to read its rows.
 
     Attributes:
@@ -52,7 +59,7 @@ class Layout(Struct, frozen=True):
     ignored: tuple[str, ...]
     gaps: Gaps
 
-    @property
+    @cached_property
     def columns(self) -> tuple[Column, ...]:
         """The columns that the spec reads, without the time."""
         return self.signals + self.events
@@ -64,10 +71,19 @@ class Layout(Struct, frozen=True):
             self.header[place] for place in (self.time, *(column.index for column in self.columns))
         ]
 
-    @property
+    @cached_property
     def names(self) -> frozenset[str]:
         """The declared names that have a column."""
         return frozenset(column.name for column in self.columns)
+
+    @cached_property
+    def numbers(self) -> tuple[bytes, bytes]:
+        """What `native_csv.read` takes: the column of each place in a row, the kind of each."""
+        places = {column.index: place for place, column in enumerate(self.columns, 1)}
+        places[self.time] = 0
+        slots = [places.get(index, -1) for index in range(len(self.header))]
+        kinds = [_STAMPS[self.stamps.unit], *(_KINDS[column.kind] for column in self.columns)]
+        return pack(f"={len(slots)}i", *slots), pack(f"={len(kinds)}i", *kinds)
 
 
 def read_layout(header: list[str], schema: Schema) -> Layout:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.recordings.coalesce import Alternations, Conflicts, merged, updates_in
+from rvmon.recordings.csv_text import native_csv
 from rvmon.trace.sample import Health, HealthKind, Sample, Value
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
@@ -125,7 +126,7 @@ class Rows:
             rows: Iterable[Sample]
             if isinstance(piece, Batch):
                 whole = without_ignored(piece, self._schema.ignoring)
-                batch = self._note_times(whole)
+                batch, rise = self._note_times(whole)
                 times, count = batch.times, len(batch.times)
                 start = 0 if held is None else int(times.searchsorted(held.t, "right"))
                 stop = count
@@ -142,7 +143,7 @@ class Rows:
                         yield self._noted(held, first, last)
                         held = None
                     middle = batch.cut(start, stop) if stop - start < count else batch
-                    note_batch(middle, self.alternations, self._conflicts)
+                    note_batch(middle, rise, self.alternations, self._conflicts)
                     yield middle
                 rows = self._then_backwards(whole, stop, count)
             else:
@@ -189,15 +190,15 @@ class Rows:
     def _merged(self, held: Sample, sample: Sample) -> Sample:
         return Sample(held.t, merged(held, sample.values, self._schema.events, self._conflicts))
 
-    def _note_times(self, batch: Batch) -> Batch:
-        """The rows that are in order, whose first instants are noted."""
+    def _note_times(self, batch: Batch) -> tuple[Batch, bool]:
+        """The rows that are in order, whose first instants are noted; whether each has its own."""
         times = batch.times
         if not len(times):
-            return batch
+            return batch, True
         if self._last is not None and times[0] < self._last:
             raise self._backwards(batch.number_of(0), self._last, int(times[0]))
-        back = times[1:] < times[:-1]
-        if back.any():
+        rise = native_csv.rise(times)
+        if not rise and (back := times[1:] < times[:-1]).any():
             batch = batch.cut(0, int(back.argmax()) + 1)
             times = batch.times
         ends = self._last if self._last is not None else int(times[0]), int(times[-1])
@@ -208,7 +209,7 @@ class Rows:
         self.count += len(times)
         if len(self.first) < LOOKED_AT:
             self.first += times[: LOOKED_AT - len(self.first)].tolist()
-        return batch
+        return batch, rise
 
     def _then_backwards(self, batch: Batch, start: int, stop: int) -> Iterator[Sample]:
         """Rows of a batch; it is an error if it has a further row, which is out of order."""

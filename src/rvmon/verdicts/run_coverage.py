@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from msgspec import Struct
 
 from rvmon.language.checked.properties import BinKind
 from rvmon.trace.time import format_stamped
 
 
-@dataclass(frozen=True, slots=True)
-class CoveredBin:
+class CoveredBin(Struct, frozen=True):
     """A bin of a coverpoint, or a combination of a cross, on one run.
 
     Attributes:
@@ -27,31 +25,21 @@ class CoveredBin:
     hits: int
     first: int | None = None
 
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """Processes hand over thousands; a dataclass would look up its fields for each."""
-        return CoveredBin, (self.name, self.kind, self.goal, self.hits, self.first)
-
     @property
     def is_hole(self) -> bool:
         """Whether it has fewer hits than its goal."""
         return self.kind is BinKind.GOAL and self.hits < self.goal
 
 
-@dataclass(frozen=True, slots=True)
-class CoveredGroup:
+class CoveredGroup(Struct, frozen=True):
     """A `coverpoint` or `cross` on one run, with its bins or combinations in the file's order."""
 
     name: str
     subject: str
     bins: tuple[CoveredBin, ...]
 
-    def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """As that of a bin."""
-        return CoveredGroup, (self.name, self.subject, self.bins)
 
-
-@dataclass(frozen=True, slots=True)
-class IllegalHit:
+class IllegalHit(Struct, frozen=True):
     """An illegal bin of a coverpoint, or an illegal combination of a cross, that was hit.
 
     Attributes:
