@@ -98,7 +98,8 @@ def add_watch(subparsers: Subparsers) -> None:
         description="Evaluate JSON lines as they arrive, and report each verdict as soon as it "
         "is decided; a missed deadline is reported when it has passed, not at the next line. A "
         "changed specification is loaded at once. Ends with the stream, or with Ctrl-C. Exit "
-        "code 0: every requirement is P or NT; 1: one failed or is I; 2: wrong input.",
+        "code 0: every requirement is P or NT; 1: one failed or is I, or nothing came; 2: wrong "
+        "input.",
         epilog='example: printf \'{"t":0,"speed":0.5,"obstacle":0.4}\\n\' | '
         "rvmon watch examples/base.rv",
     )

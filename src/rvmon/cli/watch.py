@@ -58,7 +58,7 @@ def run_watch(arguments: argparse.Namespace) -> int:
     unseen = live.turned_away or any(
         verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE) for verdict in verdicts
     )
-    return int(unseen)
+    return int(unseen or not verdicts)  # none: nothing came that could be told to be a robot's
 
 
 def _watch_kept(arguments: argparse.Namespace, spec: Spec) -> int:

@@ -81,6 +81,8 @@ class DurableMonitor:
         self.save()
 
     def _found(self) -> list[bytes] | None:
+        if self._path.exists() and not (self._path.is_file() or self._path.is_dir()):
+            raise SnapshotError(f"{self._path} is no regular file: name one")  # it may never end
         try:
             return entries(self._path, all_of_them=True)
         except ValueError as error:  # the entries after a damaged one cannot be judged without it

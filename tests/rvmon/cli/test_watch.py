@@ -93,7 +93,7 @@ def test_a_change_that_names_what_nobody_listens_to_is_not_taken_up(door, says, 
         os.replace("new.rv", "door.rv")
 
     monkeypatch.setattr("rvmon.cli.watch.time.sleep", sleep)
-    said = says(0, "watch", "door.rv", "dds:7", "--format", "text")
+    said = says(1, "watch", "door.rv", "dds:7", "--format", "text")
     said = " ".join((said.out + said.err).split())
     assert "`other` is new, and topics are chosen as the watch begins" in said
     assert "The former specification stays in use. door.rv has changed: the new one holds" in said
@@ -106,6 +106,13 @@ def test_a_watch_of_too_many_robots_is_no_success(door, says):
     told = says(1, "watch", "door.rv", "a.jsonl", "--robot", "robot", "--format", "json")
     assert len(told.out.splitlines()) == 1_000
     assert "robot '1000' is one too many: at most 1000" in told.err
+
+
+def test_lines_that_are_of_no_robot_are_no_success(door, says):
+    (door / "a.jsonl").write_text(FAILS)
+    told = says(1, "watch", "door.rv", "a.jsonl", "--robot", "id")
+    assert "there is no robot's name in `id`" in told.err
+    assert "nothing has come yet" in told.out
 
 
 def test_what_passes_can_be_left_out(door, capsys):
@@ -155,6 +162,7 @@ def test_a_view_of_much_fits_and_begins_with_what_failed():
         (["watch", "door.rv", "a.mcap", "--state", "kept"], "by `rvmon run door.rv a.mcap`"),
         (["watch", "door.rv", "bag"], "by `rvmon run door.rv bag`"),
         (["watch", "none.rv", "a.jsonl"], "none.rv"),
+        (["watch", "door.rv", "empty.jsonl", "--state", "/dev/null"], "is no regular file"),
         (["watch", "door.rv", "a.jsonl", "--only", "D2"], "D2"),
         (["watch", "door.rv", "a.jsonl", "--map", "sped=x"], "sped"),
         (["watch", "door.rv", "a.jsonl", "--publish", "v"], "--format json"),
