@@ -115,17 +115,20 @@ def post_analysis(
         if pieces is None:
             asked = {name for question in questions for name in question.names}
             pieces = _read_again(spec, recording, asked | values.names | windows.names, until)
-        noted = windows.noted(values.noted(pieces), Trace((), names, end, recording.outages))
+        if failures:
+            whole = Trace((), names, end, recording.outages)
+            pieces = windows.noted(values.noted(pieces), whole)
         seen = look_through(
-            spec.checked, questions, noted, end, names, spec.looking.plans, recording.outages
+            spec.checked, questions, pieces, end, names, spec.looking.plans, recording.outages
         )
         misses = {name: trigger.miss_in(seen) for name, trigger in triggers.items()}
         found["misses"] = {name: miss for name, miss in misses.items() if miss}
-    shown: dict[str, dict[int, dict[str, str]]] = {}
-    for requirement, number, own in (*values.of_attempts(), *windows.of_attempts()):
-        if own:
-            shown.setdefault(requirement, {}).setdefault(number, {}).update(own)
-    found["values"] = shown
+    if failures:
+        shown: dict[str, dict[int, dict[str, str]]] = {}
+        for requirement, number, own in (*values.of_attempts(), *windows.of_attempts()):
+            if own:
+                shown.setdefault(requirement, {}).setdefault(number, {}).update(own)
+        found["values"] = shown
     found["late"] = late.arrived(seen)
     return found
 

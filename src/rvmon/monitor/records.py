@@ -236,23 +236,22 @@ def report_of_run(
     Source: SEMANTICS, section 3.
     """
     ids = planned.packed.ids
-    complete: dict[str, bool] = {}
+    verdicts: dict[str, Verdict] = {}
     counts: dict[str, dict[Verdict, int]] = {}
-    for name, of_requirement in zip(ids, run.counts(), strict=True):
-        *_, is_complete = of_requirement
-        complete[name] = bool(is_complete)
-        counts[name] = {verdict: of_requirement[VERDICTS.index(verdict)] for verdict in _COUNTED}
+    for name, (failed, passed, inconclusive, complete) in zip(ids, run.counts(), strict=True):
+        counted = {
+            Verdict.PASS: passed,
+            Verdict.FAIL: failed,
+            Verdict.INCONCLUSIVE: inconclusive,
+        }
+        counts[name] = counted
+        some = [verdict for verdict, count in counted.items() if count]
+        verdicts[name] = fold(some, complete=bool(complete))
     records, numbers, words, letters = run.records()
     attempts, captured = _arrays(records, numbers)
     order = _order(attempts)
     return Report(
-        verdicts={
-            name: fold(
-                [verdict for verdict, count in of_requirement.items() if count],
-                complete=complete[name],
-            )
-            for name, of_requirement in counts.items()
-        },
+        verdicts=verdicts,
         attempts=RecordedAttempts(
             planned,
             attempts if order is None else attempts[order],
@@ -290,9 +289,6 @@ def _dropped(
         for name, of_requirement in dropped.items()
         if any(of_requirement.values())
     }
-
-
-_COUNTED = (Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE)
 
 
 def _order(records: NDArray[Any]) -> NDArray[np.intp] | None:

@@ -144,9 +144,9 @@ class _Reader:
                 column: self._cells(column, numbers[place, :rows], says[place, :rows], words, place)
                 for place, column in enumerate(self.layout.columns, 1)
             }
-            is_plain = lines[rows - 1] - lines[0] == rows - 1
-            own = None if is_plain else lines[:rows]
-            times, line = numbers[0, :rows], int(lines[0])
+            line = lines.item(0)
+            own = None if lines.item(rows - 1) - line == rows - 1 else lines[:rows]
+            times = numbers[0, :rows]
             is_last = text.is_whole and at == len(source) and fault is None
             yield batch_of(times, self.layout, cells, line, own, is_last=is_last)
         if fault is not None:

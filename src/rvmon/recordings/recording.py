@@ -155,7 +155,8 @@ class FileRecording:
     def _take_names(self, layout: Layout) -> None:
         self.names = layout.names
         self._stamps = layout.stamps
-        self.ignored.update(dict.fromkeys(layout.ignored, 1))
+        for name in layout.ignored:
+            self.ignored[name] += 1
 
     def __iter__(self) -> Iterator[Sample]:
         """Samples in order of time, equal stamps merged."""
@@ -281,16 +282,20 @@ class FileRecording:
         return [Health(HealthKind.CUT, "the last line", remark=remark)]
 
     def _layout(self, text: CsvText[Found]) -> Layout:
+        known, source, start = self._schema.layouts, text.rest, text.start
+        end = source.find(b"\n", start) + 1
+        found: Layout | None = known.get(source[start:end])
+        if found is not None:
+            text.cut(end)
+            return found
         try:
             _, header = next(split_lines(text.lines()))
         except StopIteration:
             raise TraceError("is empty: expected a header with a time column `t`") from None
-        known, key = self._schema.layouts, tuple(header)
-        if key not in known:
-            layout = read_layout(*bare_names(header, self._schema))
-            known.clear()
-            known[key] = layout
-        found: Layout = known[key]
+        found = read_layout(*bare_names(header, self._schema))
+        known.clear()
+        if text.rest is source:
+            known[source[start : text.start]] = found
         return found
 
     def _opened(self) -> AbstractContextManager[tuple[BinaryIO, BinaryIO]]:

@@ -254,7 +254,7 @@ class Schema:
         gaps: values that mean "no update", for all names.
         binding: the topics and fields of messages by name.
         units: the unit of each declared name (`event.field` for a field) that has one.
-        layouts: a reader's plan for it and the last header: many recordings have the same header.
+        layouts: a reader's plan by the last header as it is written: many recordings have the same.
     """
 
     signals: Mapping[str, Kind]
@@ -265,7 +265,7 @@ class Schema:
     gaps: Gaps = NO_GAPS
     binding: Binding = BY_NAME
     units: Mapping[str, str] = dataclasses.field(default_factory=dict)
-    layouts: dict[tuple[str, ...], Any] = dataclasses.field(
+    layouts: dict[bytes, Any] = dataclasses.field(
         default_factory=dict, init=False, repr=False, compare=False
     )
 
