@@ -217,11 +217,6 @@ def _all_of(roots: Iterable[State]) -> set[State]:
     return seen
 
 
-def leaf_count(roots: Iterable[State]) -> int:
-    """The number of leaves of the roots that can be written in a specification."""
-    return sum(isinstance(state.leaf, Shown) for state in _all_of(roots))
-
-
 def graph_of(roots: Iterable[State]) -> Graph:
     """The graph of the roots and all their subformulas."""
     nodes = tuple(sorted(_all_of(roots), key=lambda state: state.id))

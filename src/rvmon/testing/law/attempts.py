@@ -10,7 +10,7 @@ from typing import assert_never
 from rvmon.language.checked import formula as formulas
 from rvmon.language.checked.specification import Mode, Requirement
 from rvmon.testing.law.numbers import events_of, is_born, known_scalar, number
-from rvmon.testing.law.syntax import is_upon_end, subformulas
+from rvmon.testing.law.syntax import by_and_or, is_upon_end, subformulas
 from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.word import (
     EventState,
@@ -51,40 +51,15 @@ def is_pulse(formula: formulas.Formula, *, negated: bool = False) -> bool:
             return is_pulse(operand, negated=not negated)
         case formulas.Unary(op=op):
             return not negated and op in (formulas.UnaryOp.RISE, formulas.UnaryOp.FALL)
-        case formulas.Binary(op=op, left=left, right=right):
-            return _binary(op, left, right, negated)
+        case formulas.Binary(op=formulas.BinaryOp.AND | formulas.BinaryOp.OR as op):
+            # Of a conjunction, one operand suffices; of a disjunction, all have to be pulses.
+            enough = any if (op is formulas.BinaryOp.AND) is not negated else all
+            return enough(is_pulse(part, negated=negated) for part in (formula.left, formula.right))
+        case formulas.Binary():
+            spelled = by_and_or(formula)
+            return spelled is not formula and is_pulse(spelled, negated=negated)
         case _:
             assert_never(formula)
-
-
-def _binary(
-    op: formulas.BinaryOp, left: formulas.Formula, right: formulas.Formula, negated: bool
-) -> bool:
-    def both(left_negated: bool, right_negated: bool) -> bool:
-        """A disjunction is a pulse if both operands are."""
-        return is_pulse(left, negated=left_negated) and is_pulse(right, negated=right_negated)
-
-    def either(left_negated: bool, right_negated: bool) -> bool:
-        """A conjunction is a pulse if one operand is."""
-        return is_pulse(left, negated=left_negated) or is_pulse(right, negated=right_negated)
-
-    match op:
-        case formulas.BinaryOp.AND:
-            return both(True, True) if negated else either(False, False)
-        case formulas.BinaryOp.OR:
-            return either(True, True) if negated else both(False, False)
-        case formulas.BinaryOp.IMPLIES:
-            return either(False, True) if negated else both(True, False)
-        case formulas.BinaryOp.IFF if negated:
-            return both(True, True) or both(False, False)
-        case formulas.BinaryOp.IFF:
-            return either(False, False) and either(True, True)
-        case formulas.BinaryOp.XOR if negated:
-            return both(True, False) or both(False, True)
-        case formulas.BinaryOp.XOR:
-            return either(False, True) and either(True, False)
-        case _:
-            return False
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -19,7 +19,7 @@ from rvmon.testing.law.attempts import (
     starts_upon,
     views,
 )
-from rvmon.testing.law.syntax import is_upon_end, looks_back_at_future, speaks_of_future
+from rvmon.testing.law.syntax import by_and_or, is_upon_end, looks_back_at_future, speaks_of_future
 from rvmon.testing.law.word import Truth, Word
 
 
@@ -151,13 +151,6 @@ def opened_at_once(formula: Formula, *, positive: bool = True) -> Formula:
 
     Source: SEMANTICS, section 3 (After a failure).
     """
-
-    def same(part: Formula) -> Formula:
-        return opened_at_once(part, positive=positive)
-
-    def other(part: Formula) -> Formula:
-        return Unary(UnaryOp.NOT, opened_at_once(part, positive=not positive))
-
     if not speaks_of_future(formula) or not isinstance(formula, Unary | Binary):
         return formula
     lasting = _RELEASES if positive else _UNTILS
@@ -166,16 +159,13 @@ def opened_at_once(formula: Formula, *, positive: bool = True) -> Formula:
         interval = Interval(0, interval.high)
     match formula:
         case Unary(op=UnaryOp.NOT, operand=operand):
-            return other(operand)
+            return Unary(UnaryOp.NOT, opened_at_once(operand, positive=not positive))
         case Unary(operand=operand):
-            return replace(formula, operand=same(operand), interval=interval)
-        case Binary(op=BinaryOp.IMPLIES, left=left, right=right):
-            return Binary(BinaryOp.OR, other(left), same(right))
-        case Binary(op=BinaryOp.IFF, left=left, right=right):
-            both = Binary(BinaryOp.AND, same(left), same(right))
-            return Binary(BinaryOp.OR, both, Binary(BinaryOp.AND, other(left), other(right)))
-        case Binary(op=BinaryOp.XOR, left=left, right=right):
-            one = Binary(BinaryOp.AND, same(left), other(right))
-            return Binary(BinaryOp.OR, one, Binary(BinaryOp.AND, other(left), same(right)))
-        case Binary(left=left, right=right):
-            return replace(formula, left=same(left), right=same(right), interval=interval)
+            opened = opened_at_once(operand, positive=positive)
+            return replace(formula, operand=opened, interval=interval)
+        case Binary() if (spelled := by_and_or(formula)) is not formula:
+            return opened_at_once(spelled, positive=positive)
+        case Binary():
+            sides = formula.left, formula.right
+            left, right = (opened_at_once(side, positive=positive) for side in sides)
+            return replace(formula, left=left, right=right, interval=interval)

@@ -105,6 +105,23 @@ def parts_of(expression: Numeric) -> Iterator[Numeric]:
             yield from parts_of(arg)
 
 
+def by_and_or(formula: Binary) -> Binary:
+    """`->`, `<->` and `xor` by conjunction, disjunction and negation; else the formula itself."""
+    left, right = formula.left, formula.right
+    no_left, no_right = Unary(UnaryOp.NOT, left), Unary(UnaryOp.NOT, right)
+    match formula.op:
+        case BinaryOp.IMPLIES:
+            return Binary(BinaryOp.OR, no_left, right)
+        case BinaryOp.IFF:
+            both = Binary(BinaryOp.AND, left, right)
+            return Binary(BinaryOp.OR, both, Binary(BinaryOp.AND, no_left, no_right))
+        case BinaryOp.XOR:
+            one = Binary(BinaryOp.AND, left, no_right)
+            return Binary(BinaryOp.OR, one, Binary(BinaryOp.AND, no_left, right))
+        case _:
+            return formula
+
+
 def constant_value(formula: Formula) -> Truth:
     """The truth of a formula if it is the same for all values of its propositions; else UNKNOWN."""
     match formula:
@@ -112,17 +129,12 @@ def constant_value(formula: Formula) -> Truth:
             return truth_of(value)
         case Unary(op=UnaryOp.NOT, operand=operand):
             return negation(constant_value(operand))
-        case Binary(op=op, left=left, right=right):
-            one, other = constant_value(left), constant_value(right)
-            match op:
-                case BinaryOp.AND:
-                    return conjunction([one, other])
-                case BinaryOp.OR:
-                    return disjunction([one, other])
-                case BinaryOp.IMPLIES:
-                    return disjunction([negation(one), other])
-                case BinaryOp.IFF | BinaryOp.XOR if Truth.UNKNOWN not in (one, other):
-                    return truth_of((one is other) is (op is BinaryOp.IFF))
+        case Binary(op=BinaryOp.AND, left=left, right=right):
+            return conjunction([constant_value(left), constant_value(right)])
+        case Binary(op=BinaryOp.OR, left=left, right=right):
+            return disjunction([constant_value(left), constant_value(right)])
+        case Binary() if (spelled := by_and_or(formula)) is not formula:
+            return constant_value(spelled)
     return Truth.UNKNOWN
 
 
