@@ -355,10 +355,8 @@ def load(
         raise SpecError((), f"error: {path}: {expected}")
     try:
         text = text_of_file(path)
-    except OSError as error:
+    except (OSError, UnicodeDecodeError) as error:
         raise SpecError((), f"error: {cannot_read(path, error)}") from None
-    except UnicodeDecodeError:
-        raise SpecError((), f"error: {path}: not UTF-8 text: is this a binary file?") from None
     return _compile(text, str(path) if name is None else name, const, path.parent)
 
 

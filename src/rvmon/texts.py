@@ -73,12 +73,17 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
     return f"did you mean `{close}`?" if close else otherwise
 
 
-def cannot_read(path: str | Path, error: OSError) -> str:
+def cannot_read(path: str | Path, error: OSError | UnicodeDecodeError) -> str:
     """Why a file cannot be read, and if there is none, the one in its folder most alike.
 
     >>> cannot_read("nowhere/base.csv", FileNotFoundError(2, "No such file or directory"))
     'nowhere/base.csv: No such file or directory'
     """
+    if isinstance(error, UnicodeDecodeError):
+        return (
+            f"{path}: not UTF-8 text ({error.reason} at byte {error.start}): is this a binary file?"
+            " A text in another encoding has to be translated: `iconv -f latin1 -t utf-8`"
+        )
     why = f"{path}: {error.strerror or error}"
     if isinstance(error, FileNotFoundError):
         with suppress(OSError), os.scandir(Path(path).parent) as entries:

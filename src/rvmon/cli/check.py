@@ -30,12 +30,7 @@ def run_check(arguments: argparse.Namespace) -> int:
         try:
             text = text_of_input() if name == "-" else text_of_file(name)
         except (OSError, UnicodeDecodeError) as error:
-            why = (
-                cannot_read(name, error)
-                if isinstance(error, OSError)
-                else f"{name}: not UTF-8 text"
-            )
-            warn(f"error: {why}")
+            warn(f"error: {cannot_read(name, error)}")
             unreadable += 1
             continue
         checked, reported = _checked(text, name, constants)
@@ -183,8 +178,7 @@ def run_format(arguments: argparse.Namespace) -> int:
             wrong += 1
             continue
         except (OSError, UnicodeDecodeError) as error:
-            reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
-            warn(f"error: {name}: {reason}")
+            warn(f"error: {cannot_read(name, error)}")
             wrong += 1
             continue
         if name == "-" and not arguments.check:

@@ -6,6 +6,7 @@ import argparse
 from itertools import groupby
 
 from rvmon.cli.output import busy, say_json
+from rvmon.errors import RvmonError
 from rvmon.report.printer import Printer
 from rvmon.report.wording import in_short, wrapped
 from rvmon.verdicts.compare import Change, Comparison, Difference, compare
@@ -19,6 +20,12 @@ def run_compare(arguments: argparse.Namespace) -> int:
     """Read, compare, show, and return the exit code."""
     with busy("comparing verdicts"):
         comparison = compare(read_results(arguments.before), read_results(arguments.after))
+    only = comparison.only_before or comparison.only_after
+    if only and not (comparison.same or comparison.differences):
+        raise RvmonError(
+            f"{arguments.before} and {arguments.after} have no requirement on a recording in "
+            f"common, and {only[0]} is in one of them alone: nothing was compared"
+        )
     if arguments.format == "json":
         say_json(_json(comparison))
     else:

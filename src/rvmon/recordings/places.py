@@ -92,10 +92,7 @@ def named_errors(path: str | Path) -> Iterator[None]:
     try:
         yield
     except UnicodeDecodeError as error:
-        raise TraceError(
-            f"{path}: not UTF-8 text ({error.reason} at byte {error.start}): is this a binary file?"
-            " A text in another encoding has to be translated: `iconv -f latin1 -t utf-8`"
-        ) from None
+        raise TraceError(cannot_read(path, error)) from None
     except TraceError as error:
         message = str(error)
         beginnings = tuple(filter(None, str(path).split(JOINT)))

@@ -125,4 +125,6 @@ def read_known(path: str | Path, requirements: Collection[str]) -> list[KnownFai
         if failure.requirement not in requirements:
             meant = did_you_mean(failure.requirement, list(requirements), "see `rvmon check`")
             raise RvmonError(f"{path}: no requirement `{failure.requirement}`: {meant}")
+        if not failure.reason.strip():
+            raise RvmonError(f"{path}: {failure.requirement}: say in `reason` why it may fail")
     return failures

@@ -78,3 +78,11 @@ def test_standard_input(monkeypatch, says):
 def test_the_budget_is_a_number_of_seconds(write, capsys, seconds):
     assert main(["check", write("a.rv", GOOD), "--analyse", f"--seconds={seconds}"]) == 2
     assert "--seconds" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", ["check", "format", "explain"])
+def test_a_text_in_another_encoding_is_told_with_its_place(door, says, command):
+    (door / "old.rv").write_bytes("spec old\n# geöffnet\n".encode("latin1"))
+    told = says(2, command, "old.rv").err
+    assert "old.rv: not UTF-8 text (invalid start byte at byte 13)" in told
+    assert "`iconv -f latin1 -t utf-8`" in told

@@ -211,3 +211,6 @@ def test_two_runs_are_compared(folder, says):
     assert [one["change"] for one in found["differences"]] == ["fails now", "fails now"]
     assert "fixed" in says(0, "compare", "new.csv", "old.csv").out
     assert "there is no file none.csv" in says(2, "compare", "old.csv", "none.csv").err
+    (folder / "none.csv").write_text((folder / "old.csv").read_text().splitlines()[0] + "\n")
+    told = says(2, "compare", "old.csv", "none.csv").err
+    assert "good.csv is in one of them alone: nothing was compared" in told

@@ -81,6 +81,7 @@ def test_what_fails_no_more_is_to_be_taken_out(known):
         ('[[known]]\nrequirement = "R1"\nreason = "x"\nuntil = "soon"', "until"),
         ('[[known]]\nrequirement="R1"\nreason="x"\nuntil=2030-01-31\nday=1', "unknown field `day`"),
         ('[[known]]\nrequirement = "R11"\nreason = "x"\nuntil = 2030-01-31', "did you mean `R1`"),
+        ('[[known]]\nrequirement = "R1"\nreason = " "\nuntil = 2030-01-31', "say in `reason` why"),
         ("known = 3", "Expected `array`"),
     ],
 )

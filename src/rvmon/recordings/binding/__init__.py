@@ -53,10 +53,8 @@ def load_binding(path: str | Path, spec: CheckedSpec) -> Binding:
     """
     try:
         content = tomllib.loads(text_of_file(path))
-    except OSError as error:
+    except (OSError, UnicodeDecodeError) as error:
         raise RvmonError(cannot_read(path, error)) from None
-    except UnicodeDecodeError:
-        raise RvmonError(f"{path}: not UTF-8 text: is this a binary file?") from None
     except tomllib.TOMLDecodeError as error:
         raise RvmonError(f"{path}: no TOML: {error}") from None
     try:
@@ -190,8 +188,7 @@ def _definition(path: Path) -> tuple[str, str]:
     try:
         text = text_of_file(path)
     except (OSError, UnicodeDecodeError) as error:
-        reason = "not UTF-8 text" if isinstance(error, ValueError) else error.strerror
-        raise RvmonError(f"definition {path}: {reason}") from None
+        raise RvmonError(f"definition {cannot_read(path, error)}") from None
     return path.name if is_database else "/".join((*path.parts[-3:-1], path.stem)), text
 
 
