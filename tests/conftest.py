@@ -46,6 +46,7 @@ class _Doctests:
 def pytest_collection_finish() -> None:
     """Have modules and tests, which stay to the end, never looked through for garbage."""
     gc.freeze()
+    gc.set_threshold(20_000)  # tests make many objects, of which few are garbage that refers back
     gc.enable()
 
 

@@ -30,6 +30,7 @@ def test_what_is_let_pass_has_a_reason():
     unsaid += [
         f"{name}:{node.lineno}"
         for name, text in TEXTS.items()
+        if "assert " in text  # what takes longest is to read the rest
         for node in ast.walk(ast.parse(text))
         if isinstance(node, ast.Assert) and node.msg is None
     ]

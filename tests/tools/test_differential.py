@@ -97,7 +97,7 @@ def test_wrong_monitors_are_found() -> None:
     """What each does wrong is said; of one that is right nothing is."""
     engines = {name: wrong(step_ns=step) for name, (step, _) in WRONG.items()}
     found = campaign(
-        engines, range(15), Profile(), TraceProfile(), online_every=1, shrunk=0
+        engines, range(8), Profile(), TraceProfile(), online_every=1, shrunk=0
     ).disagreements
     for name, (_, said) in WRONG.items():
         own = [text for text in found if text.startswith(f"{name}, seed")]
@@ -106,7 +106,7 @@ def test_wrong_monitors_are_found() -> None:
 
 def test_a_disagreement_is_shown_in_a_case_of_a_few_lines() -> None:
     engines = {"late": wrong(finish_ns=late)}
-    found = campaign(engines, range(15), Profile(), TraceProfile(), online_every=0, shrunk=1)
+    found = campaign(engines, range(8), Profile(), TraceProfile(), online_every=0, shrunk=1)
     shown = found.disagreements[0].split("shrunk:")[1]
     assert "F" in shown
     assert shown.count("sample ") <= 2
