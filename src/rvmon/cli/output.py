@@ -9,7 +9,6 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import islice
-from shutil import get_terminal_size
 from typing import TYPE_CHECKING, TypeVar
 
 from rvmon.texts import shown, shown_json
@@ -52,6 +51,8 @@ def spell() -> None:
 
 def rendered(findings: Sequence[Diagnostic]) -> str:
     """Findings in full, as wide as the terminal is."""
+    from shutil import get_terminal_size  # which most starts have no need of
+
     from rvmon.diagnostics import WIDEST, render_full
 
     return render_full(findings, get_terminal_size((WIDEST, 0)).columns)

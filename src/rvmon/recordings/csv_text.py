@@ -142,13 +142,14 @@ def stretches(first: bytes, file: BinaryIO) -> Iterator[bytes]:
     [b't,p\n0,1\n1,']
     """
     decoder = getincrementaldecoder("utf-8")()
-    tail, piece = b"", first
+    tail, piece, is_split = b"", first, False
     while piece:
         # Most texts are ASCII, which needs no decoder; a character may be split between two blocks.
-        if decoder.getstate()[0] or not piece.isascii():
+        if is_split or not piece.isascii():
             decoder.decode(piece)
+            is_split = bool(decoder.getstate()[0])
         is_last = len(piece) < places.BLOCK
-        if is_last and not decoder.getstate()[0]:
+        if is_last and not is_split:
             yield tail + piece
             return
         whole = piece.rfind(b"\n") + 1 or len(piece)
