@@ -48,42 +48,77 @@ _CLAUSE = re.compile(
 )
 _LET = "`let` stands behind the trigger or the consequent: `upon … let x = … then …`"
 _SHARE = "write `in at least 95 % of runs`, or `in at most 5 % of runs`"
-_WRITTEN = (
-    (r'[={,]\s*\0"([^\W\d]\w*)"\Z', "NAME", "labels have no quotes: `{0}`"),
-    (r"\0=>\Z|==\s*\0>\Z", "", "write `->` for what follows, `>=` to compare"),
-    (r"(?<![\w.])never[ \t]+\0.", "", NEVER),
+_BEGINNINGS = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->"
+"""Before what a formula begins."""
+_DURATION_OF = r"(?<![\w.])(?:within|for)[ \t]+[\w.]+(?:[ \t]+\w+)?[ \t]*"
+_BEHIND = 100
+"""So many characters behind the word are looked at."""
+_Rows = tuple[tuple[str, str, str], ...]
+"""Of an item, the text before a word that cannot stand there, `\\0`, that word, `\\0` and what
+follows; a terminal that could stand there, or none; and the fix."""
+_CERTAIN: _Rows = (
+    *(
+        (
+            rf"(?<![\w.])(\d[\d.]*)[ \t]*\0?{sign}\s*\0",
+            *("", f"`{sign}` is an operator here: write `{{0}} {SPOKEN[sign]}`"),
+        )
+        for sign in "AW"
+    ),
     (
-        r"\Arequirement\s+([\w.]+)\s*\0\Z",
+        rf"[^\0]*(?:{_BEGINNINGS}|\()\s*([^()\0]*[^\s\0])\s*\0for\0[ \t]+(\d[\d.]*[ \t]*\w+)",
+        "",
+        "write `held({0}, {1})` for what has held so long, `for {1} ({0})` for what is to",
+    ),
+    (
+        rf"[^\0]*(?:{_BEGINNINGS})\s*([^\0]*[^\s\0])\s+in\s*\0\[\0\s*([^],]+?)\s*,\s*([^]]+?)\s*\]",
+        *("", "`in` is of labels: write `({0} >= {1} and {0} <= {2})`"),
+    ),
+    (r"(?<![\w.])(\d+)\0[.,]\0(\d+)", "", "write `{0}.{1}`"),
+    (r"(?<![\w.])\0[.,]\0(\d+)", "", "write `0.{0}`"),
+    (r"(?<![\w.])(\d+)\0\.\0", "", "write `{0}.0`"),
+    (
+        r"(?<![\w.])within[ \t]+\0\[\0",
+        *("", "`within` takes a duration; a window stands behind `eventually`"),
+    ),
+    (
+        r"(?<![\w.])for[ \t]+\0\[\0",
+        *("", "`for` takes a duration; a window stands behind `always`"),
+    ),
+    (_DURATION_OF + r"\0[-+*/]\0", "", "a duration that is computed stands in brackets"),
+    (_DURATION_OF + r"\0,\0", "", "no comma stands behind a duration"),
+)
+_LIKELY: _Rows = (
+    (r'[={,]\s*\0"([^\W\d]\w*)"\0', "NAME", "labels have no quotes: `{0}`"),
+    (r"\0=>\0|==\s*\0>\0", "", "write `->` for what follows, `>=` to compare"),
+    (r"(?<![\w.])never[ \t]+\0[^\0]", "", NEVER),
+    (
+        r"\Arequirement\s+([\w.]+)\s*\0\0",
         *("", "`{0}` is read as its name; its formula comes after it"),
     ),
     (
-        rf"\Arequirement\s+\0({'|'.join(NAMELESS)})\Z",
+        rf"\Arequirement\s+\0({'|'.join(NAMELESS)})\0",
         *("", "its name comes first: `requirement R1 {0} …`"),
     ),
-    (r"\0let\Z|(?<![\w.])let[ \t]+\0.", "", _LET),
+    (r"\0let\0|(?<![\w.])let[ \t]+\0[^\0]", "", _LET),
     (
-        r"\Asignal.*\0ignore\Z",
+        r"\Asignal[^\0]*\0ignore\0",
         *("", "write `ignore NaN` behind the type and role, before `stale after`"),
     ),
     ("", "_OF_RUNS", _SHARE),
-    (r"\0in\Z", "AND", _SHARE),
-    (r"([^\W\d]\w*)[ \t]+\0\(\Z", "", "a call has no space before its bracket: `{0}(`"),
-    (r"\0([AE][\[<].*)", "LPAR", "put brackets around `{0} …`"),
+    (r"\0in\0", "AND", _SHARE),
+    (r"([^\W\d]\w*)[ \t]+\0\(\0", "", "a call has no space before its bracket: `{0}(`"),
+    (r"\0([AE][\[<][^\0]*)", "LPAR", "put brackets around `{0} …`"),
     ("", "THEN", "the consequent stands after `then`"),
-    (r"\Arequirement.*\0then\Z", "", "a trigger stands before `then`: `upon … then …`"),
-    (r"/\0\*\Z", "", COMMENT),
+    (r"\Arequirement[^\0]*\0then\0", "", "a trigger stands before `then`: `upon … then …`"),
+    (r"/\0\*\0", "", COMMENT),
     (r"\Arequirement\s*\0", "NAME", 'its name comes first: `requirement R1 "text"`'),
     (r"\Asignal\b", "COLON", "a signal has a type, as in `signal x : real [m]`"),
     (
-        r"(?<![\w.])(?:after|at)[ \t]+\0([\d.]+\s*[^\W\d]+)\Z",
+        r"(?<![\w.])(?:after|at)[ \t]+\0([\d.]+\s*[^\W\d]+)\0",
         *("", "for a condition at that instant write `eventually[{0}, {0}] (…)`"),
     ),
     (r"\Aevent\b", "COLON", "a field has a type, as in `event pick(id: int)`"),
 )
-"""The text before a word that cannot stand there, `\\0` and that word; a terminal that could stand
-there, or none; and the fix."""
-_BEGINNINGS = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->"
-"""Before what a formula begins."""
 _TYPES = {
     "float": "real",
     "double": "real",
@@ -104,13 +139,11 @@ def fix_of(unexpected: str, accepted: set[str], parser: lark.Lark, before: Span)
         # Ordered from certain to guessed: the first that knows a fix is used.
         if_fix(before.text)
         or _FIX.get(unexpected, "")
-        or _unit_fix(unexpected, before.text)
-        or _held_fix(unexpected, before)
-        or _range_fix(unexpected, before)
-        or _number_fix(unexpected, before)
+        or _row_fix(_CERTAIN, unexpected, accepted, before)
         or _dash_fix(before.text)
         or _clause_fix(unexpected, before.text)
-        or _fix_written(unexpected, accepted, before.text)
+        or _bare_unit_fix(unexpected, before.text)
+        or _row_fix(_LIKELY, unexpected, accepted, before)
         or _word_fix(unexpected, accepted, parser, before.text)
         or _decimal_comma(before.text)
     )
@@ -122,38 +155,6 @@ def if_fix(before: str) -> str:
     return _TRIGGER_WORDS.format("if") if unfinished else ""
 
 
-def _unit_fix(unexpected: str, before: str) -> str:
-    """The fix for `40 A` and `5 W`, whose letters are operators behind a number."""
-    written = re.search(r"(?<![\w.])(\d[\d.]*)[ \t]*([AW])[ \t]*\Z", f"{before}{unexpected}")
-    written = written or re.search(r"(?<![\w.])(\d[\d.]*)[ \t]*([AW])\s*\Z", before)
-    if written is None:
-        return ""
-    return f"`{written[2]}` is an operator here: write `{written[1]} {SPOKEN[written[2]]}`"
-
-
-def _range_fix(unexpected: str, before: Span) -> str:
-    """The fix for `x in [a, b]`, where labels in braces are expected."""
-    said = re.search(rf".*(?:{_BEGINNINGS})\s*(.*\S)\s+in\s*\Z", before.text, re.DOTALL)
-    ends = re.compile(r"\s*\[([^],]+),([^]]+)\]").match(before.source.text, before.end)
-    if unexpected != "[" or said is None or ends is None:
-        return ""
-    low, high = (end.strip() for end in ends.groups())
-    return f"`in` is of labels: write `({said[1]} >= {low} and {said[1]} <= {high})`"
-
-
-def _held_fix(unexpected: str, before: Span) -> str:
-    """The fix for `φ for 1 s`, where the past is meant."""
-    text = before.text
-    said = re.search(rf".*(?:{_BEGINNINGS}|\()\s*([^()]*\S)\s*\Z", text, re.DOTALL)
-    length = re.compile(r"for[ \t]+(\d[\d.]*[ \t]*\w+)").match(before.source.text, before.end)
-    if unexpected != "for" or said is None or length is None:
-        return ""
-    ahead = f"for {length[1]} ({said[1]})"
-    return (
-        f"write `held({said[1]}, {length[1]})` for what has held so long, `{ahead}` for what is to"
-    )
-
-
 def _dash_fix(before: str) -> str:
     dashed = re.fullmatch(r"requirement\s+([\w.]+(?:-\w+)+)\s*", before)
     if not dashed:
@@ -162,15 +163,20 @@ def _dash_fix(before: str) -> str:
     return f"`{dashed[1]}` is no name: write `{name}`, or quote it: `` `{dashed[1]}` ``"
 
 
-def _fix_written(unexpected: str, accepted: set[str], before: str) -> str:
-    """The fix for one of `_WRITTEN`, or for a unit without brackets."""
-    if unexpected in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before):
-        return f"a unit stands in brackets: `[{unexpected}]`"
-    for pattern, terminal, fix in _WRITTEN:
-        written = re.search(pattern, f"{before}\0{unexpected}", re.DOTALL)
-        if written and (not terminal or terminal in accepted):
-            return fix.format(*written.groups())
+def _row_fix(rows: _Rows, unexpected: str, accepted: set[str], before: Span) -> str:
+    """The fix of the first row that fits."""
+    end = before.end + len(unexpected)
+    text = f"{before.text}\0{unexpected}\0{before.source.text[end : end + _BEHIND]}"
+    for pattern, terminal, fix in rows:
+        found = re.search(pattern, text, re.DOTALL)
+        if found and (not terminal or terminal in accepted):
+            return fix.format(*found.groups())
     return ""
+
+
+def _bare_unit_fix(unexpected: str, before: str) -> str:
+    is_unit = unexpected in unit_table() and re.search(r":\s*(real|int)[ \t]+$", before)
+    return f"a unit stands in brackets: `[{unexpected}]`" if is_unit else ""
 
 
 def _clause_fix(unexpected: str, before: str) -> str:
@@ -198,24 +204,6 @@ def _word_fix(unexpected: str, accepted: set[str], parser: lark.Lark, before: st
     if last and last[1].lower() in ("when", "where", "once"):
         return _TRIGGER_WORDS.format(last[1])
     return f"an operator is missing before `{unexpected}`, or a word too many"
-
-
-def _number_fix(unexpected: str, before: Span) -> str:
-    """The fix for a number or duration in the notation of another language."""
-    digits = re.search(r"(?<![\w.])\d*$", before.text)
-    behind = re.compile(r"[.,](\d*)").match(before.source.text, before.end)
-    if digits and behind and (behind[1] or (digits[0] and unexpected == ".")):
-        return f"write `{digits[0] or 0}.{behind[1] or 0}`"
-    word = re.search(r"(?<![\w.])(within|for)[ \t]+([\w.]+(?:[ \t]+\w+)?)?[ \t]*$", before.text)
-    if word is None:
-        return ""
-    if word[2] is None:
-        operator = "eventually" if word[1] == "within" else "always"
-        window = f"`{word[1]}` takes a duration; a window stands behind `{operator}`"
-        return window if unexpected == "[" else ""
-    if unexpected in ("+", "-", "*", "/"):
-        return "a duration that is computed stands in brackets"
-    return "no comma stands behind a duration" if unexpected == "," else ""
 
 
 def _decimal_comma(text: str) -> str:
@@ -253,18 +241,8 @@ _VALUE = {"NUMBER", "NAME", "CALL", "LPAR", "MINUS"}
 _DURATION = {"NUMBER", "NAME", "LPAR", "MINUS"}
 _ARITHMETIC = {"PLUS", "TIMES", "DIVIDE"}
 _INFIX = {
-    "AND",
-    "OR",
-    "XOR",
-    "IFF",
-    "IMPLIES",
-    "INFIX",
-    "LEADS_TO",
-    "COMPARE",
-    "MINUS",
-    "_IN",
-    "NOT",
-}
+    "AND", "OR", "XOR", "IFF", "IMPLIES", "INFIX", "LEADS_TO", "COMPARE", "MINUS", "_IN", "NOT",
+}  # fmt: skip
 _CLAUSES = {
     "TEXT_CLAUSE", "SEVERITY", "TAGS", "LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE",
     "RUN_SHARE",
