@@ -156,6 +156,18 @@ def test_an_undecided_attempt_says_what_is_owed_and_till_when():
     assert left.deadline == 4 * 10**9
 
 
+def test_of_an_attempt_in_doubt_it_is_not_said_how_long_it_would_take():
+    """It has no deadline of its own, whereas what it would owe has one."""
+    samples = [(0, {"near": False}), (1, {"near": float("nan")})]
+    _, [left] = run("upon near\nthen within 3 s released", samples)
+    assert (
+        left.reason
+        == "still required when the recording ended at 1 s: `within 3 s released` by 4 s; "
+        "`near` was not known from 1 s on: given as unknown at 1 s"
+    )
+    assert left.deadline is None
+
+
 def test_what_time_has_ruled_out_is_owed_no_more():
     """An I leaves out what time alone has settled, also where no position came with it."""
     monitor = rvmon.loads(
