@@ -15,7 +15,7 @@ from rvmon.cdv.sequential_test import Decision
 from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError
 from rvmon.report.junit import add_suite, as_text
-from rvmon.texts import shown
+from rvmon.texts import counted, shown
 from rvmon.verdicts import Verdict
 
 RobotRequirement = tuple[str, str]
@@ -189,7 +189,8 @@ def _expected_failures(
             if why.requirement in test_run.outcome.verdicts and is_about(why, test_run)
         ]
         if verdicts:
-            missing = "" if Verdict.FAIL in verdicts else f"it did not, in {len(verdicts)} tests"
+            tests = counted(len(verdicts), "test")
+            missing = "" if Verdict.FAIL in verdicts else f"it did not, in {tests}"
             checks[f"{_named(why)} is expected to fail ({why.reason})"] = missing
     return checks
 

@@ -23,7 +23,7 @@ from rvmon.confidence import CONFIDENCE, interval
 from rvmon.coverage import Ending
 from rvmon.report.html import component
 from rvmon.report.verdict_table import Counts, RunGroup, VerdictTable
-from rvmon.texts import percent_text
+from rvmon.texts import counted, percent_text
 
 LEGEND = "Number of tests: P passed, F failed, NT not triggered, I inconclusive."
 
@@ -130,7 +130,7 @@ def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
     strategies = figures.strategies.values()
     if crashed := sum(len(strategy.errors[Ending.CRASHED]) for strategy in strategies):
         notes.append(
-            f"The robot's code crashed in {crashed} tests, which were evaluated all the same."
+            f"The robot's code crashed in {counted(crashed, 'test')}, evaluated all the same."
         )
     ends = {Ending.HUNG: "{} hung: {}, and was ended", Ending.LOST: "{} was lost: {}"}
     for ending, text in ends.items():

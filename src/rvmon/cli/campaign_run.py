@@ -230,7 +230,7 @@ def show(campaign: Campaign, conducted: Conducted, form: str) -> None:
     printer = page_printer()
     print_summary(summary, conducted.tables, printer, campaign.presentation.foremost)
     work = campaign.presentation.work(summary)
-    printer.sentences(f"{summary.finished} tests in {summary.seconds:.1f} s: {work}.")
+    printer.sentences(f"{counted(summary.finished, 'test')} in {summary.seconds:.1f} s: {work}.")
     if summary.cut_short:
         printer.sentences(
             f"{summary.cut_short}: {summary.finished} of {summary.planned} tests were finished; "
@@ -321,7 +321,7 @@ def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
     if not job.test.removable:
         kind = type(job.test).__name__
         warn(f"`{kind}` names nothing in `removable`: only values can be simpler")
-    effort = f"{smallest.tried} tests in {smallest.seconds:.1f} s"
+    effort = f"{counted(smallest.tried, 'test')} in {smallest.seconds:.1f} s"
     warn(f"{smallest.failure}: {left or 'values'}; {effort}")
     if folder is not None:
         for written in save_regression(campaign, small, folder):

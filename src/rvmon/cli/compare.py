@@ -9,6 +9,7 @@ from rvmon.cli.output import busy, say_json
 from rvmon.errors import RvmonError
 from rvmon.report.printer import Printer
 from rvmon.report.wording import in_short, wrapped
+from rvmon.texts import counted
 from rvmon.verdicts.compare import Change, Comparison, Difference, compare
 from rvmon.verdicts.table_file import read_results
 
@@ -51,7 +52,7 @@ def _print(comparison: Comparison, printer: Printer, most: int | None) -> None:
             rest = f" and {len(names) - 3:,} more" if len(names) > 3 else ""
             printer.sentences(f"{where}: {', '.join(names[:3])}{rest}", "dim")
     fail = f", {failing:,} of them still fail" if failing else ""
-    printer.line(f"{comparison.same:,} verdicts are as before{fail}")
+    printer.line(f"{counted(comparison.same, 'verdict')} as before{fail}")
 
 
 def _print_kind(

@@ -55,7 +55,7 @@ def test_an_expected_failure_elsewhere_excuses_nothing(campaign):
     wrong = judged(campaign(LOW, HIGH, expected_failures=known)).wrong
     assert wrong == [
         f"high (toy): {TOO_HIGH}",
-        "T1 of test low is expected to fail (why): it did not, in 1 tests",
+        "T1 of test low is expected to fail (why): it did not, in 1 test",
         "T2 is expected to fail (why): it did not, in 2 tests",
     ]
 

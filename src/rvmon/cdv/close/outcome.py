@@ -189,7 +189,7 @@ def print_closed(closed: Closed, printer: Printer) -> None:
     left = f"; {closed.ended}" if closed.ended else ""
     printer.sentences(
         f"{share_text(closed.share)} covered: {closed.met} of {closed.goals} goals met by "
-        f"{len(closed.tests)} tests in {closed.seconds:.1f} s{left}.",
+        f"{counted(len(closed.tests), 'test')} in {closed.seconds:.1f} s{left}.",
         style,
     )
     printer.sentences(_suite_text(closed))
