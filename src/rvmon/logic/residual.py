@@ -165,7 +165,9 @@ def substitute(
 
 def decided(residual: Residual, true: Clause, false: Clause) -> Residual:
     """The residual in which some of its atoms are true and others false."""
-    left = filter(false.isdisjoint, residual)
+    left = frozenset(filter(false.isdisjoint, residual))
+    if all(map(true.isdisjoint, left)):
+        return left  # a part of what is reduced is so, too
     return _reduced(frozenset(clause.difference(true) for clause in left))
 
 
