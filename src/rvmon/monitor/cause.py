@@ -152,7 +152,7 @@ class Place(Struct, frozen=True):
     plus: int = 0
 
     def ticks(self, decided: int, start: int) -> int:
-        """The value in ticks, for a decision, and the instant at which its obligation began."""
+        """Its value, ticks; `start` is the instant at which the deciding obligation began."""
         match self.base:
             case Base.DECISION:
                 return decided + self.plus

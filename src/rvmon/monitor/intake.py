@@ -176,7 +176,7 @@ def refuse_earlier(t: int, last: int | None, reached: int | None) -> None:
     """Refuse a sample that is not later than the previous one, or that an `advance` excluded.
 
     Raises:
-        TimeOrderError: it is so.
+        TimeOrderError: it is one of these.
     """
     if last is not None and t <= last:
         raise TimeOrderError(

@@ -107,7 +107,7 @@ def not_passed(verdicts: Mapping[str, Verdict]) -> Mapping[str, Verdict]:
 
 
 def capped(report: Report, interrupted: int) -> Report:
-    """The report of a run interrupted at some ticks: not `F` is `I`, with a health entry."""
+    """The report of a run interrupted at an instant: all but `F` is `I`, and health says why."""
     first = None if interrupted == BEFORE_ALL else interrupted
     remark = "what followed was not evaluated in full"
     why = Health(HealthKind.INTERRUPTED, "monitor", 1, first, tuple(report.verdicts), remark)

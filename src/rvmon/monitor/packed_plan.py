@@ -43,7 +43,7 @@ class CapturedValues:
         self._labels = {number: label for label, number in labels.items()}
 
     def of(self, requirement: int, numbers: Sequence[float | None]) -> dict[str, Scalar]:
-        """The captured values of an attempt, by name; unknown is `None`, the surplus ignored."""
+        """The captured values of an attempt by name; `None`: unknown. Surplus ones are ignored."""
         kinds = self._kinds[requirement].items()
         return {
             name: self._value(number, kind)
@@ -316,7 +316,7 @@ def _checked(
 def planned_as(
     spec: CheckedSpec, ids: tuple[str, ...], kept: Kept, compiled: CompiledSpec | None = None
 ) -> PlannedCore:
-    """A packed plan with the tables of the specification that it is of."""
+    """A packed plan with the tables for its specification."""
     plan = packed(spec, ids, kept.data)
 
     def labels(type_: Type) -> Mapping[str, int] | None:

@@ -28,7 +28,7 @@ from rvmon.trace.time import TICKS_PER_SECOND
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A label, or a number in the unit of its comparison, whose symbol `unit` is for people."""
+    """A label, or a number in the unit of its comparison, whose symbol people are shown."""
 
     value: float | int | str
     unit: str = field(default="", compare=False)

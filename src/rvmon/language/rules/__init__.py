@@ -34,7 +34,7 @@ class Reported(Exception):  # noqa: N818 - it never leaves this package
 
 
 def finding(rule: Rule, message: str, *places: Span | Label, fix: str = "") -> Diagnostic:
-    """A breach of a rule: what is wrong in one sentence, the offending place first, and a fix."""
+    """A breach of a rule at the first of some places: what is wrong, in one sentence, and a fix."""
     labels = tuple(place if isinstance(place, Label) else Label(place) for place in places)
     return Diagnostic(rule.code, rule.name, rule.severity, message, labels, fix)
 
