@@ -251,12 +251,12 @@ class Spec:
         """
         from rvmon.execute.parallel import execute
         from rvmon.monitor.evaluate import evaluate_apart
-        from rvmon.monitor.records import with_plan
+        from rvmon.monitor.records import give_plan
 
         given, asked = self._reading(**reading), requirements_asked(self.checked, only)
         begin = partial(partial, evaluate_apart, self._compiled, reading=given, only=asked)
         reports = execute(traces, begin, jobs=jobs, what="trace")
-        return (with_plan(report, self.planned(asked)) for report in reports)
+        return (give_plan(report, self.planned(asked)) for report in reports)
 
     def planned(self, only: Iterable[str] | None = None) -> PlannedCore:
         """The packed plan of some requirements, with its tables; made once."""

@@ -17,7 +17,7 @@ from rvmon.cli.reading import allowed_names, opened, reading_spec, shown_name
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.missing_names import expect_names
-from rvmon.monitor.records import with_plan
+from rvmon.monitor.records import give_plan
 from rvmon.recordings.places import JOINT, without_copies
 from rvmon.recordings.recording import FileRecording
 from rvmon.recordings.source import Source, pieces_up_to
@@ -204,7 +204,7 @@ def judge_all(
                 if not is_alone:  # that one shows how far it is read
                     show(done)
                 if planned is not None and one.report is not None:
-                    one = structs.replace(one, report=with_plan(one.report, planned))
+                    give_plan(one.report, planned)
                 yield one
     except WorkerLostError as error:
         for trace in traces[done:]:
@@ -219,7 +219,7 @@ def _judge_apart(spec: Spec, trace: str, options: Options, *, writes_json: bool)
     if found.report is None:
         return found
     text = found.report.to_json(spec.requirements) if writes_json else ""
-    return structs.replace(found, report=with_plan(found.report, None), text=text)
+    return structs.replace(found, report=give_plan(found.report, None), text=text)
 
 
 @without_copies()

@@ -17,7 +17,7 @@ from rvmon.monitor.health import Findings, Losses
 from rvmon.monitor.intake import Turn, Validator
 from rvmon.monitor.missing_names import expect_names
 from rvmon.monitor.packed_plan import PlannedCore, planned_core
-from rvmon.monitor.records import report_of_run, with_plan
+from rvmon.monitor.records import give_plan, report_of_run
 from rvmon.recordings.batch import NO_UPDATE, YES
 from rvmon.recordings.joined import Joined
 from rvmon.recordings.recording import FileRecording
@@ -332,5 +332,5 @@ def evaluate_trace(
 
 
 def evaluate_apart(compiled: CompiledSpec, trace: Any, **options: Any) -> Report:
-    """Judge a trace for another process; see `evaluate_trace` and `with_plan`."""
-    return with_plan(evaluate_trace(compiled, trace, **options), None)
+    """Judge a trace for another process; see `evaluate_trace` and `give_plan`."""
+    return give_plan(evaluate_trace(compiled, trace, **options), None)

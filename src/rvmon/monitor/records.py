@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, overload
 
@@ -86,9 +85,9 @@ class RecordedAttempts(LazyAttempts):
         assert self._given is not None, "whoever takes them from another process gives the plan"
         return self._given
 
-    def with_plan(self, planned: PlannedCore | None) -> RecordedAttempts:
-        """The same with the plan of the run, or without one."""
-        return RecordedAttempts(planned, self._records, self._numbers, self._notes, self._origin)
+    def take_plan(self, planned: PlannedCore | None) -> None:
+        """Go on with the plan of the run, or without one."""
+        self._given = planned
 
     def __len__(self) -> int:
         return len(self._records)
@@ -203,18 +202,17 @@ def _arrays(records: bytes, numbers: bytes) -> tuple[NDArray[Any], NDArray[Any]]
     return found, captured
 
 
-def with_plan(report: Report, planned: PlannedCore | None) -> Report:
-    """A report whose attempts are explained by another plan of the same requirements.
+def give_plan(report: Report, planned: PlannedCore | None) -> Report:
+    """The same report, whose attempts from now on are explained by another plan.
 
     Args:
         report: of a recording.
-        planned: the plan; `None`: another process takes the report, and gives it its own. A plan
-            may be larger than all else.
+        planned: of the same requirements; `None`: another process takes the report, and gives it
+            its own. A plan may be larger than all else.
     """
-    attempts = report.attempts
-    if not isinstance(attempts, RecordedAttempts):
-        return report
-    return replace(report, attempts=attempts.with_plan(planned))
+    if isinstance(report.attempts, RecordedAttempts):
+        report.attempts.take_plan(planned)
+    return report
 
 
 def report_of_run(

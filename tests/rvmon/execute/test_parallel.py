@@ -15,7 +15,7 @@ import pytest
 import rvmon
 from rvmon.errors import RvmonError, SpecError, TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
-from rvmon.monitor.records import with_plan
+from rvmon.monitor.records import give_plan
 
 pytestmark = [
     pytest.mark.process,
@@ -272,9 +272,9 @@ def test_a_report_is_handed_over_without_the_plan(tmp_path):
     """What goes from process to process grows with the attempts, not with the specification."""
     many = "".join(f"requirement N{n}\n  always x < {n + 10}\n" for n in range(200))
     spec = rvmon.loads("spec s\nsignal x : real\nrequirement R\n  always x < 3\n" + many)
-    report = spec.evaluate([(0, {"x": 1.0}), (1, {"x": 5.0})])
-    handed = pickle.dumps(with_plan(report, None))
+    report, other = (spec.evaluate([(0, {"x": 1.0}), (1, {"x": 5.0})]) for _ in range(2))
+    handed = pickle.dumps(give_plan(other, None))
     assert len(handed) < len(pickle.dumps(report)) / 2
-    again = with_plan(pickle.loads(handed), spec.planned())  # noqa: S301 - just made
+    again = give_plan(pickle.loads(handed), spec.planned())  # noqa: S301 - just made
     assert again == report
     assert again.attempts[0].reason == report.attempts[0].reason
