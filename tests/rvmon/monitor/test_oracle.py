@@ -103,3 +103,12 @@ def test_equal_infinities_are_nothing_apart(time, compare, value):
     of_rows = [(one.low, one.high, one.kept) for one in spec.robustness(columns).attempts.values()]
     figures = [*of_rows, *of_steps.values(), *of_oracle.values()]
     assert figures == [(0.0, 0.0, 0.0)] * 3
+
+
+def test_before_the_first_sample_nothing_was_true_of_a_signal_yet_to_come():
+    """What `rise` reads there is surely false, so `p` without a value never rose and fell."""
+    spec = loads("signal p : bool\nrequirement Q\n  upon start then always not fall(rise(p))\n")
+    case = Case(spec.checked, (Sample(0, {}), 2))
+    judgement = Judgement(case)
+    of_oracle = margins(judgement.followings, judgement.outcomes, case.spec.time)
+    assert of_oracle == measured(case)[0] == {("Q", False, 1): (float("-inf"), *[float("inf")] * 2)}

@@ -150,7 +150,8 @@ class Margins(Operators[Margin]):
 
     def of_truth(self, truth: Truth) -> Margin:
         """See `Operators`."""
-        return Margin(truth, AS_UNBORN) if truth is Truth.UNBORN else _always(OF_TRUTH[truth])
+        ranges = AS_UNBORN if truth is Truth.UNBORN else (OF_TRUTH[truth],) * 3
+        return Margin(truth, ranges)
 
     def negation(self, value: Margin) -> Margin:
         """See `Operators`."""
