@@ -208,6 +208,8 @@ class ConflictSearch:
         Each starts from one requirement, adds related ones, and shrinks until it can hold.
         """
         for subject in self.subjects:
+            if self._is_late():
+                return
             group = [subject]
             for other in self.subjects:
                 if len(group) < LARGEST_GROUP and self._fits(group, other):
@@ -241,6 +243,8 @@ class ConflictSearch:
         if self.whole_sets != size - 1:
             return []
         larger = list(dict.fromkeys(self._grown(level)))
+        if self._is_late():
+            return []
         if not larger:
             self.whole_sets = None
         if size > 3 and len(larger) > MOST_SETS:
@@ -255,6 +259,8 @@ class ConflictSearch:
 
     def _grown(self, level: Sequence[frozenset[Subject]]) -> Iterator[frozenset[Subject]]:
         for group in level:
+            if self._is_late():
+                return
             if not self._is_hopeless(group):
                 for other in self.subjects:
                     if self._fits(group, other):

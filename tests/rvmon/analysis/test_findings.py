@@ -2,6 +2,7 @@
 
 import math
 import random
+import tracemalloc
 
 import pytest
 from tests.tools import build
@@ -330,3 +331,20 @@ def test_a_policy_that_lets_nothing_pass(policy):
     (finding,) = analysis_of(text).findings
     assert finding.code == "RV072"
     assert f"`at end: {policy}` lets nothing pass" in finding.help
+
+
+@pytest.mark.slow
+def test_of_many_requirements_no_more_is_listed_than_the_budget_lets_be_looked_at():
+    """Two hundred make a million triples, which need not all be kept at once to look at none."""
+    text = "spec s\nsignal x : real\nevent e\n" + "".join(
+        f"requirement R{n}\n  upon e\n  then within {n + 1} ms x > {n}\n" for n in range(200)
+    )
+    compiled = compile_spec(rvmon.loads(text).checked)
+    tracemalloc.start()
+    try:
+        found = analyse(compiled, seconds=0, timelines=0).examination
+        _, most = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert found.whole_sets == 2
+    assert most < 100_000_000
