@@ -175,8 +175,10 @@ def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkP
     network = plan_of(rule.required, gap)
     chain = None if rule.stepped else chain_of(network, gap)
     nested = chain is not None and len(chain.windows) > 1
-    # An outage may hold any number of samples: automata read its letter at each instant.
-    if rule.automaton is not None and gap is None and not nested:
+    # Of a `whenever` few attempts are open at a time: to step each costs least. An outage may hold
+    # any number of samples: automata read its letter at each instant.
+    few = rule.requirement.mode is Mode.WHENEVER
+    if rule.automaton is not None and (few or gap is None) and not nested:
         return rule.automaton
     return network, chain
 

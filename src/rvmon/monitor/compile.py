@@ -105,15 +105,12 @@ class CompiledRequirement:
         """Whether open attempts may come to ever more states of an automaton, each stepped apart.
 
         Not where there is one at a time, or each has values of its own and is judged by itself, and
-        not where they move in runs, which the core does for those of an `upon`. Those of a
-        `whenever` are stepped apart, but few are open at a time: with one clock that costs least.
+        not where they move in runs.
         """
         one = self.requirement
         once = isinstance(one.trigger, Constant | BoundAtom)
         if automaton is None or once or one.captures or one.for_each:
             return False
-        if one.mode is Mode.WHENEVER:
-            return automaton.clocks > 1
         return not moves_in_runs(automaton)
 
     @cached_property

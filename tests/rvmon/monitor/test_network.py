@@ -38,7 +38,6 @@ def outcomes(spec, samples, end=None):
         ("upon e then within 3 s b", "automaton"),
         (RESPAWNED, "windows: as an automaton it would have"),
         ("whenever a then within 3 s b", "automaton"),
-        ("whenever a then for 9 s (a -> within 3 s b)", "delay network: its"),
         ("upon e then (a and within 3 s b) or (not a and within 2 s b)", "delay network: its"),
         ("upon e then within 5 s for 3 s b", "windows: its automaton would step"),
         ("upon e then within 3 s once (a and within 1 s b)", "delay network: as an automaton"),
