@@ -238,6 +238,7 @@ PyObject *PyList_New(Py_ssize_t);
 long PyLong_AsLong(PyObject *);
 long long PyLong_AsLongLong(PyObject *);
 long long PyLong_AsLongLongAndOverflow(PyObject *, int *);
+PyObject *PyBool_FromLong(long);
 PyObject *PyLong_FromLongLong(long long);
 PyObject *PyLong_FromUnsignedLong(unsigned long);
 
