@@ -167,8 +167,8 @@ class Judges:
 def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkPlan, Chain | None]:
     """The machine that judges a rule: an automaton, or a network, with its chain if it is one.
 
-    An automaton that would step open attempts one by one is left: networks and chains judge all
-    of them at once.
+    Where open attempts would scatter over an automaton, which steps them apart, networks and
+    chains are preferred: they judge all of them at once.
     """
     if rule.automaton is not None and (rule.stepped or not rule.scatters):
         return rule.automaton

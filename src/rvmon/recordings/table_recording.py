@@ -223,9 +223,10 @@ def ticks_in_range(ticks: NDArray[Any]) -> NDArray[np.int64]:
     """Integers as ticks.
 
     Only the ends are looked at: if these are in range, and whoever judges the column finds that it
-    ascends, all are. To read all of a long column costs as much as to judge it.
+    ascends, all are. To read all of a long column costs as much as to judge it. A column of a
+    two-dimensional array is copied, as its ticks do not lie one behind the other.
     """
-    made = ticks.astype(np.int64, copy=False)
+    made = np.ascontiguousarray(ticks, np.int64)
     for end in made[:: max(len(made) - 1, 1)].tolist():
         whole_ticks(end)
     return made

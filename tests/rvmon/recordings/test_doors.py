@@ -271,6 +271,16 @@ def test_frames_of_pandas():
         judged(base(), pandas.concat([left, left], axis=1))
 
 
+@each("stamps", ["t_ns", "t_ms", "t"])
+def test_columns_of_one_array(stamps):
+    """They do not lie one behind the other in memory, in frames of one type likewise."""
+    one = np.array([[0, 1], [10, 2], [20, 9]])
+    own, apart = (
+        dict(zip((stamps, "speed"), rows.T, strict=True)) for rows in (one, one.copy("F"))
+    )
+    assert told(base(), own) == told(base(), apart)
+
+
 def test_frames_of_polars():
     polars = pytest.importorskip("polars")
     table = {"t": [0.0, 1.0, 2.0], "speed": [1.0, None, 2.0], "pick.id": [None, 3, None]}
