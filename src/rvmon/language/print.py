@@ -5,38 +5,8 @@ from __future__ import annotations
 from decimal import Decimal
 from typing import assert_never
 
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
-from rvmon.language.checked.formula import (
-    Amount,
-    Arithmetic,
-    Binary,
-    BinaryOp,
-    Bound,
-    BoundAtom,
-    Captured,
-    Compare,
-    CompareOp,
-    Constant,
-    EventAtom,
-    FieldValue,
-    Formula,
-    Interval,
-    Literal,
-    Measured,
-    NowValue,
-    Numeric,
-    Passed,
-    Probe,
-    ProbeAtom,
-    SignalAtom,
-    SignalValue,
-    Unary,
-    UnaryOp,
-    UpdateValue,
-    WindowValue,
-    itself,
-    since_trigger,
-)
 from rvmon.language.checked.operators import PREFIXED, Window
 from rvmon.language.checked.rewrite import chain, without_spans
 from rvmon.language.syntax.keywords import RESERVED
@@ -52,7 +22,7 @@ _ARITHMETIC = {
 }
 
 
-def format_formula(formula: Formula) -> str:
+def format_formula(formula: rv.Formula) -> str:
     """A checked formula in the words of the language.
 
     >>> format_formula(Unary(UnaryOp.EVENTUALLY, EventAtom("released"), Interval(0, 3 * 10**9)))
@@ -61,7 +31,7 @@ def format_formula(formula: Formula) -> str:
     return _formula(formula, 0)
 
 
-def format_numeric(numeric: Numeric) -> str:
+def format_numeric(numeric: rv.Numeric) -> str:
     """A checked number or label in the words of the language.
 
     >>> format_numeric(Arithmetic(NumericOp.SUB, (SignalValue("x"), Literal(0.5, "m"))))
@@ -85,72 +55,76 @@ def format_duration(ticks: int) -> str:
     return f"{ticks // size} {unit}"
 
 
-def _formula(formula: Formula, level: int) -> str:
+def _formula(formula: rv.Formula, level: int) -> str:
     """The formula, in brackets if it binds more loosely than `level`."""
     match formula:
-        case Constant(value=value):
+        case rv.Constant(value=value):
             return "true" if value else "false"
-        case SignalAtom(name=name) | EventAtom(name=name):
+        case rv.SignalAtom(name=name) | rv.EventAtom(name=name):
             return _name(name)
-        case ProbeAtom(probe=probe, name=name):
+        case rv.ProbeAtom(probe=probe, name=name):
             return f"{probe}({_name(name)})"
-        case BoundAtom(bound=bound):
+        case rv.BoundAtom(bound=bound):
             return str(bound)
-        case Compare(left=left, right=Literal(value=bool())):  # a bool payload field and its kin
+        case rv.Compare(
+            left=left, right=rv.Literal(value=bool())
+        ):  # a bool payload field and its kin
             return format_numeric(left)
-        case Compare(op=op, left=left, right=right):
+        case rv.Compare(op=op, left=left, right=right):
             return f"{format_numeric(left)} {op} {format_numeric(right)}"
-        case Amount():
+        case rv.Amount():
             return _amount(formula, denied=False)
-        case Unary(op=UnaryOp.NOT, operand=Amount() as denied):
+        case rv.Unary(op=rv.UnaryOp.NOT, operand=rv.Amount() as denied):
             return _amount(denied, denied=True)
-        case Unary(op=UnaryOp.ONCE) if (age := _age(formula, denied=False)) is not None:
+        case rv.Unary(op=rv.UnaryOp.ONCE) if (age := _age(formula, denied=False)) is not None:
             return age
-        case Unary(op=UnaryOp.NOT, operand=one) if (age := _age(one, denied=True)) is not None:
+        case rv.Unary(op=rv.UnaryOp.NOT, operand=one) if (
+            age := _age(one, denied=True)
+        ) is not None:
             return age
-        case Unary():
+        case rv.Unary():
             return _unary(formula)
-        case Passed(since=since, after=after, strict=strict):
+        case rv.Passed(since=since, after=after, strict=strict):
             begin = "" if since is None else f" - {_name(since)}"
             return f"now{begin} {'>' if strict else '>='} {format_numeric(after)}"
-        case Binary(op=op):
+        case rv.Binary(op=op):
             text = _binary(formula)
             return f"({text})" if op.entry.level < level else text
         case _:
             assert_never(formula)
 
 
-def _age(formula: Formula, *, denied: bool) -> str | None:
+def _age(formula: rv.Formula, *, denied: bool) -> str | None:
     """The text of a limit on an age, or of its negation; `None` if the formula is none."""
     match formula:
-        case Unary(
-            op=UnaryOp.ONCE,
-            operand=Binary(
-                op=BinaryOp.OR,
-                left=ProbeAtom(probe=Probe.UPDATED, name=name),
-                right=BoundAtom(bound=Bound.START),
+        case rv.Unary(
+            op=rv.UnaryOp.ONCE,
+            operand=rv.Binary(
+                op=rv.BinaryOp.OR,
+                left=rv.ProbeAtom(probe=rv.Probe.UPDATED, name=name),
+                right=rv.BoundAtom(bound=rv.Bound.START),
             ),
-            interval=Interval(low=0, high=int() as high),
+            interval=rv.Interval(low=0, high=int() as high),
         ):
             # `age(x) < 200 ms` was rewritten as at most 199999999 ns: print the shorter, original
             # form.
-            most = (CompareOp.LE, format_duration(high))
-            below = (CompareOp.LT, format_duration(high + 1))
+            most = (rv.CompareOp.LE, format_duration(high))
+            below = (rv.CompareOp.LT, format_duration(high + 1))
             op, limit = min(most, below, key=lambda one: len(one[1]))
             return f"age({_name(name)}) {op.denied if denied else op} {limit}"
         case _:
             return None
 
 
-def _amount(formula: Amount, *, denied: bool) -> str:
+def _amount(formula: rv.Amount, *, denied: bool) -> str:
     limit = format_numeric(formula.limit)
-    if formula.of.measured is Measured.DURATION and isinstance(formula.limit, Literal):
+    if formula.of.measured is rv.Measured.DURATION and isinstance(formula.limit, rv.Literal):
         limit = format_duration(int(formula.limit.value))
-    op = CompareOp.GT if formula.strict else CompareOp.GE
+    op = rv.CompareOp.GT if formula.strict else rv.CompareOp.GE
     return f"{format_window(formula.of)} {op.denied if denied else op} {limit}"
 
 
-def format_window(formula: WindowValue) -> str:
+def format_window(formula: rv.WindowValue) -> str:
     """A window in the words of the language.
 
     >>> from rvmon.language.checked.formula import EventAtom
@@ -159,11 +133,11 @@ def format_window(formula: WindowValue) -> str:
     """
     word, what = str(formula.measured), ""
     conditions = _conditions(formula)
-    since = since_trigger() in conditions
-    conditions = [condition for condition in conditions if condition != since_trigger()]
+    since = rv.since_trigger() in conditions
+    conditions = [condition for condition in conditions if condition != rv.since_trigger()]
     if formula.value is None and formula.counted is not None:
         what = _formula(formula.counted, 0)
-    elif formula.value is None or isinstance(formula.value, Literal):  # so many times 1
+    elif formula.value is None or isinstance(formula.value, rv.Literal):  # so many times 1
         word = "duration" if formula.measured.of_time else word
         what = " and ".join(
             _formula(condition, 0 if len(conditions) == 1 else 4) for condition in conditions
@@ -181,40 +155,42 @@ def format_window(formula: WindowValue) -> str:
     return f"{word}({what}{window})"
 
 
-def _conditions(formula: WindowValue) -> list[Formula]:
+def _conditions(formula: rv.WindowValue) -> list[rv.Formula]:
     """The conditions on a member, without those that its number is known and its signal updated."""
     conditions = [without_spans(one) for one in chain(formula.operand)]
-    if formula.value is not None and not isinstance(formula.value, Literal):
-        conditions = [condition for condition in conditions if condition != itself(formula.value)]
-        if isinstance(formula.value, SignalValue):
-            updated = ProbeAtom(Probe.UPDATED, formula.value.name)
+    if formula.value is not None and not isinstance(formula.value, rv.Literal):
+        conditions = [
+            condition for condition in conditions if condition != rv.itself(formula.value)
+        ]
+        if isinstance(formula.value, rv.SignalValue):
+            updated = rv.ProbeAtom(rv.Probe.UPDATED, formula.value.name)
             conditions = [condition for condition in conditions if condition != updated]
-    if formula.value is None and len(conditions) > 1 and since_trigger() not in conditions:
+    if formula.value is None and len(conditions) > 1 and rv.since_trigger() not in conditions:
         return [formula.operand]
     return [*conditions, *formula.chosen]
 
 
-def _unary(formula: Unary) -> str:
+def _unary(formula: rv.Unary) -> str:
     op = formula.op
     if not op.entry.called:
         return f"{_operator(op, formula.interval)} {_formula(formula.operand, PREFIXED)}"
     length = ""
     if op.entry.window is Window.LENGTH:
-        length = f", {format_duration((formula.interval or Interval()).high or 0)}"
+        length = f", {format_duration((formula.interval or rv.Interval()).high or 0)}"
     return f"{op.entry.word}({_formula(formula.operand, 0)}{length})"
 
 
-def _operator(op: UnaryOp, interval: Interval | None) -> str:
+def _operator(op: rv.UnaryOp, interval: rv.Interval | None) -> str:
     if interval is not None and interval.low == 0 and interval.high is not None:
-        if op is UnaryOp.EVENTUALLY:
+        if op is rv.UnaryOp.EVENTUALLY:
             return f"within {format_duration(interval.high)}"
-        if op is UnaryOp.ALWAYS:
+        if op is rv.UnaryOp.ALWAYS:
             return f"for {format_duration(interval.high)}"
     return op.entry.word + _window(interval)
 
 
-def _window(interval: Interval | None) -> str:
-    if interval is None or interval == Interval():
+def _window(interval: rv.Interval | None) -> str:
+    if interval is None or interval == rv.Interval():
         return ""
     low = format_duration(interval.low) if interval.low else "0"
     if interval.high is None:
@@ -222,7 +198,7 @@ def _window(interval: Interval | None) -> str:
     return f"[{low}, {format_duration(interval.high)}]"
 
 
-def _binary(formula: Binary) -> str:
+def _binary(formula: rv.Binary) -> str:
     op = formula.op
     level = op.entry.level
     if op.entry.chained:
@@ -230,51 +206,53 @@ def _binary(formula: Binary) -> str:
         texts = [_left(operand, level + 1) for operand in operands[:-1]]
         texts.append(_formula(operands[-1], level + 1))
         # The parser requires these brackets (RV002), but not around `<->`, which binds loosest.
-        if op is not BinaryOp.IFF:
+        if op is not rv.BinaryOp.IFF:
             pairs = zip(operands, texts, strict=True)
             texts = [f"({text})" if _is_kin_of_until(one) else text for one, text in pairs]
         return f" {op.entry.word} ".join(texts)
     right = formula.right
-    same = isinstance(right, Binary) and right.op is op
+    same = isinstance(right, rv.Binary) and right.op is op
     right_level = level if same else level + 1
     left = _left(formula.left, level + 1)
     return f"{left} {op.entry.word}{_window(formula.interval)} {_formula(right, right_level)}"
 
 
-def _is_kin_of_until(formula: Formula) -> bool:
-    return isinstance(formula, Binary) and formula.op.entry.level == BinaryOp.UNTIL.entry.level
+def _is_kin_of_until(formula: rv.Formula) -> bool:
+    return (
+        isinstance(formula, rv.Binary) and formula.op.entry.level == rv.BinaryOp.UNTIL.entry.level
+    )
 
 
-def _left(formula: Formula, level: int) -> str:
+def _left(formula: rv.Formula, level: int) -> str:
     """A left operand: in brackets also if a temporal prefix would stand before the connective."""
     edge = formula
     while True:
         match edge:
-            case Unary(op=UnaryOp.NOT, operand=operand):
+            case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
                 edge = operand
-            case Binary(op=op, right=right) if op.entry.level >= level:
+            case rv.Binary(op=op, right=right) if op.entry.level >= level:
                 edge = right
             case _:
                 break
-    prefixed = isinstance(edge, Unary) and not edge.op.entry.called
+    prefixed = isinstance(edge, rv.Unary) and not edge.op.entry.called
     return f"({_formula(formula, 0)})" if prefixed else _formula(formula, level)
 
 
-def _numeric(numeric: Numeric, level: int) -> str:
+def _numeric(numeric: rv.Numeric, level: int) -> str:
     match numeric:
-        case Literal():
+        case rv.Literal():
             return _literal(numeric, level)
-        case NowValue():
+        case rv.NowValue():
             return "now"
-        case SignalValue(name=name) | Captured(name=name):
+        case rv.SignalValue(name=name) | rv.Captured(name=name):
             return _name(name)
-        case FieldValue(event=event, field=field):
+        case rv.FieldValue(event=event, field=field):
             return _name(f"{event}.{field}")
-        case WindowValue():
+        case rv.WindowValue():
             return format_window(numeric)
-        case UpdateValue(function=function, name=name):
+        case rv.UpdateValue(function=function, name=name):
             return f"{function}({_name(name)})"
-        case Arithmetic():
+        case rv.Arithmetic():
             binding = _ARITHMETIC.get(numeric.op, _OPERAND)
             text = _arithmetic(numeric)
             return f"({text})" if binding < level else text
@@ -282,7 +260,7 @@ def _numeric(numeric: Numeric, level: int) -> str:
             assert_never(numeric)
 
 
-def _arithmetic(numeric: Arithmetic) -> str:
+def _arithmetic(numeric: rv.Arithmetic) -> str:
     match numeric.op:
         case NumericOp.ADD | NumericOp.SUB:
             left, right = numeric.args
@@ -297,7 +275,7 @@ def _arithmetic(numeric: Arithmetic) -> str:
             return f"{op}({', '.join(_numeric(arg, _SUM) for arg in written)})"
 
 
-def _literal(literal: Literal, level: int) -> str:
+def _literal(literal: rv.Literal, level: int) -> str:
     if isinstance(literal.value, str):
         return _name(literal.value)
     text = format(Decimal(repr(literal.value)).normalize(), "f")

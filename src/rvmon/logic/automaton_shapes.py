@@ -16,21 +16,10 @@ from typing import Any, TypeAlias, cast
 
 from msgspec.structs import replace
 
+from rvmon.logic import formula as mtl
 from rvmon.logic.alphabet import Alphabet
 from rvmon.logic.automaton import Automaton, Location
 from rvmon.logic.construct import Budget, DoesNotCloseError, construct
-from rvmon.logic.formula import (
-    And,
-    Constant,
-    Core,
-    Literal,
-    Next,
-    Or,
-    Release,
-    Until,
-    looks_back,
-    parts_of,
-)
 from rvmon.logic.reduce import reduce
 from rvmon.logic.residual import Residual
 
@@ -47,10 +36,10 @@ class Shapes:
     """The reduced automata of a specification, constructed once per shape."""
 
     def __init__(self) -> None:
-        self._shapes: dict[_Key, tuple[Automaton | None, Sequence[Core]] | None] = {}
-        self._automata: dict[_Key, tuple[Automaton | None, Sequence[Core]]] = {}
+        self._shapes: dict[_Key, tuple[Automaton | None, Sequence[mtl.Core]] | None] = {}
+        self._automata: dict[_Key, tuple[Automaton | None, Sequence[mtl.Core]]] = {}
 
-    def reduced(self, required: Next, alphabet: Alphabet, budget: Budget) -> Automaton | None:
+    def reduced(self, required: mtl.Next, alphabet: Alphabet, budget: Budget) -> Automaton | None:
         """The automaton of a formula; `None` if the formula looks back or does not close.
 
         Of formulas that differ in propositions only, the automaton has the alphabet and residuals
@@ -63,7 +52,9 @@ class Shapes:
         """
         return self._found(required, alphabet, budget)[0]
 
-    def residuals(self, required: Next, alphabet: Alphabet, budget: Budget) -> Sequence[Residual]:
+    def residuals(
+        self, required: mtl.Next, alphabet: Alphabet, budget: Budget
+    ) -> Sequence[Residual]:
         """The residual of each location of a formula's automaton, over its own propositions.
 
         Raises:
@@ -76,10 +67,10 @@ class Shapes:
         return [_renamed(location.residual, own) for location in automaton.locations]
 
     def _found(
-        self, required: Next, alphabet: Alphabet, budget: Budget
-    ) -> tuple[Automaton | None, Sequence[Core]]:
+        self, required: mtl.Next, alphabet: Alphabet, budget: Budget
+    ) -> tuple[Automaton | None, Sequence[mtl.Core]]:
         nodes = _nodes(required)
-        if looks_back(required):
+        if mtl.looks_back(required):
             return None, nodes
         bounds = sorted({bound for node in nodes for bound in _bounds(node)})
         stand_ins = _stand_ins(bounds)
@@ -94,7 +85,7 @@ class Shapes:
     def _made(
         self,
         shape: _Key,
-        nodes: Sequence[Core],
+        nodes: Sequence[mtl.Core],
         stand_ins: Mapping[int, int],
         alphabet: Alphabet,
         budget: Budget,
@@ -119,12 +110,12 @@ class Shapes:
 
 
 def _constructed(
-    nodes: Sequence[Core], alphabet: Alphabet, budget: Budget
+    nodes: Sequence[mtl.Core], alphabet: Alphabet, budget: Budget
 ) -> tuple[Automaton | None, int]:
     """The reduced automaton of the last node, and the most ticks by which an age passed a bound."""
     ages: set[int] = set()
     try:
-        made = reduce(construct(cast("Next", nodes[-1]), alphabet, budget, ages), _itself)
+        made = reduce(construct(cast("mtl.Next", nodes[-1]), alphabet, budget, ages), _itself)
     except DoesNotCloseError:
         made = None
     return made, max((age % _STRIDE for age in ages), default=0)
@@ -134,9 +125,9 @@ def _itself(residual: Residual) -> Residual:
     return residual
 
 
-def _nodes(required: Core) -> list[Core]:
+def _nodes(required: mtl.Core) -> list[mtl.Core]:
     """A formula and its subformulas, operands first."""
-    found: dict[int, Core] = {}
+    found: dict[int, mtl.Core] = {}
     stack = [required]
     while stack:
         node = stack.pop()
@@ -146,16 +137,16 @@ def _nodes(required: Core) -> list[Core]:
     return [found[number] for number in sorted(found)]
 
 
-def _parts(node: Core) -> Iterator[Core]:
+def _parts(node: mtl.Core) -> Iterator[mtl.Core]:
     """The operands of a node, and its `opened` form."""
-    yield from parts_of(node)
-    if isinstance(node, Until | Release) and node.opened is not None:
+    yield from mtl.parts_of(node)
+    if isinstance(node, mtl.Until | mtl.Release) and node.opened is not None:
         yield node.opened
 
 
-def _bounds(node: Core) -> Iterator[int]:
+def _bounds(node: mtl.Core) -> Iterator[int]:
     """The ages, other than 0, at which the window of a node opens and is over."""
-    if isinstance(node, Until | Release):
+    if isinstance(node, mtl.Until | mtl.Release):
         if node.low:
             yield node.low
         if node.high is not None:
@@ -170,7 +161,7 @@ def _stand_ins(bounds: Sequence[int]) -> Mapping[int, int]:
 
 
 def _description(
-    nodes: Sequence[Core], alphabet: Alphabet, stand_ins: Mapping[int, int]
+    nodes: Sequence[mtl.Core], alphabet: Alphabet, stand_ins: Mapping[int, int]
 ) -> Iterator[object]:
     """The key of a shape: the formula with numbered propositions and stand-in bounds."""
     place = {id(node): number for number, node in enumerate(nodes)}
@@ -178,27 +169,27 @@ def _description(
     for node in nodes:
         yield type(node)
         match node:
-            case Constant(value=value):
+            case mtl.Constant(value=value):
                 yield value
-            case Literal(proposition=proposition, sense=sense):
+            case mtl.Literal(proposition=proposition, sense=sense):
                 yield digits[proposition], sense.value
-            case Until() | Release():
+            case mtl.Until() | mtl.Release():
                 yield tuple(stand_ins[bound] for bound in _bounds(node))
                 yield node.low > 0, tuple(place[id(part)] for part in _parts(node))
             case _:
                 yield tuple(place[id(part)] for part in _parts(node))
 
 
-def _with_bounds(nodes: Sequence[Core], stand_ins: Mapping[int, int]) -> Sequence[Core]:
+def _with_bounds(nodes: Sequence[mtl.Core], stand_ins: Mapping[int, int]) -> Sequence[mtl.Core]:
     """The same nodes with other bounds."""
     made: dict[int, Any] = {}
     for node in nodes:
         match node:
-            case And(args=args) | Or(args=args):
+            case mtl.And(args=args) | mtl.Or(args=args):
                 made[node.id] = replace(node, args=tuple(made[arg.id] for arg in args))
-            case Next(operand=operand):
-                made[node.id] = Next(node.id, made[operand.id])
-            case Until() | Release():
+            case mtl.Next(operand=operand):
+                made[node.id] = mtl.Next(node.id, made[operand.id])
+            case mtl.Until() | mtl.Release():
                 made[node.id] = replace(
                     node,
                     left=made[node.left.id],

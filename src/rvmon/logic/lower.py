@@ -9,22 +9,10 @@ from typing import assert_never
 from msgspec import Struct
 
 from rvmon.errors import RvmonError
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.classify import has_future, looks_back_at_future, subformulas
 from rvmon.language.checked.specification import Mode, Requirement
-from rvmon.logic.formula import (
-    And,
-    Core,
-    Factory,
-    Literal,
-    Next,
-    Or,
-    Previous,
-    Release,
-    Sense,
-    Since,
-    Until,
-)
+from rvmon.logic import formula as mtl
 from rvmon.logic.formula import Constant as CoreConstant
 from rvmon.logic.four_valued import Four
 from rvmon.logic.normal_form import Lowering, Origin, flattened
@@ -58,8 +46,8 @@ class Obligation(Struct, frozen=True):
     """
 
     trigger: State | None
-    required: Core
-    origins: Mapping[Core, Origin]
+    required: mtl.Core
+    origins: Mapping[mtl.Core, Origin]
     running: State | None = None
     again: State | None = None
     unborn: State | None = None
@@ -72,7 +60,7 @@ class Obligation(Struct, frozen=True):
 
 def lower(
     requirement: Requirement,
-    factory: Factory,
+    factory: mtl.Factory,
     period: int | None = None,
     *,
     measured: bool = False,
@@ -95,13 +83,11 @@ def lower(
     lowering = begin()
     truth_reader = begin(measured=False).reader if measured else lowering.reader
     of_windows = [
-        formulas.itself(capture.value)
-        for capture in requirement.captures
-        if formulas.windows_in(capture.value)
+        rv.itself(capture.value) for capture in requirement.captures if rv.windows_in(capture.value)
     ]
     captures_known = tuple(truth_reader.four(window).read(UNKNOWN) for window in of_windows)
     match requirement.trigger:
-        case formulas.BoundAtom(bound=formulas.Bound.END):
+        case rv.BoundAtom(bound=rv.Bound.END):
             required = lowering.core(requirement.consequent, True)
             return Obligation(None, required, lowering.origins, captures_known=captures_known)
         case formula if has_future(formula):
@@ -136,7 +122,9 @@ def lower(
         doubt = factory.doubt(trigger, pulse=requirement.pulse, every=every)
         running = _running(doubt, requirement, factory)
         here = factory.state_any([factory.negation(running), factory.sure(running)])
-        either = factory.any_of([factory.literal(here, Sense.TRUE), lowering.required(required)])
+        either = factory.any_of(
+            [factory.literal(here, mtl.Sense.TRUE), lowering.required(required)]
+        )
         whole = lowering.episode(running, either, requirement)
         return Obligation(doubt, whole, lowering.origins, running)
 
@@ -151,30 +139,30 @@ def lower(
     )
 
 
-def _running(trigger: State, requirement: Requirement, factory: Factory) -> State:
+def _running(trigger: State, requirement: Requirement, factory: mtl.Factory) -> State:
     if not requirement.captures:
         return trigger
     return factory.state_all([trigger, factory.negation(factory.leaf(Lapsed()))])
 
 
-def _determined(trigger: Four, factory: Factory) -> State:
+def _determined(trigger: Four, factory: mtl.Factory) -> State:
     """TRUE once the trigger was TRUE or FALSE at some position."""
     is_false = factory.sure(factory.negation(trigger.read(TRUE)))
     known = factory.state_any([factory.sure(trigger.read(FALSE)), is_false])
     return factory.since(factory.state_true, known, 0, None)
 
 
-def _unborn(consequent: formulas.Formula, factory: Factory) -> State | None:
+def _unborn(consequent: rv.Formula, factory: mtl.Factory) -> State | None:
     """TRUE while some signal that the consequent reads had no value; `None` if it reads none."""
     found: dict[str, bool] = {}
     for atom in subformulas(consequent):
-        if isinstance(atom, formulas.SignalAtom | formulas.Compare):
+        if isinstance(atom, rv.SignalAtom | rv.Compare):
             for name, moved in signals_of(atom).items():
                 found[name] = found.get(name, False) or moved
     return factory.leaf(Unborn(tuple(sorted(found.items())))) if found else None
 
 
-def _at_once(core: Core, factory: Factory) -> State:
+def _at_once(core: mtl.Core, factory: mtl.Factory) -> State:
     """A state formula that is FALSE where the position alone falsifies the consequent.
 
     Args:
@@ -184,25 +172,25 @@ def _at_once(core: Core, factory: Factory) -> State:
     Source: SEMANTICS, section 3 (After a failure).
     """
 
-    def of(part: Core) -> State:
+    def of(part: mtl.Core) -> State:
         return _at_once(part, factory)
 
     match core:
         case CoreConstant(value=value):
             return factory.state_true if value else factory.state_false
-        case Literal(proposition=proposition, sense=sense):
-            return proposition if sense is Sense.TRUE else factory.negation(proposition)
-        case And(args=args):
+        case mtl.Literal(proposition=proposition, sense=sense):
+            return proposition if sense is mtl.Sense.TRUE else factory.negation(proposition)
+        case mtl.And(args=args):
             return factory.state_all(map(of, args))
-        case Or(args=args):
+        case mtl.Or(args=args):
             return factory.state_any(map(of, args))
-        case Next():
+        case mtl.Next():
             return factory.state_true
-        case Until(left=left, right=right, low=low):
+        case mtl.Until(left=left, right=right, low=low):
             return of(left) if low else factory.state_any([of(left), of(right)])
-        case Release(right=right):
+        case mtl.Release(right=right):
             return of(right)
-        case Since() | Previous():
+        case mtl.Since() | mtl.Previous():
             raise AssertionError("a consequent that looks back has no `again`")
         case _:
             assert_never(core)

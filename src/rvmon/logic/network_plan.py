@@ -12,24 +12,13 @@ from typing import assert_never
 
 from msgspec import Struct
 
-from rvmon.logic.formula import (
-    And,
-    Constant,
-    Core,
-    Literal,
-    Next,
-    Or,
-    Previous,
-    Release,
-    Since,
-    Until,
-)
+from rvmon.logic import formula as mtl
 
 
 class Leaf(Struct, frozen=True):
     """A literal or constant, evaluated on the letter of a position."""
 
-    core: Literal | Constant
+    core: mtl.Literal | mtl.Constant
 
 
 class Junction(Struct, frozen=True):
@@ -105,8 +94,8 @@ class NetworkPlan(Struct, frozen=True):
     """
 
     nodes: tuple[Node, ...]
-    places: dict[Core, int]
-    leaves: tuple[tuple[int, Literal | Constant], ...]
+    places: dict[mtl.Core, int]
+    leaves: tuple[tuple[int, mtl.Literal | mtl.Constant], ...]
     looks_back: bool
 
     def sweep_of(self, node: Shift) -> Sweep:
@@ -126,19 +115,19 @@ def operands_of(node: Node) -> tuple[int, ...]:
     return (node.left, node.right) if isinstance(node, Sweep) else ()
 
 
-def plan_of(required: Core, gap: int | None) -> NetworkPlan:
+def plan_of(required: mtl.Core, gap: int | None) -> NetworkPlan:
     """The network of one formula; `gap`: ticks between positions, `None` if these are samples."""
     return plan_of_all([required], gap)
 
 
-def plan_of_all(formulas: Iterable[Core], gap: int | None) -> NetworkPlan:
+def plan_of_all(formulas: Iterable[mtl.Core], gap: int | None) -> NetworkPlan:
     """One network of several formulas; `NetworkPlan.places` has the place of each."""
     planning = _Planning(gap or 1)
     for formula in formulas:
         planning.place(formula)
     nodes = tuple(planning.nodes)
     leaves = tuple((place, node.core) for place, node in enumerate(nodes) if isinstance(node, Leaf))
-    looks_back = any(isinstance(core, Since | Previous) for core in planning.places)
+    looks_back = any(isinstance(core, mtl.Since | mtl.Previous) for core in planning.places)
     return NetworkPlan(nodes, planning.places, leaves, looks_back)
 
 
@@ -146,7 +135,7 @@ class _Planning:
     def __init__(self, gap: int) -> None:
         self.gap = gap
         self.nodes: list[Node] = []
-        self.places: dict[Core, int] = {}
+        self.places: dict[mtl.Core, int] = {}
         self._known: dict[Node, int] = {}
 
     def add(self, node: Node) -> int:
@@ -157,26 +146,26 @@ class _Planning:
             self.nodes.append(node)
         return place
 
-    def place(self, core: Core) -> int:
+    def place(self, core: mtl.Core) -> int:
         """The place of a formula."""
         place = self.places.get(core)
         if place is None:
             place = self.places[core] = self._place(core)
         return place
 
-    def _place(self, core: Core) -> int:
+    def _place(self, core: mtl.Core) -> int:
         match core:
-            case Constant() | Literal():
+            case mtl.Constant() | mtl.Literal():
                 return self.add(Leaf(core))
-            case And(args=args) | Or(args=args):
-                return self.join([self.place(arg) for arg in args], isinstance(core, And))
-            case Next(operand=operand):
+            case mtl.And(args=args) | mtl.Or(args=args):
+                return self.join([self.place(arg) for arg in args], isinstance(core, mtl.And))
+            case mtl.Next(operand=operand):
                 return self._neighbour(operand, 1, False)
-            case Previous(operand=operand, first=first):
+            case mtl.Previous(operand=operand, first=first):
                 return self._neighbour(operand, -1, first)
-            case Until() | Release():
+            case mtl.Until() | mtl.Release():
                 return self._ahead(core)
-            case Since():
+            case mtl.Since():
                 return self._behind(core)
             case _:
                 assert_never(core)
@@ -186,7 +175,7 @@ class _Planning:
         different = tuple(dict.fromkeys(parts))
         return different[0] if len(different) == 1 else self.add(Junction(different, every))
 
-    def _neighbour(self, operand: Core, offset: int, first: bool) -> int:
+    def _neighbour(self, operand: mtl.Core, offset: int, first: bool) -> int:
         """The operand at the next position, or the previous one; `first` where there is none.
 
         `false U φ`, shifted by one tick, reads φ at the nearest position: only positions count,
@@ -197,8 +186,8 @@ class _Planning:
         nearest = self.add(Sweep(nowhere, own, offset > 0, first, False))
         return self.add(Shift(nearest, offset, 0))
 
-    def _ahead(self, core: Until | Release) -> int:
-        every = isinstance(core, Release)
+    def _ahead(self, core: mtl.Until | mtl.Release) -> int:
+        every = isinstance(core, mtl.Release)
         low = -(-core.low // self.gap)
         kept = every and core.high is None
 
@@ -220,7 +209,7 @@ class _Planning:
             parts.append(window(self.place(core.left), 0, low - 1, not every, core.low))
         return self.join(parts, not every)
 
-    def _behind(self, core: Since) -> int:
+    def _behind(self, core: mtl.Since) -> int:
         every = core.dual
         low = -(-core.low // self.gap)
 
@@ -239,9 +228,9 @@ class _Planning:
         return self.join(parts, not every)
 
 
-def _is_neutral(left: Core, every: bool) -> bool:
+def _is_neutral(left: mtl.Core, every: bool) -> bool:
     """Whether the left operand is neutral, so that the operator is `F`, `G`, `O` or `H`."""
-    return isinstance(left, Constant) and left.value is not every
+    return isinstance(left, mtl.Constant) and left.value is not every
 
 
-_NOWHERE: dict[bool, Constant] = {False: Constant(-1, False), True: Constant(-2, True)}
+_NOWHERE: dict[bool, mtl.Constant] = {False: mtl.Constant(-1, False), True: mtl.Constant(-2, True)}

@@ -10,33 +10,12 @@ from typing import assert_never
 
 from msgspec import Struct
 
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.classify import has_future
-from rvmon.language.checked.formula import (
-    Binary,
-    BinaryOp,
-    Compare,
-    Constant,
-    Formula,
-    Interval,
-    Unary,
-    UnaryOp,
-)
 from rvmon.language.checked.formula import Constant as ConstantLeaf
 from rvmon.language.checked.rewrite import rewritten
 from rvmon.language.checked.specification import Requirement
-from rvmon.logic.formula import (
-    And,
-    Core,
-    Factory,
-    Literal,
-    Next,
-    Or,
-    Previous,
-    Release,
-    Sense,
-    Since,
-    Until,
-)
+from rvmon.logic import formula as mtl
 from rvmon.logic.formula import Constant as CoreConstant
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Elapsed, State, StateOp, reads_fields
 from rvmon.logic.three_valued import Reader
@@ -45,7 +24,7 @@ from rvmon.logic.three_valued import Reader
 class Origin(Struct, frozen=True):
     """The source of a core formula: a formula of the specification, or its negation."""
 
-    formula: Formula
+    formula: rv.Formula
     positive: bool
 
 
@@ -66,7 +45,7 @@ class Lowering:
 
     def __init__(
         self,
-        factory: Factory,
+        factory: mtl.Factory,
         period: int | None,
         favour: bool,
         *,
@@ -81,10 +60,10 @@ class Lowering:
         self._may_lack_position = sampled
         self._measured = measured
         self._from_zero = opened
-        self.origins: dict[Core, Origin] = {}
-        self._made_up: dict[int, Formula] = {}
+        self.origins: dict[mtl.Core, Origin] = {}
+        self._made_up: dict[int, rv.Formula] = {}
 
-    def state(self, formula: Formula, positive: bool) -> State:
+    def state(self, formula: rv.Formula, positive: bool) -> State:
         """The state formula of `formula`; `positive` says whether it or its negation is required.
 
         The sign decides which value of unborn propositions is in favour of the requirement.
@@ -93,77 +72,81 @@ class Lowering:
             return self.reader.literal(formula, UNKNOWN)
         return self.reader.literal(formula, TRUE if positive else FALSE)
 
-    def episode(self, trigger: State, implied: Core, requirement: Requirement) -> Core:
+    def episode(self, trigger: State, implied: mtl.Core, requirement: Requirement) -> mtl.Core:
         """`implied` at every position until the trigger is known to be false."""
-        over = self.factory.literal(trigger, Sense.KNOWN_FALSE)
+        over = self.factory.literal(trigger, mtl.Sense.KNOWN_FALSE)
         self.origins.setdefault(over, Origin(requirement.trigger, False))
         required = self.factory.release(over, implied, 0, None)
         for node in (implied, required):
             self.origins[node] = Origin(requirement.consequent, True)
         return required
 
-    def core(self, formula: Formula, positive: bool) -> Core:
+    def core(self, formula: rv.Formula, positive: bool) -> mtl.Core:
         """A formula, or its negation, in negation normal form."""
-        if isinstance(formula, Constant):
+        if isinstance(formula, rv.Constant):
             return self.factory.constant(formula.value is positive)
         made_up = id(formula) in self._made_up
         if made_up or has_future(formula):
             made = self._core_future(formula, positive)
         else:
-            sense = Sense.TRUE if positive else Sense.FALSE
+            sense = mtl.Sense.TRUE if positive else mtl.Sense.FALSE
             made = self.factory.literal(self.state(formula, positive), sense)
         if not made_up or _keeps_origin(formula):
             self.origins.setdefault(made, Origin(formula, positive))
         return made
 
-    def _core_future(self, formula: Formula, positive: bool) -> Core:
+    def _core_future(self, formula: rv.Formula, positive: bool) -> mtl.Core:
         match formula:
-            case Unary(op=UnaryOp.NOT, operand=operand):
+            case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
                 return self.core(operand, not positive)
-            case Unary(op=UnaryOp.NEXT, operand=operand):
+            case rv.Unary(op=rv.UnaryOp.NEXT, operand=operand):
                 return self.factory.next(self.required(self.core(operand, positive)))
-            case Unary(op=UnaryOp.PREVIOUS, operand=operand):
+            case rv.Unary(op=rv.UnaryOp.PREVIOUS, operand=operand):
                 before = self._in_past(self.core(operand, positive))
                 return self.factory.core_previous(before, first=not positive)
-            case Binary(op=BinaryOp.AND, left=left, right=right):
+            case rv.Binary(op=rv.BinaryOp.AND, left=left, right=right):
                 return self._junction_of(left, right, positive, positive)
-            case Binary(op=BinaryOp.OR, left=left, right=right):
+            case rv.Binary(op=rv.BinaryOp.OR, left=left, right=right):
                 return self._junction_of(left, right, positive, not positive)
-            case Binary(op=BinaryOp.UNTIL, left=left, right=right, interval=interval):
+            case rv.Binary(op=rv.BinaryOp.UNTIL, left=left, right=right, interval=interval):
                 ends = (self.core(left, positive), self.core(right, positive))
                 return self._until(*ends, interval, positive)
-            case Binary(op=BinaryOp.SINCE, left=left, right=right, interval=interval):
+            case rv.Binary(op=rv.BinaryOp.SINCE, left=left, right=right, interval=interval):
                 ends = (self.core(left, positive), self.core(right, positive))
                 return self._since(*ends, interval, not positive)
-            case Unary(op=UnaryOp.HELD, operand=operand, interval=Interval() as window) if (
+            case rv.Unary(
+                op=rv.UnaryOp.HELD, operand=operand, interval=rv.Interval() as window
+            ) if (
                 self._measured
             ):  # the trace may have begun before an outage, beyond which nothing else is measured
-                whole = Unary(UnaryOp.HISTORICALLY, operand, window)
+                whole = rv.Unary(rv.UnaryOp.HISTORICALLY, operand, window)
                 self._made_up[id(whole)] = whole
                 begun = self.factory.leaf(Elapsed(window.high or 0))
                 also = begun if positive else self.factory.negation(begun)
                 return self.join_signed([(whole, positive)], positive, [also])
-            case Unary() | Binary():
+            case rv.Unary() | rv.Binary():
                 return self._core_future(self._rewritten(formula), positive)
             case _:
                 raise AssertionError("an atom has no future operator below it")
 
-    def _rewritten(self, formula: Unary | Binary) -> Formula:
+    def _rewritten(self, formula: rv.Unary | rv.Binary) -> rv.Formula:
         """The formula in primitive operators; new nodes are recorded, as they have no origin."""
         made = rewritten(formula)
-        own = (formula.operand,) if isinstance(formula, Unary) else (formula.left, formula.right)
+        own = (formula.operand,) if isinstance(formula, rv.Unary) else (formula.left, formula.right)
         waiting = [made]
         while waiting:
             node = waiting.pop()
             if all(node is not operand for operand in own):
                 self._made_up[id(node)] = node
-                if isinstance(node, Unary):
+                if isinstance(node, rv.Unary):
                     waiting.append(node.operand)
-                elif isinstance(node, Binary):
+                elif isinstance(node, rv.Binary):
                     waiting += (node.left, node.right)
         return made
 
-    def _since(self, left: Core, right: Core, interval: Interval | None, dual: bool) -> Core:
+    def _since(
+        self, left: mtl.Core, right: mtl.Core, interval: rv.Interval | None, dual: bool
+    ) -> mtl.Core:
         low, high = (interval.low, interval.high) if interval else (0, None)
         # `once` and `historically` have a constant on the left, which needs no position to be true.
         if left is not self.factory.constant(not dual):
@@ -171,7 +154,9 @@ class Lowering:
         right = self._in_past(right)
         return self.factory.core_since(left, right, low, high, dual=dual)
 
-    def _until(self, left: Core, right: Core, interval: Interval | None, positive: bool) -> Core:
+    def _until(
+        self, left: mtl.Core, right: mtl.Core, interval: rv.Interval | None, positive: bool
+    ) -> mtl.Core:
         low, high = (interval.low, interval.high) if interval else (0, None)
         if self._from_zero and not positive:
             low = 0
@@ -182,34 +167,36 @@ class Lowering:
             right = self.required(right)
         return make(left, right, low, high)
 
-    def required(self, operand: Core) -> Core:
+    def required(self, operand: mtl.Core) -> mtl.Core:
         """An operand as required at later positions, which an outage of sampled time may lack."""
         return self._if_position_exists(operand) if self._may_lack_position else operand
 
-    def _in_past(self, operand: Core) -> Core:
+    def _in_past(self, operand: mtl.Core) -> mtl.Core:
         """An operand as required at earlier positions, in any time model."""
         return self._if_position_exists(operand)
 
-    def _if_position_exists(self, operand: Core) -> Core:
+    def _if_position_exists(self, operand: mtl.Core) -> mtl.Core:
         """`operand`, but unknown where there may be no position; literals are so already."""
         factory = self.factory
-        if isinstance(operand, Literal) or self._measured:
+        if isinstance(operand, mtl.Literal) or self._measured:
             return operand  # what is measured is where there surely are positions
         exists = factory.leaf(Elapsed(0))  # true; unknown where there may be no position
-        whole = factory.all_of([factory.literal(exists, Sense.TRUE), operand])
-        made = factory.any_of([whole, factory.literal(exists, Sense.FALSE)])
+        whole = factory.all_of([factory.literal(exists, mtl.Sense.TRUE), operand])
+        made = factory.any_of([whole, factory.literal(exists, mtl.Sense.FALSE)])
         if operand in self.origins:
             self.origins.setdefault(made, self.origins[operand])
         return made
 
-    def _junction_of(self, left: Formula, right: Formula, sign: bool, conjunction: bool) -> Core:
+    def _junction_of(
+        self, left: rv.Formula, right: rv.Formula, sign: bool, conjunction: bool
+    ) -> mtl.Core:
         """The conjunction or disjunction of two operands with a sign, flattened."""
         args = [*flattened(left, sign, conjunction), *flattened(right, sign, conjunction)]
         return self.join_signed(args, conjunction)
 
     def join_signed(
-        self, args: list[tuple[Formula, bool]], conjunction: bool, further: Sequence[State] = ()
-    ) -> Core:
+        self, args: list[tuple[rv.Formula, bool]], conjunction: bool, further: Sequence[State] = ()
+    ) -> mtl.Core:
         """The conjunction, or disjunction, of signed operands and of the states in `further`.
 
         All operands without future operators are joined into a single proposition.
@@ -224,48 +211,48 @@ class Lowering:
                 for f, sign in present
             ]
             whole = (factory.state_all if conjunction else factory.state_any)([*further, *states])
-            literal = factory.literal(whole, Sense.TRUE)
+            literal = factory.literal(whole, mtl.Sense.TRUE)
             if present:
                 self.origins.setdefault(literal, Origin(_rejoined(present, conjunction), True))
             parts.append(literal)
         return (factory.all_of if conjunction else factory.any_of)(parts)
 
 
-def _keeps_origin(formula: Formula) -> bool:
+def _keeps_origin(formula: rv.Formula) -> bool:
     """Whether a rewritten node is an origin: the `Y` that `rise` and `fall` expand to."""
-    return isinstance(formula, Unary) and formula.op is UnaryOp.PREVIOUS
+    return isinstance(formula, rv.Unary) and formula.op is rv.UnaryOp.PREVIOUS
 
 
-def flattened(formula: Formula, sign: bool, conjunction: bool) -> list[tuple[Formula, bool]]:
+def flattened(formula: rv.Formula, sign: bool, conjunction: bool) -> list[tuple[rv.Formula, bool]]:
     """The operands of nested conjunctions (or disjunctions), each with its sign.
 
     Negations are pushed inwards: `a -> b` is the disjunction of `a` (negative) and `b`.
     """
     match formula:
-        case Unary(op=UnaryOp.NOT, operand=operand):
+        case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
             return flattened(operand, not sign, conjunction)
-        case Binary(op=BinaryOp.AND, left=left, right=right) if sign is conjunction:
+        case rv.Binary(op=rv.BinaryOp.AND, left=left, right=right) if sign is conjunction:
             return [*flattened(left, sign, conjunction), *flattened(right, sign, conjunction)]
-        case Binary(op=BinaryOp.OR, left=left, right=right) if sign is not conjunction:
+        case rv.Binary(op=rv.BinaryOp.OR, left=left, right=right) if sign is not conjunction:
             return [*flattened(left, sign, conjunction), *flattened(right, sign, conjunction)]
-        case Binary(op=BinaryOp.IMPLIES, left=left, right=right) if sign is not conjunction:
+        case rv.Binary(op=rv.BinaryOp.IMPLIES, left=left, right=right) if sign is not conjunction:
             return [*flattened(left, not sign, conjunction), *flattened(right, sign, conjunction)]
         case _:
             return [(formula, sign)]
 
 
-def _rejoined(parts: list[tuple[Formula, bool]], conjunction: bool) -> Formula:
+def _rejoined(parts: list[tuple[rv.Formula, bool]], conjunction: bool) -> rv.Formula:
     """Signed formulas joined to one formula of the language, for display."""
-    op = BinaryOp.AND if conjunction else BinaryOp.OR
-    signed = [f if sign else Unary(UnaryOp.NOT, f, span=f.span) for f, sign in parts]
+    op = rv.BinaryOp.AND if conjunction else rv.BinaryOp.OR
+    signed = [f if sign else rv.Unary(rv.UnaryOp.NOT, f, span=f.span) for f, sign in parts]
     whole = signed[0]
     for part in signed[1:]:
         span = whole.span.to(part.span) if whole.span and part.span else None
-        whole = Binary(op, whole, part, span=span)
+        whole = rv.Binary(op, whole, part, span=span)
     return whole
 
 
-def expanded(core: Core) -> Core:
+def expanded(core: mtl.Core) -> mtl.Core:
     """The formula with its propositions expanded, so that literals read leaves.
 
     Two-valued tests of knowledge (`sure`, doubt, KNOWN_FALSE, `φ and not φ`) stay whole, and so do
@@ -276,57 +263,57 @@ def expanded(core: Core) -> Core:
 
 class _Expanding:
     def __init__(self) -> None:
-        self.factory = Factory()
-        self._made: dict[Core, Core] = {}
+        self.factory = mtl.Factory()
+        self._made: dict[mtl.Core, mtl.Core] = {}
 
-    def core(self, core: Core) -> Core:
+    def core(self, core: mtl.Core) -> mtl.Core:
         found = self._made.get(core)
         if found is None:
             found = self._made[core] = self._core(core)
         return found
 
-    def _core(self, core: Core) -> Core:
+    def _core(self, core: mtl.Core) -> mtl.Core:
         factory = self.factory
         match core:
             case CoreConstant(value=value):
                 return factory.constant(value)
-            case Literal(sense=Sense.KNOWN_FALSE, proposition=state):
-                return factory.literal(state, Sense.KNOWN_FALSE)
-            case Literal(proposition=state, sense=sense):
-                return self.state(state, sense is Sense.TRUE)
-            case And(args=args):
+            case mtl.Literal(sense=mtl.Sense.KNOWN_FALSE, proposition=state):
+                return factory.literal(state, mtl.Sense.KNOWN_FALSE)
+            case mtl.Literal(proposition=state, sense=sense):
+                return self.state(state, sense is mtl.Sense.TRUE)
+            case mtl.And(args=args):
                 return factory.all_of(self.core(arg) for arg in args)
-            case Or(args=args):
+            case mtl.Or(args=args):
                 return factory.any_of(self.core(arg) for arg in args)
-            case Next(operand=operand):
+            case mtl.Next(operand=operand):
                 return factory.next(self.core(operand))
-            case Previous(operand=operand, first=first):
+            case mtl.Previous(operand=operand, first=first):
                 return factory.core_previous(self.core(operand), first=first)
-            case Until(left=left, right=right, low=low, high=high):
+            case mtl.Until(left=left, right=right, low=low, high=high):
                 return factory.until(self.core(left), self.core(right), low, high)
-            case Release(left=Literal(sense=Sense.KNOWN_FALSE) as over, right=right):
+            case mtl.Release(left=mtl.Literal(sense=mtl.Sense.KNOWN_FALSE) as over, right=right):
                 # An episode: its end satisfies `R` at that position too, whatever the robustness.
                 ended = self.core(over)
                 return factory.release(ended, factory.any_of([ended, self.core(right)]), 0, None)
-            case Release(left=left, right=right, low=low, high=high):
+            case mtl.Release(left=left, right=right, low=low, high=high):
                 return factory.release(self.core(left), self.core(right), low, high)
-            case Since(left=left, right=right, low=low, high=high, dual=dual):
+            case mtl.Since(left=left, right=right, low=low, high=high, dual=dual):
                 ends = self.core(left), self.core(right)
                 return factory.core_since(*ends, low, high, dual=dual)
             case _:
                 assert_never(core)
 
-    def state(self, state: State, positive: bool) -> Core:
+    def state(self, state: State, positive: bool) -> mtl.Core:
         factory = self.factory
         match state.op:
             case StateOp.LEAF if isinstance(state.leaf, ConstantLeaf):
                 return factory.constant(state.leaf.value is positive)
             case StateOp.LEAF | StateOp.SURE | StateOp.DOUBT:
-                return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
+                return factory.literal(state, mtl.Sense.TRUE if positive else mtl.Sense.FALSE)
             case StateOp.AMOUNT | StateOp.COMPARED | StateOp.PASSED:
-                return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
+                return factory.literal(state, mtl.Sense.TRUE if positive else mtl.Sense.FALSE)
             case StateOp.AND if _tests_unknown(state):
-                return factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
+                return factory.literal(state, mtl.Sense.TRUE if positive else mtl.Sense.FALSE)
             case StateOp.NOT:
                 return self.state(state.args[0], not positive)
             case StateOp.AND | StateOp.OR:
@@ -353,5 +340,5 @@ def _tests_unknown(state: State) -> bool:
         if one.op is not StateOp.LEAF
         # An atom may also be conjoined with its negation by the author of a specification; only
         # a test of this module reads both with the same value before the birth of the signals.
-        or (isinstance(one.leaf, Compare) and (one.unborn != UNKNOWN or reads_fields(one.leaf)))
+        or (isinstance(one.leaf, rv.Compare) and (one.unborn != UNKNOWN or reads_fields(one.leaf)))
     )

@@ -9,14 +9,7 @@ from typing import NamedTuple
 from msgspec import Struct, field
 from msgspec.structs import replace
 
-from rvmon.language.checked.formula import (
-    Compare,
-    Numeric,
-    Probe,
-    ProbeAtom,
-    UpdateValue,
-    WindowValue,
-)
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.logic.alphabet import Alphabet
 from rvmon.logic.automaton import Automaton
@@ -221,27 +214,29 @@ def plan_of_watches(
     return replace(plan, watches=tuple(watches), groups=tuple(groups))
 
 
-def _shared(spec: CheckedSpec, states: Iterable[State], captured: Iterable[Numeric] = ()) -> Plan:
+def _shared(
+    spec: CheckedSpec, states: Iterable[State], captured: Iterable[rv.Numeric] = ()
+) -> Plan:
     """A plan with the graph of state formulas, and nothing judged or counted yet."""
     graph = graph_of(states)
     names = (tuple(spec.signals), tuple(spec.events))
     return Plan(spec, (), graph, spec.gap, *names, _uses_of(graph, captured))
 
 
-def _uses_of(graph: Graph, captured: Iterable[Numeric]) -> dict[str, Uses]:
+def _uses_of(graph: Graph, captured: Iterable[rv.Numeric]) -> dict[str, Uses]:
     """By name, the uses of signals and events; `captured` are the expressions of `let`."""
     found = {
         name: _uses([graph.nodes[place] for place in places], name)
         for name, places in graph.by_name.items()
     }
     amounts = (node.amount for node in graph.nodes)
-    windows = (amount.value for amount in amounts if isinstance(amount, WindowValue))
+    windows = (amount.value for amount in amounts if isinstance(amount, rv.WindowValue))
     # The value of a window is no leaf of the graph, so its names have to be added.
     for expression in (*captured, *(value for value in windows if value is not None)):
         for name in inputs_of(expression):
             found.setdefault(name, Uses())
         for part in operands(expression):
-            if isinstance(part, UpdateValue):
+            if isinstance(part, rv.UpdateValue):
                 found[part.name] = replace(found[part.name], history=True)
     return found
 
@@ -250,7 +245,7 @@ def _uses(leaves: Sequence[State], name: str) -> Uses:
     return Uses(
         history=any(_asks_history(state, name) for state in leaves),
         marked=any(
-            isinstance(state.leaf, ProbeAtom) and state.leaf.probe is not Probe.KNOWN
+            isinstance(state.leaf, rv.ProbeAtom) and state.leaf.probe is not rv.Probe.KNOWN
             for state in leaves
         ),
     )
@@ -258,12 +253,12 @@ def _uses(leaves: Sequence[State], name: str) -> Uses:
 
 def _asks_history(state: State, name: str) -> bool:
     leaf = state.leaf
-    if isinstance(leaf, ProbeAtom):
-        return leaf.probe is Probe.CHANGED
+    if isinstance(leaf, rv.ProbeAtom):
+        return leaf.probe is rv.Probe.CHANGED
     if isinstance(leaf, Unborn):
         return dict(leaf.signals).get(name, False)
-    return isinstance(leaf, Compare) and any(
-        isinstance(part, UpdateValue) and part.name == name
+    return isinstance(leaf, rv.Compare) and any(
+        isinstance(part, rv.UpdateValue) and part.name == name
         for side in (leaf.left, leaf.right)
         for part in operands(side)
     )

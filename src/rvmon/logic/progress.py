@@ -11,24 +11,11 @@ from collections.abc import Callable, Sequence
 from enum import Enum
 from typing import assert_never
 
-from rvmon.logic.formula import (
-    And,
-    Constant,
-    Core,
-    Factory,
-    Literal,
-    Next,
-    Or,
-    Previous,
-    Release,
-    Sense,
-    Since,
-    Until,
-)
+from rvmon.logic import formula as mtl
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual, both, either, substitute
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Lapsed, State, StateOp, Unborn
 
-ReadLiteral = Callable[[Literal], Residual]
+ReadLiteral = Callable[[mtl.Literal], Residual]
 
 
 class Phase(Enum):
@@ -39,7 +26,7 @@ class Phase(Enum):
     OVER = 2
 
 
-def phase(node: Until | Release, age: int) -> Phase:
+def phase(node: mtl.Until | mtl.Release, age: int) -> Phase:
     """The position of an age in ticks relative to the window of `node`."""
     if age < node.low:
         return Phase.BEFORE
@@ -73,23 +60,23 @@ class _Step:
         self.ages = ages
         self.limit = limit
         self.read = read
-        self.made: dict[Core, Residual] = {}
+        self.made: dict[mtl.Core, Residual] = {}
 
     def atom(self, atom: Atom) -> Residual:
         node, clock = atom
         match node:
-            case Literal():
+            case mtl.Literal():
                 raise AssertionError("literals are read when they are instantiated")
-            case Next(operand=operand):
+            case mtl.Next(operand=operand):
                 return self.instance(operand)
-            case Until() | Release():
+            case mtl.Until() | mtl.Release():
                 age = 0 if clock == NO_CLOCK else self.ages[clock]
                 return self.window(node, clock, phase(node, age))
             case _:
                 assert_never(node)
 
-    def window(self, node: Until | Release, clock: int, where: Phase) -> Residual:
-        until = isinstance(node, Until)
+    def window(self, node: mtl.Until | mtl.Release, clock: int, where: Phase) -> Residual:
+        until = isinstance(node, mtl.Until)
         if where is Phase.OVER:
             return FAILS if until else HOLDS
         # `φ U ψ` is `φ ∧ pending` before its window and `ψ ∨ (φ ∧ pending)` in it; `R` is the dual.
@@ -102,47 +89,47 @@ class _Step:
         right = self.instance(node.right)
         return either(right, waiting) if until else both(right, waiting, self.limit)
 
-    def instance(self, node: Core) -> Residual:
+    def instance(self, node: mtl.Core) -> Residual:
         """The residual of `node` instantiated at this position."""
         found = self.made.get(node)
         if found is None:
             found = self.made[node] = self._instance(node)
         return found
 
-    def _instance(self, node: Core) -> Residual:
+    def _instance(self, node: mtl.Core) -> Residual:
         match node:
-            case Constant(value=value):
+            case mtl.Constant(value=value):
                 return HOLDS if value else FAILS
-            case Literal():
+            case mtl.Literal():
                 return self.read(node)
-            case And(args=args):
+            case mtl.And(args=args):
                 result = HOLDS
                 for arg in args:
                     result = both(result, self.instance(arg), self.limit)
                 return result
-            case Or(args=args):
+            case mtl.Or(args=args):
                 result = FAILS
                 for arg in args:
                     result = either(result, self.instance(arg))
                 return result
-            case Next():
+            case mtl.Next():
                 return frozenset([frozenset([(node, NO_CLOCK)])])
-            case Until() | Release():
+            case mtl.Until() | mtl.Release():
                 # All that is instantiated at one position shares one clock, whatever its bounds:
                 # clocks count positions of birth, not operators.
                 return self.window(node, len(self.ages), phase(node, 0))
-            case Since() | Previous():
+            case mtl.Since() | mtl.Previous():
                 raise AssertionError("a past operator above a future one is left to the network")
             case _:
                 assert_never(node)
 
 
-def instance(node: Core, read: ReadLiteral) -> Residual:
+def instance(node: mtl.Core, read: ReadLiteral) -> Residual:
     """The residual of a formula that is instantiated at a position."""
     return _Step((), read, None).instance(node)
 
 
-def opened(node: Until | Release, clock: int) -> Atom:
+def opened(node: mtl.Until | mtl.Release, clock: int) -> Atom:
     """The atom inside its window: lower bound 0, and no clock if there is no upper bound."""
     return node.opened or node, NO_CLOCK if node.high is None else clock
 
@@ -155,10 +142,10 @@ def after(residual: Residual, ages: Sequence[int]) -> Residual:
     settled: dict[Atom, Residual] = {}
     for clause in residual:
         for node, clock in clause:
-            if not isinstance(node, Until | Release) or clock == NO_CLOCK:
+            if not isinstance(node, mtl.Until | mtl.Release) or clock == NO_CLOCK:
                 continue
             if phase(node, ages[clock]) is Phase.OVER:
-                settled[node, clock] = FAILS if isinstance(node, Until) else HOLDS
+                settled[node, clock] = FAILS if isinstance(node, mtl.Until) else HOLDS
     return substitute(residual, settled) if settled else residual
 
 
@@ -177,7 +164,7 @@ def holds_at_end(residual: Residual, ages: Sequence[int]) -> bool:
 def _counts_at_end(atom: Atom, ages: Sequence[int]) -> bool:
     """Whether the atom is an unbounded `R` whose window has opened (SEMANTICS 3, The end)."""
     node, clock = atom
-    if not isinstance(node, Release) or node.high is not None:
+    if not isinstance(node, mtl.Release) or node.high is not None:
         return False
     return clock == NO_CLOCK or ages[clock] >= node.low
 
@@ -192,8 +179,8 @@ class Duals:
     """
 
     def __init__(self) -> None:
-        self._factory = Factory()
-        self._made: dict[tuple[Core, bool], Core] = {}
+        self._factory = mtl.Factory()
+        self._made: dict[tuple[mtl.Core, bool], mtl.Core] = {}
 
     def affirmed(self, residual: Residual) -> Residual:
         """The residual, rebuilt over known propositions."""
@@ -218,10 +205,10 @@ class Duals:
     def _atom(self, atom: Atom, positive: bool) -> Atom:
         node, clock = atom
         made = self.of(node, positive)
-        assert isinstance(made, Literal | Next | Until | Release), "nothing folds"
+        assert isinstance(made, mtl.Literal | mtl.Next | mtl.Until | mtl.Release), "nothing folds"
         return made, clock
 
-    def of(self, node: Core, positive: bool) -> Core:
+    def of(self, node: mtl.Core, positive: bool) -> mtl.Core:
         """A formula (`positive`) or its negation, rebuilt over known propositions."""
         key = (node, positive)
         found = self._made.get(key)
@@ -229,30 +216,30 @@ class Duals:
             found = self._made[key] = self._of(node, positive)
         return found
 
-    def _of(self, node: Core, positive: bool) -> Core:
+    def _of(self, node: mtl.Core, positive: bool) -> mtl.Core:
         factory = self._factory
         match node:
-            case Constant(value=value):
+            case mtl.Constant(value=value):
                 return factory.constant(value is positive)
-            case Literal(proposition=proposition, sense=sense):
-                return self._state(proposition, (sense is Sense.TRUE) is positive)
-            case And(args=args) | Or(args=args):
-                join = factory.all_of if isinstance(node, And) is positive else factory.any_of
+            case mtl.Literal(proposition=proposition, sense=sense):
+                return self._state(proposition, (sense is mtl.Sense.TRUE) is positive)
+            case mtl.And(args=args) | mtl.Or(args=args):
+                join = factory.all_of if isinstance(node, mtl.And) is positive else factory.any_of
                 return join(self.of(arg, positive) for arg in args)
-            case Next(operand=operand):
+            case mtl.Next(operand=operand):
                 return factory.next(self.of(operand, positive))
             case (
-                Until(left=left, right=right, low=low, high=high)
-                | Release(left=left, right=right, low=low, high=high)
+                mtl.Until(left=left, right=right, low=low, high=high)
+                | mtl.Release(left=left, right=right, low=low, high=high)
             ):
-                make = factory.until if isinstance(node, Until) is positive else factory.release
+                make = factory.until if isinstance(node, mtl.Until) is positive else factory.release
                 return make(self.of(left, positive), self.of(right, positive), low, high)
-            case Since() | Previous():
+            case mtl.Since() | mtl.Previous():
                 return factory.constant(True)
             case _:
                 assert_never(node)
 
-    def _state(self, state: State, positive: bool) -> Core:
+    def _state(self, state: State, positive: bool) -> mtl.Core:
         """A state formula, or its negation, over literals of leaves and of past operators."""
         match state.op:
             case StateOp.NOT:
@@ -274,6 +261,6 @@ class Duals:
                 | StateOp.PASSED
                 | StateOp.DOUBT
             ):
-                return self._factory.literal(state, Sense.TRUE if positive else Sense.FALSE)
+                return self._factory.literal(state, mtl.Sense.TRUE if positive else mtl.Sense.FALSE)
             case _:
                 assert_never(state.op)

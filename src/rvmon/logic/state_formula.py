@@ -7,62 +7,57 @@ from enum import Enum
 
 from msgspec import Struct
 
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 
 
-def operands(expression: formulas.Numeric) -> Iterator[formulas.Numeric]:
+def operands(expression: rv.Numeric) -> Iterator[rv.Numeric]:
     """The non-arithmetic leaves of a numeric expression."""
     match expression:
-        case formulas.Arithmetic(args=args):
+        case rv.Arithmetic(args=args):
             for arg in args:
                 yield from operands(arg)
         case _:
             yield expression
 
 
-def signals_of(atom: formulas.SignalAtom | formulas.Compare) -> dict[str, bool]:
+def signals_of(atom: rv.SignalAtom | rv.Compare) -> dict[str, bool]:
     """The signals an atom reads; the value says whether it needs an update after the birth.
 
     Source: SEMANTICS, section 1 (Birth).
     """
-    if isinstance(atom, formulas.SignalAtom):
+    if isinstance(atom, rv.SignalAtom):
         return {atom.name: False}
     found: dict[str, bool] = {}
     for part in (*operands(atom.left), *operands(atom.right)):
-        if isinstance(part, formulas.SignalValue | formulas.UpdateValue):
-            found[part.name] = found.get(part.name, False) or isinstance(part, formulas.UpdateValue)
+        if isinstance(part, rv.SignalValue | rv.UpdateValue):
+            found[part.name] = found.get(part.name, False) or isinstance(part, rv.UpdateValue)
     return found
 
 
-def reads_fields(atom: formulas.SignalAtom | formulas.Compare) -> bool:
+def reads_fields(atom: rv.SignalAtom | rv.Compare) -> bool:
     """Whether an atom reads a payload field of an event."""
-    return isinstance(atom, formulas.Compare) and any(
-        isinstance(part, formulas.FieldValue)
-        for part in (*operands(atom.left), *operands(atom.right))
+    return isinstance(atom, rv.Compare) and any(
+        isinstance(part, rv.FieldValue) for part in (*operands(atom.left), *operands(atom.right))
     )
 
 
-def inputs_of(*expressions: formulas.Numeric) -> frozenset[str]:
+def inputs_of(*expressions: rv.Numeric) -> frozenset[str]:
     """The signals and events that expressions read."""
     parts = [part for expression in expressions for part in operands(expression)]
-    signals = {
-        part.name for part in parts if isinstance(part, formulas.SignalValue | formulas.UpdateValue)
-    }
+    signals = {part.name for part in parts if isinstance(part, rv.SignalValue | rv.UpdateValue)}
     return frozenset(signals) | frozenset(events_of(*expressions))
 
 
-def events_of(*expressions: formulas.Numeric) -> tuple[str, ...]:
+def events_of(*expressions: rv.Numeric) -> tuple[str, ...]:
     """The events whose fields expressions read, each once."""
     parts = [part for expression in expressions for part in operands(expression)]
-    return tuple(
-        dict.fromkeys(part.event for part in parts if isinstance(part, formulas.FieldValue))
-    )
+    return tuple(dict.fromkeys(part.event for part in parts if isinstance(part, rv.FieldValue)))
 
 
-def captured_of(*expressions: formulas.Numeric) -> frozenset[str]:
+def captured_of(*expressions: rv.Numeric) -> frozenset[str]:
     """The captured values that expressions read."""
     parts = [part for expression in expressions for part in operands(expression)]
-    return frozenset(part.name for part in parts if isinstance(part, formulas.Captured))
+    return frozenset(part.name for part in parts if isinstance(part, rv.Captured))
 
 
 FALSE, UNKNOWN, TRUE = 0, 1, 2
@@ -96,16 +91,10 @@ class Lapsed(Struct, frozen=True):
 InputState = Lost | Unborn | Lapsed
 """Leaves about the state of knowledge, not about values of the input."""
 
-Shown = (
-    formulas.SignalAtom
-    | formulas.EventAtom
-    | formulas.Compare
-    | formulas.ProbeAtom
-    | formulas.BoundAtom
-)
+Shown = rv.SignalAtom | rv.EventAtom | rv.Compare | rv.ProbeAtom | rv.BoundAtom
 """Leaves that can be written in a specification."""
 
-Leaf = InputState | Shown | formulas.Constant | Elapsed
+Leaf = InputState | Shown | rv.Constant | Elapsed
 """A leaf of a state formula; without spans, so that equal leaves are interned as one."""
 
 
@@ -154,9 +143,9 @@ class State(Struct, frozen=True, eq=False):
     leaf: Leaf | None = None
     low: int = 0
     high: int | None = None
-    amount: formulas.Amount | formulas.WindowValue | None = None
-    compared: formulas.Compare | None = None
-    passed: formulas.Passed | None = None
+    amount: rv.Amount | rv.WindowValue | None = None
+    compared: rv.Compare | None = None
+    passed: rv.Passed | None = None
     unborn: int = UNKNOWN
     pulse: bool = False
     every: bool = False

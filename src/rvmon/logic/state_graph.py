@@ -11,59 +11,31 @@ from typing import assert_never
 
 from msgspec import Struct
 
-from rvmon.language.checked.formula import (
-    Amount,
-    BoundAtom,
-    Captured,
-    Compare,
-    CompareOp,
-    Constant,
-    EventAtom,
-    FieldValue,
-    ProbeAtom,
-    SignalAtom,
-    itself,
-    windows_in,
-)
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.specification import ForEach
 from rvmon.language.print import format_formula, format_numeric
-from rvmon.logic.state_formula import (
-    FALSE,
-    TRUE,
-    UNKNOWN,
-    Elapsed,
-    Lapsed,
-    Leaf,
-    Lost,
-    Shown,
-    State,
-    StateOp,
-    Unborn,
-    captured_of,
-    events_of,
-    inputs_of,
-)
+from rvmon.logic import state_formula as sf
 
 
-def names_of(leaf: Leaf) -> frozenset[str]:
+def names_of(leaf: sf.Leaf) -> frozenset[str]:
     """The signals and events whose updates can change a leaf."""
     match leaf:
-        case Constant() | Elapsed() | Lost() | Lapsed() | BoundAtom():
+        case rv.Constant() | sf.Elapsed() | sf.Lost() | sf.Lapsed() | rv.BoundAtom():
             return frozenset()
-        case Unborn(signals=signals):
+        case sf.Unborn(signals=signals):
             return frozenset(name for name, _ in signals)
-        case SignalAtom(name=name) | EventAtom(name=name) | ProbeAtom(name=name):
+        case rv.SignalAtom(name=name) | rv.EventAtom(name=name) | rv.ProbeAtom(name=name):
             return frozenset({name})
-        case Compare(left=left, right=right):
-            return inputs_of(left, right)
+        case rv.Compare(left=left, right=right):
+            return sf.inputs_of(left, right)
         case _:
             assert_never(leaf)
 
 
-def captured_names(leaf: Leaf) -> frozenset[str]:
+def captured_names(leaf: sf.Leaf) -> frozenset[str]:
     """The captured values that a leaf compares with."""
-    if isinstance(leaf, Compare):
-        return captured_of(leaf.left, leaf.right)
+    if isinstance(leaf, rv.Compare):
+        return sf.captured_of(leaf.left, leaf.right)
     return frozenset()
 
 
@@ -80,8 +52,8 @@ class Graph(Struct, frozen=True, eq=False):
         remembers_captured: whether a node with memory depends on captured values.
     """
 
-    nodes: tuple[State, ...]
-    index: Mapping[State, int]
+    nodes: tuple[sf.State, ...]
+    index: Mapping[sf.State, int]
     operands: tuple[tuple[int, ...], ...]
     parents: tuple[tuple[int, ...], ...]
     by_name: Mapping[str, tuple[int, ...]]
@@ -89,7 +61,7 @@ class Graph(Struct, frozen=True, eq=False):
     remembers_captured: bool
 
 
-def begun_by(state: State) -> str | None:
+def begun_by(state: sf.State) -> str | None:
     """The name of the captured instant at which a window begins; `None` if there is none."""
     if state.amount is None:
         return None
@@ -97,7 +69,7 @@ def begun_by(state: State) -> str | None:
     return begun[0].since if len(begun) == 1 else None
 
 
-def begins_with_attempt(state: State) -> bool:
+def begins_with_attempt(state: sf.State) -> bool:
     """Whether a window begins at a captured instant and reads no other captured value.
 
     Such a window needs no memory from before its attempt.
@@ -105,26 +77,26 @@ def begins_with_attempt(state: State) -> bool:
     if state.amount is None or begun_by(state) is None:
         return False
     others = [part for part in _members(state) if not (part.passed and part.passed.begins)]
-    limit = itself(state.amount.limit) if isinstance(state.amount, Amount) else None
+    limit = rv.itself(state.amount.limit) if isinstance(state.amount, rv.Amount) else None
     others += [part for part in state.args[1:] if part.leaf is None or part.leaf != limit]
     return not any(map(_reads_captured, _all_of(others)))
 
 
-def _members(state: State) -> Sequence[State]:
+def _members(state: sf.State) -> Sequence[sf.State]:
     """The conjuncts that must be true at a position for it to be a member of the window."""
     members = state.args[0]
-    return members.args if members.op is StateOp.AND else (members,)
+    return members.args if members.op is sf.StateOp.AND else (members,)
 
 
-def _reads_captured(state: State) -> bool:
+def _reads_captured(state: sf.State) -> bool:
     if state.passed is not None:
         return state.passed.since is not None
     return state.leaf is not None and bool(captured_names(state.leaf))
 
 
 def leaf_texts(
-    roots: Sequence[State], determined: Collection[State]
-) -> tuple[tuple[State, str], ...]:
+    roots: Sequence[sf.State], determined: Collection[sf.State]
+) -> tuple[tuple[sf.State, str], ...]:
     """The leaves whose values a record shows, with their text in the language.
 
     Leaves that differ only before birth have one text; the one in `lasting` represents them, as the
@@ -133,41 +105,43 @@ def leaf_texts(
     """
     graph = graph_of(roots)
     last = lasting(graph, roots, determined)
-    found: dict[str, dict[bool, State]] = {}
+    found: dict[str, dict[bool, sf.State]] = {}
     for place, state in enumerate(graph.nodes):
         above = [graph.nodes[parent].op for parent in graph.parents[place]]
-        if above and all(op is StateOp.COMPARED for op in above):
+        if above and all(op is sf.StateOp.COMPARED for op in above):
             continue  # the comparison above it shows the value
         leaf = state.leaf or state.compared
-        if isinstance(leaf, Shown) and not _is_captured(leaf):
+        if isinstance(leaf, sf.Shown) and not _is_captured(leaf):
             own = found.setdefault(_text_of(leaf), {})
-            asked = isinstance(leaf, ProbeAtom)
+            asked = isinstance(leaf, rv.ProbeAtom)
             if asked not in own or place in last:
                 own[asked] = state
     return tuple((own[asked], text) for text, own in found.items() for asked in sorted(own))
 
 
-def _is_captured(leaf: Shown) -> bool:
+def _is_captured(leaf: sf.Shown) -> bool:
     """Whether a comparison reads neither input nor windows: captured values and constants only."""
-    sides = (leaf.left, leaf.right) if isinstance(leaf, Compare) else ()
-    return bool(sides) and not inputs_of(*sides) and not windows_in(*sides)
+    sides = (leaf.left, leaf.right) if isinstance(leaf, rv.Compare) else ()
+    return bool(sides) and not sf.inputs_of(*sides) and not rv.windows_in(*sides)
 
 
-def _text_of(leaf: Shown) -> str:
+def _text_of(leaf: sf.Shown) -> str:
     """A leaf in the language; `x == x` is `known(x)`."""
     match leaf:
-        case Compare(op=CompareOp.EQ, left=left, right=right) if left == right:
+        case rv.Compare(op=rv.CompareOp.EQ, left=left, right=right) if left == right:
             return f"known({format_numeric(left)})"
         case _:
             return format_formula(leaf)
 
 
-def lasting(graph: Graph, roots: Iterable[State], determined: Collection[State]) -> frozenset[int]:
+def lasting(
+    graph: Graph, roots: Iterable[sf.State], determined: Collection[sf.State]
+) -> frozenset[int]:
     """The nodes that matter once every signal is born, and what is `determined` is TRUE."""
     settled: list[int | None] = []
     for state, operands in zip(graph.nodes, graph.operands, strict=True):
         known = (
-            TRUE
+            sf.TRUE
             if state in determined
             else _settled(state, [settled[operand] for operand in operands])
         )
@@ -183,31 +157,31 @@ def lasting(graph: Graph, roots: Iterable[State], determined: Collection[State])
     return frozenset(needed)
 
 
-def _settled(state: State, operands: Sequence[int | None]) -> int | None:
+def _settled(state: sf.State, operands: Sequence[int | None]) -> int | None:
     """The constant truth value of a node from then on; `None` if it goes on changing."""
     known = [operand for operand in operands if operand is not None]
     match state.op:
-        case StateOp.LEAF:
-            if isinstance(state.leaf, Constant):
-                return TRUE if state.leaf.value else FALSE
-            if isinstance(state.leaf, Lost):
-                return UNKNOWN
-            return FALSE if isinstance(state.leaf, Unborn) else None
-        case StateOp.NOT if known:
-            return TRUE - known[0]
-        case StateOp.SURE if known:
-            return TRUE if known[0] == TRUE else FALSE
-        case StateOp.AND if FALSE in known or len(known) == len(operands):
+        case sf.StateOp.LEAF:
+            if isinstance(state.leaf, rv.Constant):
+                return sf.TRUE if state.leaf.value else sf.FALSE
+            if isinstance(state.leaf, sf.Lost):
+                return sf.UNKNOWN
+            return sf.FALSE if isinstance(state.leaf, sf.Unborn) else None
+        case sf.StateOp.NOT if known:
+            return sf.TRUE - known[0]
+        case sf.StateOp.SURE if known:
+            return sf.TRUE if known[0] == sf.TRUE else sf.FALSE
+        case sf.StateOp.AND if sf.FALSE in known or len(known) == len(operands):
             return min(known)
-        case StateOp.OR if TRUE in known or len(known) == len(operands):
+        case sf.StateOp.OR if sf.TRUE in known or len(known) == len(operands):
             return max(known)
         case _:
             return None
 
 
-def _all_of(roots: Iterable[State]) -> set[State]:
+def _all_of(roots: Iterable[sf.State]) -> set[sf.State]:
     """State formulas and all their subformulas."""
-    seen: set[State] = set()
+    seen: set[sf.State] = set()
     stack = list(roots)
     while stack:
         state = stack.pop()
@@ -217,7 +191,7 @@ def _all_of(roots: Iterable[State]) -> set[State]:
     return seen
 
 
-def graph_of(roots: Iterable[State]) -> Graph:
+def graph_of(roots: Iterable[sf.State]) -> Graph:
     """The graph of the roots and all their subformulas."""
     nodes = tuple(sorted(_all_of(roots), key=lambda state: state.id))
     index = {state: place for place, state in enumerate(nodes)}
@@ -237,12 +211,12 @@ def graph_of(roots: Iterable[State]) -> Graph:
                 varies.add(place)
         elif varies.intersection(operands[place]):
             varies.add(place)
-        if state.op in (StateOp.PREVIOUS, StateOp.SINCE, StateOp.AMOUNT, StateOp.DOUBT):
+        if state.op in (sf.StateOp.PREVIOUS, sf.StateOp.SINCE, sf.StateOp.AMOUNT, sf.StateOp.DOUBT):
             # Memory that reads captured values is another for each attempt, unless it begins with
             # it.
             remembers |= place in varies and not begins_with_attempt(state)
             stateful.append(place)
-        elif isinstance(state.leaf, Elapsed) or state.op is StateOp.PASSED:
+        elif isinstance(state.leaf, sf.Elapsed) or state.op is sf.StateOp.PASSED:
             stateful.append(place)
     return Graph(
         nodes,
@@ -267,13 +241,13 @@ class Reach(Struct, frozen=True):
     """
 
     own: frozenset[int]
-    fields: Mapping[str, FieldValue]
+    fields: Mapping[str, rv.FieldValue]
     others: frozenset[str]
     is_fresh: bool
     begins: bool
 
 
-def reach_of(graph: Graph, each: ForEach, trigger: State | None, *, looks_back: bool) -> Reach:
+def reach_of(graph: Graph, each: ForEach, trigger: sf.State | None, *, looks_back: bool) -> Reach:
     """The dependencies of the instances of a requirement.
 
     For an instance without a key, occurrences of the event are unknown, and so are comparisons of
@@ -298,7 +272,7 @@ def reach_of(graph: Graph, each: ForEach, trigger: State | None, *, looks_back: 
     )
 
 
-def keys_of(graph: Graph, each: ForEach, asked: Iterable[State]) -> dict[str, FieldValue]:
+def keys_of(graph: Graph, each: ForEach, asked: Iterable[sf.State]) -> dict[str, rv.FieldValue]:
     """By event, the field that selects the instance it concerns; other events concern them all.
 
     An event has such a field if every leaf over it compares the field with the key, or is conjoined
@@ -324,7 +298,7 @@ def keys_of(graph: Graph, each: ForEach, asked: Iterable[State]) -> dict[str, Fi
         # it with one that is.
         parents = {one for place in leaves.keys() - fields for one in graph.parents[place]}
         alone = roots.intersection(leaves.keys() - fields) or any(
-            graph.nodes[parent].op is not StateOp.AND
+            graph.nodes[parent].op is not sf.StateOp.AND
             or fields.keys().isdisjoint(graph.operands[parent])
             for parent in parents
         )
@@ -336,7 +310,7 @@ def keys_of(graph: Graph, each: ForEach, asked: Iterable[State]) -> dict[str, Fi
 def varying(graph: Graph) -> frozenset[int]:
     """The nodes that depend on captured values, or on whether these are still certain."""
     leaves = {place: state.leaf for place, state in enumerate(graph.nodes) if state.leaf}
-    reads = [n for n, leaf in leaves.items() if isinstance(leaf, Lapsed) or captured_names(leaf)]
+    reads = [n for n, leaf in leaves.items() if isinstance(leaf, sf.Lapsed) or captured_names(leaf)]
     return above(graph, reads)
 
 
@@ -349,35 +323,35 @@ def above(graph: Graph, leaves: Iterable[int]) -> frozenset[int]:
     return frozenset(found)
 
 
-def _compared(leaf: Leaf, event: str, name: str) -> FieldValue | None:
+def _compared(leaf: sf.Leaf, event: str, name: str) -> rv.FieldValue | None:
     """The field of an event if the leaf is `event.field == name`, for a captured `name`."""
     match leaf:
-        case Compare(CompareOp.EQ, FieldValue() as field, Captured(name=found)):
+        case rv.Compare(rv.CompareOp.EQ, rv.FieldValue() as field, rv.Captured(name=found)):
             pass
-        case Compare(CompareOp.EQ, Captured(name=found), FieldValue() as field):
+        case rv.Compare(rv.CompareOp.EQ, rv.Captured(name=found), rv.FieldValue() as field):
             pass
         case _:
             return None
     return field if found == name and field.event == event else None
 
 
-def _occurs(state: State, event: str) -> bool:
+def _occurs(state: sf.State, event: str) -> bool:
     """Whether a state formula is FALSE wherever an event does not occur."""
     match state.leaf:
         case None:
             pass
-        case EventAtom(name=name):
+        case rv.EventAtom(name=name):
             return name == event
-        case Compare(left=left, right=right):
-            return event in events_of(left, right)
+        case rv.Compare(left=left, right=right):
+            return event in sf.events_of(left, right)
         case _:
             return False
     match state.op:
-        case StateOp.AND:
+        case sf.StateOp.AND:
             return any(_occurs(arg, event) for arg in state.args)
-        case StateOp.OR:
+        case sf.StateOp.OR:
             return all(_occurs(arg, event) for arg in state.args)
-        case StateOp.SURE | StateOp.DOUBT:
+        case sf.StateOp.SURE | sf.StateOp.DOUBT:
             return _occurs(state.args[0], event)
         case _:
             return False

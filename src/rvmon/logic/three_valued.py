@@ -8,22 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.operators import Reading, Tense
 from rvmon.language.checked.rewrite import read, rewritten, without_spans
+from rvmon.logic import state_formula as sf
 from rvmon.logic.formula import Factory
 from rvmon.logic.four_valued import Four, always_read_as
-from rvmon.logic.state_formula import (
-    FALSE,
-    TRUE,
-    UNKNOWN,
-    Elapsed,
-    State,
-    Unborn,
-    operands,
-    reads_fields,
-    signals_of,
-)
 
 
 class Reader(Reading[Four]):
@@ -52,9 +42,9 @@ class Reader(Reading[Four]):
         self.measured = measured
         self.held = held
         self._truth_reader = Reader(factory, period) if measured else self
-        self._literals: dict[tuple[int, int], tuple[formulas.Formula, State]] = {}
+        self._literals: dict[tuple[int, int], tuple[rv.Formula, sf.State]] = {}
 
-    def literal(self, formula: formulas.Formula, unborn: int) -> State:
+    def literal(self, formula: rv.Formula, unborn: int) -> sf.State:
         """The state formula with each unborn proposition, not the whole, replaced by `unborn`.
 
         A proposition is an atom or a past operator with its operands.
@@ -64,108 +54,106 @@ class Reader(Reading[Four]):
             self._literals[key] = formula, self._literal(formula, unborn)
         return self._literals[key][1]
 
-    def _literal(self, formula: formulas.Formula, unborn: int) -> State:
+    def _literal(self, formula: rv.Formula, unborn: int) -> sf.State:
         factory = self.factory
         match formula:
-            case formulas.Unary(op=formulas.UnaryOp.NOT, operand=operand):
+            case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
                 # Under a negation unborn counts in favour by the other value.
-                return factory.negation(self.literal(operand, TRUE - unborn))
-            case formulas.Binary(
-                op=formulas.BinaryOp.AND | formulas.BinaryOp.OR as op, left=left, right=right
-            ):
-                join = factory.state_all if op is formulas.BinaryOp.AND else factory.state_any
+                return factory.negation(self.literal(operand, sf.TRUE - unborn))
+            case rv.Binary(op=rv.BinaryOp.AND | rv.BinaryOp.OR as op, left=left, right=right):
+                join = factory.state_all if op is rv.BinaryOp.AND else factory.state_any
                 return join([self.literal(left, unborn), self.literal(right, unborn)])
-            case formulas.Binary(op=op) if op.entry.tense is Tense.PRESENT:
+            case rv.Binary(op=op) if op.entry.tense is Tense.PRESENT:
                 return self.literal(rewritten(formula), unborn)
             case _:
                 return self.four(formula).read(unborn)
 
-    def four(self, formula: formulas.Formula) -> Four:
+    def four(self, formula: rv.Formula) -> Four:
         """The four-valued reading of a formula."""
         match formula:
             # Rewriting these would lose the birth at the previous position, or of the window.
-            case formulas.Unary(op=formulas.UnaryOp.RISE, operand=operand):
+            case rv.Unary(op=rv.UnaryOp.RISE, operand=operand):
                 arg = self.four(operand)
                 return self._all([arg, self.no(self._before(arg))])
-            case formulas.Unary(op=formulas.UnaryOp.FALL, operand=operand):
+            case rv.Unary(op=rv.UnaryOp.FALL, operand=operand):
                 arg = self.four(operand)
                 return self._all([self.no(arg), self._before(arg)])
-            case formulas.Unary(op=formulas.UnaryOp.HELD, operand=operand, interval=interval):
+            case rv.Unary(op=rv.UnaryOp.HELD, operand=operand, interval=interval):
                 return self._held(self.four(operand), self._truth_reader.four(operand), interval)
-            case formulas.Unary() | formulas.Binary():
+            case rv.Unary() | rv.Binary():
                 return read(formula, self.four, self)
-            case formulas.Amount() if self.measured and formula.has_distance(held=self.held):
+            case rv.Amount() if self.measured and formula.has_distance(held=self.held):
                 return self._compared(formula.comparison)
-            case formulas.Amount():
+            case rv.Amount():
                 return self._amount(formula)
-            case formulas.Compare(left=left, right=right) if formulas.windows_in(left, right):
+            case rv.Compare(left=left, right=right) if rv.windows_in(left, right):
                 return self._compared(formula)
-            case formulas.Passed(known=known):
-                value = self.factory.passed(formula, self.four(known).read(UNKNOWN))
+            case rv.Passed(known=known):
+                value = self.factory.passed(formula, self.four(known).read(sf.UNKNOWN))
                 return self._unborn_until(value, (self._unborn(known),))
-            case formulas.Constant(value=value):
+            case rv.Constant(value=value):
                 return self.constant(value)
             case _:
                 return self._atom(formula)
 
-    def _amount(self, formula: formulas.Amount) -> Four:
+    def _amount(self, formula: rv.Amount) -> Four:
         """A window against a limit: unborn members add nothing; unborn until the limit is born."""
         states = [
-            self._truth_reader.four(part).read(UNKNOWN if part is formula.known else FALSE)
+            self._truth_reader.four(part).read(sf.UNKNOWN if part is formula.known else sf.FALSE)
             for part in formula.operands
         ]
         value = self.factory.amount(formula, *states)
         return self._unborn_until(value, map(self._unborn, formula.born_with))
 
-    def _compared(self, formula: formulas.Compare) -> Four:
+    def _compared(self, formula: rv.Compare) -> Four:
         """A comparison of windows: unknown where a side has no known number."""
         factory, leaf = self.factory, without_spans(formula)
-        parts = [part for side in (leaf.left, leaf.right) for part in operands(side)]
-        known = [formulas.itself(part) for part in parts if isinstance(part, formulas.Read)]
+        parts = [part for side in (leaf.left, leaf.right) for part in sf.operands(side)]
+        known = [rv.itself(part) for part in parts if isinstance(part, rv.Read)]
         states, asked = (
-            [self.four(comparison).read(UNKNOWN) for comparison in known],
+            [self.four(comparison).read(sf.UNKNOWN) for comparison in known],
             [*map(self._unborn, known)],
         )
-        for window in formulas.windows_in(leaf.left, leaf.right):
-            own = (self._truth_reader.four(part).read(FALSE) for part in window.operands)
+        for window in rv.windows_in(leaf.left, leaf.right):
+            own = (self._truth_reader.four(part).read(sf.FALSE) for part in window.operands)
             states.append(factory.window(window, *own))
             for unborn in map(self._unborn, window.born_with):
-                if window.measured is formulas.Measured.AGO:  # the birth must lie that far back
+                if window.measured is rv.Measured.AGO:  # the birth must lie that far back
                     ago, born = window.window or 0, factory.negation(unborn)
                     early = factory.since(factory.state_true, born, ago, ago)
                     unborn = factory.negation(early)
                 asked.append(unborn)
         return self._unborn_until(factory.compared(leaf, *dict.fromkeys(states)), asked)
 
-    def _unborn(self, part: formulas.SignalAtom | formulas.Compare) -> State:
+    def _unborn(self, part: rv.SignalAtom | rv.Compare) -> sf.State:
         """Two-valued: some signal that `part` reads is unborn."""
-        if isinstance(part, formulas.Compare) and formulas.windows_in(part.left, part.right):
+        if isinstance(part, rv.Compare) and rv.windows_in(part.left, part.right):
             return self._compared(part).unborn
-        signals = tuple(sorted(signals_of(part).items()))
-        return self.factory.leaf(Unborn(signals)) if signals else self.factory.state_false
+        signals = tuple(sorted(sf.signals_of(part).items()))
+        return self.factory.leaf(sf.Unborn(signals)) if signals else self.factory.state_false
 
-    def _unborn_until(self, value: State, asked: Iterable[State]) -> Four:
+    def _unborn_until(self, value: sf.State, asked: Iterable[sf.State]) -> Four:
         """A value that is unborn while some of `conditions` (each "is unborn") is true."""
         factory = self.factory
         unborn = self._some_unborn(asked)
         if unborn is factory.state_false:
             return Four(factory, always_read_as(value), born_late=False)
 
-        def read(reading: int) -> State:
-            if reading == UNKNOWN:
+        def read(reading: int) -> sf.State:
+            if reading == sf.UNKNOWN:
                 return value
-            if reading == TRUE:
+            if reading == sf.TRUE:
                 return factory.state_any([value, unborn])
             return factory.state_all([value, factory.negation(unborn)])
 
         return Four(factory, read, stays_born=True, unborn=unborn)
 
-    def _atom(self, atom: formulas.Atom) -> Four:
+    def _atom(self, atom: rv.Atom) -> Four:
         factory = self.factory
         leaf = without_spans(atom)
-        if not isinstance(leaf, formulas.SignalAtom | formulas.Compare) or not signals_of(leaf):
+        if not isinstance(leaf, rv.SignalAtom | rv.Compare) or not sf.signals_of(leaf):
             return Four(factory, lambda _: factory.leaf(leaf), born_late=False)
-        unborn = None if reads_fields(leaf) else self._unborn(leaf)
+        unborn = None if sf.reads_fields(leaf) else self._unborn(leaf)
         return Four(
             factory,
             lambda reading: factory.leaf(leaf, reading),
@@ -187,7 +175,7 @@ class Reader(Reading[Four]):
         negation = self.factory.negation
         made = Four(
             self.factory,
-            lambda unborn: negation(arg.read(TRUE - unborn)),
+            lambda unborn: negation(arg.read(sf.TRUE - unborn)),
             born_late=arg.born_late,
             stays_born=arg.stays_born,
             unborn=arg._unborn,
@@ -213,18 +201,18 @@ class Reader(Reading[Four]):
         # Unborn and unknown is unknown: lost input is not excused by a signal yet to be born.
         unborn = self._some_unborn(arg.unborn for arg in args)
 
-        def read(reading: int) -> State:
-            joined = factory.state_all([arg.read(reading or TRUE) for arg in args])
-            if reading == FALSE and self.measured:
+        def read(reading: int) -> sf.State:
+            joined = factory.state_all([arg.read(reading or sf.TRUE) for arg in args])
+            if reading == sf.FALSE and self.measured:
                 return self._measured(args, joined, unborn)
-            if reading != FALSE or unborn is factory.state_false:
+            if reading != sf.FALSE or unborn is factory.state_false:
                 return joined
             born_or_not_true = [factory.negation(unborn), factory.negation(joined)]
             return factory.state_all([joined, factory.state_any(born_or_not_true)])
 
         return Four(factory, read, born_late=any(arg.born_late for arg in args), parts=args)
 
-    def _measured(self, args: Sequence[Four], joined: State, unborn: State) -> State:
+    def _measured(self, args: Sequence[Four], joined: sf.State, unborn: sf.State) -> sf.State:
         """A conjunction, FALSE where an operand is unborn, with its robustness preserved.
 
         `joined` is the conjunction with unborn replaced by TRUE; `unborn` that one is unborn.
@@ -232,29 +220,29 @@ class Reader(Reading[Four]):
         factory = self.factory
         lost = factory.state_all([joined, factory.negation(joined)])
         born = factory.state_any([factory.negation(unborn), lost])
-        return factory.state_all([*(arg.read(UNKNOWN) for arg in args), born])
+        return factory.state_all([*(arg.read(sf.UNKNOWN) for arg in args), born])
 
-    def _some_unborn(self, unborn: Iterable[State]) -> State:
+    def _some_unborn(self, unborn: Iterable[sf.State]) -> sf.State:
         """Two-valued: some of `unborn` is true; all `Unborn` leaves are merged into one."""
         factory = self.factory
         states, signals = [], dict[str, bool]()
         for state in unborn:
-            if isinstance(state.leaf, Unborn):
+            if isinstance(state.leaf, sf.Unborn):
                 for name, moved in state.leaf.signals:
                     signals[name] = signals.get(name, False) or moved
             else:
                 states.append(state)
         if signals:
-            states.append(factory.leaf(Unborn(tuple(sorted(signals.items())))))
+            states.append(factory.leaf(sf.Unborn(tuple(sorted(signals.items())))))
         return factory.state_any(states)
 
-    def since(self, left: Four, right: Four, interval: formulas.Interval) -> Four:
+    def since(self, left: Four, right: Four, interval: rv.Interval) -> Four:
         """`since`, which skips positions where an operand is unborn."""
         factory = self.factory
         low, high = self._window(interval)
         if high is not None and low > high:
             return self.constant(False)
-        value = factory.since(left.read(TRUE), right.read(FALSE), low, high)
+        value = factory.since(left.read(sf.TRUE), right.read(sf.FALSE), low, high)
         if low > 0 or right.born_late:
             value = self._or_lost(value, left, right, low, high)
         if not right.born_late:
@@ -270,40 +258,42 @@ class Reader(Reading[Four]):
             unborn = factory.state_all([factory.negation(born), some])
         return self._unborn_where(value, unborn)
 
-    def _or_lost(self, value: State, left: Four, right: Four, low: int, high: int | None) -> State:
+    def _or_lost(
+        self, value: sf.State, left: Four, right: Four, low: int, high: int | None
+    ) -> sf.State:
         """`value`, but unknown where the right side is never known in the window though born.
 
         There a false left side alone does not make it false: what was lost may have been unborn,
         and unborn positions are skipped.
         """
         factory = self.factory
-        if left.read(TRUE) is factory.state_true:
+        if left.read(sf.TRUE) is factory.state_true:
             return value
 
-        def once(state: State) -> State:
+        def once(state: sf.State) -> sf.State:
             return factory.since(factory.state_true, state, low, high)
 
-        is_false = factory.negation(right.read(TRUE))
-        known = factory.state_any([factory.sure(right.read(FALSE)), factory.sure(is_false)])
+        is_false = factory.negation(right.read(sf.TRUE))
+        known = factory.state_any([factory.sure(right.read(sf.FALSE)), factory.sure(is_false)])
         never = factory.negation(once(known))
         lost = factory.state_all([never, once(factory.negation(right.unborn))])
         return factory.state_any([value, self._at_most_unknown(lost)])
 
-    def _at_most_unknown(self, state: State) -> State:
+    def _at_most_unknown(self, state: sf.State) -> sf.State:
         """UNKNOWN where `state` is not FALSE. It is not measured: its truth spans outages."""
         factory = self.factory
         if self.measured:
             state = factory.negation(factory.sure(factory.negation(state)))
         return factory.state_all([state, factory.unknown])
 
-    def _unborn_where(self, value: State, unborn: State) -> Four:
+    def _unborn_where(self, value: sf.State, unborn: sf.State) -> Four:
         """The formula that is unborn where `unborn` is TRUE; `value` must be FALSE there."""
         factory = self.factory
 
-        def read(reading: int) -> State:
-            if reading == FALSE:
+        def read(reading: int) -> sf.State:
+            if reading == sf.FALSE:
                 return value
-            there = unborn if reading == TRUE else factory.state_all([unborn, factory.unknown])
+            there = unborn if reading == sf.TRUE else factory.state_all([unborn, factory.unknown])
             return factory.state_any([value, there])
 
         return Four(factory, read, unborn=unborn)
@@ -311,41 +301,43 @@ class Reader(Reading[Four]):
     def previous(self, arg: Four) -> Four:
         """`previous` is unborn where its operand was."""
         factory = self.factory
-        value = factory.previous(arg.read(FALSE))
+        value = factory.previous(arg.read(sf.FALSE))
         if not arg.born_late:
             return Four(factory, always_read_as(value), born_late=False)
         return self._unborn_where(value, factory.previous(arg.unborn))
 
     def _before(self, arg: Four) -> Four:
         """The value at the previous position; FALSE if unborn there, or if there is none."""
-        return Four(self.factory, always_read_as(self.previous(arg).read(FALSE)), born_late=False)
+        return Four(
+            self.factory, always_read_as(self.previous(arg).read(sf.FALSE)), born_late=False
+        )
 
-    def _held(self, arg: Four, truth: Four, interval: formulas.Interval | None) -> Four:
+    def _held(self, arg: Four, truth: Four, interval: rv.Interval | None) -> Four:
         """`held` is unborn unless its operand was born throughout."""
         factory = self.factory
-        elapsed = factory.leaf(Elapsed(interval.high if interval and interval.high else 0))
-        value = factory.state_all([self._historically(arg.read(FALSE), interval), elapsed])
+        elapsed = factory.leaf(sf.Elapsed(interval.high if interval and interval.high else 0))
+        value = factory.state_all([self._historically(arg.read(sf.FALSE), interval), elapsed])
         missing = self._historically(truth.missing, interval)
         if not arg.born_late:
             lost = factory.state_all([missing, factory.negation(missing)])
             return Four(factory, always_read_as(factory.state_any([value, lost])), born_late=False)
 
-        def read(unborn: int) -> State:
-            if unborn == TRUE:
+        def read(unborn: int) -> sf.State:
+            if unborn == sf.TRUE:
                 return factory.state_any([value, missing])
-            other = factory.unknown if unborn == UNKNOWN else factory.negation(missing)
+            other = factory.unknown if unborn == sf.UNKNOWN else factory.negation(missing)
             return factory.state_any([value, factory.state_all([missing, other])])
 
         return Four(factory, read)
 
-    def _historically(self, arg: State, interval: formulas.Interval | None) -> State:
+    def _historically(self, arg: sf.State, interval: rv.Interval | None) -> sf.State:
         factory = self.factory
         low, high = self._window(interval)
         if high is not None and low > high:
             return factory.state_true
         return factory.negation(factory.since(factory.state_true, factory.negation(arg), low, high))
 
-    def _window(self, interval: formulas.Interval | None) -> tuple[int, int | None]:
+    def _window(self, interval: rv.Interval | None) -> tuple[int, int | None]:
         low, high = (interval.low, interval.high) if interval else (0, None)
         if self.period:
             low = -(-low // self.period) * self.period

@@ -6,19 +6,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+from rvmon.logic import formula as mtl
 from rvmon.logic.alphabet import alphabet_of
 from rvmon.logic.construct import Budget as TableBudget
 from rvmon.logic.construct import DoesNotCloseError, construct
-from rvmon.logic.formula import (
-    Core,
-    Factory,
-    Next,
-    Release,
-    Until,
-    horizon,
-    looks_back,
-    nodes_of,
-)
 from rvmon.logic.lower import Obligation, lower
 from rvmon.models import model_error
 from rvmon.models.conform import labels_of
@@ -120,11 +111,11 @@ def _problem(
         raise NotExpressibleError("only requirements in held time are checked on models")
     if requirement.captures or requirement.for_each is not None:
         raise NotExpressibleError("it captures values")
-    factory = Factory()
+    factory = mtl.Factory()
     obligation = lower(requirement, factory)
     alphabet = alphabet_of(obligation.required)
     trigger = obligation.trigger
-    if looks_back(obligation.required):
+    if mtl.looks_back(obligation.required):
         raise NotExpressibleError("it looks back from what lies ahead")
     if trigger is None:
         raise NotExpressibleError("it is evaluated at the end of a trace")
@@ -182,7 +173,7 @@ def _observe(
         holds, remark = None, f"not decided: {meter.stopped}"
     elif holds and runs["triggered"] is None:
         remark = "vacuous: no run triggers it"
-    elif holds and horizon(obligation.required) is None:
+    elif holds and mtl.horizon(obligation.required) is None:
         holds, runs["failing"], remark = _in_the_end(original, spec, requirement, meter)
     return Observation(
         requirement.id,
@@ -221,18 +212,18 @@ def _reached(problem: Observed, goal: ex.Expression, meter: Meter) -> Run | None
     return run
 
 
-def open_means(required: Core) -> bool | None:
+def open_means(required: mtl.Core) -> bool | None:
     """Whether an attempt that stays open for ever is met; `None` if that depends on more.
 
     Without deadline may be promises (`eventually`), or prohibitions (`always`), but not both.
     """
-    nodes = list(nodes_of(required))
+    nodes = list(mtl.nodes_of(required))
     unbounded = {
-        isinstance(node, Release)
+        isinstance(node, mtl.Release)
         for node in nodes
-        if isinstance(node, Until | Release) and node.high is None
+        if isinstance(node, mtl.Until | mtl.Release) and node.high is None
     }
-    if len(unbounded) > 1 or any(isinstance(node, Next) for node in nodes):
+    if len(unbounded) > 1 or any(isinstance(node, mtl.Next) for node in nodes):
         return None
     return unbounded.pop() if unbounded else True
 

@@ -7,15 +7,7 @@ from itertools import product
 from math import ceil, floor, inf
 from typing import NamedTuple
 
-from rvmon.language.checked.formula import (
-    Compare,
-    CompareOp,
-    EventAtom,
-    Literal,
-    Numeric,
-    SignalAtom,
-    SignalValue,
-)
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.formula import Constant as ConstantLeaf
 from rvmon.logic.automaton import NOW, Automaton, row_of
 from rvmon.logic.state_formula import Lapsed, Lost, StateOp, Unborn
@@ -30,7 +22,7 @@ class NotExpressibleError(Exception):
 
 def events_of(proposition: Proposition) -> Iterator[str]:
     """The events that occur in a proposition."""
-    if isinstance(proposition.leaf, EventAtom):
+    if isinstance(proposition.leaf, rv.EventAtom):
         yield proposition.leaf.name
     for argument in proposition.args:
         yield from events_of(argument)
@@ -70,36 +62,36 @@ class Labelling:
                 return ex.Constant(int(value))
             case StateOp.LEAF, Unborn() | Lost() | Lapsed():  # nor is anything unborn
                 return ex.FALSE
-            case StateOp.LEAF, SignalAtom(name=name):
+            case StateOp.LEAF, rv.SignalAtom(name=name):
                 return self._signal(name)
-            case StateOp.LEAF, EventAtom(name=name):
+            case StateOp.LEAF, rv.EventAtom(name=name):
                 return self._event(name)
-            case StateOp.LEAF, Compare(op=op, left=left, right=right):
+            case StateOp.LEAF, rv.Compare(op=op, left=left, right=right):
                 return self._comparison(op, left, right)
             case StateOp.LEAF, _:
                 raise NotExpressibleError("it refers to updates or to the ends of the trace")
             case _:
                 raise NotExpressibleError("it refers to the past")
 
-    def _comparison(self, op: CompareOp, left: Numeric, right: Numeric) -> ex.Expression:
+    def _comparison(self, op: rv.CompareOp, left: rv.Numeric, right: rv.Numeric) -> ex.Expression:
         match left, right:
-            case Literal(int() | float() as one), Literal(int() | float() as other):
+            case rv.Literal(int() | float() as one), rv.Literal(int() | float() as other):
                 return ex.Constant(int(op.holds(one, other)))
-            case Literal(), _:
+            case rv.Literal(), _:
                 return self._comparison(op.mirrored, right, left)
-            case _, Literal(float() as number) if not number.is_integer():
-                if op in (CompareOp.EQ, CompareOp.NE):  # a model has whole numbers
-                    return ex.Constant(int(op is CompareOp.NE))
-                up = op in (CompareOp.LT, CompareOp.GE)
-                return self._comparison(op, left, Literal(ceil(number) if up else floor(number)))
+            case _, rv.Literal(float() as number) if not number.is_integer():
+                if op in (rv.CompareOp.EQ, rv.CompareOp.NE):  # a model has whole numbers
+                    return ex.Constant(int(op is rv.CompareOp.NE))
+                up = op in (rv.CompareOp.LT, rv.CompareOp.GE)
+                return self._comparison(op, left, rv.Literal(ceil(number) if up else floor(number)))
             case _:
                 return ex.BinaryOperation(ex.BinaryOp(op), self._number(left), self._number(right))
 
-    def _number(self, number: Numeric) -> ex.Expression:
+    def _number(self, number: rv.Numeric) -> ex.Expression:
         match number:
-            case SignalValue(name):
+            case rv.SignalValue(name):
                 return self._signal(name)
-            case Literal(int() | float() as value):
+            case rv.Literal(int() | float() as value):
                 return ex.Constant(int(value))
             case _:
                 raise NotExpressibleError("it calculates with numbers")

@@ -12,16 +12,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 from xml.sax.saxutils import escape
 
-from rvmon.models.network import (
-    Automaton,
-    Edge,
-    Extremes,
-    Guard,
-    LeadsToFormula,
-    Network,
-    Query,
-    QueryFormula,
-)
+from rvmon.models import network as nta
 from rvmon.models.network.expressions import TRUE, LocationKind, PathFormula, PathOp, Slot, Variable
 from rvmon.models.network.fractions import number_of
 from rvmon.models.network.guards import has_paths
@@ -39,7 +30,7 @@ _GRID = (200, 150)
 """Distance of locations in a drawing, right and down."""
 
 
-def uppaal_xml(network: Network) -> str:
+def uppaal_xml(network: nta.Network) -> str:
     """The network as the text of an XML file."""
     names = Names(network)
     templates = [
@@ -57,7 +48,7 @@ def uppaal_xml(network: Network) -> str:
     return _HEAD + "\n".join([head, *templates, *lines])
 
 
-def left_out(network: Network) -> list[Query]:
+def left_out(network: nta.Network) -> list[nta.Query]:
     """The queries that are not UPPAAL's, of which only the text is kept."""
     names = Names(network)
     return [query for query in network.queries if not _formula(names, query.formula)]
@@ -84,7 +75,7 @@ def _channel_priorities(names: Names) -> Iterator[str]:
     yield f"chan priority {' < '.join(', '.join(levels[rank]) for rank in sorted(levels))};"
 
 
-def _declarations(network: Network, names: Names) -> str:
+def _declarations(network: nta.Network, names: Names) -> str:
     lines = [shown_line(f'// network {network.name} "{network.title}"')]
     if network.unit is not None:
         unit = max((u for u, t in TICKS_PER_UNIT.items() if network.unit % t == 0),
@@ -113,7 +104,7 @@ def _initial(thing: Thing, members: tuple[Variable, ...]) -> str:
     return values[0]
 
 
-def _template(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
+def _template(names: Names, index: int, automaton: nta.Automaton) -> Iterator[str]:
     yield "  <template>"
     yield f"    <name>{names.automata[index]}</name>"
     columns = max(1, round(len(automaton.locations) ** 0.5))
@@ -138,7 +129,7 @@ def _template(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
     yield "  </template>"
 
 
-def _edge(names: Names, index: int, edge: Edge) -> Iterator[str]:
+def _edge(names: Names, index: int, edge: nta.Edge) -> Iterator[str]:
     yield "    <transition>"
     yield f'      <source ref="id{index}_{edge.source}"/>'
     yield f'      <target ref="id{index}_{edge.target}"/>'
@@ -155,15 +146,15 @@ def _edge(names: Names, index: int, edge: Edge) -> Iterator[str]:
     yield "    </transition>"
 
 
-def condition_text(names: Names, guard: Guard) -> str:
+def condition_text(names: Names, guard: nta.Guard) -> str:
     """A guard or invariant; empty if it always holds."""
     parts = [names.expression(compare) for compare in guard.clocks]
-    if guard != Guard(clocks=guard.clocks):
+    if guard != nta.Guard(clocks=guard.clocks):
         parts.append(names.expression(guard.data))
     return " && ".join(parts)
 
 
-def sync_text(names: Names, edge: Edge) -> str:
+def sync_text(names: Names, edge: nta.Edge) -> str:
     """The synchronisation of an edge; empty if it has none."""
     if edge.sync is None:
         return ""
@@ -171,7 +162,7 @@ def sync_text(names: Names, edge: Edge) -> str:
     return channel + ("!" if edge.sync.sends else "?")
 
 
-def _query(names: Names, query: Query) -> Iterator[str]:
+def _query(names: Names, query: nta.Query) -> Iterator[str]:
     formula, comment = _formula(names, query.formula), query.remark
     if not formula:
         comment = f"not a query of UPPAAL: {query.text} {comment}".strip()
@@ -183,16 +174,16 @@ def _query(names: Names, query: Query) -> Iterator[str]:
     yield "    </query>"
 
 
-def _formula(names: Names, formula: QueryFormula) -> str:
+def _formula(names: Names, formula: nta.QueryFormula) -> str:
     """The formula; empty if UPPAAL has none for it."""
     match formula:
-        case LeadsToFormula(left, right, None) if not (has_paths(left) or has_paths(right)):
+        case nta.LeadsToFormula(left, right, None) if not (has_paths(left) or has_paths(right)):
             return f"{names.expression(left)} --> {names.expression(right)}"
         case PathFormula(op, body, None, left) if (
             left == TRUE and op in _OUTERMOST and not has_paths(body)
         ):
             return names.expression(formula)
-        case Extremes(ends, where, terms):
+        case nta.Extremes(ends, where, terms):
             word = "bounds" if len(ends) > 1 else "sup" if ends[0] else "inf"
             listed = ", ".join(
                 names.expression(term.value) if term.clock is None else names.clock(term.clock)
@@ -211,7 +202,7 @@ def _text(text: str) -> str:
 _MARKS = {LocationKind.NORMAL: "", LocationKind.URGENT: "U ", LocationKind.COMMITTED: "C "}
 
 
-def network_dot(network: Network) -> str:
+def network_dot(network: nta.Network) -> str:
     """One cluster for each automaton; urgent locations are marked U, committed ones C."""
     names = Names(network)
     lines = ["digraph network {", "  rankdir=LR;", "  node [shape=box, style=rounded];"]
@@ -220,7 +211,7 @@ def network_dot(network: Network) -> str:
     return "\n".join([*lines, "}", ""])
 
 
-def _cluster(names: Names, index: int, automaton: Automaton) -> Iterator[str]:
+def _cluster(names: Names, index: int, automaton: nta.Automaton) -> Iterator[str]:
     yield f"  subgraph cluster_{index} {{"
     yield f"    label={quoted(automaton.name)};"
     for place, location in enumerate(automaton.locations):

@@ -6,19 +6,8 @@ from typing import assert_never
 
 from msgspec import Struct
 
+from rvmon.logic import formula as mtl
 from rvmon.logic.automaton import FAILED, PASSED, Token
-from rvmon.logic.formula import (
-    And,
-    Constant,
-    Core,
-    Literal,
-    Next,
-    Or,
-    Previous,
-    Release,
-    Since,
-    Until,
-)
 from rvmon.logic.residual import TooManyClausesError
 from rvmon.monitor.cause import Cause, TruthValues, rendered
 from rvmon.monitor.compile import CompiledRequirement
@@ -41,37 +30,37 @@ class _PendingText:
         self.origin = origin
         self.gap = network.positions.gap
 
-    def at(self, core: Core, position: int) -> str:
+    def at(self, core: mtl.Core, position: int) -> str:
         if self.network.value_at(core, position) is not None:
             return ""
         match core:
-            case Constant() | Literal():
+            case mtl.Constant() | mtl.Literal():
                 return ""
-            case And(args=args):
+            case mtl.And(args=args):
                 return all_of([self.at(arg, position) for arg in args])
-            case Or(args=args):
+            case mtl.Or(args=args):
                 parts = dict.fromkeys(self.at(arg, position) for arg in args)
                 return ", or ".join(part for part in parts if part)
-            case Next() | Previous() | Since():
+            case mtl.Next() | mtl.Previous() | mtl.Since():
                 return f"`{self.words.text(core)}`"
-            case Until(high=high):
+            case mtl.Until(high=high):
                 return self._own(core, "by", position, high)
-            case Release(right=right, low=low, high=high):
+            case mtl.Release(right=right, low=low, high=high):
                 spawned = self._first_pending(right, position - (-low // self.gap))
                 until = self._own(core, "until", position, high)
                 return all_of([spawned, until])
             case _:
                 assert_never(core)
 
-    def _own(self, core: Core, word: str, position: int, high: int | None) -> str:
+    def _own(self, core: mtl.Core, word: str, position: int, high: int | None) -> str:
         text = f"`{self.words.text(core)}`"
         if high is None:
             return text
         return f"{text} {word} {format_instant(position * self.gap + high, self.origin)}"
 
-    def _first_pending(self, core: Core, first: int) -> str:
+    def _first_pending(self, core: mtl.Core, first: int) -> str:
         """The pending part of a formula at its first undecided position from `first` on."""
-        if isinstance(core, Literal | Constant):
+        if isinstance(core, mtl.Literal | mtl.Constant):
             return ""
         position = self.network.first_unknown(core, first)
         return "" if position is None else self.at(core, position)
@@ -90,36 +79,36 @@ class NetworkCauseFinder:
         self.at = at
         self.gap = network.positions.gap
 
-    def of(self, core: Core, position: int) -> Cause | None:
+    def of(self, core: mtl.Core, position: int) -> Cause | None:
         """The cause of a formula's value at a position; `None` if it is constant."""
         match core:
-            case Constant():
+            case mtl.Constant():
                 return None
-            case Literal():
+            case mtl.Literal():
                 return Cause(core, position * self.gap, False, core)
-            case And(args=args) | Or(args=args):
+            case mtl.And(args=args) | mtl.Or(args=args):
                 # A temporal operand explains more than a literal next to it.
-                parts = sorted(args, key=lambda arg: isinstance(arg, Literal))
+                parts = sorted(args, key=lambda arg: isinstance(arg, mtl.Literal))
                 causes = (self.of(arg, position) for arg in parts if self._is_fresh(arg, position))
                 return next((cause for cause in causes if cause is not None), None)
-            case Next(operand=operand):
+            case mtl.Next(operand=operand):
                 return self._within(operand, position + 1, FAR)
-            case Previous(operand=operand):
+            case mtl.Previous(operand=operand):
                 return self._within(operand, -FAR, position - 1)
-            case Until() | Release():
+            case mtl.Until() | mtl.Release():
                 return self._ahead(core, position)
-            case Since(left=left, right=right, low=low, high=high):
+            case mtl.Since(left=left, right=right, low=low, high=high):
                 last = position - -(-low // self.gap)
                 first = -FAR if high is None else position - high // self.gap
                 return self._within(right, first, last) or self._within(left, -FAR, position)
             case _:
                 assert_never(core)
 
-    def _ahead(self, core: Until | Release, position: int) -> Cause | None:
+    def _ahead(self, core: mtl.Until | mtl.Release, position: int) -> Cause | None:
         start = position * self.gap
         first = position - (-core.low // self.gap)
         last = FAR if core.high is None else position + core.high // self.gap
-        if isinstance(core, Until) is self.verdict:
+        if isinstance(core, mtl.Until) is self.verdict:
             return self._of_part(core, core.right, first, last, start)
         if core.high is not None and self.at == 2 * (start + core.high + 1):
             return Cause(core, start, True, None)
@@ -128,24 +117,24 @@ class NetworkCauseFinder:
         return self._of_part(core, core.right, first, last, start)
 
     def _of_part(
-        self, core: Until | Release, part: Core, first: int, last: int, start: int
+        self, core: mtl.Until | mtl.Release, part: mtl.Core, first: int, last: int, start: int
     ) -> Cause:
         """The cause within an operand of an operator that was instantiated at `start`."""
-        if isinstance(part, Literal):
+        if isinstance(part, mtl.Literal):
             return Cause(core, start, False, part)
         return self._within(part, first, last) or Cause(core, start, False, None)
 
-    def _within(self, core: Core, first: int, last: int) -> Cause | None:
+    def _within(self, core: mtl.Core, first: int, last: int) -> Cause | None:
         """The cause at the first fresh position of a window; `None` if there is none."""
         position = self._when(core, first, last)
         return None if position is None else self.of(core, position)
 
-    def _is_fresh(self, core: Core, position: int) -> bool:
+    def _is_fresh(self, core: mtl.Core, position: int) -> bool:
         return self._when(core, position, position) is not None
 
-    def _when(self, core: Core, first: int, last: int) -> int | None:
+    def _when(self, core: mtl.Core, first: int, last: int) -> int | None:
         """The first position at which a formula got the verdict's value at the decision's stamp."""
-        if isinstance(core, Constant):
+        if isinstance(core, mtl.Constant):
             return None
         positions = self.network.positions
         # The stamp of a piece grows with the position by `slope`, so at most one position of it has

@@ -10,15 +10,7 @@ from msgspec import Struct
 from rvmon import native
 from rvmon.core.sections import packed
 from rvmon.errors import TraceError
-from rvmon.language.checked.formula import (
-    Captured,
-    FieldValue,
-    Literal,
-    Numeric,
-    SignalValue,
-    UpdateFunction,
-    UpdateValue,
-)
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.specification import CheckedSpec, Requirement, Type
 from rvmon.monitor.compiled_spec import Kept, Place
 from rvmon.trace.sample import Payload, Scalar, Value
@@ -69,15 +61,15 @@ def _kinds(spec: CheckedSpec, requirement: Requirement) -> dict[str, Kind | None
     return kinds
 
 
-def _kind(spec: CheckedSpec, value: Numeric, kinds: Mapping[str, Kind | None]) -> Kind | None:
+def _kind(spec: CheckedSpec, value: rv.Numeric, kinds: Mapping[str, Kind | None]) -> Kind | None:
     match value:
-        case SignalValue(name=name) | UpdateValue(function=UpdateFunction.PREV, name=name):
+        case rv.SignalValue(name=name) | rv.UpdateValue(function=rv.UpdateFunction.PREV, name=name):
             return spec.signals[name].type.kind
-        case FieldValue(event=event, field=field):
+        case rv.FieldValue(event=event, field=field):
             return spec.events[event].fields[field].kind
-        case Captured(name=name):
+        case rv.Captured(name=name):
             return kinds[name]
-        case Literal(value=str()):
+        case rv.Literal(value=str()):
             return Kind.LABEL
         case _:
             return None

@@ -16,15 +16,8 @@ from rvmon.language.names import ResolvedSpec, find_cycles
 from rvmon.language.rules import Findings
 from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import types as type_rules
+from rvmon.language.syntax import items
 from rvmon.language.syntax.expressions import Expression, Name, expressions_in
-from rvmon.language.syntax.items import (
-    ConstItem,
-    CoverMonitor,
-    DefineItem,
-    EventSyntax,
-    SignalSyntax,
-    TypeSyntax,
-)
 from rvmon.trace.schema import Kind
 from rvmon.units import Unit, UnknownUnitError, parse_unit
 
@@ -40,7 +33,7 @@ def check(spec: ResolvedSpec, findings: Findings) -> specification.CheckedSpec:
     checker = Checker(table, findings, sum(len(source.text) for source in spec.sources))
     signals = dict(table.signals)
     for declared in spec.declared.values():
-        if isinstance(declared, SignalSyntax) and declared.stale_after is not None:
+        if isinstance(declared, items.SignalSyntax) and declared.stale_after is not None:
             name = declared.name.text
             if name in signals:
                 what = "the age at which a signal is stale"
@@ -55,7 +48,7 @@ def check(spec: ResolvedSpec, findings: Findings) -> specification.CheckedSpec:
     goals: dict[str, Cover] = {}
     for name, item in spec.requirements.items():
         check_clauses(checker, item)
-        if isinstance(item.body, CoverMonitor):
+        if isinstance(item.body, items.CoverMonitor):
             goal = checker.collected(checked_goal, checker, item, item.body.span)
             goals.update({} if goal is None else {name: goal})
             continue
@@ -108,7 +101,7 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
     units: dict[str, Unit] = {}
     for name, declared in spec.declared.items():
         match declared:
-            case SignalSyntax():
+            case items.SignalSyntax():
                 type_and_unit = _type(declared.type, findings)
                 if type_and_unit is not None:
                     type_, units[name] = type_and_unit
@@ -121,7 +114,7 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
                         ignores_nan=declared.ignored is not None,
                         span=declared.name.span,
                     )
-            case EventSyntax():
+            case items.EventSyntax():
                 fields = {}
                 for field in declared.fields:
                     # A signal may have a dotted name: `pick.id` would be ambiguous, signal or field
@@ -139,7 +132,7 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
     return Table(time, signals, events, units, spec.declared, recursive, spec.doubtful)
 
 
-def _type(syntax: TypeSyntax, findings: Findings) -> tuple[specification.Type, Unit] | None:
+def _type(syntax: items.TypeSyntax, findings: Findings) -> tuple[specification.Type, Unit] | None:
     """A type with its unit; `None` if there is no such unit, and then that is recorded."""
     labels = tuple(label.text for label in syntax.labels)
     firsts: dict[str, Span] = {}
@@ -166,13 +159,13 @@ def check_unused(checker: Checker, spec: ResolvedSpec) -> None:
     """Report what is wrong in macros; those with parameters have their names looked up only."""
     for item in spec.declared.values():
         match item:
-            case DefineItem(parameters=None, name=name) | ConstItem(name=name):
+            case items.DefineItem(parameters=None, name=name) | items.ConstItem(name=name):
                 checker.value(Name(name.text, name.span), EVERYWHERE)
-            case DefineItem():
+            case items.DefineItem():
                 _look_up(checker, item)
 
 
-def _look_up(checker: Checker, item: DefineItem) -> None:
+def _look_up(checker: Checker, item: items.DefineItem) -> None:
     parameters = {parameter.text for parameter in item.parameters or ()}
     table = checker.table
     for part in expressions_in(item.body):

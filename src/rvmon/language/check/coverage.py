@@ -13,21 +13,8 @@ from rvmon.diagnostics import Span
 from rvmon.language.check.comparisons import compared
 from rvmon.language.check.expressions import Checker
 from rvmon.language.check.scope import EVERYWHERE, Quantity, Scope, Value
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.classify import end_part, future_part
-from rvmon.language.checked.formula import (
-    Binary,
-    BinaryOp,
-    Compare,
-    CompareOp,
-    Constant,
-    Formula,
-    Interval,
-    Literal,
-    SignalValue,
-    Unary,
-    UnaryOp,
-    UpdateFunction,
-)
 from rvmon.language.checked.operators import Connectives, Tense
 from rvmon.language.checked.properties import Bin, BinKind, Cover, Coverpoint, Cross
 from rvmon.language.checked.rewrite import read
@@ -49,7 +36,7 @@ def checked_cover(checker: Checker, item: items.CoverItem) -> Cover | None:
     if end := end_part(formula):
         checker.report(rules.end_not_alone(end.span or item.span))
         return None
-    shown = Unary(UnaryOp.EVENTUALLY, formula, Interval(), item.formula.span)
+    shown = rv.Unary(rv.UnaryOp.EVENTUALLY, formula, rv.Interval(), item.formula.span)
     return Cover(item.name.text, shown, item.span)
 
 
@@ -128,7 +115,7 @@ def checked_cross(
     return Cross(item.name.text, tuple(names), ignored, illegal, upon, goal, weight, item.span)
 
 
-def present(formula: Formula) -> Formula:
+def present(formula: rv.Formula) -> rv.Formula:
     """The formula itself, which must not look ahead.
 
     Raises:
@@ -143,10 +130,10 @@ def present(formula: Formula) -> Formula:
     return formula
 
 
-def _is_empty(formula: Formula, value: Value | None) -> bool:
+def _is_empty(formula: rv.Formula, value: Value | None) -> bool:
     """Whether comparisons of the value with constants, of which a bin consists, exclude all."""
-    parts: tuple[Formula, ...] = (formula,)
-    if isinstance(formula, Binary) and formula.op is BinaryOp.AND:
+    parts: tuple[rv.Formula, ...] = (formula,)
+    if isinstance(formula, rv.Binary) and formula.op is rv.BinaryOp.AND:
         parts = formula.left, formula.right
     if not isinstance(value, Quantity):
         return False
@@ -155,29 +142,29 @@ def _is_empty(formula: Formula, value: Value | None) -> bool:
     open_ = False
     for part in parts:
         match part:
-            case Compare(op=op, left=left, right=Literal(value=int() | float() as bound)):
+            case rv.Compare(op=op, left=left, right=rv.Literal(value=int() | float() as bound)):
                 if left != value.node:
                     return False
                 low, high = _ends(op, bound, whole=value.integral)
-                strict = op in (CompareOp.GT, CompareOp.LT) and not value.integral
+                strict = op in (rv.CompareOp.GT, rv.CompareOp.LT) and not value.integral
                 open_, least, most = open_ or strict, max(least, low), min(most, high)
             case _:
                 return False
     return least > most or (open_ and least == most)
 
 
-def _ends(op: CompareOp, bound: float, *, whole: bool) -> tuple[float, float]:
+def _ends(op: rv.CompareOp, bound: float, *, whole: bool) -> tuple[float, float]:
     """Between which values a comparison with a constant is true, bounds that are open included."""
     match op:
-        case CompareOp.GT | CompareOp.GE:
-            first = floor(bound) + 1 if op is CompareOp.GT else ceil(bound)
+        case rv.CompareOp.GT | rv.CompareOp.GE:
+            first = floor(bound) + 1 if op is rv.CompareOp.GT else ceil(bound)
             return first if whole else bound, inf
-        case CompareOp.LT | CompareOp.LE:
-            last = ceil(bound) - 1 if op is CompareOp.LT else floor(bound)
+        case rv.CompareOp.LT | rv.CompareOp.LE:
+            last = ceil(bound) - 1 if op is rv.CompareOp.LT else floor(bound)
             return -inf, last if whole else bound
-        case CompareOp.EQ:
+        case rv.CompareOp.EQ:
             return (ceil(bound), floor(bound)) if whole else (bound, bound)
-        case CompareOp.NE:
+        case rv.CompareOp.NE:
             return -inf, inf
 
 
@@ -188,7 +175,7 @@ class _Point(Struct, frozen=True):
     expression: expressions.Expression | None
     labelled: bool
 
-    def formula(self, bin_: items.BinSyntax) -> Formula:
+    def formula(self, bin_: items.BinSyntax) -> rv.Formula:
         """The formula that is true where a bin is hit."""
         match bin_.values:
             case None if self.labelled:
@@ -202,21 +189,21 @@ class _Point(Struct, frozen=True):
             case wanted:
                 return self._valued(wanted)
 
-    def _valued(self, wanted: expressions.Expression) -> Formula:
+    def _valued(self, wanted: expressions.Expression) -> rv.Formula:
         """The condition that the expression has a value; without one, the bin's own formula."""
         expression = self.expression
         if self.labelled and isinstance(wanted, expressions.Name):
-            return self._compared(CompareOp.EQ, wanted, wanted.span)
+            return self._compared(rv.CompareOp.EQ, wanted, wanted.span)
         (value,) = self.checker.values((wanted,), EVERYWHERE)
         if isinstance(value, Quantity) and value.constant is not None:
-            return self._compared(CompareOp.EQ, wanted, wanted.span)
+            return self._compared(rv.CompareOp.EQ, wanted, wanted.span)
         formula = self.checker.formula(wanted, EVERYWHERE)
-        if isinstance(formula, Constant) and expression is not None:
+        if isinstance(formula, rv.Constant) and expression is not None:
             holds = self.checker.formula(expression, EVERYWHERE)
-            return holds if formula.value else Unary(UnaryOp.NOT, holds, None, wanted.span)
+            return holds if formula.value else rv.Unary(rv.UnaryOp.NOT, holds, None, wanted.span)
         return formula
 
-    def _stepped(self, steps: items.StepsSyntax) -> Formula:
+    def _stepped(self, steps: items.StepsSyntax) -> rv.Formula:
         """The condition that the last updates took the expression through the steps, in order.
 
         Between two values of the steps there was no third one.
@@ -224,56 +211,56 @@ class _Point(Struct, frozen=True):
         span, expression = steps.span, self.expression
         if expression is None:
             raise Refusal(rules.bin_needs_expression(span))
-        prev = expressions.Ident(UpdateFunction.PREV.value, expression.span)
+        prev = expressions.Ident(rv.UpdateFunction.PREV.value, expression.span)
         call = expressions.Call(prev, (expression,), expression.span)
         before = replace(self, expression=call)
-        taken: Formula | None = None
-        entered: Formula | None = None
+        taken: rv.Formula | None = None
+        entered: rv.Formula | None = None
         for start, end in pairwise(steps.values):
             now, was = self._valued(end), before._valued(start)
             if _alike(now, self._valued(start)):
                 raise Refusal(rules.same_value(end.span))
-            rise = Unary(UnaryOp.RISE, now, None, span)
-            came = Binary(BinaryOp.AND, rise, was, None, span)
+            rise = rv.Unary(rv.UnaryOp.RISE, now, None, span)
+            came = rv.Binary(rv.BinaryOp.AND, rise, was, None, span)
             # The value that is left now was entered by the previous step: no `entered` since
             # `taken`.
             if taken is not None and entered is not None:
-                stayed = Unary(UnaryOp.NOT, entered, None, span)
-                latest = Binary(BinaryOp.SINCE, stayed, taken, Interval(), span)
-                came = Binary(BinaryOp.AND, came, latest, None, span)
+                stayed = rv.Unary(rv.UnaryOp.NOT, entered, None, span)
+                latest = rv.Binary(rv.BinaryOp.SINCE, stayed, taken, rv.Interval(), span)
+                came = rv.Binary(rv.BinaryOp.AND, came, latest, None, span)
             taken, entered = came, rise
         assert taken is not None, "there are two values at least"
         return taken
 
-    def _in_window(self, window: expressions.Window) -> Formula:
+    def _in_window(self, window: expressions.Window) -> rv.Formula:
         """The bounds of a range as comparisons; `inf` bounds nothing."""
         if self.expression is None or window.low is None:
             raise Refusal(rules.bin_needs_expression(window.span))
-        above = CompareOp.GT if window.low_open else CompareOp.GE
+        above = rv.CompareOp.GT if window.low_open else rv.CompareOp.GE
         low = self._compared(above, window.low, window.span)
         if window.high is None:
             return low
-        below = CompareOp.LT if window.high_open else CompareOp.LE
+        below = rv.CompareOp.LT if window.high_open else rv.CompareOp.LE
         high = self._compared(below, window.high, window.span)
-        return Binary(BinaryOp.AND, low, high, None, window.span)
+        return rv.Binary(rv.BinaryOp.AND, low, high, None, window.span)
 
-    def _compared(self, op: CompareOp, other: expressions.Expression, span: Span) -> Formula:
+    def _compared(self, op: rv.CompareOp, other: expressions.Expression, span: Span) -> rv.Formula:
         if self.expression is None:
             raise Refusal(rules.bin_needs_expression(other.span))
         side = expressions.Comparison(op, self.expression, other, span, span)
         return compared(self.checker, side, EVERYWHERE)
 
 
-def _alike(formula: Formula, other: Formula) -> bool:
+def _alike(formula: rv.Formula, other: rv.Formula) -> bool:
     """Whether two formulas say the same in the same words, wherever they stand."""
     return format_formula(formula) == format_formula(other)
 
 
 def _clauses(
     checker: Checker, clauses: Sequence[items.GoalClauses]
-) -> tuple[Formula | None, int, int] | None:
+) -> tuple[rv.Formula | None, int, int] | None:
     """The formula at which it is sampled, the goal and the weight; `None` if one is wrong."""
-    upon: Formula | None = None
+    upon: rv.Formula | None = None
     counts = {"goal": 1, "weight": 1}
     for clause in clauses:
         match clause:
@@ -303,7 +290,7 @@ def _combinations(
 ) -> frozenset[tuple[str, ...]]:
     """The combinations for which a clause of that kind holds."""
     scope = Scope(
-        {name: Quantity(SignalValue(name), labels=tuple(names)) for name, names in bins.items()}
+        {name: Quantity(rv.SignalValue(name), labels=tuple(names)) for name, names in bins.items()}
     )
     tests = [
         (checker.formula(clause.condition, scope), clause)
@@ -333,37 +320,38 @@ class _Booleans(Connectives[bool]):
         return left and right
 
 
-def _about_bins(formula: Formula, bins: Mapping[str, Sequence[str]]) -> bool:
+def _about_bins(formula: rv.Formula, bins: Mapping[str, Sequence[str]]) -> bool:
     """Whether it is made of comparisons of coverpoints with bins, and connectives."""
     match formula:
-        case Constant():
+        case rv.Constant():
             return True
-        case Compare(left=left, right=right):
+        case rv.Compare(left=left, right=right):
             return all(
-                isinstance(side, Literal) or (isinstance(side, SignalValue) and side.name in bins)
+                isinstance(side, rv.Literal)
+                or (isinstance(side, rv.SignalValue) and side.name in bins)
                 for side in (left, right)
             )
-        case Unary(op=UnaryOp.NOT, operand=operand):
+        case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
             return _about_bins(operand, bins)
-        case Binary(op=op, left=left, right=right):
+        case rv.Binary(op=op, left=left, right=right):
             present = op.entry.tense is Tense.PRESENT
             return present and _about_bins(left, bins) and _about_bins(right, bins)
         case _:
             return False
 
 
-def _holds(formula: Formula, combination: Mapping[str, str]) -> bool:
+def _holds(formula: rv.Formula, combination: Mapping[str, str]) -> bool:
     match formula:
-        case Constant(value=value):
+        case rv.Constant(value=value):
             return value
-        case Compare(op=op, left=left, right=right):
+        case rv.Compare(op=op, left=left, right=right):
             names = [
-                combination[side.name] if isinstance(side, SignalValue) else side
+                combination[side.name] if isinstance(side, rv.SignalValue) else side
                 for side in (left, right)
             ]
-            first, second = (n.value if isinstance(n, Literal) else n for n in names)
-            return (first == second) is (op is CompareOp.EQ)
-        case Unary() | Binary():
+            first, second = (n.value if isinstance(n, rv.Literal) else n for n in names)
+            return (first == second) is (op is rv.CompareOp.EQ)
+        case rv.Unary() | rv.Binary():
             return read(formula, lambda part: _holds(part, combination), _Booleans())
         case _:
             return False

@@ -43,24 +43,7 @@ from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import requirements as requirement_rules
 from rvmon.language.rules import types as rules
 from rvmon.language.rules.syntax import Cost, Effort
-from rvmon.language.syntax.expressions import (
-    Call,
-    Choice,
-    Comparison,
-    Edge,
-    Expression,
-    Group,
-    Immediately,
-    Infix,
-    LeadsTo,
-    Name,
-    Number,
-    Operation,
-    Path,
-    Prefix,
-    Quantified,
-    Truth,
-)
+from rvmon.language.syntax import expressions as ast
 from rvmon.language.syntax.expressions import Window as WindowSyntax
 from rvmon.language.syntax.items import ConstItem, DefineItem
 from rvmon.trace.schema import Kind
@@ -98,7 +81,7 @@ class Checker:
         """
         self._findings.add(finding)
 
-    def top(self, expression: Expression, scope: Scope) -> Formula | None:
+    def top(self, expression: ast.Expression, scope: Scope) -> Formula | None:
         """A whole formula, or `None` if it is wrong."""
         self.effort.begin()
         return self.collected(self.formula, expression, scope)
@@ -113,7 +96,7 @@ class Checker:
             pass
         return None
 
-    def formula(self, expression: Expression, scope: Scope) -> Formula:
+    def formula(self, expression: ast.Expression, scope: Scope) -> Formula:
         """The formula that the expression stands for.
 
         Raises:
@@ -122,18 +105,18 @@ class Checker:
         """
         return self.formulas((expression,), scope)[0]
 
-    def formulas(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Formula]:
+    def formulas(self, expressions: tuple[ast.Expression, ...], scope: Scope) -> list[Formula]:
         """As `formula`, for several operands."""
         values = self.values(expressions, scope)
         return [formula_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
 
-    def quantities(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Quantity]:
+    def quantities(self, expressions: tuple[ast.Expression, ...], scope: Scope) -> list[Quantity]:
         """The quantities that the expressions stand for."""
         values = self.values(expressions, scope)
         return [number_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
 
     def calculated(
-        self, op: NumericOp, args: tuple[Expression, ...], scope: Scope, span: Span
+        self, op: NumericOp, args: tuple[ast.Expression, ...], scope: Scope, span: Span
     ) -> Value:
         """An operation on numbers, or on choices between them."""
 
@@ -145,7 +128,7 @@ class Checker:
 
         return spread(self.values(args, scope), span, calculate)
 
-    def values(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Value]:
+    def values(self, expressions: tuple[ast.Expression, ...], scope: Scope) -> list[Value]:
         """The values that the expressions stand for.
 
         Raises:
@@ -157,7 +140,7 @@ class Checker:
             raise Reported
         return values
 
-    def duration(self, expression: Expression, scope: Scope) -> int:
+    def duration(self, expression: ast.Expression, scope: Scope) -> int:
         """A constant duration in ticks.
 
         Raises:
@@ -166,7 +149,7 @@ class Checker:
         """
         return ticks_of(self.values((expression,), scope)[0], expression.span)
 
-    def value(self, expression: Expression, scope: Scope) -> Value | None:
+    def value(self, expression: ast.Expression, scope: Scope) -> Value | None:
         """The value that the expression stands for; `None` if it is wrong, which is recorded."""
         try:
             self.effort.enter(expression.span)
@@ -179,39 +162,39 @@ class Checker:
             self.effort.leave()
         return None
 
-    def _value(self, expression: Expression, scope: Scope) -> Value:
+    def _value(self, expression: ast.Expression, scope: Scope) -> Value:
         match expression:
-            case Group(inner=inner):
+            case ast.Group(inner=inner):
                 return self._value(inner, scope)
-            case Number():
+            case ast.Number():
                 return self._number(expression)
-            case Name():
+            case ast.Name():
                 return self._name(expression, scope)
-            case Truth(value=value, span=span):
+            case ast.Truth(value=value, span=span):
                 return Constant(value, span)
-            case Edge(bound=bound, span=span):
+            case ast.Edge(bound=bound, span=span):
                 return BoundAtom(bound, span)
-            case Call():
+            case ast.Call():
                 return self._call(expression, scope)
-            case Prefix():
+            case ast.Prefix():
                 return self._prefix(expression, scope)
-            case Immediately(operand=operand):
+            case ast.Immediately(operand=operand):
                 return self.formula(operand, scope)
-            case Infix():
+            case ast.Infix():
                 return self._infix(expression, scope)
-            case Comparison():
+            case ast.Comparison():
                 return compared(self, expression, scope)
-            case Choice(condition=condition, chosen=chosen, otherwise=otherwise):
+            case ast.Choice(condition=condition, chosen=chosen, otherwise=otherwise):
                 sides = self.values((chosen, otherwise), scope)
                 return Chosen(self.formula(condition, scope), *sides)
-            case Operation(op=op, args=args, span=span):
+            case ast.Operation(op=op, args=args, span=span):
                 return self.calculated(op, args, scope, span)
-            case Path() | Quantified() | LeadsTo():
+            case ast.Path() | ast.Quantified() | ast.LeadsTo():
                 raise Refusal(requirement_rules.path_outside(expression.span))
             case _:
                 assert_never(expression)
 
-    def _number(self, number: Number) -> Quantity:
+    def _number(self, number: ast.Number) -> Quantity:
         if number.value is None:
             raise Refusal(rules.out_of_range(number.span))
         try:
@@ -233,7 +216,7 @@ class Checker:
             or table.field(name) is not None
         )
 
-    def _name(self, name: Name, scope: Scope) -> Value:
+    def _name(self, name: ast.Name, scope: Scope) -> Value:
         local = scope.names.get(name.text)
         match local:
             case Quantity() | Moment():
@@ -245,7 +228,7 @@ class Checker:
             return self._defined_value(name, declared)
         return self._atom(name, scope)
 
-    def _atom(self, name: Name, scope: Scope) -> Value:
+    def _atom(self, name: ast.Name, scope: Scope) -> Value:
         table = self.table
         if signal := table.signals.get(name.text):
             return self._typed(SignalValue(signal.name), signal.type.kind, signal.type.labels, name)
@@ -262,7 +245,7 @@ class Checker:
         raise Refusal(name_rules.unknown(name.span, name.text, close))
 
     def _typed(
-        self, node: SignalValue | FieldValue, kind: Kind, labels: tuple[str, ...], name: Name
+        self, node: SignalValue | FieldValue, kind: Kind, labels: tuple[str, ...], name: ast.Name
     ) -> Quantity:
         return Quantity(
             node,
@@ -272,7 +255,7 @@ class Checker:
             truth=kind is Kind.BOOL,
         )
 
-    def _defined_value(self, name: Name, declared: DefineItem | ConstItem) -> Value:
+    def _defined_value(self, name: ast.Name, declared: DefineItem | ConstItem) -> Value:
         """A macro without parameters or a constant: evaluated once, shared by all its uses."""
         if isinstance(declared, DefineItem) and declared.parameters is not None:
             count = len(declared.parameters)
@@ -300,7 +283,7 @@ class Checker:
         self.report(rules.not_constant(declared.value.span))
         return None
 
-    def _call(self, call: Call, scope: Scope) -> Value:
+    def _call(self, call: ast.Call, scope: Scope) -> Value:
         declared = self.table.declared.get(call.function.text)
         if not isinstance(declared, DefineItem) or declared.parameters is None:
             return applied(self, call, scope)
@@ -315,20 +298,20 @@ class Checker:
         inner = scope.inside(dict(zip(parameters, closures, strict=True)))
         return self.values((declared.body,), inner)[0]
 
-    def peeled(self, expression: Expression, scope: Scope) -> tuple[Expression, Scope]:
+    def peeled(self, expression: ast.Expression, scope: Scope) -> tuple[ast.Expression, Scope]:
         """The expression itself, without brackets and macro parameters around it."""
         while True:
             match expression:
-                case Group(inner=inner):
+                case ast.Group(inner=inner):
                     expression = inner
-                case Name(text=text) if isinstance(argument := scope.names.get(text), Closure):
+                case ast.Name(text=text) if isinstance(argument := scope.names.get(text), Closure):
                     expression, scope = argument.expression, argument.scope
                 case _:
                     return expression, scope
 
     # Operators.
 
-    def _prefix(self, prefix: Prefix, scope: Scope) -> Formula:
+    def _prefix(self, prefix: ast.Prefix, scope: Scope) -> Formula:
         present = prefix.op.entry.tense is Tense.PRESENT
         # Both operand and window are checked before either is refused, to show all findings.
         operand = self.value(prefix.operand, scope if present else scope.later())
@@ -357,7 +340,7 @@ class Checker:
             return None
         return self.interval(window, scope)
 
-    def _infix(self, infix: Infix, scope: Scope) -> Formula:
+    def _infix(self, infix: ast.Infix, scope: Scope) -> Formula:
         present = infix.op.entry.window is Window.NONE
         inner = scope if present else scope.later()
         operands = [self.value(side, inner) for side in (infix.left, infix.right)]

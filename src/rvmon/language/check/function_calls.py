@@ -5,7 +5,7 @@ from __future__ import annotations
 from rvmon.diagnostics import Diagnostic, Span
 from rvmon.language.check.scope import Age, Operands, Quantity, Scope, Value
 from rvmon.language.check.windows import amount, is_extreme
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.functions import FUNCTIONS, LAST, Argument, Function
 from rvmon.language.rules import Refusal, Reported
@@ -30,7 +30,7 @@ _INSTEAD = {
     **dict.fromkeys(("stddev", "std"), "its square is the variance: `variance(e.x, 10 s) <= 0.04`"),
 }
 """By name of a function that the language lacks, the way to write nearly the same."""
-_EXTREMES = {NumericOp.MIN: formulas.Measured.MIN, NumericOp.MAX: formulas.Measured.MAX}
+_EXTREMES = {NumericOp.MIN: rv.Measured.MIN, NumericOp.MAX: rv.Measured.MAX}
 _COUNTS = ("no argument", "one argument", "two arguments")
 
 
@@ -49,23 +49,21 @@ def applied(operands: Operands, call: Call, scope: Scope) -> Value:
         raise Refusal(_unknown(operands, call))
     _check_count(call, function)
     match function.means:
-        case formulas.UnaryOp() as op:
+        case rv.UnaryOp() as op:
             operand = operands.formula(call.args[0], scope)
             lengths = [operands.duration(arg, scope) for arg in call.args[1:]]
-            return formulas.Unary(
-                op, operand, formulas.Interval(0, *lengths) if lengths else None, call.span
-            )
-        case formulas.Probe() as probe:
-            return formulas.ProbeAtom(probe, _named(operands, call, scope, function)[0], call.span)
-        case formulas.UpdateFunction.DELTA if len(call.args) > 1:
-            return amount(operands, formulas.Measured.DELTA, call, scope)
-        case formulas.UpdateFunction() as of_updates:
+            return rv.Unary(op, operand, rv.Interval(0, *lengths) if lengths else None, call.span)
+        case rv.Probe() as probe:
+            return rv.ProbeAtom(probe, _named(operands, call, scope, function)[0], call.span)
+        case rv.UpdateFunction.DELTA if len(call.args) > 1:
+            return amount(operands, rv.Measured.DELTA, call, scope)
+        case rv.UpdateFunction() as of_updates:
             return _of_updates(operands, of_updates, _named(operands, call, scope, function))
         case NumericOp() as op if op in _EXTREMES and is_extreme(operands, call, scope):
             return amount(operands, _EXTREMES[op], call, scope)
         case NumericOp() as op:
             return operands.calculated(op, call.args, scope, call.span)
-        case formulas.Measured() as measured:
+        case rv.Measured() as measured:
             return amount(operands, measured, call, scope)
         case None if function.name == LAST:
             raise Refusal(rules.last_alone(call.span))
@@ -95,16 +93,16 @@ def _named(operands: Operands, call: Call, scope: Scope, function: Function) -> 
 
 
 def _of_updates(
-    operands: Operands, function: formulas.UpdateFunction, named: tuple[str, Span]
+    operands: Operands, function: rv.UpdateFunction, named: tuple[str, Span]
 ) -> Quantity:
     name, span = named
     signal = operands.table.signals[name]
-    if function is not formulas.UpdateFunction.PREV and signal.type.kind in (Kind.BOOL, Kind.LABEL):
+    if function is not rv.UpdateFunction.PREV and signal.type.kind in (Kind.BOOL, Kind.LABEL):
         raise Refusal(rules.argument_kind(span, function, "a signal with numbers"))
     unit = operands.table.units.get(name, PLAIN)
-    rate = function is formulas.UpdateFunction.RATE
+    rate = function is rv.UpdateFunction.RATE
     return Quantity(
-        formulas.UpdateValue(function, name),
+        rv.UpdateValue(function, name),
         unit=quotient(unit, parse_unit("s")) if rate and unit.symbol else unit,
         integral=signal.type.kind is Kind.INT and not rate,
         labels=signal.type.labels,

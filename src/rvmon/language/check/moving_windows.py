@@ -14,29 +14,8 @@ from msgspec import Struct, structs
 from rvmon.diagnostics import Span
 from rvmon.language.check.quantities import is_time, seconds_of
 from rvmon.language.check.scope import Operands, Quantity, Scope
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
-from rvmon.language.checked.formula import (
-    TRIGGERED,
-    Amount,
-    Arithmetic,
-    Binary,
-    BinaryOp,
-    Captured,
-    Compare,
-    CompareOp,
-    Formula,
-    Interval,
-    Literal,
-    Measured,
-    Numeric,
-    Passed,
-    Unary,
-    UnaryOp,
-    WindowValue,
-    itself,
-    passed,
-    windows_in,
-)
 from rvmon.language.checked.rewrite import Formulas
 from rvmon.language.checked.specification import TimeModel
 from rvmon.language.rules import Refusal
@@ -44,31 +23,31 @@ from rvmon.language.rules import types as rules
 from rvmon.language.syntax.expressions import Window
 
 
-def by_limits(op: CompareOp, make: Callable[[bool], Formula], span: Span) -> Formula:
+def by_limits(op: rv.CompareOp, make: Callable[[bool], rv.Formula], span: Span) -> rv.Formula:
     """A comparison made of `>= c` and, strict, `> c`."""
     match op:
-        case CompareOp.GE:
+        case rv.CompareOp.GE:
             return make(False)
-        case CompareOp.GT:
+        case rv.CompareOp.GT:
             return make(True)
-        case CompareOp.LT:
-            return Unary(UnaryOp.NOT, make(False), None, span)
-        case CompareOp.LE:
-            return Unary(UnaryOp.NOT, make(True), None, span)
-    above = Unary(UnaryOp.NOT, make(True), None, span)
-    same = Binary(BinaryOp.AND, make(False), above, None, span)
-    return same if op is CompareOp.EQ else Unary(UnaryOp.NOT, same, None, span)
+        case rv.CompareOp.LT:
+            return rv.Unary(rv.UnaryOp.NOT, make(False), None, span)
+        case rv.CompareOp.LE:
+            return rv.Unary(rv.UnaryOp.NOT, make(True), None, span)
+    above = rv.Unary(rv.UnaryOp.NOT, make(True), None, span)
+    same = rv.Binary(rv.BinaryOp.AND, make(False), above, None, span)
+    return same if op is rv.CompareOp.EQ else rv.Unary(rv.UnaryOp.NOT, same, None, span)
 
 
-def above(of: WindowValue, limit: Numeric, strict: bool, span: Span) -> Amount:
+def above(of: rv.WindowValue, limit: rv.Numeric, strict: bool, span: Span) -> rv.Amount:
     """A comparison of a window with a number; a duration is the integral of 1."""
-    if of.measured is Measured.DURATION:
-        of = structs.replace(of, measured=Measured.INTEGRAL, value=Literal(1))
-    known = None if isinstance(limit, Literal) else itself(limit, span)
-    return Amount(of, limit, strict, span, known)
+    if of.measured is rv.Measured.DURATION:
+        of = structs.replace(of, measured=rv.Measured.INTEGRAL, value=rv.Literal(1))
+    known = None if isinstance(limit, rv.Literal) else rv.itself(limit, span)
+    return rv.Amount(of, limit, strict, span, known)
 
 
-def refuse_moving(time: TimeModel, captured: Numeric, span: Span) -> None:
+def refuse_moving(time: TimeModel, captured: rv.Numeric, span: Span) -> None:
     """Refuse to capture what moves between samples."""
     if time is TimeModel.HELD and _moves(captured):
         raise Refusal(rules.captured_moving(span))
@@ -82,7 +61,7 @@ _INVERSE = {
 }
 
 
-def brought_alone(compared: Compare, span: Span) -> Formula:
+def brought_alone(compared: rv.Compare, span: Span) -> rv.Formula:
     """A comparison whose moving window stands alone on the left.
 
     What stands with it goes to the other side, from the outside in, each step rounded there as any
@@ -99,19 +78,19 @@ def brought_alone(compared: Compare, span: Span) -> Formula:
     return _alone(compared.op, left, right, span)
 
 
-def _moves(number: Numeric) -> bool:
-    return any(window.moves for window in windows_in(number))
+def _moves(number: rv.Numeric) -> bool:
+    return any(window.moves for window in rv.windows_in(number))
 
 
-def _alone(op: CompareOp, moving: Numeric, other: Numeric, span: Span) -> Formula:
+def _alone(op: rv.CompareOp, moving: rv.Numeric, other: rv.Numeric, span: Span) -> rv.Formula:
     match moving:
-        case WindowValue():
+        case rv.WindowValue():
             return by_limits(op, lambda strict: above(moving, other, strict, span), span)
-        case Arithmetic(op=NumericOp.NEG, args=(inner,)):
+        case rv.Arithmetic(op=NumericOp.NEG, args=(inner,)):
             return _alone(op.mirrored, inner, _negative(other), span)
-        case Arithmetic(op=NumericOp.ABS, args=(inner,)):
+        case rv.Arithmetic(op=NumericOp.ABS, args=(inner,)):
             return _magnitude(op, inner, other, span)
-        case Arithmetic(op=how, args=(first, second)) if how in _INVERSE:
+        case rv.Arithmetic(op=how, args=(first, second)) if how in _INVERSE:
             if _moves(first) and _may_combine(how, second):
                 turned = op if _is_upward(how, second) else op.mirrored
                 return _alone(turned, first, _joined(_INVERSE[how], other, second), span)
@@ -124,73 +103,75 @@ def _alone(op: CompareOp, moving: Numeric, other: Numeric, span: Span) -> Formul
     raise Refusal(rules.moves_beside(span))
 
 
-def _negative(number: Numeric) -> Numeric:
+def _negative(number: rv.Numeric) -> rv.Numeric:
     # `-0.0` equals 0 but would be printed differently.
-    if isinstance(number, Literal) and not isinstance(number.value, str) and number.value != 0:
+    if isinstance(number, rv.Literal) and not isinstance(number.value, str) and number.value != 0:
         return replace(number, value=-number.value)
-    return Arithmetic(NumericOp.NEG, (number,))
+    return rv.Arithmetic(NumericOp.NEG, (number,))
 
 
-def _joined(how: NumericOp, left: Numeric, right: Numeric) -> Numeric:
+def _joined(how: NumericOp, left: rv.Numeric, right: rv.Numeric) -> rv.Numeric:
     """The same number as people write it: `+ 3` for `- -3`."""
-    below = isinstance(right, Literal) and not isinstance(right.value, str) and right.value < 0
+    below = isinstance(right, rv.Literal) and not isinstance(right.value, str) and right.value < 0
     if below and how in (NumericOp.ADD, NumericOp.SUB):
         how, right = _INVERSE[how], _negative(right)
-    return Arithmetic(how, (left, right))
+    return rv.Arithmetic(how, (left, right))
 
 
-def _may_combine(how: NumericOp, other: Numeric) -> bool:
+def _may_combine(how: NumericOp, other: rv.Numeric) -> bool:
     """Whether a moving operand may be combined with another: a fixed term, or a constant factor."""
     if how in (NumericOp.ADD, NumericOp.SUB):
         return not _moves(other)
     # The sign of a factor decides whether the comparison is reversed, so it must be known here.
-    return isinstance(other, Literal) and other.value != 0
+    return isinstance(other, rv.Literal) and other.value != 0
 
 
-def _is_upward(how: NumericOp, other: Numeric) -> bool:
+def _is_upward(how: NumericOp, other: rv.Numeric) -> bool:
     """Whether the whole grows as the moving side of it does."""
-    if how in (NumericOp.ADD, NumericOp.SUB) or not isinstance(other, Literal):
+    if how in (NumericOp.ADD, NumericOp.SUB) or not isinstance(other, rv.Literal):
         return True
     return not isinstance(other.value, str) and other.value > 0
 
 
-def _magnitude(op: CompareOp, inner: Numeric, other: Numeric, span: Span) -> Formula:
+def _magnitude(op: rv.CompareOp, inner: rv.Numeric, other: rv.Numeric, span: Span) -> rv.Formula:
     """`abs(x) <= c` is `x <= c and x >= -c`; the others are made of it and `abs(x) < c`."""
 
-    def within(how: CompareOp) -> Formula:
+    def within(how: rv.CompareOp) -> rv.Formula:
         less = _alone(how, inner, other, span)
         more = _alone(how.mirrored, inner, _negative(other), span)
-        return Binary(BinaryOp.AND, less, more, None, span)
+        return rv.Binary(rv.BinaryOp.AND, less, more, None, span)
 
-    if op in (CompareOp.LT, CompareOp.LE):
+    if op in (rv.CompareOp.LT, rv.CompareOp.LE):
         return within(op)
 
-    def least(strict: bool) -> Formula:
-        return Unary(UnaryOp.NOT, within(CompareOp.LE if strict else CompareOp.LT), None, span)
+    def least(strict: bool) -> rv.Formula:
+        return rv.Unary(
+            rv.UnaryOp.NOT, within(rv.CompareOp.LE if strict else rv.CompareOp.LT), None, span
+        )
 
     return by_limits(op, least, span)
 
 
-_BOUNDED = (UnaryOp.EVENTUALLY, UnaryOp.ALWAYS, BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL)
+_BOUNDED = (rv.UnaryOp.EVENTUALLY, rv.UnaryOp.ALWAYS, rv.BinaryOp.UNTIL, rv.BinaryOp.WEAK_UNTIL)
 """The operators whose window may end where data says."""
 
 
 class Bounded(Struct, frozen=True):
     """A window from now on whose end comes from data; what it bounds is required at the trigger."""
 
-    seconds: Numeric
+    seconds: rv.Numeric
     scope: Scope
 
-    def late(self, word: str, span: Span) -> Passed:
+    def late(self, word: str, span: Span) -> rv.Passed:
         """The condition that the window is over."""
         trigger = self.scope.trigger
         assert trigger is not None, "what is required at the trigger has one"
         trigger.begun(span)
-        return passed(TRIGGERED, Captured(trigger.number(word, self.seconds)), True, span)
+        return rv.passed(rv.TRIGGERED, rv.Captured(trigger.number(word, self.seconds)), True, span)
 
 
 def bound_of(
-    operands: Operands, op: UnaryOp | BinaryOp, window: Window | None, scope: Scope
+    operands: Operands, op: rv.UnaryOp | rv.BinaryOp, window: Window | None, scope: Scope
 ) -> Bounded | None:
     """The end of a window that comes from data, where that is captured; `None`: another.
 
@@ -214,8 +195,8 @@ def bound_of(
 
 
 def bounded(
-    op: UnaryOp | BinaryOp, operands: Sequence[Formula], bound: Bounded, span: Span
-) -> Formula:
+    op: rv.UnaryOp | rv.BinaryOp, operands: Sequence[rv.Formula], bound: Bounded, span: Span
+) -> rv.Formula:
     """`within (x) φ`, `for (x) φ`, `φ until[0, x] ψ`, `φ unless[0, x] ψ`.
 
     What must come has to come before it is too late; what must hold has to hold until it is.
@@ -223,12 +204,14 @@ def bounded(
     make = Formulas(span)
     # Automata have constant bounds, so the window becomes unbounded, and its end a proposition that
     # is true once the captured duration has passed.
-    if op in (UnaryOp.ALWAYS, BinaryOp.WEAK_UNTIL):
+    if op in (rv.UnaryOp.ALWAYS, rv.BinaryOp.WEAK_UNTIL):
         lasting, *end = operands
-        ended: Formula = bound.late("for", span)
+        ended: rv.Formula = bound.late("for", span)
         ended = make.either(end[0], ended) if end else ended
-        return Binary(BinaryOp.RELEASE, ended, make.either(lasting, ended), Interval(), span)
+        return rv.Binary(
+            rv.BinaryOp.RELEASE, ended, make.either(lasting, ended), rv.Interval(), span
+        )
     *before, reached = operands
-    early: Formula = Unary(UnaryOp.NOT, bound.late("within", span), None, span)
+    early: rv.Formula = rv.Unary(rv.UnaryOp.NOT, bound.late("within", span), None, span)
     until_then = make.both(before[0], early) if before else early
-    return make.until(until_then, make.both(reached, early), Interval())
+    return make.until(until_then, make.both(reached, early), rv.Interval())

@@ -7,18 +7,8 @@ from functools import reduce
 
 from rvmon.diagnostics import Span
 from rvmon.language.check.scope import Table
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.classify import future_part, has_future
-from rvmon.language.checked.formula import (
-    Binary,
-    BinaryOp,
-    Bound,
-    BoundAtom,
-    Constant,
-    Formula,
-    Interval,
-    Unary,
-    UnaryOp,
-)
 from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.operators import Tense
 from rvmon.language.checked.properties import PathUnary, Property, StateAtom
@@ -27,10 +17,10 @@ from rvmon.language.checked.specification import Event, Mode, Role, Signal
 from rvmon.language.rules import Refusal
 from rvmon.language.rules import requirements as rules
 
-_ALL = Interval()
+_ALL = rv.Interval()
 
 
-def normalised(formula: Formula) -> tuple[Mode, Formula, Formula]:
+def normalised(formula: rv.Formula) -> tuple[Mode, rv.Formula, rv.Formula]:
     """Mode, trigger and consequent of a requirement that is one formula.
 
     `G(θ → ψ)` is `whenever θ then ψ`, any other unbounded `G ψ` is `whenever true then ψ`, the
@@ -38,32 +28,32 @@ def normalised(formula: Formula) -> tuple[Mode, Formula, Formula]:
     """
     required = _always(formula)
     if required is None:
-        return Mode.UPON, BoundAtom(Bound.START, formula.span), formula
-    trigger: Formula | None = None
+        return Mode.UPON, rv.BoundAtom(rv.Bound.START, formula.span), formula
+    trigger: rv.Formula | None = None
     while (
-        isinstance(required, Binary)
-        and required.op is BinaryOp.IMPLIES
+        isinstance(required, rv.Binary)
+        and required.op is rv.BinaryOp.IMPLIES
         and not future_part(required.left)
     ):
         trigger = required.left if trigger is None else _both(trigger, required.left)
         required = required.right
-    return Mode.WHENEVER, trigger or Constant(True, formula.span), required
+    return Mode.WHENEVER, trigger or rv.Constant(True, formula.span), required
 
 
-def _always(formula: Formula) -> Formula | None:
+def _always(formula: rv.Formula) -> rv.Formula | None:
     """The φ of a formula that is `G φ` once `G G φ` and `G φ and G ψ` are joined."""
     match formula:
-        case Unary(op=UnaryOp.ALWAYS, interval=interval) if interval == _ALL:
+        case rv.Unary(op=rv.UnaryOp.ALWAYS, interval=interval) if interval == _ALL:
             return _always(formula.operand) or formula.operand
-        case Binary(op=BinaryOp.AND):
+        case rv.Binary(op=rv.BinaryOp.AND):
             left, right = _always(formula.left), _always(formula.right)
             return None if left is None or right is None else _both(left, right)
         case _:
             return None
 
 
-def _both(left: Formula, right: Formula) -> Formula:
-    return Binary(BinaryOp.AND, left, right, None, joined(left.span, right.span))
+def _both(left: rv.Formula, right: rv.Formula) -> rv.Formula:
+    return rv.Binary(rv.BinaryOp.AND, left, right, None, joined(left.span, right.span))
 
 
 def joined(first: Span | None, second: Span | None) -> Span | None:
@@ -75,7 +65,7 @@ def joined(first: Span | None, second: Span | None) -> Span | None:
 
 def derived_response(
     table: Table, property_: Property, within: int, place: Span
-) -> tuple[Formula, Formula]:
+) -> tuple[rv.Formula, rv.Formula]:
     """Trigger and consequent of the monitor that awaits the outputs upon the inputs.
 
     Raises:
@@ -85,33 +75,33 @@ def derived_response(
     """
     goal = property_.formula
     span = property_.span or place
-    if not isinstance(goal, PathUnary) or goal.universal or goal.op is not UnaryOp.EVENTUALLY:
+    if not isinstance(goal, PathUnary) or goal.universal or goal.op is not rv.UnaryOp.EVENTUALLY:
         raise Refusal(rules.no_response(span))
-    if not isinstance(goal.operand, StateAtom) or goal.interval != Interval():
+    if not isinstance(goal.operand, StateAtom) or goal.interval != rv.Interval():
         raise Refusal(rules.no_response(goal.operand.span or span))
-    by_role: dict[Role, list[Formula]] = {Role.INPUT: [], Role.OUTPUT: []}
+    by_role: dict[Role, list[rv.Formula]] = {Role.INPUT: [], Role.OUTPUT: []}
     for conjunct in chain(goal.operand.formula):
         by_role[_role(table, conjunct, conjunct.span or span)].append(conjunct)
     if not by_role[Role.OUTPUT]:
         raise Refusal(rules.no_output(span))
     inputs = by_role[Role.INPUT]
-    trigger = reduce(_both, inputs) if inputs else BoundAtom(Bound.START, place)
-    return trigger, _required(by_role[Role.OUTPUT], Interval(0, within))
+    trigger = reduce(_both, inputs) if inputs else rv.BoundAtom(rv.Bound.START, place)
+    return trigger, _required(by_role[Role.OUTPUT], rv.Interval(0, within))
 
 
-def _required(outputs: Sequence[Formula], interval: Interval) -> Formula:
+def _required(outputs: Sequence[rv.Formula], interval: rv.Interval) -> rv.Formula:
     """Positive outputs have to come together, each negated one has to stay away."""
-    negated = [part for part in outputs if isinstance(part, Unary) and part.op is UnaryOp.NOT]
+    negated = [part for part in outputs if isinstance(part, rv.Unary) and part.op is rv.UnaryOp.NOT]
     positive = [part for part in outputs if part not in negated]
-    required: list[Formula] = []
+    required: list[rv.Formula] = []
     if positive:
         goal = reduce(_both, positive)
-        required.append(Unary(UnaryOp.EVENTUALLY, goal, interval, goal.span))
-    required += [Unary(UnaryOp.ALWAYS, part, interval, part.span) for part in negated]
+        required.append(rv.Unary(rv.UnaryOp.EVENTUALLY, goal, interval, goal.span))
+    required += [rv.Unary(rv.UnaryOp.ALWAYS, part, interval, part.span) for part in negated]
     return reduce(_both, required)
 
 
-def _role(table: Table, conjunct: Formula, place: Span) -> Role:
+def _role(table: Table, conjunct: rv.Formula, place: Span) -> Role:
     declared: Mapping[str, Signal | Event] = {**table.signals, **table.events}
     roles = {name: declared[name].role for name in names_read(conjunct)}
     for name, role in roles.items():
@@ -123,42 +113,46 @@ def _role(table: Table, conjunct: Formula, place: Span) -> Role:
     return Role(str(kinds.pop()))
 
 
-def scoped_trigger(trigger: Formula, opening: Formula | None, closing: Formula | None) -> Formula:
+def scoped_trigger(
+    trigger: rv.Formula, opening: rv.Formula | None, closing: rv.Formula | None
+) -> rv.Formula:
     """The trigger inside the scope; `start` alone is where the scope opens."""
     inside = _inside(opening, closing)
     match trigger:
-        case BoundAtom(bound=Bound.START) if opening is None:
+        case rv.BoundAtom(bound=rv.Bound.START) if opening is None:
             return _and(trigger, inside)
-        case BoundAtom(bound=Bound.START):
-            return Unary(UnaryOp.RISE, inside, None, trigger.span)
-        case Constant(value=True):
+        case rv.BoundAtom(bound=rv.Bound.START):
+            return rv.Unary(rv.UnaryOp.RISE, inside, None, trigger.span)
+        case rv.Constant(value=True):
             return inside
         case _:
             return _and(trigger, inside)
 
 
-def scoped_consequent(consequent: Formula, closing: Formula | None, *, must_close: bool) -> Formula:
+def scoped_consequent(
+    consequent: rv.Formula, closing: rv.Formula | None, *, must_close: bool
+) -> rv.Formula:
     """The consequent restricted to the scope."""
     if closing is None:
         return consequent
     required = _until_closed(consequent, closing)
     if not must_close:
         return required
-    never = Unary(UnaryOp.ALWAYS, _not(closing), _ALL, closing.span)
-    return Binary(BinaryOp.OR, required, never, None, consequent.span)
+    never = rv.Unary(rv.UnaryOp.ALWAYS, _not(closing), _ALL, closing.span)
+    return rv.Binary(rv.BinaryOp.OR, required, never, None, consequent.span)
 
 
-def _inside(opening: Formula | None, closing: Formula | None) -> Formula:
+def _inside(opening: rv.Formula | None, closing: rv.Formula | None) -> rv.Formula:
     if opening is None and closing is not None:
-        return _not(Unary(UnaryOp.ONCE, closing, _ALL, closing.span))
+        return _not(rv.Unary(rv.UnaryOp.ONCE, closing, _ALL, closing.span))
     if opening is None or closing is None:
-        held = opening or Constant(True)
-        return Unary(UnaryOp.ONCE, held, _ALL, held.span)
+        held = opening or rv.Constant(True)
+        return rv.Unary(rv.UnaryOp.ONCE, held, _ALL, held.span)
     opened = _and(opening, _not(closing))
-    return Binary(BinaryOp.SINCE, _not(closing), opened, _ALL, opening.span)
+    return rv.Binary(rv.BinaryOp.SINCE, _not(closing), opened, _ALL, opening.span)
 
 
-def _until_closed(formula: Formula, closing: Formula) -> Formula:
+def _until_closed(formula: rv.Formula, closing: rv.Formula) -> rv.Formula:
     """The formula over the run that ends right before `closing` first holds from here on.
 
     What must come has to come before that (`U` takes `not closing` on both sides); what must hold
@@ -168,47 +162,47 @@ def _until_closed(formula: Formula, closing: Formula) -> Formula:
         return formula
     # People read what comes of it: these have shorter forms than what they are made of.
     match formula:
-        case Unary(op=op, operand=operand, interval=interval, span=span):
+        case rv.Unary(op=op, operand=operand, interval=interval, span=span):
             inner = _until_closed(operand, closing)
             match op:
-                case UnaryOp.EVENTUALLY:
+                case rv.UnaryOp.EVENTUALLY:
                     reached = _and(inner, _not(closing))
-                    return Binary(BinaryOp.UNTIL, _not(closing), reached, interval, span)
-                case UnaryOp.ALWAYS:
-                    excused = Binary(BinaryOp.OR, inner, closing, None, operand.span)
-                    return Binary(BinaryOp.RELEASE, closing, excused, interval, span)
-                case UnaryOp.NEXT:
-                    return Unary(op, _and(inner, _not(closing)), None, span)
+                    return rv.Binary(rv.BinaryOp.UNTIL, _not(closing), reached, interval, span)
+                case rv.UnaryOp.ALWAYS:
+                    excused = rv.Binary(rv.BinaryOp.OR, inner, closing, None, operand.span)
+                    return rv.Binary(rv.BinaryOp.RELEASE, closing, excused, interval, span)
+                case rv.UnaryOp.NEXT:
+                    return rv.Unary(op, _and(inner, _not(closing)), None, span)
                 case _ if op.entry.tense is Tense.FUTURE:
                     return _until_closed(rewritten(formula), closing)
                 case _:
-                    return Unary(op, inner, interval, span)
-        case Binary(op=op, interval=interval, span=span):
+                    return rv.Unary(op, inner, interval, span)
+        case rv.Binary(op=op, interval=interval, span=span):
             left = _until_closed(formula.left, closing)
             right = _until_closed(formula.right, closing)
             match op:
-                case BinaryOp.UNTIL:
+                case rv.BinaryOp.UNTIL:
                     left, right = _and(left, _not(closing)), _and(right, _not(closing))
-                case BinaryOp.RELEASE:
+                case rv.BinaryOp.RELEASE:
                     left, right = _or(left, closing), _or(right, closing)
-                case BinaryOp.WEAK_UNTIL:
+                case rv.BinaryOp.WEAK_UNTIL:
                     right = _or(right, closing)
-                case BinaryOp.STRONG_RELEASE:
+                case rv.BinaryOp.STRONG_RELEASE:
                     right = _and(right, _not(closing))
                 case _ if op.entry.tense is Tense.FUTURE:
                     return _until_closed(rewritten(formula), closing)
-            return Binary(op, left, right, interval, span)
+            return rv.Binary(op, left, right, interval, span)
         case _:
             return formula
 
 
-def _and(left: Formula, right: Formula) -> Formula:
-    return Binary(BinaryOp.AND, left, right, None, left.span)
+def _and(left: rv.Formula, right: rv.Formula) -> rv.Formula:
+    return rv.Binary(rv.BinaryOp.AND, left, right, None, left.span)
 
 
-def _or(left: Formula, right: Formula) -> Formula:
-    return Binary(BinaryOp.OR, left, right, None, left.span)
+def _or(left: rv.Formula, right: rv.Formula) -> rv.Formula:
+    return rv.Binary(rv.BinaryOp.OR, left, right, None, left.span)
 
 
-def _not(formula: Formula) -> Formula:
-    return Unary(UnaryOp.NOT, formula, None, formula.span)
+def _not(formula: rv.Formula) -> rv.Formula:
+    return rv.Unary(rv.UnaryOp.NOT, formula, None, formula.span)

@@ -12,22 +12,8 @@ from typing import assert_never
 
 from rvmon.diagnostics import Span
 from rvmon.language.check.scope import Chosen, Quantity, TimeValue, Value
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp, UnitRule
-from rvmon.language.checked.formula import (
-    Arithmetic,
-    Binary,
-    BinaryOp,
-    Compare,
-    CompareOp,
-    Constant,
-    Formula,
-    Interval,
-    Literal,
-    Numeric,
-    SignalValue,
-    Unary,
-    UnaryOp,
-)
 from rvmon.language.rules import Refusal, short
 from rvmon.language.rules import types as rules
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
@@ -43,7 +29,7 @@ _HIGHEST = 9
 _DOING = {NumericOp.ADD: "added to", NumericOp.SUB: "reduced by"}
 
 
-def compare(op: CompareOp, left: Placed, right: Placed, span: Span) -> Compare | Constant:
+def compare(op: rv.CompareOp, left: Placed, right: Placed, span: Span) -> rv.Compare | rv.Constant:
     """Compare numbers in the unit of the first side that is no constant.
 
     Raises:
@@ -53,9 +39,9 @@ def compare(op: CompareOp, left: Placed, right: Placed, span: Span) -> Compare |
     unit = _common_unit(sides, "compared with", span)
     if left[0].constant is not None and right[0].constant is not None:
         exact = [_exact(value, unit) for value, _ in sides]
-        return Constant(op.holds(*exact), span)
+        return rv.Constant(op.holds(*exact), span)
     first, second = _nodes(sides, unit)
-    return Compare(op, first, second, span)
+    return rv.Compare(op, first, second, span)
 
 
 def arithmetic(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
@@ -98,7 +84,7 @@ def arithmetic(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
         raise Refusal(rules.out_of_range(span)) from None
 
 
-def node_of(placed: Placed) -> Numeric:
+def node_of(placed: Placed) -> rv.Numeric:
     """The expression that yields the quantity at run time, in its own unit.
 
     Raises:
@@ -126,7 +112,7 @@ def _applied(
     constants = [_exact(value, unit) for value, _ in args if value.constant is not None]
     if len(constants) == len(args) and not truth:
         return Quantity(constant=_folded(op, constants, span), unit=result)
-    node = Arithmetic(op, _nodes(args, unit))
+    node = rv.Arithmetic(op, _nodes(args, unit))
     return Quantity(node, unit=result, integral=_is_whole(op, args), truth=truth)
 
 
@@ -141,7 +127,7 @@ def _power(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
     unit = reduce(product, factors, PLAIN)
     if base.constant is not None:
         return Quantity(constant=_folded(op, [base.constant, power], span), unit=unit)
-    return Quantity(Arithmetic(op, (node_of(args[0]), Literal(int(power)))), unit=unit)
+    return Quantity(rv.Arithmetic(op, (node_of(args[0]), rv.Literal(int(power)))), unit=unit)
 
 
 def _folded(op: NumericOp, constants: Sequence[Fraction], span: Span) -> Fraction:
@@ -162,7 +148,7 @@ def _scale(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
         return Quantity(constant=_folded(op, constants, span), unit=unit)
     if not multiply and right.constant == 0:
         raise Refusal(rules.out_of_range(span))
-    node = Arithmetic(op, tuple(map(node_of, args)))
+    node = rv.Arithmetic(op, tuple(map(node_of, args)))
     return Quantity(node, unit=unit, integral=_is_whole(op, args))
 
 
@@ -178,7 +164,7 @@ def _root(op: NumericOp, placed: Placed, span: Span) -> Quantity:
         if exact < 0:
             raise Refusal(rules.out_of_range(span))
         return Quantity(constant=_folded(op, [exact], span), unit=unit)
-    return Quantity(Arithmetic(op, _nodes((placed,), squared)), unit=unit)
+    return Quantity(rv.Arithmetic(op, _nodes((placed,), squared)), unit=unit)
 
 
 def _common_unit(args: Sequence[Placed], doing: str, span: Span) -> Unit:
@@ -216,23 +202,23 @@ def _exact(value: Quantity, unit: Unit) -> Fraction:
     return (value.constant or Fraction(0)) * value.unit.factor / unit.factor
 
 
-def _nodes(args: Sequence[Placed], unit: Unit) -> tuple[Numeric, ...]:
+def _nodes(args: Sequence[Placed], unit: Unit) -> tuple[rv.Numeric, ...]:
     """All values in `unit`; constants as whole numbers if all others are, else as floats."""
     whole = all(value.integral for value, _ in args if value.constant is None)
     return tuple(_node(value, unit, whole, place) for value, place in args)
 
 
-def _node(value: Quantity, unit: Unit, whole: bool, place: Span) -> Numeric:
+def _node(value: Quantity, unit: Unit, whole: bool, place: Span) -> rv.Numeric:
     if value.node is not None:
         factor = value.unit.factor / unit.factor
         if factor == 1:
             return value.node
-        return Arithmetic(NumericOp.MUL, (value.node, Literal(float(factor))))
+        return rv.Arithmetic(NumericOp.MUL, (value.node, rv.Literal(float(factor))))
     exact = _exact(value, unit)
     if whole and exact.denominator == 1:
-        return Literal(int(exact), unit.symbol)
+        return rv.Literal(int(exact), unit.symbol)
     try:
-        return Literal(float(exact), unit.symbol)
+        return rv.Literal(float(exact), unit.symbol)
     except OverflowError:
         raise Refusal(rules.out_of_range(place)) from None
 
@@ -272,7 +258,7 @@ def _spread(values: Sequence[Value], make: Callable[[Sequence[Value]], Value]) -
     return make(values)
 
 
-def decided(value: Value, span: Span) -> Formula:
+def decided(value: Value, span: Span) -> rv.Formula:
     """A choice between formulas, as one."""
     if isinstance(value, Chosen):
         chosen, otherwise = decided(value.chosen, span), decided(value.otherwise, span)
@@ -281,14 +267,16 @@ def decided(value: Value, span: Span) -> Formula:
     return value
 
 
-def either(condition: Formula, chosen: Formula, otherwise: Formula, span: Span) -> Formula:
+def either(
+    condition: rv.Formula, chosen: rv.Formula, otherwise: rv.Formula, span: Span
+) -> rv.Formula:
     """`if φ then ψ else χ`, which is known where both sides are the same, whatever φ is."""
-    denied = Unary(UnaryOp.NOT, condition, None, span)
-    first = Binary(BinaryOp.AND, condition, chosen, None, span)
-    second = Binary(BinaryOp.AND, denied, otherwise, None, span)
-    both = Binary(BinaryOp.AND, chosen, otherwise, None, span)
-    one = Binary(BinaryOp.OR, first, second, None, span)
-    return Binary(BinaryOp.OR, one, both, None, span)
+    denied = rv.Unary(rv.UnaryOp.NOT, condition, None, span)
+    first = rv.Binary(rv.BinaryOp.AND, condition, chosen, None, span)
+    second = rv.Binary(rv.BinaryOp.AND, denied, otherwise, None, span)
+    both = rv.Binary(rv.BinaryOp.AND, chosen, otherwise, None, span)
+    one = rv.Binary(rv.BinaryOp.OR, first, second, None, span)
+    return rv.Binary(rv.BinaryOp.OR, one, both, None, span)
 
 
 _SECOND = (("s", 1),)
@@ -322,7 +310,7 @@ def is_time(value: Quantity) -> bool:
 
 def closed_interval(
     low: int, high: int | None, *, low_open: bool, high_open: bool, span: Span
-) -> Interval:
+) -> rv.Interval:
     """The closed interval of ticks with these ends.
 
     Raises:
@@ -336,10 +324,10 @@ def closed_interval(
     last = None if high is None else high - high_open
     if last is not None and last < first:
         raise Refusal(rules.empty(span))
-    return Interval(first, last)
+    return rv.Interval(first, last)
 
 
-def seconds_of(duration: Placed) -> Numeric:
+def seconds_of(duration: Placed) -> rv.Numeric:
     """A duration of data, in seconds.
 
     Raises:
@@ -350,12 +338,14 @@ def seconds_of(duration: Placed) -> Numeric:
     return brought_to(parse_unit("s"), duration, duration[1])
 
 
-def brought_to(unit: Unit, placed: Placed, span: Span) -> Numeric:
+def brought_to(unit: Unit, placed: Placed, span: Span) -> rv.Numeric:
     """A number converted to a unit, as in a comparison.
 
     Raises:
         Refusal: the units do not fit, or a constant is out of range.
     """
-    compared = compare(CompareOp.GE, (Quantity(SignalValue(""), unit=unit), span), placed, span)
-    assert isinstance(compared, Compare), "one side varies"
+    compared = compare(
+        rv.CompareOp.GE, (Quantity(rv.SignalValue(""), unit=unit), span), placed, span
+    )
+    assert isinstance(compared, rv.Compare), "one side varies"
     return compared.right

@@ -8,16 +8,11 @@ from typing import TypeVar
 from msgspec.structs import replace
 
 from rvmon.diagnostics import Span
+from rvmon.language.check import normalise
 from rvmon.language.check.coverage import present
 from rvmon.language.check.ctl import linear_form, property_of
 from rvmon.language.check.expressions import Checker
 from rvmon.language.check.moving_windows import refuse_moving
-from rvmon.language.check.normalise import (
-    derived_response,
-    normalised,
-    scoped_consequent,
-    scoped_trigger,
-)
 from rvmon.language.check.quantities import node_of
 from rvmon.language.check.scope import EVERYWHERE, AtTrigger, Moment, Now, Quantity, Scope
 from rvmon.language.check.traps import (
@@ -28,25 +23,10 @@ from rvmon.language.check.traps import (
     traps_at_trigger,
 )
 from rvmon.language.checked import classify
-from rvmon.language.checked.formula import (
-    BoundAtom,
-    Captured,
-    Compare,
-    FieldValue,
-    Formula,
-    NowValue,
-    fields_in,
-)
+from rvmon.language.checked import formula as rv
+from rvmon.language.checked import specification as spec
 from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.properties import Property
-from rvmon.language.checked.specification import (
-    Capture,
-    EndPolicy,
-    ForEach,
-    Mode,
-    Requirement,
-    RunShare,
-)
 from rvmon.language.rules import Refusal, Reported, short
 from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import requirements as rules
@@ -58,11 +38,11 @@ from rvmon.units import PLAIN
 
 _C = TypeVar("_C", bound=items.Clause)
 
-Parts = tuple[Mode, Formula, Formula]
+Parts = tuple[spec.Mode, rv.Formula, rv.Formula]
 """Mode, trigger and consequent."""
 
 
-def checked_requirement(checker: Checker, item: items.RequirementItem) -> Requirement:
+def checked_requirement(checker: Checker, item: items.RequirementItem) -> spec.Requirement:
     """Check a requirement.
 
     Raises:
@@ -82,7 +62,7 @@ def checked_requirement(checker: Checker, item: items.RequirementItem) -> Requir
     _warn_of_traps(checker, item, parts, captures)
     texts = {clause.word: clause.text for clause in _clauses(item, items.TextClause)}
     scopes = [clause.span.text for clause in _clauses(item, items.ScopeClause)]
-    return Requirement(
+    return spec.Requirement(
         item.name.text,
         mode,
         when,
@@ -104,16 +84,18 @@ def checked_requirement(checker: Checker, item: items.RequirementItem) -> Requir
     )
 
 
-def _refuse_fields_in_sums(formulas: Iterable[Formula], place: Span) -> None:
+def _refuse_fields_in_sums(formulas: Iterable[rv.Formula], place: Span) -> None:
     """Refuse fields where occurrences are added up: each has to tell by itself if it counts."""
     for window in classify.windows_of(*formulas):
-        events = {value.event for value in fields_in(window.value)} if window.value else None
+        events = {value.event for value in rv.fields_in(window.value)} if window.value else None
         if not events:
             continue
         for subformula in classify.subformulas(window.operand):
-            read = {*names_read(subformula)} & events if isinstance(subformula, Compare) else set()
+            read = (
+                {*names_read(subformula)} & events if isinstance(subformula, rv.Compare) else set()
+            )
             is_itself = (
-                isinstance(subformula, Compare)
+                isinstance(subformula, rv.Compare)
                 and subformula.left == subformula.right == window.value
             )
             if len(events) > 1 or (read and not is_itself):
@@ -160,18 +142,18 @@ def _parts(
                 raise Refusal(rules.end_not_alone(end.span or expression.span))
             if at_start_by_mistake(expression, formula):
                 checker.report(rules.bare_instant(ungrouped(expression).span))
-            return normalised(formula)
+            return normalise.normalised(formula)
         case items.Triggered():
             return _triggered(checker, item.body, outer, inner)
         case items.ResponseMonitor(within=within, span=span):
             ticks = checker.duration(within, EVERYWHERE)
             if ctl is None:
                 raise Refusal(rules.no_property(span))
-            return Mode.UPON, *derived_response(checker.table, ctl, ticks, span)
+            return spec.Mode.UPON, *normalise.derived_response(checker.table, ctl, ticks, span)
         case items.WrittenMonitor(span=span):
             if ctl is None:
                 raise Refusal(rules.nothing_written(span))
-            return normalised(linear_form(ctl, span, checker.table.time))
+            return normalise.normalised(linear_form(ctl, span, checker.table.time))
         case items.CoverMonitor():
             raise AssertionError("a goal is no requirement")
 
@@ -186,21 +168,21 @@ def _scoped(checker: Checker, item: items.RequirementItem, outer: Scope, parts: 
         ]
         if classify.end_part(trigger):
             raise Refusal(rules.end_in_scope(clause.span))
-        required = scoped_consequent(consequent, ends[1], must_close=clause.must_close)
-        return mode, scoped_trigger(trigger, *ends), required
+        required = normalise.scoped_consequent(consequent, ends[1], must_close=clause.must_close)
+        return mode, normalise.scoped_trigger(trigger, *ends), required
     return parts
 
 
 def _triggered(checker: Checker, body: items.Triggered, outer: Scope, inner: Scope) -> Parts:
     trigger = checker.top(body.trigger, outer)
-    at_once = replace(inner, at_once=body.mode is Mode.UPON)
+    at_once = replace(inner, at_once=body.mode is spec.Mode.UPON)
     consequent = checker.top(body.consequent, at_once)
     if trigger and (ahead := classify.future_part(trigger)):
         checker.report(rules.future_trigger(ahead.span or body.trigger.span))
         raise Reported
     if trigger is None or consequent is None:
         raise Reported
-    alone = isinstance(trigger, BoundAtom) and body.mode is Mode.UPON
+    alone = isinstance(trigger, rv.BoundAtom) and body.mode is spec.Mode.UPON
     for formula, place in ((trigger, body.trigger), (consequent, body.consequent)):
         end = classify.end_part(formula)
         if end and not (alone and formula is trigger):
@@ -209,9 +191,13 @@ def _triggered(checker: Checker, body: items.Triggered, outer: Scope, inner: Sco
     return body.mode, trigger, consequent
 
 
-def _warn(checker: Checker, body: items.Triggered, trigger: Formula, consequent: Formula) -> None:
+def _warn(
+    checker: Checker, body: items.Triggered, trigger: rv.Formula, consequent: rv.Formula
+) -> None:
     instant = (
-        body.mode is Mode.UPON and not classify.is_end(trigger) and classify.is_timeless(consequent)
+        body.mode is spec.Mode.UPON
+        and not classify.is_end(trigger)
+        and classify.is_timeless(consequent)
     )
     if instant and not on_purpose(body.consequent):
         checker.report(rules.one_instant(body.consequent.span))
@@ -221,7 +207,7 @@ def _warn(checker: Checker, body: items.Triggered, trigger: Formula, consequent:
 
 
 def _warn_of_traps(
-    checker: Checker, item: items.RequirementItem, parts: Parts, captures: Iterable[Capture]
+    checker: Checker, item: items.RequirementItem, parts: Parts, captures: Iterable[spec.Capture]
 ) -> None:
     mode, trigger, consequent = parts
     time = checker.table.time
@@ -234,25 +220,25 @@ def _warn_of_traps(
         checker.report(diagnostic)
 
 
-def _policy(checker: Checker, item: items.RequirementItem) -> EndPolicy:
-    policies = [str(policy) for policy in EndPolicy]
+def _policy(checker: Checker, item: items.RequirementItem) -> spec.EndPolicy:
+    policies = [str(policy) for policy in spec.EndPolicy]
     for clause in _clauses(item, items.AtEndClause):
         if clause.policy.text in policies:
-            return EndPolicy(clause.policy.text)
+            return spec.EndPolicy(clause.policy.text)
         checker.report(rules.unknown_policy(clause.policy.span, policies))
-    return EndPolicy.DEFAULT
+    return spec.EndPolicy.DEFAULT
 
 
-def _run_share(checker: Checker, item: items.RequirementItem) -> RunShare | None:
+def _run_share(checker: Checker, item: items.RequirementItem) -> spec.RunShare | None:
     for clause in _clauses(item, items.RunShareClause):
         number = clause.share
         if number.value is not None and number.unit == "%" and 0 < number.value < 100:
-            return RunShare(clause.at_least, float(number.value))
+            return spec.RunShare(clause.at_least, float(number.value))
         checker.report(rules.bad_run_share(number.span))
     return None
 
 
-def _instances(checker: Checker, item: items.RequirementItem) -> tuple[ForEach | None, Scope]:
+def _instances(checker: Checker, item: items.RequirementItem) -> tuple[spec.ForEach | None, Scope]:
     """The `for each` clause, and the scope of the trigger: what it names."""
     for clause in _clauses(item, items.ForEachClause):
         field = checker.table.field(clause.field.text)
@@ -261,36 +247,36 @@ def _instances(checker: Checker, item: items.RequirementItem) -> tuple[ForEach |
             checker.values((clause.field,), EVERYWHERE)
             raise Refusal(type_rules.argument_kind(clause.field.span, "for each", "an event.field"))
         local = Quantity(
-            Captured(clause.name.text),
+            rv.Captured(clause.name.text),
             unit=checker.table.units.get(clause.field.text, PLAIN),
             integral=field.type.kind is Kind.INT,
             labels=field.type.labels,
             truth=field.type.kind is Kind.BOOL,
         )
-        value = FieldValue(field.event, field.field)
-        return ForEach(clause.name.text, value), Scope({clause.name.text: local})
+        value = rv.FieldValue(field.event, field.field)
+        return spec.ForEach(clause.name.text, value), Scope({clause.name.text: local})
     return None, EVERYWHERE
 
 
 def _captures(
     checker: Checker, item: items.RequirementItem, outer: Scope
-) -> tuple[tuple[Capture, ...], Scope]:
+) -> tuple[tuple[spec.Capture, ...], Scope]:
     """The `let` clauses, and the scope of the consequent: what they and `for each` name."""
     captures = []
     values, names = dict(outer.names), dict(outer.names)
     for clause in _clauses(item, items.LetClause):
         (value,) = checker.values((clause.value,), Scope(values))
         if value == Now():
-            captures.append(Capture(clause.name.text, NowValue()))
+            captures.append(spec.Capture(clause.name.text, rv.NowValue()))
             names[clause.name.text] = Moment(clause.name.text)
             continue
         if not isinstance(value, Quantity):
             raise Refusal(type_rules.needs_number(clause.value.span))
         node = node_of((value, clause.value.span))
         refuse_moving(checker.table.time, node, clause.value.span)
-        captures.append(Capture(clause.name.text, node))
+        captures.append(spec.Capture(clause.name.text, node))
         values[clause.name.text] = value  # both are of the trigger's instant
-        names[clause.name.text] = replace(value, node=Captured(clause.name.text), constant=None)
+        names[clause.name.text] = replace(value, node=rv.Captured(clause.name.text), constant=None)
     return tuple(captures), Scope(names)
 
 

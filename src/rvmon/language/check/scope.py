@@ -10,7 +10,7 @@ from msgspec import Struct, field
 from msgspec.structs import replace
 
 from rvmon.diagnostics import Span
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.specification import Capture, Event, Signal, TimeModel, Type
 from rvmon.language.names import Declared
@@ -33,7 +33,7 @@ class Quantity(Struct, frozen=True):
         lone: the window that it is, if it is no expression of one.
     """
 
-    node: formulas.Numeric | None = None
+    node: rv.Numeric | None = None
     constant: Fraction | None = None
     unit: Unit = PLAIN
     integral: bool = False
@@ -51,7 +51,7 @@ class Age(Struct, frozen=True):
 class Chosen(Struct, frozen=True):
     """`if φ then x else y` of numbers; a comparison of it becomes one of each, with φ."""
 
-    condition: formulas.Formula
+    condition: rv.Formula
     chosen: Value
     otherwise: Value
 
@@ -79,16 +79,16 @@ class Lone(Struct, frozen=True):
         begun: the condition that the trigger has come, if only members since then count.
     """
 
-    of: formulas.WindowValue
+    of: rv.WindowValue
     added: Quantity | None = None
     share: bool = False
-    begun: formulas.Formula | None = None
+    begun: rv.Formula | None = None
 
 
 TimeValue = Age | Now | Moment
 """The values of time, which are only allowed as one side of a comparison."""
 
-Value = formulas.Formula | Quantity | TimeValue | Chosen
+Value = rv.Formula | Quantity | TimeValue | Chosen
 
 
 class Closure(Struct, frozen=True):
@@ -103,13 +103,13 @@ class AtTrigger(Struct, frozen=True):
 
     captures: list[Capture] = field(default_factory=list)
 
-    def begun(self, span: Span) -> formulas.Passed:
+    def begun(self, span: Span) -> rv.Passed:
         """The condition that the trigger has come."""
-        if not any(capture.name == formulas.TRIGGERED for capture in self.captures):
-            self.captures.append(Capture(formulas.TRIGGERED, formulas.NowValue()))
-        return formulas.since_trigger(span)
+        if not any(capture.name == rv.TRIGGERED for capture in self.captures):
+            self.captures.append(Capture(rv.TRIGGERED, rv.NowValue()))
+        return rv.since_trigger(span)
 
-    def number(self, word: str, value: formulas.Numeric) -> str:
+    def number(self, word: str, value: rv.Numeric) -> str:
         """The name of a number of that instant, which begins as a word of the language does."""
         for capture in self.captures:
             if capture.value == value and capture.name.startswith(word):
@@ -269,7 +269,7 @@ class Operands(Protocol):
     def quantities(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Quantity]:
         """The same, which have to be numbers."""
 
-    def formula(self, expression: Expression, scope: Scope) -> formulas.Formula:
+    def formula(self, expression: Expression, scope: Scope) -> rv.Formula:
         """The formula that an operand stands for."""
 
     def duration(self, expression: Expression, scope: Scope) -> int:

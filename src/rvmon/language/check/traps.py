@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from rvmon.diagnostics import Diagnostic, Span
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.classify import (
     FIRST,
     Facts,
@@ -13,18 +14,6 @@ from rvmon.language.checked.classify import (
     is_timeless,
     subformulas,
     truth_at,
-)
-from rvmon.language.checked.formula import (
-    Atom,
-    Binary,
-    BinaryOp,
-    Bound,
-    BoundAtom,
-    Constant,
-    Formula,
-    Unary,
-    UnaryOp,
-    fields_in,
 )
 from rvmon.language.checked.specification import Capture, Mode, TimeModel
 from rvmon.language.print import format_duration, format_formula
@@ -36,13 +25,15 @@ _FIRST = "at the first instant"
 
 
 def traps_at_trigger(
-    trigger: Formula, consequent: Formula, time: TimeModel, span: Span
+    trigger: rv.Formula, consequent: rv.Formula, time: TimeModel, span: Span
 ) -> Iterator[Diagnostic]:
     """Find parts that are required at the trigger and cannot hold there.
 
     Trigger and consequent are without the parts of a scope; `span` is for parts without a place.
     """
-    facts = {about: truth for about, truth in facts_of(trigger).items() if about is not Bound.START}
+    facts = {
+        about: truth for about, truth in facts_of(trigger).items() if about is not rv.Bound.START
+    }
     for part in _required_at_once(consequent):
         # Constant formulas are reported by the analysis.
         if truth_at(part, {}) is None:
@@ -50,22 +41,22 @@ def traps_at_trigger(
 
 
 def traps_at_start(
-    mode: Mode, trigger: Formula, consequent: Formula, span: Span
+    mode: Mode, trigger: rv.Formula, consequent: rv.Formula, span: Span
 ) -> Iterator[Diagnostic]:
     """Find parts that are required from the start of the run on and cannot hold there.
 
     Arguments as of `traps_at_trigger`.
     """
-    always = mode is Mode.WHENEVER and isinstance(trigger, Constant) and trigger.value
-    if not always and not (isinstance(trigger, BoundAtom) and trigger.bound is Bound.START):
+    always = mode is Mode.WHENEVER and isinstance(trigger, rv.Constant) and trigger.value
+    if not always and not (isinstance(trigger, rv.BoundAtom) and trigger.bound is rv.Bound.START):
         return
     for part in _required_at_once(consequent):
         place = part.span or span
         if truth_at(part, {}) is not None:
             continue
-        if always and isinstance(part, Unary) and part.op.entry.pulse:
+        if always and isinstance(part, rv.Unary) and part.op.entry.pulse:
             fix = "an edge is one instant: say what follows it, `upon … then …`"
-            when = "at the second instant at the latest" if part.op is UnaryOp.RISE else _FIRST
+            when = "at the second instant at the latest" if part.op is rv.UnaryOp.RISE else _FIRST
             yield rules.false_at_first(place, when, fix)
         elif truth_at(part, FIRST) is False:
             yield rules.false_at_first(place, _FIRST, _later(part))
@@ -73,30 +64,30 @@ def traps_at_start(
 
 def capture_traps(
     mode: Mode,
-    trigger: Formula,
+    trigger: rv.Formula,
     captures: Iterable[tuple[LetClause, Capture]],
     time: TimeModel,
 ) -> Iterator[Diagnostic]:
     """Captured values that are not those that a reader takes them for."""
     occurring = {name for name, truth in facts_of(trigger).items() if truth}
     for clause, capture in captures:
-        for field in fields_in(capture.value):
+        for field in rv.fields_in(capture.value):
             if field.event not in occurring:
                 yield rules.no_value(clause.span, field.event)
                 break
         else:
             if mode is Mode.WHENEVER and not (is_pulse(trigger) and time is TimeModel.HELD):
-                shown = "" if isinstance(trigger, Constant) else format_formula(trigger)
+                shown = "" if isinstance(trigger, rv.Constant) else format_formula(trigger)
                 yield rules.captured_once(clause.span, shown)
 
 
-def _required_at_once(formula: Formula) -> Iterator[Formula]:
+def _required_at_once(formula: rv.Formula) -> Iterator[rv.Formula]:
     """The parts of what is required that have to hold at the instant at which it is required."""
     match formula:
-        case Binary(op=BinaryOp.AND, left=left, right=right):
+        case rv.Binary(op=rv.BinaryOp.AND, left=left, right=right):
             yield from _required_at_once(left)
             yield from _required_at_once(right)
-        case Unary(op=UnaryOp.ALWAYS, operand=operand, interval=window) if not (
+        case rv.Unary(op=rv.UnaryOp.ALWAYS, operand=operand, interval=window) if not (
             window and window.low
         ):
             yield from _required_at_once(operand)
@@ -104,9 +95,11 @@ def _required_at_once(formula: Formula) -> Iterator[Formula]:
             yield formula
 
 
-def _at_trigger(part: Formula, facts: Facts, time: TimeModel, place: Span) -> Iterator[Diagnostic]:
+def _at_trigger(
+    part: rv.Formula, facts: Facts, time: TimeModel, place: Span
+) -> Iterator[Diagnostic]:
     """A part of what is required that is false by what the trigger says."""
-    if isinstance(part, Binary) and part.op in (BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL):
+    if isinstance(part, rv.Binary) and part.op in (rv.BinaryOp.UNTIL, rv.BinaryOp.WEAK_UNTIL):
         left, right = truth_at(part.left, facts), truth_at(part.right, facts)
         late = part.interval is not None and part.interval.low > 0
         if left is False and (late or right is not True) and truth_at(part.left, {}) is None:
@@ -120,7 +113,7 @@ def _at_trigger(part: Formula, facts: Facts, time: TimeModel, place: Span) -> It
         yield rules.false_at_trigger(place, format_formula(part), "", fix)
 
 
-def _from_later_on(part: Binary, time: TimeModel) -> str:
+def _from_later_on(part: rv.Binary, time: TimeModel) -> str:
     """`a until b` and `a unless b` that begin behind the trigger."""
     if time is not TimeModel.HELD:
         return f"let it begin at the next position: `next ({format_formula(part)})`"
@@ -128,13 +121,13 @@ def _from_later_on(part: Binary, time: TimeModel) -> str:
     end = "inf)" if high is None else f"{format_duration(high)}]"
     left, right = _operand(part.left), _operand(part.right)
     later = f"{right} R[1 ns, {end} {left}"
-    if part.op is BinaryOp.UNTIL:
+    if part.op is rv.BinaryOp.UNTIL:
         window = "" if not low and high is None else f"[{format_duration(low)}, {end}"
         later = f"({later}) and eventually{window} {right}"
     return f"let it begin a tick later: `{later}`"
 
 
-def _later(part: Formula) -> str:
+def _later(part: rv.Formula) -> str:
     """The way to require a part that looks back only where there is a past to look at."""
     due = max(map(_reach, subformulas(part)))
     if not due:
@@ -143,31 +136,31 @@ def _later(part: Formula) -> str:
     return f"let it begin when so much has passed: `always[{begin}, inf) {_operand(part)}`"
 
 
-def _reach(part: Formula) -> int:
+def _reach(part: rv.Formula) -> int:
     """The distance of the latest instant that an operator looks back at, ticks."""
     match part:
-        case Unary(op=UnaryOp.HELD, interval=window) if window is not None:
+        case rv.Unary(op=rv.UnaryOp.HELD, interval=window) if window is not None:
             return window.high or 0
-        case Unary(op=UnaryOp.ONCE, interval=window) if window is not None:
+        case rv.Unary(op=rv.UnaryOp.ONCE, interval=window) if window is not None:
             return window.low
-        case Binary(op=BinaryOp.SINCE, interval=window) if window is not None:
+        case rv.Binary(op=rv.BinaryOp.SINCE, interval=window) if window is not None:
             return window.low
         case _:
             return 0
 
 
-def _operand(formula: Formula) -> str:
+def _operand(formula: rv.Formula) -> str:
     """A formula as an operand of a temporal operator is printed."""
     text = format_formula(formula)
-    is_call = isinstance(formula, Unary) and formula.op.entry.called
-    return text if is_call or isinstance(formula, Atom) else f"({text})"
+    is_call = isinstance(formula, rv.Unary) and formula.op.entry.called
+    return text if is_call or isinstance(formula, rv.Atom) else f"({text})"
 
 
-def at_start_by_mistake(expression: Expression, formula: Formula) -> bool:
+def at_start_by_mistake(expression: Expression, formula: rv.Formula) -> bool:
     """Whether a bare formula speaks of no time, and not of the start either."""
     if on_purpose(expression) or not is_timeless(formula):
         return False
-    return not any(isinstance(part, BoundAtom) for part in subformulas(formula))
+    return not any(isinstance(part, rv.BoundAtom) for part in subformulas(formula))
 
 
 def on_purpose(expression: Expression) -> bool:

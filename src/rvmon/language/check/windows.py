@@ -12,23 +12,9 @@ from rvmon.diagnostics import Span
 from rvmon.language.check.comparisons import number_of
 from rvmon.language.check.quantities import arithmetic, node_of
 from rvmon.language.check.scope import Chosen, Lone, Operands, Quantity, Scope, Value
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.classify import future_part, is_pulse
-from rvmon.language.checked.formula import (
-    BinaryOp,
-    Compare,
-    EventAtom,
-    Formula,
-    Measured,
-    Numeric,
-    Probe,
-    ProbeAtom,
-    SignalValue,
-    WindowValue,
-    fields_in,
-    itself,
-    windows_in,
-)
 from rvmon.language.checked.functions import LAST
 from rvmon.language.checked.names_read import names_in, names_read
 from rvmon.language.checked.rewrite import Formulas, chain
@@ -77,7 +63,7 @@ def _window(operands: Operands, call: Call, scope: Scope) -> _Window:
     match of:
         case Call(function=function, args=(count, x)) if function.text == LAST:
             window = _Window(x, inner, most=_count(operands, count, inner))
-        case Infix(op=BinaryOp.SINCE, left=left, right=right, window=None):
+        case Infix(op=rv.BinaryOp.SINCE, left=left, right=right, window=None):
             name, place = operands.peeled(right, inner)
             if (
                 isinstance(name, Name)
@@ -110,7 +96,7 @@ def _count(operands: Operands, expression: Expression, scope: Scope) -> int:
     return int(number)
 
 
-def amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> Quantity:
+def amount(operands: Operands, measured: rv.Measured, call: Call, scope: Scope) -> Quantity:
     """The quantity that a call measures.
 
     Raises:
@@ -126,7 +112,7 @@ def amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> 
         lone = replace(lone, begun=begun)
     lone = replace(lone, of=of)
     added = lone.added or Quantity(integral=True)
-    whole = added.integral and measured not in (Measured.MEAN, Measured.VARIANCE)
+    whole = added.integral and measured not in (rv.Measured.MEAN, rv.Measured.VARIANCE)
     unit = _unit_of(measured, added.unit)
     quantity = Quantity(of, unit=unit, integral=whole and not measured.of_time)
     if lone.share:
@@ -136,7 +122,7 @@ def amount(operands: Operands, measured: Measured, call: Call, scope: Scope) -> 
     return replace(quantity, lone=lone)
 
 
-def _unit_of(measured: Measured, unit: Unit) -> Unit:
+def _unit_of(measured: rv.Measured, unit: Unit) -> Unit:
     """The unit of what is measured of numbers."""
     match measured.dimension:
         case Dimension.PLAIN:
@@ -149,7 +135,7 @@ def _unit_of(measured: Measured, unit: Unit) -> Unit:
             return unit
 
 
-def _counted(operands: Operands, measured: Measured, call: Call, window: _Window) -> Lone:
+def _counted(operands: Operands, measured: rv.Measured, call: Call, window: _Window) -> Lone:
     """The count or duration of a formula, whose members have to be known at once."""
     formula = operands.formula(window.of, window.scope)
     _refuse_future(formula, call, call.function.text)
@@ -157,85 +143,85 @@ def _counted(operands: Operands, measured: Measured, call: Call, window: _Window
     if share and window.ticks is None and window.most is None:
         raise Refusal(rules.argument_count(call.span, "share", "two arguments", 1))
     if window.most is not None:
-        if share or measured is not Measured.COUNT:
+        if share or measured is not rv.Measured.COUNT:
             raise Refusal(rules.not_of_last(call.span, call.function.text))
         updated = _updates(operands, {*names_read(formula)}, window.span)
-        return Lone(WindowValue(measured, updated, None, counted=formula))
+        return Lone(rv.WindowValue(measured, updated, None, counted=formula))
     held = operands.table.time is TimeModel.HELD
-    if measured is Measured.COUNT and held and not is_pulse(formula):
+    if measured is rv.Measured.COUNT and held and not is_pulse(formula):
         raise Refusal(rules.count_of_state(window.span))
-    return Lone(WindowValue(measured, formula, None), share=share)
+    return Lone(rv.WindowValue(measured, formula, None), share=share)
 
 
-def _refuse_future(formula: Formula, call: Call, name: str) -> None:
+def _refuse_future(formula: rv.Formula, call: Call, name: str) -> None:
     if (ahead := future_part(formula)) is not None:
         raise Refusal(rules.amount_of_future(ahead.span or call.span, name))
 
 
-def _updates(operands: Operands, names: set[str], span: Span) -> Formula:
+def _updates(operands: Operands, names: set[str], span: Span) -> rv.Formula:
     """The formula that is true where the only name of an expression is updated."""
     if len(names) != 1:
         raise Refusal(rules.last_of_several(span))
     (name,) = names
     if name in operands.table.events:
-        return EventAtom(name, span)
-    return ProbeAtom(Probe.UPDATED, name, span)
+        return rv.EventAtom(name, span)
+    return rv.ProbeAtom(rv.Probe.UPDATED, name, span)
 
 
-def _added(operands: Operands, measured: Measured, call: Call, window: _Window) -> Lone:
+def _added(operands: Operands, measured: rv.Measured, call: Call, window: _Window) -> Lone:
     """The numbers of occurrences, of updates, or what is held."""
     place = window.span
     (value,) = operands.values((window.of,), window.scope)
-    conditions: list[Formula] = []
-    may_choose = measured in (Measured.SUM, Measured.INTEGRAL) and window.most is None
+    conditions: list[rv.Formula] = []
+    may_choose = measured in (rv.Measured.SUM, rv.Measured.INTEGRAL) and window.most is None
     if isinstance(value, Chosen) and may_choose and _is_nothing(value.otherwise):
         conditions, value = chain(value.condition), value.chosen
     quantity = number_of(value, place)
     if quantity.node is None:
         raise Refusal(rules.not_added(place, measured, measured.of.value))
     node = node_of((quantity, place))
-    if windows_in(node):
+    if rv.windows_in(node):
         raise Refusal(rules.window_in_window(place))
-    events = {value.event for value in fields_in(node)}
+    events = {value.event for value in rv.fields_in(node)}
     signals = {*names_in(node)} - events
     if window.most is not None:
         if measured.of is Members.HELD:
             raise Refusal(rules.not_of_last(call.span, measured))
         updated = _updates(operands, events | signals, place)
-        of = WindowValue(measured, updated, None, node, counted=itself(node, place))
+        of = rv.WindowValue(measured, updated, None, node, counted=rv.itself(node, place))
         return Lone(of, quantity)
     if not _can_be_added(measured, node, fields=bool(events), signals=bool(signals)):
         raise Refusal(rules.not_added(place, measured, measured.of.value))
-    if measured is Measured.VARIANCE and signals:
+    if measured is rv.Measured.VARIANCE and signals:
         _refuse_curve(operands, call, window)
-    if measured is Measured.AGO and operands.table.time is not TimeModel.HELD:
+    if measured is rv.Measured.AGO and operands.table.time is not TimeModel.HELD:
         raise Refusal(rules.ago_of_samples(call.span))
-    if measured.of is Members.EVENTS and isinstance(node, SignalValue):
-        conditions.insert(0, ProbeAtom(Probe.UPDATED, node.name, place))
+    if measured.of is Members.EVENTS and isinstance(node, rv.SignalValue):
+        conditions.insert(0, rv.ProbeAtom(rv.Probe.UPDATED, node.name, place))
     chosen = tuple(condition for condition in conditions if _is_of_occurrence(condition, events))
-    member: Formula = itself(node, place)
+    member: rv.Formula = rv.itself(node, place)
     for condition in reversed([condition for condition in conditions if condition not in chosen]):
         _refuse_future(condition, call, measured)
         member = Formulas(place).both(condition, member)
-    return Lone(WindowValue(measured, member, None, node, chosen=chosen), quantity)
+    return Lone(rv.WindowValue(measured, member, None, node, chosen=chosen), quantity)
 
 
 def _is_nothing(value: Value) -> bool:
     return isinstance(value, Quantity) and value.constant == 0
 
 
-def _is_of_occurrence(formula: Formula, events: set[str]) -> TypeGuard[Compare]:
+def _is_of_occurrence(formula: rv.Formula, events: set[str]) -> TypeGuard[rv.Compare]:
     """Whether it is a comparison that says something of one occurrence of the only event."""
-    if not isinstance(formula, Compare) or len(events) != 1:
+    if not isinstance(formula, rv.Compare) or len(events) != 1:
         return False
-    return {value.event for value in fields_in(formula.left, formula.right)} == events
+    return {value.event for value in rv.fields_in(formula.left, formula.right)} == events
 
 
-def _can_be_added(measured: Measured, node: Numeric, *, fields: bool, signals: bool) -> bool:
+def _can_be_added(measured: rv.Measured, node: rv.Numeric, *, fields: bool, signals: bool) -> bool:
     """Whether a measure adds up numbers of occurrences, of held values, or of either."""
     match measured.of:
         case Members.EVENTS:
-            return fields or isinstance(node, SignalValue)
+            return fields or isinstance(node, rv.SignalValue)
         case Members.HELD:
             return signals and not fields
         case _ if measured.recalls:

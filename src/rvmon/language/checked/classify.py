@@ -5,28 +5,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator, Mapping
 from typing import assert_never
 
-from rvmon.language.checked.formula import (
-    Amount,
-    Binary,
-    BinaryOp,
-    Bound,
-    BoundAtom,
-    Compare,
-    CompareOp,
-    Constant,
-    EventAtom,
-    Formula,
-    Interval,
-    Passed,
-    Probe,
-    ProbeAtom,
-    SignalAtom,
-    Unary,
-    UnaryOp,
-    WindowValue,
-    fields_in,
-    windows_in,
-)
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.operators import OPERATORS, Connectives, Reading, Tense
 from rvmon.language.checked.rewrite import read
 
@@ -34,7 +13,7 @@ FUTURE = frozenset(op for op in OPERATORS if op.entry.tense is Tense.FUTURE)
 """The operators that look ahead."""
 
 
-def subformulas(formula: Formula) -> Iterator[Formula]:
+def subformulas(formula: rv.Formula) -> Iterator[rv.Formula]:
     """The formula and all below it, from the outside in, left to right.
 
     A part that a macro shares between several places comes once.
@@ -49,71 +28,73 @@ def subformulas(formula: Formula) -> Iterator[Formula]:
         seen.add(id(node))
         yield node
         match node:
-            case Unary(operand=operand):
+            case rv.Unary(operand=operand):
                 waiting.append(operand)
-            case Amount():
+            case rv.Amount():
                 waiting += reversed(node.operands)
-            case Compare(left=left, right=right):
-                windows = windows_in(left, right)
+            case rv.Compare(left=left, right=right):
+                windows = rv.windows_in(left, right)
                 waiting += (
                     part for window in reversed(windows) for part in reversed(window.operands)
                 )
-            case Passed(known=known):
+            case rv.Passed(known=known):
                 waiting.append(known)
-            case Binary(left=left, right=right):
+            case rv.Binary(left=left, right=right):
                 waiting += (right, left)
 
 
-def windows_of(*formulas: Formula) -> Iterator[WindowValue]:
+def windows_of(*formulas: rv.Formula) -> Iterator[rv.WindowValue]:
     """The windows in formulas, those in windows among them."""
     for part in (part for formula in formulas for part in subformulas(formula)):
-        if isinstance(part, Amount):
+        if isinstance(part, rv.Amount):
             yield part.of
-        elif isinstance(part, Compare):
-            yield from windows_in(part.left, part.right)
+        elif isinstance(part, rv.Compare):
+            yield from rv.windows_in(part.left, part.right)
 
 
-def future_part(formula: Formula) -> Formula | None:
+def future_part(formula: rv.Formula) -> rv.Formula | None:
     """The first subformula that looks ahead."""
     for part in subformulas(formula):
-        if isinstance(part, Unary | Binary) and part.op in FUTURE:
+        if isinstance(part, rv.Unary | rv.Binary) and part.op in FUTURE:
             return part
     return None
 
 
-def has_future(formula: Formula) -> bool:
+def has_future(formula: rv.Formula) -> bool:
     """Whether a formula looks ahead."""
     return future_part(formula) is not None
 
 
-def looks_back_at_future(formula: Formula) -> bool:
+def looks_back_at_future(formula: rv.Formula) -> bool:
     """Whether something that looks ahead stands below an operator of the past."""
     return any(
-        isinstance(part, Unary | Binary) and part.op.entry.tense is Tense.PAST and has_future(part)
+        isinstance(part, rv.Unary | rv.Binary)
+        and part.op.entry.tense is Tense.PAST
+        and has_future(part)
         for part in subformulas(formula)
     )
 
 
-def end_part(formula: Formula) -> Formula | None:
+def end_part(formula: rv.Formula) -> rv.Formula | None:
     """The first `end` in a formula."""
     return next((part for part in subformulas(formula) if is_end(part)), None)
 
 
-def is_end(formula: Formula) -> bool:
+def is_end(formula: rv.Formula) -> bool:
     """Whether a formula is `end`, wherever it stands."""
-    return isinstance(formula, BoundAtom) and formula.bound is Bound.END
+    return isinstance(formula, rv.BoundAtom) and formula.bound is rv.Bound.END
 
 
-def is_timeless(formula: Formula) -> bool:
+def is_timeless(formula: rv.Formula) -> bool:
     """Whether no operator of time occurs, neither of the future nor of the past."""
     return all(
         part.op.entry.tense is Tense.PRESENT or part.op.entry.pulse
         for part in subformulas(formula)
-        if isinstance(part, Unary | Binary)
+        if isinstance(part, rv.Unary | rv.Binary)
     )
 
 
-def is_pulse(formula: Formula) -> bool:
+def is_pulse(formula: rv.Formula) -> bool:
     """Whether the negation normal form of a trigger is a pulse.
 
     >>> from rvmon.language.checked.formula import BinaryOp, UnaryOp
@@ -145,37 +126,37 @@ class _Pulsing(Connectives[Pulses]):
 _PULSING = _Pulsing()
 
 
-def _pulses(formula: Formula) -> Pulses:
+def _pulses(formula: rv.Formula) -> Pulses:
     match formula:
-        case Constant(value=value):
+        case rv.Constant(value=value):
             return _PULSING.constant(value)
-        case EventAtom():
+        case rv.EventAtom():
             return True, False
-        case Compare(left=left, right=right):
-            return any(fields_in(left, right)), False
-        case ProbeAtom(probe=probe):
-            return probe is not Probe.KNOWN, False
-        case SignalAtom() | BoundAtom() | Amount() | Passed():
+        case rv.Compare(left=left, right=right):
+            return any(rv.fields_in(left, right)), False
+        case rv.ProbeAtom(probe=probe):
+            return probe is not rv.Probe.KNOWN, False
+        case rv.SignalAtom() | rv.BoundAtom() | rv.Amount() | rv.Passed():
             return False, False
-        case Unary(op=op) | Binary(op=op) if op.entry.tense is not Tense.PRESENT:
+        case rv.Unary(op=op) | rv.Binary(op=op) if op.entry.tense is not Tense.PRESENT:
             return op.entry.pulse, False
-        case Unary() | Binary():
+        case rv.Unary() | rv.Binary():
             return read(formula, _pulses, _PULSING)
         case _:
             assert_never(formula)
 
 
-def mixed_disjunction(trigger: Formula) -> tuple[Formula, Formula] | None:
+def mixed_disjunction(trigger: rv.Formula) -> tuple[rv.Formula, rv.Formula] | None:
     """A pulse and a level that a trigger joins by `or`, if it is no pulse altogether."""
     waiting = [trigger]
     while waiting:
         node = waiting.pop()
-        if not isinstance(node, Binary) or is_pulse(node):
+        if not isinstance(node, rv.Binary) or is_pulse(node):
             continue
         sides = (node.left, node.right)
-        if node.op is BinaryOp.OR and is_pulse(node.left) != is_pulse(node.right):
+        if node.op is rv.BinaryOp.OR and is_pulse(node.left) != is_pulse(node.right):
             return sides if is_pulse(node.left) else (node.right, node.left)
-        if node.op in (BinaryOp.AND, BinaryOp.OR):
+        if node.op in (rv.BinaryOp.AND, rv.BinaryOp.OR):
             waiting += reversed(sides)
     return None
 
@@ -183,11 +164,11 @@ def mixed_disjunction(trigger: Formula) -> tuple[Formula, Formula] | None:
 Facts = Mapping[Hashable, bool]
 """The known truth values of propositions at an instant."""
 
-FIRST: Facts = {Bound.START: True}
+FIRST: Facts = {rv.Bound.START: True}
 """The facts of the first instant of a run."""
 
 
-def facts_of(formula: Formula) -> dict[Hashable, bool]:
+def facts_of(formula: rv.Formula) -> dict[Hashable, bool]:
     """The facts that hold wherever a formula of the present and past is true.
 
     >>> from rvmon.language.checked.formula import BinaryOp
@@ -227,17 +208,19 @@ class _Facts(Reading[Both]):
         return {}, {}
 
 
-def _both_facts(formula: Formula) -> Both:
+def _both_facts(formula: rv.Formula) -> Both:
     match formula:
-        case Constant():
+        case rv.Constant():
             return {}, {}
-        case Unary(op=UnaryOp.HELD, operand=operand):  # it says more than its parts: also here
+        case rv.Unary(
+            op=rv.UnaryOp.HELD, operand=operand
+        ):  # it says more than its parts: also here
             return _both_facts(operand)[0], {}
-        case Unary() | Binary():
+        case rv.Unary() | rv.Binary():
             return read(formula, _both_facts, _Facts())
-        case Amount() | Passed():
+        case rv.Amount() | rv.Passed():
             return {}, {}
-        case Compare():
+        case rv.Compare():
             key, same = _compared(formula)
             return {key: same, **dict.fromkeys(_events(formula), True)}, {key: not same}
         case _:
@@ -245,22 +228,22 @@ def _both_facts(formula: Formula) -> Both:
             return {key: True}, {key: False}
 
 
-def truth_at(formula: Formula, facts: Facts) -> bool | None:
+def truth_at(formula: rv.Formula, facts: Facts) -> bool | None:
     """The truth of a formula at an instant with such facts; `None` if they do not decide it."""
     match formula:
-        case Constant(value=value):
+        case rv.Constant(value=value):
             return value
-        case Compare():
+        case rv.Compare():
             key, same = _compared(formula)
             if any(facts.get(event) is False for event in _events(formula)):
                 return False
             known = facts.get(key)
             return None if known is None else known is same
-        case SignalAtom() | EventAtom() | ProbeAtom() | BoundAtom():
+        case rv.SignalAtom() | rv.EventAtom() | rv.ProbeAtom() | rv.BoundAtom():
             return facts.get(_key(formula))
-        case Unary() | Binary():
+        case rv.Unary() | rv.Binary():
             return read(formula, lambda part: truth_at(part, facts), _Here(facts))
-        case Amount() | Passed():
+        case rv.Amount() | rv.Passed():
             return None
 
 
@@ -268,7 +251,7 @@ class _Here(Reading[bool | None]):
     """Operators by what their operands are now; what else they look at is not known."""
 
     def __init__(self, facts: Facts) -> None:
-        self._first = facts.get(Bound.START) is True
+        self._first = facts.get(rv.Bound.START) is True
 
     def constant(self, value: bool) -> bool | None:
         return value
@@ -287,38 +270,40 @@ class _Here(Reading[bool | None]):
     def previous(self, _: bool | None) -> bool | None:
         return False if self._first else None
 
-    def until(self, left: bool | None, right: bool | None, window: Interval) -> bool | None:
+    def until(self, left: bool | None, right: bool | None, window: rv.Interval) -> bool | None:
         """The right side may come later."""
         if not window.low and right is not False:
             return right
         return False if left is False else None
 
-    def since(self, left: bool | None, right: bool | None, window: Interval) -> bool | None:
+    def since(self, left: bool | None, right: bool | None, window: rv.Interval) -> bool | None:
         """There is nothing before the first instant."""
         if self._first:
             return False if window.low else right
         return self.until(left, right, window)
 
 
-def _compared(formula: Compare) -> tuple[Hashable, bool]:
+def _compared(formula: rv.Compare) -> tuple[Hashable, bool]:
     """A comparison or its opposite, and whether it is the comparison itself.
 
     One that reads a field of an event has no opposite: both are false where that does not occur.
     """
-    positive = formula.op in (CompareOp.LT, CompareOp.LE, CompareOp.EQ) or bool(_events(formula))
+    positive = formula.op in (rv.CompareOp.LT, rv.CompareOp.LE, rv.CompareOp.EQ) or bool(
+        _events(formula)
+    )
     op = formula.op if positive else formula.op.denied
     return (op, formula.left, formula.right), positive
 
 
-def _events(formula: Compare) -> list[str]:
-    return [field.event for field in fields_in(formula.left, formula.right)]
+def _events(formula: rv.Compare) -> list[str]:
+    return [field.event for field in rv.fields_in(formula.left, formula.right)]
 
 
-def _key(atom: SignalAtom | EventAtom | ProbeAtom | BoundAtom) -> Hashable:
+def _key(atom: rv.SignalAtom | rv.EventAtom | rv.ProbeAtom | rv.BoundAtom) -> Hashable:
     match atom:
-        case SignalAtom(name=name) | EventAtom(name=name):
+        case rv.SignalAtom(name=name) | rv.EventAtom(name=name):
             return name
-        case ProbeAtom(probe=probe, name=name):
+        case rv.ProbeAtom(probe=probe, name=name):
             return probe, name
-        case BoundAtom(bound=bound):
+        case rv.BoundAtom(bound=bound):
             return bound

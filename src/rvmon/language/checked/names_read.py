@@ -5,46 +5,34 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 
 from rvmon.errors import RvmonError, UnknownNameError
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.classify import subformulas
-from rvmon.language.checked.formula import (
-    Arithmetic,
-    Compare,
-    EventAtom,
-    FieldValue,
-    Formula,
-    Numeric,
-    ProbeAtom,
-    SignalAtom,
-    SignalValue,
-    UpdateValue,
-    WindowValue,
-)
 from rvmon.language.checked.properties import StateAtom, state_formulas
 from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.texts import did_you_mean
 
 
-def names_read(formula: Formula) -> Iterator[str]:
+def names_read(formula: rv.Formula) -> Iterator[str]:
     """The names of the signals and events that a formula reads, with repetitions."""
     for part in subformulas(formula):
         match part:
-            case SignalAtom(name=name) | EventAtom(name=name) | ProbeAtom(name=name):
+            case rv.SignalAtom(name=name) | rv.EventAtom(name=name) | rv.ProbeAtom(name=name):
                 yield name
-            case Compare(left=left, right=right):
+            case rv.Compare(left=left, right=right):
                 yield from names_in(left)
                 yield from names_in(right)
 
 
-def names_in(numeric: Numeric) -> Iterator[str]:
+def names_in(numeric: rv.Numeric) -> Iterator[str]:
     """The names that a number is made of."""
     waiting = [numeric]
     while waiting:
         match waiting.pop():
-            case SignalValue(name=name) | UpdateValue(name=name) | FieldValue(event=name):
+            case rv.SignalValue(name=name) | rv.UpdateValue(name=name) | rv.FieldValue(event=name):
                 yield name
-            case Arithmetic(args=args):
+            case rv.Arithmetic(args=args):
                 waiting += args
-            case WindowValue() as window:
+            case rv.WindowValue() as window:
                 for part in window.operands:
                     yield from names_read(part)
 

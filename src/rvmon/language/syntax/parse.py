@@ -21,16 +21,10 @@ from rvmon.language.rules import Findings, Refusal
 from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import syntax as rules
 from rvmon.language.rules.syntax import LARGEST
+from rvmon.language.syntax import keywords
 from rvmon.language.syntax.expressions import Expression
 from rvmon.language.syntax.grammar_cache import parser_of
 from rvmon.language.syntax.items import ImportItem, Item, ParsedSpec
-from rvmon.language.syntax.keywords import (
-    ITEM_WORDS,
-    NOT_UNITS,
-    OPERATOR_TERMINALS,
-    RESERVED,
-    split_items,
-)
 from rvmon.language.syntax.syntax_errors import explain_unexpected
 from rvmon.language.syntax.tree_builder import Builder
 from rvmon.texts import ImportTree, nearest, text_of_file, tree_of
@@ -55,7 +49,7 @@ def parse_spec(source: Source, findings: Findings) -> ParsedSpec:
     """Read a file; `findings` takes what is wrong with the items that are left out."""
     items: list[Item] = []
     doubtful: set[str] = set()
-    waiting = split_items(source.text)[::-1]
+    waiting = keywords.split_items(source.text)[::-1]
     while waiting:
         start, end = waiting.pop()
         item, wrong = _parse(source, start, end, "item")
@@ -79,7 +73,7 @@ def _misspelled_item(text: str, start: int, findings: list[Diagnostic]) -> int |
     if place <= start or text[place - 1] != "\n":
         return None
     word = re.compile(r"\w+").match(text, place)
-    return place if word and nearest(word[0], ITEM_WORDS, 0.75) else None
+    return place if word and nearest(word[0], keywords.ITEM_WORDS, 0.75) else None
 
 
 def parse_expression(source: Source) -> tuple[Expression | None, list[Diagnostic]]:
@@ -138,11 +132,11 @@ def grammar_text() -> str:
     word = r"[^\W\d]\w*"
     fillings = {
         "END": end,
-        "NAME": rf"(?!({_any(RESERVED)}){end}){word}(\.{word})*",
-        "UNIT": rf"(?!({_any(NOT_UNITS)}){end}){word}",
-        "COMPOUND": compound_pattern(NOT_UNITS).replace("/", r"\/"),
+        "NAME": rf"(?!({_any(keywords.RESERVED)}){end}){word}(\.{word})*",
+        "UNIT": rf"(?!({_any(keywords.NOT_UNITS)}){end}){word}",
+        "COMPOUND": compound_pattern(keywords.NOT_UNITS).replace("/", r"\/"),
     }
-    for terminal, spellings in OPERATOR_TERMINALS.items():
+    for terminal, spellings in keywords.OPERATOR_TERMINALS.items():
         fillings[terminal] = "|".join(
             re.escape(spelling).replace(r"\ ", r"\s+") + (end if spelling[-1].isalpha() else "")
             # `&&` before `&`: an alternation takes the first match.

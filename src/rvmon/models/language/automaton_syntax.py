@@ -5,15 +5,7 @@ from __future__ import annotations
 from msgspec import Struct
 
 from rvmon.diagnostics import Source, Span
-from rvmon.models.language.syntax import (
-    Call,
-    Declared,
-    Expression,
-    Name,
-    Parameter,
-    TypeText,
-    UpdateText,
-)
+from rvmon.models.language import syntax
 from rvmon.models.network.expressions import LocationKind
 
 
@@ -22,15 +14,15 @@ class LocationText(Struct, frozen=True):
 
     name: str
     kind: LocationKind
-    invariant: Expression | None
+    invariant: syntax.Expression | None
     span: Span
-    leaving: tuple[Expression, Expression] | None = None
+    leaving: tuple[syntax.Expression, syntax.Expression] | None = None
 
 
 class SyncText(Struct, frozen=True):
     """`channel!` or `channel?`."""
 
-    channel: Expression
+    channel: syntax.Expression
     sends: bool
     span: Span
 
@@ -39,7 +31,7 @@ class Selection(Struct, frozen=True):
     """`name : type` of an edge: one edge for each value."""
 
     name: str
-    type: TypeText
+    type: syntax.TypeText
     span: Span
 
 
@@ -50,26 +42,26 @@ class EdgeText(Struct, frozen=True):
         shares: of a branch: its weight, and that of all branches together with it.
     """
 
-    source: Name
-    target: Name
+    source: syntax.Name
+    target: syntax.Name
     span: Span
     selections: tuple[Selection, ...] = ()
-    guard: Expression | None = None
+    guard: syntax.Expression | None = None
     sync: SyncText | None = None
-    updates: tuple[UpdateText | Call, ...] = ()
+    updates: tuple[syntax.UpdateText | syntax.Call, ...] = ()
     weight: float = 1.0
     label: str = ""
-    shares: tuple[Expression, tuple[Expression, ...]] | None = None
+    shares: tuple[syntax.Expression, tuple[syntax.Expression, ...]] | None = None
 
 
 class Template(Struct, frozen=True):
     """A template; without parameters it is an automaton by itself."""
 
     name: str
-    parameters: tuple[Parameter, ...]
-    declarations: tuple[Declared, ...]
+    parameters: tuple[syntax.Parameter, ...]
+    declarations: tuple[syntax.Declared, ...]
     locations: tuple[LocationText, ...]
-    initial: Name | None
+    initial: syntax.Name | None
     edges: tuple[EdgeText, ...]
     span: Span
 
@@ -78,9 +70,9 @@ class Instance(Struct, frozen=True):
     """`name(parameters) = template(arguments)`."""
 
     name: str
-    parameters: tuple[Parameter, ...]
-    template: Name
-    arguments: tuple[Expression, ...]
+    parameters: tuple[syntax.Parameter, ...]
+    template: syntax.Name
+    arguments: tuple[syntax.Expression, ...]
     span: Span
 
 
@@ -90,7 +82,7 @@ class QueryText(Struct, frozen=True):
     id: str
     remark: str
     text: str
-    formula: Expression
+    formula: syntax.Expression
     span: Span
 
 
@@ -98,7 +90,7 @@ class SignalText(Struct, frozen=True):
     """`signal name = value`: what a specification calls something of the model."""
 
     name: str
-    value: Expression
+    value: syntax.Expression
     span: Span
 
 
@@ -116,10 +108,10 @@ class Document(Struct, frozen=True):
     name: str
     title: str
     unit: int | None
-    declarations: tuple[Declared, ...]
+    declarations: tuple[syntax.Declared, ...]
     templates: tuple[Template, ...]
     instances: tuple[Instance, ...]
-    system: tuple[tuple[Name, int], ...] | None
+    system: tuple[tuple[syntax.Name, int], ...] | None
     queries: tuple[QueryText, ...]
     signals: tuple[SignalText, ...] = ()
     open_ints: bool = False

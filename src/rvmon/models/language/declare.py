@@ -15,18 +15,8 @@ from rvmon.models import finding, model_error, refusal
 from rvmon.models.language import symbols, syntax
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.network import Channel, Clock
+from rvmon.models.network import scope as sc
 from rvmon.models.network.expressions import BaseType, Constant, Slot, Variable
-from rvmon.models.network.scope import (
-    ConstantSymbol,
-    ConstantValue,
-    FunctionSymbol,
-    PlacedSymbol,
-    RecordSymbol,
-    ResolvedType,
-    Scope,
-    Symbol,
-    TypeSymbol,
-)
 
 MAX_FINDINGS = 100
 """Behind so many, nothing more is looked for."""
@@ -122,7 +112,7 @@ def _counted(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
 
 def declare(
     declared: Sequence[syntax.Declared],
-    scope: Scope,
+    scope: sc.Scope,
     parts: Parts,
     resolver: Resolver,
     findings: Findings,
@@ -140,7 +130,9 @@ def declare(
                 _warn_of_range(parts.variables[before], item, findings)
 
 
-def _rank(written: syntax.PrioritiesText, scope: Scope, parts: Parts, resolver: Resolver) -> None:
+def _rank(
+    written: syntax.PrioritiesText, scope: sc.Scope, parts: Parts, resolver: Resolver
+) -> None:
     """Give channels their priorities; `None` is all that are not named."""
     if parts.levels:
         fix = "write one list, from the lowest to the highest"
@@ -156,14 +148,14 @@ def _rank(written: syntax.PrioritiesText, scope: Scope, parts: Parts, resolver: 
         raise model_error("TA004", "priorities without `default`", written.span, fix)
 
 
-def _ranked(name: syntax.Expression, scope: Scope, resolver: Resolver) -> Iterator[int | None]:
+def _ranked(name: syntax.Expression, scope: sc.Scope, resolver: Resolver) -> Iterator[int | None]:
     """The channels that a name in a list of priorities means."""
     if isinstance(name, syntax.Name) and name.name == "default":
         yield None
         return
     for leaf in symbols.leaves(resolver.symbol(name, scope)):
         match leaf:
-            case PlacedSymbol(BaseType.CHANNEL, Slot(first, ())):
+            case sc.PlacedSymbol(BaseType.CHANNEL, Slot(first, ())):
                 yield first
             case _:
                 fix = "name channels, their arrays or elements, and `default`"
@@ -178,15 +170,15 @@ def _warn_of_range(variable: Variable, item: syntax.Named, findings: Findings) -
         findings.add(finding("TA005", message, item.span, fix, severity=Severity.WARNING))
 
 
-def _symbol(item: syntax.Named, scope: Scope, parts: Parts, resolver: Resolver) -> Symbol:
+def _symbol(item: syntax.Named, scope: sc.Scope, parts: Parts, resolver: Resolver) -> sc.Symbol:
     if isinstance(item, syntax.FunctionText):
-        seen = Scope(scope.parent, scope.prefix, dict(scope.symbols), dict(scope.places))
-        seen.symbols[item.name] = symbol = FunctionSymbol(item, seen)
+        seen = sc.Scope(scope.parent, scope.prefix, dict(scope.symbols), dict(scope.places))
+        seen.symbols[item.name] = symbol = sc.FunctionSymbol(item, seen)
         return symbol
     kind = resolver.type(item.type, scope)
     extents = (*resolver.extents(item.sizes, scope), *kind.extents)
     if isinstance(item, syntax.TypeDefinition):
-        return TypeSymbol(replace(kind, extents=extents))
+        return sc.TypeSymbol(replace(kind, extents=extents))
     if prod(map(len, extents)) > symbols.MAX_VALUES:
         raise model_error(
             "TA019", f"an array of more than {symbols.MAX_VALUES:,} elements", item.span
@@ -209,11 +201,11 @@ class _Placer:
 
     def place(
         self,
-        kind: ResolvedType,
+        kind: sc.ResolvedType,
         extents: tuple[range, ...],
         names: Sequence[str],
         value: symbols.Value,
-    ) -> Symbol:
+    ) -> sc.Symbol:
         """Put clocks, variables or channels of some names behind those that are there."""
         parts, span = self.parts, self.span
         match kind.base:
@@ -222,12 +214,12 @@ class _Placer:
             case BaseType.CLOCK:
                 first = _room(parts.clocks, len(names), MAX_CLOCKS, "clocks", span)
                 parts.clocks += map(Clock, names)
-                return PlacedSymbol(kind.base, Slot(first, extents))
+                return sc.PlacedSymbol(kind.base, Slot(first, extents))
             case BaseType.CHANNEL:
                 first = _room(parts.channels, len(names), MAX_PARTS, "channels", span)
                 parts.channels += [Channel(name, kind.broadcast, kind.urgent) for name in names]
                 parts.channel_spans += [span] * len(names)
-                return PlacedSymbol(kind.base, Slot(first, extents))
+                return sc.PlacedSymbol(kind.base, Slot(first, extents))
             case _:
                 first = _room(parts.variables, len(names), MAX_PARTS, "variables", span)
                 numbers = (
@@ -236,7 +228,7 @@ class _Placer:
                     else symbols.flat(value)
                 )
                 parts.variables += map(partial(symbols.variable_of, kind), names, numbers)
-                return PlacedSymbol(BaseType.INT, Slot(first, extents))
+                return sc.PlacedSymbol(BaseType.INT, Slot(first, extents))
 
 
 def _room(parts: Sequence[Part], count: int, most: int, what: str, span: Span) -> int:
@@ -250,10 +242,10 @@ def _room(parts: Sequence[Part], count: int, most: int, what: str, span: Span) -
 def _initial(
     written: syntax.Initial,
     extents: tuple[range, ...],
-    kind: ResolvedType,
-    scope: Scope,
+    kind: sc.ResolvedType,
+    scope: sc.Scope,
     resolver: Resolver,
-) -> ConstantValue:
+) -> sc.ConstantValue:
     if (extents or kind.fields) and isinstance(written, syntax.Name | syntax.Index | syntax.Member):
         return _copied(resolver.symbol(written, scope), extents, kind, written.span)
     parts = symbols.parts_of_initial(written, extents, kind)
@@ -266,17 +258,17 @@ def _initial(
 
 
 def _copied(
-    symbol: Symbol, extents: tuple[range, ...], kind: ResolvedType, span: Span
-) -> ConstantValue:
+    symbol: sc.Symbol, extents: tuple[range, ...], kind: sc.ResolvedType, span: Span
+) -> sc.ConstantValue:
     """The values of a constant array or record."""
     if extents:
         elements = (symbols.element_of(symbol, Constant(index), span) for index in extents[0])
         return tuple(_copied(element, extents[1:], kind, span) for element in elements)
-    if kind.fields and isinstance(symbol, RecordSymbol):
+    if kind.fields and isinstance(symbol, sc.RecordSymbol):
         pairs = zip(symbol.fields, kind.fields, strict=False)
         return tuple(_copied(own, field.extents, field, span) for (_, own), (_, field) in pairs)
     match symbol:
-        case ConstantSymbol(int(value)) if not kind.fields:
+        case sc.ConstantSymbol(int(value)) if not kind.fields:
             check_range(value, kind, span)
             return value
         case _:
@@ -284,7 +276,7 @@ def _copied(
             raise model_error("TA004", "these are not the values of a constant", span, fix)
 
 
-def check_range(value: int, kind: ResolvedType, span: Span) -> None:
+def check_range(value: int, kind: sc.ResolvedType, span: Span) -> None:
     """Refuse a constant that its type cannot hold."""
     if kind.base in (BaseType.INT, BaseType.BOOL) and not kind.low <= value <= kind.high:
         raise model_error("TA007", f"{value} is outside [{kind.low}, {kind.high}]", span)

@@ -9,6 +9,7 @@ from msgspec import structs
 
 from rvmon.diagnostics import Severity, Source, Span
 from rvmon.models import finding, left_out, model_error
+from rvmon.models import network as nta
 from rvmon.models.language import automaton_syntax, syntax
 from rvmon.models.language.automaton_syntax import Document, SignalText
 from rvmon.models.language.declare import Findings, Parts, declare
@@ -19,31 +20,9 @@ from rvmon.models.language.operations import as_real, assuming, is_real
 from rvmon.models.language.parse import parse_query
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.symbols import INT32, claim
-from rvmon.models.network import (
-    Automaton,
-    Chance,
-    Extremes,
-    LeadsToFormula,
-    Mean,
-    Network,
-    Priorities,
-    Query,
-    QueryFormula,
-    Signal,
-    Simulation,
-    Term,
-)
+from rvmon.models.network import scope as sc
 from rvmon.models.network.expressions import FALSE, TRUE, BaseType, Expression
 from rvmon.models.network.guards import is_discrete, is_plain
-from rvmon.models.network.scope import (
-    AutomatonKey,
-    AutomatonSymbol,
-    ConstantSymbol,
-    Names,
-    ResolvedType,
-    Scope,
-    TypeSymbol,
-)
 from rvmon.texts import did_you_mean
 
 MAX_EDGES = 100_000
@@ -54,7 +33,7 @@ MOST_RUNS = 10_000_000
 """The most runs that a query may ask to simulate."""
 
 
-def elaborate(document: Document, constants: Mapping[str, int] | None = None) -> Network:
+def elaborate(document: Document, constants: Mapping[str, int] | None = None) -> nta.Network:
     """Make the network that a model describes.
 
     Raises:
@@ -65,15 +44,15 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
     functions = Functions(parts.variables)
     diagonals = Diagonals(parts.clocks, parts.variables)
     resolver = Resolver(functions, open_ints=document.open_ints, diagonals=diagonals)
-    top = Scope(_known() if document.open_ints else None)
+    top = sc.Scope(_known() if document.open_ints else None)
     declare(document.declarations, top, parts, resolver, findings)
-    automata, ranks, edges = list[Automaton](), list[int](), 0
-    symbols: dict[AutomatonKey, AutomatonSymbol] = {}
+    automata, ranks, edges = list[nta.Automaton](), list[int](), 0
+    symbols: dict[sc.AutomatonKey, sc.AutomatonSymbol] = {}
     for process in processes_of(document, top, resolver, findings):
         declare(process.template.declarations, process.scope, parts, resolver, findings)
         locations = location_names(process.template, findings)
         key = (process.family, process.arguments)
-        symbols[key] = AutomatonSymbol(len(automata), locations, process.scope)
+        symbols[key] = sc.AutomatonSymbol(len(automata), locations, process.scope)
         automata.append(automaton_of(process, locations, parts, resolver, findings))
         ranks.append(process.priority)
         edges += len(automata[-1].edges)
@@ -84,7 +63,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
             break
     if not automata and not findings.found:
         findings.add(finding("TA021", "there is no automaton", None, "add `automaton name { … }`"))
-    names = Names(top, symbols, functions)
+    names = sc.Names(top, symbols, functions)
     # Without all automata, which is an error itself, queries have no meaning.
     complete = bool(symbols) and not findings.has("TA019")
     queries = _queries(
@@ -103,7 +82,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
     if sum(len(automaton.edges) for automaton in automata) > MAX_EDGES:
         fix = "compare fewer differences of clocks"
         raise model_error("TA019", f"more than {MAX_EDGES:,} edges", None, fix)
-    return Network(
+    return nta.Network(
         document.name,
         document.title,
         document.unit,
@@ -121,27 +100,27 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
     )
 
 
-def _known() -> Scope:
+def _known() -> sc.Scope:
     """The names that UPPAAL declares by itself."""
-    scope = Scope()
+    scope = sc.Scope()
     for bits in (8, 16, 32):
         high = (1 << bits - 1) - 1
         ranges = {f"int{bits}": (-high - 1, high), f"uint{bits}": (0, 2 * high + 1)}
         for name, (low, high) in ranges.items():
             if high <= INT32[1]:
-                scope.symbols[f"{name}_t"] = TypeSymbol(ResolvedType(BaseType.INT, low, high))
-                scope.symbols[f"{name.upper()}_MIN"] = ConstantSymbol(low)
-                scope.symbols[f"{name.upper()}_MAX"] = ConstantSymbol(high)
+                scope.symbols[f"{name}_t"] = sc.TypeSymbol(sc.ResolvedType(BaseType.INT, low, high))
+                scope.symbols[f"{name.upper()}_MIN"] = sc.ConstantSymbol(low)
+                scope.symbols[f"{name.upper()}_MAX"] = sc.ConstantSymbol(high)
     return scope
 
 
-def _priorities(parts: Parts, automata: Sequence[int]) -> Priorities | None:
+def _priorities(parts: Parts, automata: Sequence[int]) -> nta.Priorities | None:
     levels, above = parts.levels, 1 + max(automata)
     if len({*levels.values()}) <= 1 and above == 1:
         return None
     default = above * levels.get(None, 0)
     channels = (above * levels.get(c, levels.get(None, 0)) for c in range(len(parts.channels)))
-    return Priorities(tuple(automata), default, tuple(channels))
+    return nta.Priorities(tuple(automata), default, tuple(channels))
 
 
 def _with_constants(
@@ -165,7 +144,7 @@ def _with_constants(
     return structs.replace(document, declarations=tuple(changed))
 
 
-def asked_on(network: Network, text: str) -> tuple[Network, Query]:
+def asked_on(network: nta.Network, text: str) -> tuple[nta.Network, nta.Query]:
     """Read a query that may compare differences of clocks: its network keeps them up.
 
     Raises:
@@ -195,28 +174,28 @@ def asked_on(network: Network, text: str) -> tuple[Network, Query]:
 
 def _queries(
     written: Iterable[automaton_syntax.QueryText],
-    names: Names,
+    names: sc.Names,
     findings: Findings,
     diagonals: Diagonals | None = None,
     *,
     lenient: bool = False,
-) -> tuple[Query, ...]:
+) -> tuple[nta.Query, ...]:
     """The queries that have a meaning; if `lenient`, one that has none is only left out."""
     resolver, top = Resolver(names.functions, names.automata, diagonals=diagonals), names.top
-    queries, ids = [], Scope()
+    queries, ids = [], sc.Scope()
     for query in written:
         own, resolver.fraction = Findings(), None
         with own.collect() if lenient else findings.collect():
             if query.id:
                 claim(query.id, query.span, ids)
             meaning = _formula(query.formula, resolver, top)
-            queries.append(Query(query.id, query.remark, query.text, meaning, query.span))
+            queries.append(nta.Query(query.id, query.remark, query.text, meaning, query.span))
         for found in own.found.values():
             findings.add(left_out(query.text, found))
     return tuple(queries)
 
 
-def signal_on(network: Network, name: str, text: str) -> Signal:
+def signal_on(network: nta.Network, name: str, text: str) -> nta.Signal:
     """Give a name of specifications a meaning on a network."""
     findings = Findings()
     written = SignalText(name, parse_query(text).formula, Span(Source(name, text), 0, len(text)))
@@ -225,9 +204,11 @@ def signal_on(network: Network, name: str, text: str) -> Signal:
     return signals[0]
 
 
-def _signals(written: Iterable[SignalText], names: Names, findings: Findings) -> tuple[Signal, ...]:
+def _signals(
+    written: Iterable[SignalText], names: sc.Names, findings: Findings
+) -> tuple[nta.Signal, ...]:
     resolver = Resolver(names.functions, names.automata)
-    signals, taken = list[Signal](), Scope()
+    signals, taken = list[nta.Signal](), sc.Scope()
     for signal in written:
         with findings.collect():
             claim(signal.name, signal.span, taken)
@@ -235,30 +216,32 @@ def _signals(written: Iterable[SignalText], names: Names, findings: Findings) ->
             if not is_discrete(value):
                 fix = "use locations and variables only"
                 raise model_error("TA009", "a signal with clocks or runs", signal.span, fix)
-            signals.append(Signal(signal.name, value))
+            signals.append(nta.Signal(signal.name, value))
     return tuple(signals)
 
 
-def _formula(written: syntax.Expression, resolver: Resolver, top: Scope) -> QueryFormula:
+def _formula(written: syntax.Expression, resolver: Resolver, top: sc.Scope) -> nta.QueryFormula:
     match written:
         case syntax.Chance(op, body, within, runs, sign, level):
             holds = resolver.expression(body, top)
             horizon = resolver.limit(within, top) or 0
-            return Chance(op, holds, horizon, _runs(runs, resolver, top), sign, level)
+            return nta.Chance(op, holds, horizon, _runs(runs, resolver, top), sign, level)
         case syntax.Mean(largest, value, within, runs):
             horizon = resolver.limit(within, top) or 0
             number = _number(value, resolver, top)
-            return Mean(largest, number, horizon, _runs(runs, resolver, top))
+            return nta.Mean(largest, number, horizon, _runs(runs, resolver, top))
         case syntax.Simulation(terms, within, runs):
             horizon = resolver.limit(within, top) or 0
             shown = tuple(_term(term, resolver, top) for term in terms)
-            return Simulation(shown, horizon, _runs(runs, resolver, top, least=1) or 1)
+            return nta.Simulation(shown, horizon, _runs(runs, resolver, top, least=1) or 1)
         case syntax.Extremes(ends, where, terms):
             condition = TRUE if where is None else resolver.condition(where, top)
             if not is_plain(condition):
                 fix = "write a condition on the state: sup{p}: e"
                 raise model_error("TA020", "a condition on runs", written.span, fix)
-            asked = Extremes(ends, condition, tuple(_term(term, resolver, top) for term in terms))
+            asked = nta.Extremes(
+                ends, condition, tuple(_term(term, resolver, top) for term in terms)
+            )
             _refuse_fraction(resolver)
             return asked
         case _:
@@ -274,7 +257,7 @@ def _refuse_fraction(resolver: Resolver) -> None:
         raise model_error("TA016", message, resolver.fraction, fix)
 
 
-def _number(written: syntax.Expression, resolver: Resolver, top: Scope) -> Expression:
+def _number(written: syntax.Expression, resolver: Resolver, top: sc.Scope) -> Expression:
     number = resolver.condition(written, top)
     if not is_discrete(number):
         fix = "use locations and variables only"
@@ -283,15 +266,15 @@ def _number(written: syntax.Expression, resolver: Resolver, top: Scope) -> Expre
     return as_real(number, resolver.functions, written.span) if real else number
 
 
-def _term(written: syntax.Expression, resolver: Resolver, top: Scope) -> Term:
+def _term(written: syntax.Expression, resolver: Resolver, top: sc.Scope) -> nta.Term:
     clock, text = resolver.clock(written, top), written.span.text
     if clock is not None:
-        return Term(text, FALSE, clock)
-    return Term(text, _number(written, resolver, top))
+        return nta.Term(text, FALSE, clock)
+    return nta.Term(text, _number(written, resolver, top))
 
 
 def _runs(
-    written: syntax.Expression | None, resolver: Resolver, top: Scope, least: int = 2
+    written: syntax.Expression | None, resolver: Resolver, top: sc.Scope, least: int = 2
 ) -> int | None:
     if written is None:
         return None
@@ -303,18 +286,18 @@ def _runs(
 
 
 def _decided(
-    written: syntax.Expression, resolver: Resolver, top: Scope
-) -> Expression | LeadsToFormula:
+    written: syntax.Expression, resolver: Resolver, top: sc.Scope
+) -> Expression | nta.LeadsToFormula:
     if isinstance(written, syntax.Assuming):
         asked = _decided(written.query, resolver, top)
         return assuming(asked, resolver.expression(written.premise, top), written.span)
     if not isinstance(written, syntax.LeadsTo):
         return resolver.condition(written, top)
     left, right = resolver.condition(written.left, top), resolver.condition(written.right, top)
-    return LeadsToFormula(left, right, resolver.limit(written.bound, top))
+    return nta.LeadsToFormula(left, right, resolver.limit(written.bound, top))
 
 
-def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findings) -> None:
+def _check_channels(parts: Parts, automata: Iterable[nta.Automaton], findings: Findings) -> None:
     senders, receivers = set[int](), set[int]()
     for edge in (edge for automaton in automata for edge in automaton.edges):
         if edge.sync is not None:
@@ -335,7 +318,9 @@ def _check_channels(parts: Parts, automata: Iterable[Automaton], findings: Findi
         findings.add(finding("TA010", message, span, fix, severity=Severity.WARNING))
 
 
-def chosen_queries(network: Network, asked: Sequence[str] | None) -> list[tuple[Network, Query]]:
+def chosen_queries(
+    network: nta.Network, asked: Sequence[str] | None
+) -> list[tuple[nta.Network, nta.Query]]:
     """The model's own queries, or those asked for by id or by text, each with its network.
 
     Raises:

@@ -12,21 +12,13 @@ from rvmon.models.language.operations import fitted
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.statements import Bodies, number, variable_type
 from rvmon.models.network import expressions as ex
+from rvmon.models.network import scope as sc
 from rvmon.models.network.guards import parts_in
-from rvmon.models.network.scope import (
-    ChosenSymbol,
-    FunctionSymbol,
-    PlacedSymbol,
-    RecordSymbol,
-    ResolvedType,
-    Scope,
-    Symbol,
-)
 
 MAX_LOCALS = 100_000
 """The most parameters and local variables of all functions together."""
 
-_NOTHING = ResolvedType(ex.BaseType.INT, 0, 0)
+_NOTHING = sc.ResolvedType(ex.BaseType.INT, 0, 0)
 """The result type of a function that returns nothing."""
 
 _CHOSEN = ex.InLocation(-1, -1)
@@ -51,11 +43,11 @@ class Functions:
 
     def place(
         self,
-        kind: ResolvedType,
+        kind: sc.ResolvedType,
         extents: symbols.Extents,
         names: Sequence[str],
         value: symbols.Value,
-    ) -> Symbol:
+    ) -> sc.Symbol:
         """Make room for parameters or local variables."""
         del value  # they are set whenever the function runs
         self.locals += [
@@ -63,7 +55,7 @@ class Functions:
         ]
         if len(self.locals) > MAX_LOCALS:
             raise model_error("TA019", f"more than {MAX_LOCALS:,} local variables", None)
-        return PlacedSymbol(ex.BaseType.INT, ex.Slot(-len(self.locals), extents))
+        return sc.PlacedSymbol(ex.BaseType.INT, ex.Slot(-len(self.locals), extents))
 
     def variable(self, slot: ex.Slot) -> ex.Variable:
         """The variable of a slot, or the first of its array."""
@@ -71,12 +63,12 @@ class Functions:
         return self.variables[first] if first >= 0 else self.locals[-first - 1]
 
     def call(
-        self, symbol: FunctionSymbol, written: syntax.Call, scope: Scope, resolver: Resolver
+        self, symbol: sc.FunctionSymbol, written: syntax.Call, scope: sc.Scope, resolver: Resolver
     ) -> ex.Invoke:
         """The value of a call."""
         text: syntax.FunctionText = symbol.written
         symbols.check_count(text.name, text.parameters, written.arguments, written.span)
-        bound: list[Symbol | None] = []
+        bound: list[sc.Symbol | None] = []
         values: list[ex.Expression] = []
         chosen: list[ex.Expression] = []
         for parameter, argument in zip(text.parameters, written.arguments, strict=True):
@@ -111,14 +103,14 @@ class Functions:
 
 
 def _type_of(
-    parameter: syntax.Parameter, scope: Scope, resolver: Resolver
-) -> tuple[ResolvedType, symbols.Extents]:
+    parameter: syntax.Parameter, scope: sc.Scope, resolver: Resolver
+) -> tuple[sc.ResolvedType, symbols.Extents]:
     kind = resolver.type(parameter.type, scope)
     extents = (*resolver.extents(parameter.sizes, scope), *kind.extents)
     return replace(kind, extents=()), extents
 
 
-def _is_bound(parameter: syntax.Parameter, kind: ResolvedType, extents: symbols.Extents) -> bool:
+def _is_bound(parameter: syntax.Parameter, kind: sc.ResolvedType, extents: symbols.Extents) -> bool:
     """Whether a parameter stands for the argument itself, not for its value."""
     if kind.placed_as is not ex.BaseType.INT:
         return True
@@ -126,17 +118,17 @@ def _is_bound(parameter: syntax.Parameter, kind: ResolvedType, extents: symbols.
 
 
 def _check_fit(
-    thing: Symbol,
-    kind: ResolvedType,
+    thing: sc.Symbol,
+    kind: sc.ResolvedType,
     extents: symbols.Extents,
     parameter: syntax.Parameter,
     span: Span,
     calls: Functions,
 ) -> None:
     single = symbols.leaves(thing)
-    own = single[0].kind if isinstance(single[0], PlacedSymbol) else ex.BaseType.INT
+    own = single[0].kind if isinstance(single[0], sc.PlacedSymbol) else ex.BaseType.INT
     is_real = (
-        isinstance(single[0], PlacedSymbol)
+        isinstance(single[0], sc.PlacedSymbol)
         and own is ex.BaseType.INT
         and calls.variable(single[0].slot).is_real
     )
@@ -149,11 +141,11 @@ def _check_fit(
         raise model_error("TA015", "this argument is of the wrong kind", span, fix)
 
 
-def _with_slots(symbol: Symbol, change: Callable[[ex.Slot], ex.Slot]) -> Symbol:
+def _with_slots(symbol: sc.Symbol, change: Callable[[ex.Slot], ex.Slot]) -> sc.Symbol:
     match symbol:
-        case RecordSymbol(fields):
-            return RecordSymbol(tuple((name, _with_slots(s, change)) for name, s in fields))
-        case PlacedSymbol(_, slot) | ChosenSymbol(_, slot):
+        case sc.RecordSymbol(fields):
+            return sc.RecordSymbol(tuple((name, _with_slots(s, change)) for name, s in fields))
+        case sc.PlacedSymbol(_, slot) | sc.ChosenSymbol(_, slot):
             return replace(symbol, slot=change(slot))
         case _:
             return symbol
@@ -170,10 +162,13 @@ def _without_choice(slot: ex.Slot, chosen: list[ex.Expression]) -> ex.Slot:
 
 
 def _make(
-    text: syntax.FunctionText, scope: Scope, bound: Sequence[Symbol | None], resolver: Resolver
+    text: syntax.FunctionText,
+    scope: sc.Scope,
+    bound: Sequence[sc.Symbol | None],
+    resolver: Resolver,
 ) -> ex.Function:
     """A function with its parameters bound, or given places of their own."""
-    functions, inner, taken = resolver.functions, Scope(scope), Scope()
+    functions, inner, taken = resolver.functions, sc.Scope(scope), sc.Scope()
     parameters: list[int] = []
     indices: list[int] = []
 
@@ -182,9 +177,9 @@ def _make(
         own: list[ex.Expression] = []
         for index, extent in zip(slot.indices, slot.extents, strict=False):
             if index == _CHOSEN:
-                kind = ResolvedType(ex.BaseType.INT, extent.start, extent.stop - 1)
+                kind = sc.ResolvedType(ex.BaseType.INT, extent.start, extent.stop - 1)
                 symbol = functions.place(kind, (), ["index"], None)
-                assert isinstance(symbol, PlacedSymbol), "of numbers"
+                assert isinstance(symbol, sc.PlacedSymbol), "of numbers"
                 indices.append(symbol.slot.first)
                 index = ex.VariableValue(symbol.slot)
             own.append(index)
@@ -200,7 +195,7 @@ def _make(
         symbol = symbols.laid_out(kind, extents, called, None, functions)
         inner.symbols[parameter.name] = symbol
         parameters += [
-            leaf.slot.first for leaf in symbols.leaves(symbol) if isinstance(leaf, PlacedSymbol)
+            leaf.slot.first for leaf in symbols.leaves(symbol) if isinstance(leaf, sc.PlacedSymbol)
         ]
     result = _NOTHING if text.type is None else resolver.type(text.type, scope)
     if result.extents or result.base not in (ex.BaseType.INT, ex.BaseType.BOOL, ex.BaseType.DOUBLE):
@@ -208,7 +203,7 @@ def _make(
         message = f"`{text.name}` returns an array or record"
         raise model_error("TA016", message, text.span, fix)
     place = functions.place(replace(result, const=False), (), [f"{text.name}(…)"], None)
-    assert isinstance(place, PlacedSymbol), "of a number"
+    assert isinstance(place, sc.PlacedSymbol), "of a number"
     body, goes_on = Bodies(text, resolver).statements(text.body.statements, inner)
     if goes_on:
         body.append(

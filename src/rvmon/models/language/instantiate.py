@@ -7,29 +7,16 @@ from dataclasses import dataclass
 from itertools import islice, product
 
 from rvmon.models import model_error
+from rvmon.models import network as nta
 from rvmon.models.language import automaton_syntax, symbols, syntax
 from rvmon.models.language.automaton_syntax import Document
 from rvmon.models.language.declare import Findings, Parts, check_range
 from rvmon.models.language.operations import as_real, binary, is_real, refuse_clocks
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.statements import is_price, updates_of
-from rvmon.models.network import (
-    Automaton,
-    Edge,
-    Guard,
-    Location,
-    Rate,
-    Sync,
-)
+from rvmon.models.network import scope as sc
 from rvmon.models.network.expressions import TRUE, BaseType, BinaryOp, Expression
 from rvmon.models.network.guards import guards_of, refuse_changes, split_guard
-from rvmon.models.network.scope import (
-    ConstantSymbol,
-    PlacedSymbol,
-    RecordSymbol,
-    Scope,
-    Symbol,
-)
 from rvmon.texts import did_you_mean
 
 Family = automaton_syntax.Template | automaton_syntax.Instance
@@ -43,12 +30,12 @@ class Process:
     family: str
     arguments: tuple[int, ...]
     template: automaton_syntax.Template
-    scope: Scope
+    scope: sc.Scope
     priority: int
 
 
 def processes_of(
-    document: Document, top: Scope, resolver: Resolver, findings: Findings
+    document: Document, top: sc.Scope, resolver: Resolver, findings: Findings
 ) -> list[Process]:
     """All processes of the system, in its order; what is wrong goes to `findings`."""
     families: dict[str, Family] = {}
@@ -79,7 +66,7 @@ def processes_of(
 def _instances(
     family: Family,
     families: Mapping[str, Family],
-    top: Scope,
+    top: sc.Scope,
     resolver: Resolver,
     priority: int,
 ) -> Iterator[Process]:
@@ -98,7 +85,7 @@ def _instances(
             raise model_error(
                 "TA019", f"more than {symbols.MAX_VALUES:,} instances", family.span, fix
             )
-        bound = [ConstantSymbol(value) for value in arguments]
+        bound = [sc.ConstantSymbol(value) for value in arguments]
         template, scope = _bind(family, bound, families, top, resolver)
         listed = f"({', '.join(map(str, arguments))})" if arguments else ""
         scope.prefix = f"{family.name}{listed}."
@@ -120,12 +107,12 @@ def _refuse_circle(family: Family, families: Mapping[str, Family]) -> None:
 
 def _bind(
     family: Family,
-    arguments: Sequence[Symbol],
+    arguments: Sequence[sc.Symbol],
     families: Mapping[str, Family],
-    top: Scope,
+    top: sc.Scope,
     resolver: Resolver,
-) -> tuple[automaton_syntax.Template, Scope]:
-    scope = Scope(top)
+) -> tuple[automaton_syntax.Template, sc.Scope]:
+    scope = sc.Scope(top)
     for parameter, argument in zip(family.parameters, arguments, strict=True):
         symbols.claim(parameter.name, parameter.span, scope)
         scope.symbols[parameter.name] = argument
@@ -137,8 +124,8 @@ def _bind(
         message = f"no template `{family.template.name}`"
         raise model_error("TA002", message, family.template.span, fix)
     symbols.check_count(target.name, target.parameters, family.arguments, family.span)
-    bound: list[Symbol] = []
-    own = Scope(top)  # a parameter's type may speak of the parameters before it
+    bound: list[sc.Symbol] = []
+    own = sc.Scope(top)  # a parameter's type may speak of the parameters before it
     for parameter, written in zip(target.parameters, family.arguments, strict=True):
         bound.append(_argument(parameter, written, scope, own, resolver))
         own.symbols[parameter.name] = bound[-1]
@@ -148,27 +135,27 @@ def _bind(
 def _argument(
     parameter: syntax.Parameter,
     written: syntax.Expression,
-    scope: Scope,
-    own: Scope,
+    scope: sc.Scope,
+    own: sc.Scope,
     resolver: Resolver,
-) -> Symbol:
+) -> sc.Symbol:
     """The symbol of an argument; its type is read in the scope `own`, its expression in `scope`."""
     kind = resolver.type(parameter.type, own)
     extents = (*resolver.extents(parameter.sizes, own), *kind.extents)
     if not parameter.reference and kind.base in (BaseType.INT, BaseType.BOOL) and not extents:
         value = resolver.constant(written, scope)
         check_range(value, kind, written.span)
-        return ConstantSymbol(value)
+        return sc.ConstantSymbol(value)
     symbol = resolver.symbol(written, scope)
     match symbol:
-        case PlacedSymbol(place, slot):
+        case sc.PlacedSymbol(place, slot):
             fits = place is kind.placed_as and slot.extents[len(slot.indices) :] == extents
-        case RecordSymbol():
+        case sc.RecordSymbol():
             fits = bool(kind.fields) and len(symbols.leaves(symbol)) == symbols.count_of(
                 kind, extents
             )
         case _:
-            fits = isinstance(symbol, ConstantSymbol) and (kind.const or not parameter.reference)
+            fits = isinstance(symbol, sc.ConstantSymbol) and (kind.const or not parameter.reference)
     if not fits:
         fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
         raise model_error("TA015", "this argument is of the wrong kind", written.span, fix)
@@ -182,7 +169,7 @@ MAX_CASES = 16
 def location_names(template: automaton_syntax.Template, findings: Findings) -> dict[str, int]:
     """The index of each location of a template; what is wrong goes to `findings`."""
     names: dict[str, int] = {}
-    scope = Scope()
+    scope = sc.Scope()
     for index, location in enumerate(template.locations):
         with findings.collect():
             symbols.claim(location.name, location.span, scope)
@@ -196,16 +183,16 @@ def automaton_of(
     parts: Parts,
     resolver: Resolver,
     findings: Findings,
-) -> Automaton:
+) -> nta.Automaton:
     """The automaton that a process is; what is wrong goes to `findings`."""
     template, scope = process.template, process.scope
     locations = []
     for written in template.locations:
-        place = Location(written.name, written.kind, Guard(), written.span)
+        place = nta.Location(written.name, written.kind, nta.Guard(), written.span)
         with findings.collect():
             place = _place(written, scope, resolver)
         locations.append(place)
-    edges: list[Edge] = []
+    edges: list[nta.Edge] = []
     for edge in template.edges:
         with findings.collect():
             edges += _edges(edge, names, scope, parts, resolver)
@@ -216,15 +203,17 @@ def automaton_of(
             message = f"`{template.name}` has no initial location"
             raise model_error("TA013", message, template.span, fix)
         initial = _location(template.initial, names)
-    return Automaton(
+    return nta.Automaton(
         scope.prefix.removesuffix("."), tuple(locations), tuple(edges), initial, template.span
     )
 
 
-def _place(written: automaton_syntax.LocationText, scope: Scope, resolver: Resolver) -> Location:
+def _place(
+    written: automaton_syntax.LocationText, scope: sc.Scope, resolver: Resolver
+) -> nta.Location:
     """A location with its invariant, from which the rates of clocks are taken."""
     condition: Expression = TRUE
-    rates, leaving = list[Rate](), None
+    rates, leaving = list[nta.Rate](), None
     parts = [] if written.invariant is None else _parts(written.invariant, scope, resolver)
     for part, inner in parts:
         match part:
@@ -237,7 +226,7 @@ def _place(written: automaton_syntax.LocationText, scope: Scope, resolver: Resol
                 rate = _number(value, inner, resolver)
                 if is_real(rate, resolver.functions):
                     rate = as_real(rate, resolver.functions, value.span)
-                rates.append(Rate(clock, rate))
+                rates.append(nta.Rate(clock, rate))
             case _:
                 more = resolver.condition(part, inner)
                 condition = binary(BinaryOp.AND, condition, more, part.span, resolver.functions)
@@ -247,10 +236,10 @@ def _place(written: automaton_syntax.LocationText, scope: Scope, resolver: Resol
     guard = split_guard(
         condition, written.span if written.invariant is None else written.invariant.span
     )
-    return Location(written.name, written.kind, guard, written.span, tuple(rates), leaving)
+    return nta.Location(written.name, written.kind, guard, written.span, tuple(rates), leaving)
 
 
-def _number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> Expression:
+def _number(written: syntax.Expression, scope: sc.Scope, resolver: Resolver) -> Expression:
     number = resolver.condition(written, scope)
     refuse_clocks(number, written.span)
     return number
@@ -269,8 +258,8 @@ def _has_rate(written: syntax.Expression) -> bool:
 
 
 def _parts(
-    written: syntax.Expression, scope: Scope, resolver: Resolver
-) -> Iterator[tuple[syntax.Expression, Scope]]:
+    written: syntax.Expression, scope: sc.Scope, resolver: Resolver
+) -> Iterator[tuple[syntax.Expression, sc.Scope]]:
     """The conjuncts of an invariant that contains rates."""
     match written:
         case syntax.Binary(BinaryOp.AND, left, right) if _has_rate(written):
@@ -278,7 +267,7 @@ def _parts(
             yield from _parts(right, scope, resolver)
         case syntax.Quantified(BinaryOp.AND, name, kind, body) if _has_rate(body):
             for value in symbols.values_of(resolver.type(kind, scope), kind.span):
-                inner = scope.inner({name: ConstantSymbol(value)})
+                inner = scope.inner({name: sc.ConstantSymbol(value)})
                 yield from _parts(body, inner, resolver)
         case _:
             yield written, scope
@@ -294,13 +283,13 @@ def _location(name: syntax.Name, names: Mapping[str, int]) -> int:
 def _edges(
     written: automaton_syntax.EdgeText,
     names: Mapping[str, int],
-    scope: Scope,
+    scope: sc.Scope,
     parts: Parts,
     resolver: Resolver,
-) -> Iterator[Edge]:
+) -> Iterator[nta.Edge]:
     """One edge for each choice of the selected values, and each case of a guard with clocks."""
     source, target = _location(written.source, names), _location(written.target, names)
-    ranges, selected_names = [], Scope()
+    ranges, selected_names = [], sc.Scope()
     for selection in written.selections:
         symbols.claim(selection.name, selection.span, selected_names)
         ranges.append(symbols.values_of(resolver.type(selection.type, scope), selection.span))
@@ -310,11 +299,11 @@ def _edges(
                 "TA019", f"more than {symbols.MAX_VALUES:,} edges in one", written.span
             )
         selected = {
-            selection.name: ConstantSymbol(value)
+            selection.name: sc.ConstantSymbol(value)
             for selection, value in zip(written.selections, chosen, strict=True)
         }
         inner = scope.inner(selected) if selected else scope
-        guards = [Guard()]
+        guards = [nta.Guard()]
         if written.guard is not None:
             condition = resolver.condition(written.guard, inner)
             guards = [*islice(guards_of(condition), MAX_CASES + 1)]
@@ -334,13 +323,13 @@ def _edges(
             continue
         parts.are_split |= len(guards) > 1
         for guard in guards:
-            yield Edge(
+            yield nta.Edge(
                 source, target, guard, sync, updates, weight, written.label,
                 _edge_text(written, selected), written.span,
             )  # fmt: skip
 
 
-def _weight(written: automaton_syntax.EdgeText, scope: Scope, resolver: Resolver) -> float:
+def _weight(written: automaton_syntax.EdgeText, scope: sc.Scope, resolver: Resolver) -> float:
     """The share of the runs that take an edge: written by itself, or among its branches."""
     if written.shares is None:
         return written.weight
@@ -354,23 +343,25 @@ def _weight(written: automaton_syntax.EdgeText, scope: Scope, resolver: Resolver
     return own / sum(every)
 
 
-def _edge_text(written: automaton_syntax.EdgeText, selected: Mapping[str, ConstantSymbol]) -> str:
+def _edge_text(
+    written: automaton_syntax.EdgeText, selected: Mapping[str, sc.ConstantSymbol]
+) -> str:
     text = f"{written.source.name} → {written.target.name}"
     if written.sync is not None:
         text += f" on {written.sync.span.text}"
     chosen = [
-        f"{name} = {s.value}" for name, s in selected.items() if isinstance(s, ConstantSymbol)
+        f"{name} = {s.value}" for name, s in selected.items() if isinstance(s, sc.ConstantSymbol)
     ]
     return text + (f" with {', '.join(chosen)}" if chosen else "")
 
 
-def _sync(written: automaton_syntax.SyncText, scope: Scope, resolver: Resolver) -> Sync:
+def _sync(written: automaton_syntax.SyncText, scope: sc.Scope, resolver: Resolver) -> nta.Sync:
     match resolver.symbol(written.channel, scope):
-        case PlacedSymbol(BaseType.CHANNEL, slot) as channel if channel.is_single:
+        case sc.PlacedSymbol(BaseType.CHANNEL, slot) as channel if channel.is_single:
             for index in slot.indices:
                 refuse_changes(index, written.span)
-            return Sync(slot, written.sends)
-        case PlacedSymbol(BaseType.CHANNEL):
+            return nta.Sync(slot, written.sends)
+        case sc.PlacedSymbol(BaseType.CHANNEL):
             raise model_error("TA004", "an array of channels", written.span, "give an index")
         case _:
             fix = f"declare it: chan {written.channel.span.text}"

@@ -13,21 +13,10 @@ from rvmon.models.language import operations, symbols, syntax
 from rvmon.models.language.diagonals import Diagonals, difference, terms_of
 from rvmon.models.language.unsupported import refuse_foreign, type_reason
 from rvmon.models.network import expressions as ex
+from rvmon.models.network import scope as sc
 from rvmon.models.network.evaluate import evaluator
 from rvmon.models.network.fractions import FUNCTIONS, literal
 from rvmon.models.network.guards import is_fixed, refuse_changes
-from rvmon.models.network.scope import (
-    AutomatonKey,
-    AutomatonSymbol,
-    ConstantSymbol,
-    FunctionSymbol,
-    PlacedSymbol,
-    RecordSymbol,
-    ResolvedType,
-    Scope,
-    Symbol,
-    TypeSymbol,
-)
 from rvmon.texts import did_you_mean
 
 MAX_UNROLLED = 100_000
@@ -48,13 +37,13 @@ class Resolver:
     """
 
     functions: symbols.Calls
-    automata: Mapping[AutomatonKey, AutomatonSymbol] = field(default_factory=dict)
+    automata: Mapping[sc.AutomatonKey, sc.AutomatonSymbol] = field(default_factory=dict)
     open_ints: bool = False
     diagonals: Diagonals | None = None
     unrolled: int = 0
     fraction: Span | None = None
 
-    def expression(self, written: syntax.Expression, scope: Scope) -> ex.Expression:
+    def expression(self, written: syntax.Expression, scope: sc.Scope) -> ex.Expression:
         """The expression over the network."""
         match written:
             case syntax.Number(value):
@@ -64,7 +53,7 @@ class Resolver:
                 return literal(value)
             case syntax.Name("deadlock", _) if self.automata and not scope.find("deadlock"):
                 return ex.Deadlock()
-            case syntax.Call(name) if isinstance(function := scope.find(name), FunctionSymbol):
+            case syntax.Call(name) if isinstance(function := scope.find(name), sc.FunctionSymbol):
                 return self.functions.call(function, written, scope, self)
             case syntax.Call(name, given, span) if name in FUNCTIONS and not scope.find(name):
                 self.fraction = self.fraction or span
@@ -107,7 +96,7 @@ class Resolver:
                     message = f"quantifiers stand for more than {MAX_UNROLLED:,} conditions"
                     raise model_error("TA019", message, span, "let them range over smaller types")
                 parts = [
-                    self.expression(body, scope.inner({name: ConstantSymbol(value)}))
+                    self.expression(body, scope.inner({name: sc.ConstantSymbol(value)}))
                     for value in values
                 ]
                 return operations.joined(op, parts, span, self.functions)
@@ -132,13 +121,13 @@ class Resolver:
             case _:
                 assert_never(written)
 
-    def condition(self, written: syntax.Expression, scope: Scope) -> ex.Expression:
+    def condition(self, written: syntax.Expression, scope: sc.Scope) -> ex.Expression:
         """An expression that changes nothing where it is evaluated."""
         condition = self.expression(written, scope)
         refuse_changes(condition, written.span)
         return condition
 
-    def constant(self, written: syntax.Expression, scope: Scope, *, real: bool = False) -> int:
+    def constant(self, written: syntax.Expression, scope: sc.Scope, *, real: bool = False) -> int:
         """The value of an expression that must not depend on the state; `real`: its bits."""
         value = self.expression(written, scope)
         value = operations.fitted(value, real, self.functions, written.span)
@@ -147,7 +136,7 @@ class Resolver:
             raise model_error("TA006", "this is not constant", written.span, fix)
         return evaluator(value)((), ())
 
-    def limit(self, written: syntax.Expression | None, scope: Scope) -> int | None:
+    def limit(self, written: syntax.Expression | None, scope: sc.Scope) -> int | None:
         """The bound of a path operator in units of time, if it has one."""
         if written is None:
             return None
@@ -157,15 +146,15 @@ class Resolver:
             raise model_error("TA007", f"a bound of {units}", written.span, fix)
         return units
 
-    def extents(self, sizes: Sequence[syntax.Size], scope: Scope) -> tuple[range, ...]:
+    def extents(self, sizes: Sequence[syntax.Size], scope: sc.Scope) -> tuple[range, ...]:
         """The indices of each dimension: those below a number, or a type's values."""
         return tuple(self._extent(size, scope) for size in sizes)
 
-    def _extent(self, size: syntax.Size, scope: Scope) -> range:
+    def _extent(self, size: syntax.Size, scope: sc.Scope) -> range:
         if isinstance(size, syntax.TypeText):
             return symbols.values_of(self.type(size, scope), size.span)
         if isinstance(size, syntax.Name) and isinstance(
-            symbol := scope.find(size.name), TypeSymbol
+            symbol := scope.find(size.name), sc.TypeSymbol
         ):
             return symbols.values_of(symbol.type, size.span)
         number = self.constant(size, scope)
@@ -177,7 +166,7 @@ class Resolver:
             )
         return range(number)
 
-    def type(self, written: syntax.TypeText, scope: Scope) -> ResolvedType:
+    def type(self, written: syntax.TypeText, scope: sc.Scope) -> sc.ResolvedType:
         """The type with its range evaluated."""
         kind = self._plain_type(written, scope)
         return replace(
@@ -187,14 +176,14 @@ class Resolver:
             urgent=kind.urgent or written.urgent,
         )
 
-    def _plain_type(self, written: syntax.TypeText, scope: Scope) -> ResolvedType:
+    def _plain_type(self, written: syntax.TypeText, scope: sc.Scope) -> sc.ResolvedType:
         """A type without its prefixes."""
         if written.base is ex.BaseType.NAMED:
             symbol = scope.find(written.name)
-            if not isinstance(symbol, TypeSymbol):
+            if not isinstance(symbol, sc.TypeSymbol):
                 if reason := type_reason(written.name):
                     raise model_error("TA016", reason[0], written.span, reason[1])
-                types = [n for n in scope.names() if isinstance(scope.find(n), TypeSymbol)]
+                types = [n for n in scope.names() if isinstance(scope.find(n), sc.TypeSymbol)]
                 fix = did_you_mean(written.name, [*types, "int", "bool", "clock", "chan"])
                 raise model_error("TA002", f"no type named `{written.name}`", written.span, fix)
             return symbol.type
@@ -206,24 +195,24 @@ class Resolver:
                     raise model_error("TA003", f"two fields named `{part.name}`", part.span)
                 sizes = self.extents(part.sizes, scope)
                 fields[part.name] = replace(kind, extents=(*sizes, *kind.extents))
-            return ResolvedType(ex.BaseType.RECORD, fields=tuple(fields.items()))
+            return sc.ResolvedType(ex.BaseType.RECORD, fields=tuple(fields.items()))
         if written.base is ex.BaseType.DOUBLE:
             self.fraction = self.fraction or written.span
         if written.base is not ex.BaseType.INT:
-            return ResolvedType(written.base, 0, 1)
+            return sc.ResolvedType(written.base, 0, 1)
         if written.low is None or written.high is None:
             if not (self.open_ints or written.const):
                 fix = "give its range: int[low, high]"
                 raise model_error("TA005", "an int without a range", written.span, fix)
-            return ResolvedType(
+            return sc.ResolvedType(
                 ex.BaseType.INT, *(symbols.INT32 if written.const else symbols.INT16)
             )
         low, high = self.constant(written.low, scope), self.constant(written.high, scope)
         if low > high:
             raise model_error("TA007", f"the range [{low}, {high}] is empty", written.span)
-        return ResolvedType(ex.BaseType.INT, low, high)
+        return sc.ResolvedType(ex.BaseType.INT, low, high)
 
-    def symbol(self, written: syntax.Expression, scope: Scope) -> Symbol:
+    def symbol(self, written: syntax.Expression, scope: sc.Scope) -> sc.Symbol:
         """The symbol of a name, an element of an array or a member of a record."""
         match written:
             case syntax.Name(name, span):
@@ -256,28 +245,28 @@ class Resolver:
                 if any(name == known for known, _ in self.automata):
                     raise _no_value(span)
                 refuse_foreign(name, span)
-                names = [n for n in scope.names() if isinstance(scope.find(n), FunctionSymbol)]
+                names = [n for n in scope.names() if isinstance(scope.find(n), sc.FunctionSymbol)]
                 raise model_error("TA002", f"no function `{name}`", span, did_you_mean(name, names))
             case _:
                 fix = "name a variable, a clock or a channel"
                 raise model_error("TA004", "this is no name", written.span, fix)
 
-    def clock(self, written: syntax.Expression, scope: Scope) -> int | None:
+    def clock(self, written: syntax.Expression, scope: sc.Scope) -> int | None:
         """The clock that an expression names, if it names one."""
         match self._named(written, scope):
-            case PlacedSymbol(ex.BaseType.CLOCK, slot):
+            case sc.PlacedSymbol(ex.BaseType.CLOCK, slot):
                 return symbols.clock_of(slot, written.span)
             case _:
                 return None
 
-    def _named(self, written: syntax.Expression, scope: Scope) -> Symbol | None:
+    def _named(self, written: syntax.Expression, scope: sc.Scope) -> sc.Symbol | None:
         """The symbol that an expression names, if it names one and that is no location."""
         is_name = isinstance(written, syntax.Name | syntax.Index | syntax.Member)
         if not is_name or self._location(written, scope) is not None:
             return None
         return self.symbol(written, scope)
 
-    def _clock_compare(self, written: syntax.Binary, scope: Scope) -> ex.Expression | None:
+    def _clock_compare(self, written: syntax.Binary, scope: sc.Scope) -> ex.Expression | None:
         """A comparison in which clocks stand; `None` if none does."""
         terms = [*terms_of(written.left), *terms_of(written.right, -1)]
         named = [(sign, part, self.clock(part, scope)) for sign, part in terms]
@@ -306,7 +295,7 @@ class Resolver:
                 fix = "compare one clock, or the difference of two, with a number"
                 raise model_error("TA008", "a sum of clocks is compared", span, fix)
 
-    def _whole_compare(self, written: syntax.Binary, scope: Scope) -> ex.Expression | None:
+    def _whole_compare(self, written: syntax.Binary, scope: sc.Scope) -> ex.Expression | None:
         """Records or arrays compared element by element."""
         left, right = self._named(written.left, scope), self._named(written.right, scope)
         if (
@@ -317,7 +306,7 @@ class Resolver:
             return None
         return operations.whole_compare(written.op, left, right, written.span, self.functions)
 
-    def _record(self, written: syntax.Expression, scope: Scope) -> RecordSymbol | None:
+    def _record(self, written: syntax.Expression, scope: sc.Scope) -> sc.RecordSymbol | None:
         """The record that an expression names, if it names one."""
         match written:
             case syntax.Name(name):
@@ -330,9 +319,9 @@ class Resolver:
                 symbol = self._automaton(base, scope).scope.symbols.get(name)
             case _:
                 return None
-        return symbol if isinstance(symbol, RecordSymbol) else None
+        return symbol if isinstance(symbol, sc.RecordSymbol) else None
 
-    def _location(self, written: syntax.Expression, scope: Scope) -> ex.InLocation | None:
+    def _location(self, written: syntax.Expression, scope: sc.Scope) -> ex.InLocation | None:
         if not isinstance(written, syntax.Member) or self._record(written.base, scope):
             return None
         automaton = self._automaton(written.base, scope)
@@ -340,10 +329,10 @@ class Resolver:
             return None
         return ex.InLocation(automaton.index, automaton.locations[written.name])
 
-    def _automaton(self, written: syntax.Expression, scope: Scope) -> AutomatonSymbol:
+    def _automaton(self, written: syntax.Expression, scope: sc.Scope) -> sc.AutomatonSymbol:
         match written:
             case syntax.Name(name, span):
-                key: AutomatonKey = (name, ())
+                key: sc.AutomatonKey = (name, ())
             case syntax.Call(name, arguments, span):
                 key = (name, tuple(self.constant(a, scope) for a in arguments))
             case _:

@@ -12,18 +12,11 @@ from rvmon.models.language import symbols, syntax
 from rvmon.models.language.operations import clock_number, fitted
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.network import expressions as ex
+from rvmon.models.network import scope as sc
 from rvmon.models.network.guards import is_discrete
-from rvmon.models.network.scope import (
-    ConstantSymbol,
-    PlacedSymbol,
-    RecordSymbol,
-    ResolvedType,
-    Scope,
-    Symbol,
-)
 
 
-def number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> ex.Expression:
+def number(written: syntax.Expression, scope: sc.Scope, resolver: Resolver) -> ex.Expression:
     """An expression whose value the variables give."""
     value = resolver.expression(written, scope)
     diagonals = resolver.diagonals
@@ -34,13 +27,13 @@ def number(written: syntax.Expression, scope: Scope, resolver: Resolver) -> ex.E
 
 
 def updates_of(
-    written: Sequence[syntax.UpdateText | syntax.Call], scope: Scope, resolver: Resolver
+    written: Sequence[syntax.UpdateText | syntax.Call], scope: sc.Scope, resolver: Resolver
 ) -> tuple[ex.Statement, ...]:
     """The updates of an edge."""
     return tuple(s for update in written for s in _update(update, scope, resolver))
 
 
-def is_price(target: syntax.Expression, scope: Scope) -> bool:
+def is_price(target: syntax.Expression, scope: sc.Scope) -> bool:
     """Whether this is the cost or the reward of priced automata, which nothing reads."""
     match target:
         case syntax.Name("cost" | "reward" as name):
@@ -50,7 +43,7 @@ def is_price(target: syntax.Expression, scope: Scope) -> bool:
 
 
 def _update(
-    written: syntax.UpdateText | syntax.Call, scope: Scope, resolver: Resolver
+    written: syntax.UpdateText | syntax.Call, scope: sc.Scope, resolver: Resolver
 ) -> list[ex.Statement]:
     if isinstance(written, syntax.Call):
         call = resolver.expression(written, scope)
@@ -73,7 +66,9 @@ def _update(
     return [_set(target, number(written.value, scope, resolver), written.target.span, resolver)]
 
 
-def _copy(target: Symbol, source: Symbol, span: Span, resolver: Resolver) -> list[ex.Statement]:
+def _copy(
+    target: sc.Symbol, source: sc.Symbol, span: Span, resolver: Resolver
+) -> list[ex.Statement]:
     """An array or record set to another one, element by element."""
     if not symbols.is_alike(target, source):
         raise model_error("TA004", "these are not of one type", span)
@@ -81,9 +76,9 @@ def _copy(target: Symbol, source: Symbol, span: Span, resolver: Resolver) -> lis
     return [_set(one, symbols.value_of(other, span), span, resolver) for one, other in pairs]
 
 
-def _set(target: Symbol, value: ex.Expression, span: Span, resolver: Resolver) -> ex.Statement:
+def _set(target: sc.Symbol, value: ex.Expression, span: Span, resolver: Resolver) -> ex.Statement:
     match target:
-        case PlacedSymbol(ex.BaseType.INT, slot) if target.is_single:
+        case sc.PlacedSymbol(ex.BaseType.INT, slot) if target.is_single:
             variable = resolver.functions.variable(slot)
             value = fitted(value, variable.is_real, resolver.functions, span)
             return ex.Assignment(replace(slot, span=span), value, variable)
@@ -100,7 +95,7 @@ class Bodies:
     resolver: Resolver
 
     def statements(
-        self, written: Sequence[syntax.Statement], scope: Scope
+        self, written: Sequence[syntax.Statement], scope: sc.Scope
     ) -> tuple[list[ex.Statement], bool]:
         """The statements that a run reaches, and whether it can go on behind them."""
         made: list[ex.Statement] = []
@@ -112,7 +107,7 @@ class Bodies:
         return made, True
 
     def _statement(
-        self, written: syntax.Statement, scope: Scope
+        self, written: syntax.Statement, scope: sc.Scope
     ) -> tuple[list[ex.Statement], bool]:
         resolver = self.resolver
         match written:
@@ -146,7 +141,7 @@ class Bodies:
             case _:
                 assert_never(written)
 
-    def _declaration(self, item: syntax.Declaration, scope: Scope) -> list[ex.Statement]:
+    def _declaration(self, item: syntax.Declaration, scope: sc.Scope) -> list[ex.Statement]:
         resolver = self.resolver
         symbols.claim(item.name, item.span, scope)
         kind = resolver.type(item.type, scope)
@@ -159,7 +154,7 @@ class Bodies:
         if kind.const and initial is not None and not (extents or kind.fields):
             value = self._single(initial, scope)
             if isinstance(value, ex.Constant):
-                scope.symbols[item.name] = ConstantSymbol(value.value)
+                scope.symbols[item.name] = sc.ConstantSymbol(value.value)
                 return []
         name = f"{self.text.name}.{item.name}"
         symbol = symbols.laid_out(variable_type(kind), extents, [name], None, resolver.functions)
@@ -169,16 +164,16 @@ class Bodies:
 
     def _initial(
         self,
-        symbol: Symbol,
+        symbol: sc.Symbol,
         written: syntax.Initial | None,
         extents: symbols.Extents,
-        kind: ResolvedType,
-        scope: Scope,
+        kind: sc.ResolvedType,
+        scope: sc.Scope,
     ) -> list[ex.Statement]:
         """Sets all of a local variable, which has no value from before."""
         resolver = self.resolver
         if written is None:
-            single = [leaf for leaf in symbols.leaves(symbol) if isinstance(leaf, PlacedSymbol)]
+            single = [leaf for leaf in symbols.leaves(symbol) if isinstance(leaf, sc.PlacedSymbol)]
             ranges = [resolver.functions.variable(leaf.slot) for leaf in single]
             span = self.text.span
             return [
@@ -190,26 +185,26 @@ class Bodies:
         parts = symbols.parts_of_initial(written, extents, kind)
         if parts is None:
             return [_set(symbol, self._single(written, scope), written.span, resolver)]
-        if isinstance(symbol, RecordSymbol) and not extents:
+        if isinstance(symbol, sc.RecordSymbol) and not extents:
             members = [inner for _, inner in symbol.fields]
         else:
             members = [symbols.element_of(symbol, ex.Constant(i), written.span) for i in extents[0]]
         pairs = zip(members, parts, strict=True)
         return [s for member, part in pairs for s in self._initial(member, *part, scope)]
 
-    def _single(self, written: syntax.Initial, scope: Scope) -> ex.Expression:
+    def _single(self, written: syntax.Initial, scope: sc.Scope) -> ex.Expression:
         """The initial value of a single thing."""
         if isinstance(written, syntax.Values):
             raise model_error("TA004", "one value expected, a list found", written.span)
         return number(written, scope, self.resolver)
 
-    def _each(self, written: syntax.Each, scope: Scope) -> list[ex.Statement]:
+    def _each(self, written: syntax.Each, scope: sc.Scope) -> list[ex.Statement]:
         resolver, inner = self.resolver, scope.inner({})
         values = symbols.values_of(resolver.type(written.type, scope), written.type.span)
         span = written.span
-        kind = ResolvedType(ex.BaseType.INT, values.start, values.stop)
+        kind = sc.ResolvedType(ex.BaseType.INT, values.start, values.stop)
         symbol = resolver.functions.place(kind, (), [f"{self.text.name}.{written.name}"], None)
-        assert isinstance(symbol, PlacedSymbol), "of a number"
+        assert isinstance(symbol, sc.PlacedSymbol), "of a number"
         inner.symbols[written.name], inner.places[written.name] = symbol, span
         body, goes_on = self.statements(written.body, inner.inner({}))
         here = ex.VariableValue(symbol.slot)
@@ -221,7 +216,7 @@ class Bodies:
         return [first, ex.While(test, tuple(body), span)]
 
 
-def variable_type(kind: ResolvedType) -> ResolvedType:
+def variable_type(kind: sc.ResolvedType) -> sc.ResolvedType:
     """The type of a variable that may be set once, where a constant one is declared."""
     fields = tuple((name, variable_type(field)) for name, field in kind.fields)
     return replace(kind, const=False, fields=fields)

@@ -11,21 +11,8 @@ from rvmon.diagnostics import Label, Span
 from rvmon.models import model_error
 from rvmon.models.language import syntax
 from rvmon.models.network import expressions as ex
+from rvmon.models.network import scope as sc
 from rvmon.models.network.evaluate import check_index
-from rvmon.models.network.scope import (
-    AutomatonKey,
-    AutomatonSymbol,
-    ChosenSymbol,
-    ConstantSymbol,
-    ConstantValue,
-    FunctionSymbol,
-    PlacedSymbol,
-    RecordSymbol,
-    ResolvedType,
-    Scope,
-    Symbol,
-    TypeSymbol,
-)
 from rvmon.texts import counted, did_you_mean
 
 MAX_VALUES = 10_000
@@ -40,7 +27,7 @@ INT32 = (-(1 << 31), (1 << 31) - 1)
 Extents = tuple[range, ...]
 """The indices of each dimension of an array, the outermost first."""
 
-Value = ConstantValue | None
+Value = sc.ConstantValue | None
 """An initial value: of an array or record one for each part, in order; `None` without one."""
 
 
@@ -48,20 +35,20 @@ class Placer(Protocol):
     """Gives things their places."""
 
     def place(
-        self, kind: ResolvedType, extents: Extents, names: Sequence[str], value: Value
-    ) -> Symbol:
+        self, kind: sc.ResolvedType, extents: Extents, names: Sequence[str], value: Value
+    ) -> sc.Symbol:
         """Make a symbol for things of one type, side by side."""
         ...
 
 
 def laid_out(
-    kind: ResolvedType,
+    kind: sc.ResolvedType,
     extents: Extents,
     names: Sequence[str],
     value: Value,
     placer: Placer,
     unnamed: Extents | None = None,
-) -> Symbol:
+) -> sc.Symbol:
     """The symbol of something declared; a record's fields are laid out one after the other.
 
     Args:
@@ -77,7 +64,7 @@ def laid_out(
     if kind.base is not ex.BaseType.RECORD:
         real = kind.base is ex.BaseType.DOUBLE
         if kind.const and value is not None and not (real and extents):
-            return ConstantSymbol(value, extents, real)
+            return sc.ConstantSymbol(value, extents, real)
         return placer.place(kind, extents, names, value)
     fields = []
     for place, (field, written) in enumerate(kind.fields):
@@ -87,10 +74,10 @@ def laid_out(
         whole = (*extents, *written.extents)
         symbol = laid_out(own, whole, called, inner, placer, written.extents)
         fields.append((field, symbol))
-    return RecordSymbol(tuple(fields))
+    return sc.RecordSymbol(tuple(fields))
 
 
-def _field(value: ConstantValue, depth: int, place: int) -> ConstantValue:
+def _field(value: sc.ConstantValue, depth: int, place: int) -> sc.ConstantValue:
     """The values of a field of all elements of an array of records."""
     assert isinstance(value, tuple), "a record's value has parts"
     if depth == 0:
@@ -105,29 +92,29 @@ def _suffixes(extents: Extents) -> list[str]:
     return [f"[{i}]{rest}" for i in extents[0] for rest in _suffixes(extents[1:])]
 
 
-def variable_of(kind: ResolvedType, name: str, initial: int) -> ex.Variable:
+def variable_of(kind: sc.ResolvedType, name: str, initial: int) -> ex.Variable:
     """A variable of a type."""
     is_bool, is_real = kind.base is ex.BaseType.BOOL, kind.base is ex.BaseType.DOUBLE
     return ex.Variable(name, kind.low, kind.high, initial, is_bool, is_real)
 
 
-def default_of(kind: ResolvedType) -> int:
+def default_of(kind: sc.ResolvedType) -> int:
     """The value of a variable of a type that is given none."""
     return 0 if kind.low <= 0 <= kind.high else kind.low
 
 
-def count_of(kind: ResolvedType, extents: Extents) -> int:
+def count_of(kind: sc.ResolvedType, extents: Extents) -> int:
     """The single things that an array or record of a type has."""
     each = sum(count_of(field, field.extents) for _, field in kind.fields) if kind.fields else 1
     return prod(map(len, extents)) * each
 
 
-Part = tuple[syntax.Initial, Extents, ResolvedType]
+Part = tuple[syntax.Initial, Extents, sc.ResolvedType]
 """A part of an initial value: as written, the array that it is for, the type."""
 
 
 def parts_of_initial(
-    written: syntax.Initial, extents: Extents, kind: ResolvedType
+    written: syntax.Initial, extents: Extents, kind: sc.ResolvedType
 ) -> list[Part] | None:
     """The values for the parts of an array or a record; `None` of a single thing."""
     if not isinstance(written, syntax.Values):
@@ -143,14 +130,14 @@ def parts_of_initial(
     return [(item, *rest) for item, rest in zip(written.items, expected, strict=True)]
 
 
-def _expected(extents: Extents, kind: ResolvedType) -> Iterator[tuple[Extents, ResolvedType]]:
+def _expected(extents: Extents, kind: sc.ResolvedType) -> Iterator[tuple[Extents, sc.ResolvedType]]:
     if extents:
         yield from [(extents[1:], kind)] * len(extents[0])
     for _, field in () if extents else kind.fields:
         yield field.extents, replace(field, extents=())
 
 
-def values_of(kind: ResolvedType, span: Span) -> range:
+def values_of(kind: sc.ResolvedType, span: Span) -> range:
     """All values of a finite type."""
     if kind.base not in (ex.BaseType.INT, ex.BaseType.BOOL):
         raise model_error("TA004", "only int and bool types can be enumerated", span)
@@ -168,7 +155,7 @@ def check_count(name: str, parameters: Sized, arguments: Sized, span: Span) -> N
         raise model_error("TA015", message, span)
 
 
-def claim(name: str, span: Span, scope: Scope) -> None:
+def claim(name: str, span: Span, scope: sc.Scope) -> None:
     """Note where a name is declared; refuse one that the same level already has."""
     if name in scope.places:
         first = Label(scope.places[name], "first declared here")
@@ -185,14 +172,14 @@ class Calls(Protocol):
         ...
 
     def call(
-        self, symbol: FunctionSymbol, written: syntax.Call, scope: Scope, resolver: Any
+        self, symbol: sc.FunctionSymbol, written: syntax.Call, scope: sc.Scope, resolver: Any
     ) -> ex.Expression:
         """The value of a call."""
         ...
 
     def place(
-        self, kind: ResolvedType, extents: Extents, names: Sequence[str], value: Value
-    ) -> Symbol:
+        self, kind: sc.ResolvedType, extents: Extents, names: Sequence[str], value: Value
+    ) -> sc.Symbol:
         """Make room for parameters or local variables."""
         ...
 
@@ -201,88 +188,90 @@ class Calls(Protocol):
         ...
 
 
-def value_of(symbol: Symbol, span: Span) -> ex.Expression:
+def value_of(symbol: sc.Symbol, span: Span) -> ex.Expression:
     """The value that a symbol has in an expression."""
     match symbol:
-        case ConstantSymbol(int(value), _, is_real):
+        case sc.ConstantSymbol(int(value), _, is_real):
             return ex.Fractional("=", (ex.Constant(value),)) if is_real else ex.Constant(value)
-        case PlacedSymbol(ex.BaseType.INT, slot) if symbol.is_single:
+        case sc.PlacedSymbol(ex.BaseType.INT, slot) if symbol.is_single:
             return ex.VariableValue(replace(slot, span=span))
-        case ChosenSymbol(values, slot) if len(slot.indices) == len(slot.extents):
+        case sc.ChosenSymbol(values, slot) if len(slot.indices) == len(slot.extents):
             return ex.Lookup(values, replace(slot, span=span))
-        case PlacedSymbol(ex.BaseType.CLOCK):
+        case sc.PlacedSymbol(ex.BaseType.CLOCK):
             fix = "a clock can only be compared with a number, or be set"
             raise model_error("TA009", "a clock has no value here", span, fix)
-        case PlacedSymbol(ex.BaseType.INT) | ConstantSymbol() | ChosenSymbol():
+        case sc.PlacedSymbol(ex.BaseType.INT) | sc.ConstantSymbol() | sc.ChosenSymbol():
             raise model_error("TA004", "an array is no value", span, "give an index")
-        case RecordSymbol(fields):
+        case sc.RecordSymbol(fields):
             fix = f"name a field, such as {span.text}.{fields[0][0]}"
             raise model_error("TA004", "a record is no value", span, fix)
-        case FunctionSymbol():
+        case sc.FunctionSymbol():
             raise model_error("TA004", "a function is no value", span, f"call it: {span.text}(…)")
-        case PlacedSymbol() | TypeSymbol():
+        case sc.PlacedSymbol() | sc.TypeSymbol():
             fix = "channels stand in synchronisations, types in declarations"
             raise model_error("TA004", f"`{span.text}` is no value", span, fix)
         case _:
             assert_never(symbol)
 
 
-def element_of(symbol: Symbol, index: ex.Expression, span: Span) -> Symbol:
+def element_of(symbol: sc.Symbol, index: ex.Expression, span: Span) -> sc.Symbol:
     """An element of an array."""
     match symbol:
-        case ConstantSymbol(tuple() as values, (extent, *inner)):
+        case sc.ConstantSymbol(tuple() as values, (extent, *inner)):
             if not isinstance(index, ex.Constant) or index.value not in extent:
                 slot = ex.Slot(0, (extent, *inner), (index,), span)
-                return ChosenSymbol(tuple(flat(values)), slot)
-            return ConstantSymbol(values[index.value - extent.start], tuple(inner))
-        case PlacedSymbol(_, slot) | ChosenSymbol(_, slot):
+                return sc.ChosenSymbol(tuple(flat(values)), slot)
+            return sc.ConstantSymbol(values[index.value - extent.start], tuple(inner))
+        case sc.PlacedSymbol(_, slot) | sc.ChosenSymbol(_, slot):
             return replace(symbol, slot=_deeper(slot, index, span))
-        case RecordSymbol(fields):
-            return RecordSymbol(tuple((name, element_of(s, index, span)) for name, s in fields))
-        case ConstantSymbol() | TypeSymbol() | FunctionSymbol():
+        case sc.RecordSymbol(fields):
+            return sc.RecordSymbol(tuple((name, element_of(s, index, span)) for name, s in fields))
+        case sc.ConstantSymbol() | sc.TypeSymbol() | sc.FunctionSymbol():
             raise model_error("TA004", "this is no array", span)
         case _:
             assert_never(symbol)
 
 
-def flat(value: ConstantValue) -> list[int]:
+def flat(value: sc.ConstantValue) -> list[int]:
     """The numbers of a constant, those of the last index side by side."""
     if isinstance(value, int):
         return [value]
     return [number for item in value for number in flat(item)]
 
 
-def is_whole(symbol: Symbol) -> bool:
+def is_whole(symbol: sc.Symbol) -> bool:
     """Whether a symbol is an array or record that holds numbers, not one of them."""
     match symbol:
-        case RecordSymbol():
+        case sc.RecordSymbol():
             return True
-        case PlacedSymbol(ex.BaseType.INT, slot) | ChosenSymbol(_, slot):
+        case sc.PlacedSymbol(ex.BaseType.INT, slot) | sc.ChosenSymbol(_, slot):
             return len(slot.indices) < len(slot.extents)
-        case ConstantSymbol(value):
+        case sc.ConstantSymbol(value):
             return isinstance(value, tuple)
         case _:
             return False
 
 
-def is_alike(one: Symbol, other: Symbol) -> bool:
+def is_alike(one: sc.Symbol, other: sc.Symbol) -> bool:
     """Whether two arrays or records have the same parts."""
-    if isinstance(one, RecordSymbol) and isinstance(other, RecordSymbol):
+    if isinstance(one, sc.RecordSymbol) and isinstance(other, sc.RecordSymbol):
         return [name for name, _ in one.fields] == [name for name, _ in other.fields] and all(
             is_alike(a, b) for (_, a), (_, b) in zip(one.fields, other.fields, strict=True)
         )
-    records = isinstance(one, RecordSymbol) or isinstance(other, RecordSymbol)
+    records = isinstance(one, sc.RecordSymbol) or isinstance(other, sc.RecordSymbol)
     return not records and len(leaves(one)) == len(leaves(other))
 
 
-def leaves(symbol: Symbol) -> list[Symbol]:
+def leaves(symbol: sc.Symbol) -> list[sc.Symbol]:
     """The single things of an array or record, in order."""
     match symbol:
-        case RecordSymbol(fields):
+        case sc.RecordSymbol(fields):
             return [leaf for _, inner in fields for leaf in leaves(inner)]
-        case ConstantSymbol(tuple() as values, (_, *inner)):
-            return [leaf for v in values for leaf in leaves(ConstantSymbol(v, tuple(inner)))]
-        case PlacedSymbol(_, slot) | ChosenSymbol(_, slot) if len(slot.indices) < len(slot.extents):
+        case sc.ConstantSymbol(tuple() as values, (_, *inner)):
+            return [leaf for v in values for leaf in leaves(sc.ConstantSymbol(v, tuple(inner)))]
+        case sc.PlacedSymbol(_, slot) | sc.ChosenSymbol(_, slot) if len(slot.indices) < len(
+            slot.extents
+        ):
             extent = slot.extents[len(slot.indices)]
             deeper = (
                 settle(replace(slot, indices=(*slot.indices, ex.Constant(i)))) for i in extent
@@ -323,8 +312,8 @@ def clock_of(slot: ex.Slot, span: Span) -> int:
 
 
 def automaton_at(
-    automata: Mapping[AutomatonKey, AutomatonSymbol], key: AutomatonKey, span: Span
-) -> AutomatonSymbol:
+    automata: Mapping[sc.AutomatonKey, sc.AutomatonSymbol], key: sc.AutomatonKey, span: Span
+) -> sc.AutomatonSymbol:
     """The automaton of a name and arguments."""
     if not automata:
         message = f"edges and invariants do not see the locations of `{span.text}`"

@@ -10,20 +10,12 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
 from rvmon.models import model_error
-from rvmon.models.network import (
-    Automaton,
-    Clock,
-    Edge,
-    Guard,
-    Location,
-    Network,
-    Priorities,
-)
+from rvmon.models import network as nta
 from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import resets_in
 
 
-def finer(network: Network, factor: int) -> Network:
+def finer(network: nta.Network, factor: int) -> nta.Network:
     """A network whose unit of time is so many times smaller, and whose runs are the same.
 
     Its queries are left out, since they would speak of the old unit.
@@ -36,7 +28,7 @@ def finer(network: Network, factor: int) -> Network:
     )
 
 
-def _automaton(automaton: Automaton, factor: int) -> Automaton:
+def _automaton(automaton: nta.Automaton, factor: int) -> nta.Automaton:
     return replace(
         automaton,
         locations=tuple(
@@ -47,7 +39,7 @@ def _automaton(automaton: Automaton, factor: int) -> Automaton:
     )
 
 
-def _edge(edge: Edge, factor: int) -> Edge:
+def _edge(edge: nta.Edge, factor: int) -> nta.Edge:
     updates = tuple(_update(update, factor) for update in edge.updates)
     return replace(edge, guard=_guard(edge.guard, factor), updates=updates)
 
@@ -61,8 +53,8 @@ def _update(update: ex.Statement, factor: int) -> ex.Statement:
     return update
 
 
-def _guard(guard: Guard, factor: int) -> Guard:
-    return Guard(
+def _guard(guard: nta.Guard, factor: int) -> nta.Guard:
+    return nta.Guard(
         guard.data,
         tuple(
             ex.ClockCompare(clock.clock, clock.op, _times(clock.bound, factor))
@@ -77,7 +69,7 @@ def _times(number: ex.Expression, factor: int) -> ex.Expression:
     return ex.BinaryOperation(ex.BinaryOp.MUL, number, ex.Constant(factor))
 
 
-def names_of(network: Network, edge: Edge) -> tuple[str, ...]:
+def names_of(network: nta.Network, edge: nta.Edge) -> tuple[str, ...]:
     """The names that an edge gives a move: its label, and its channel if it sends."""
     sends = edge.sync is not None and edge.sync.sends
     channel = network.channels[edge.sync.slot.first].name if edge.sync and sends else ""
@@ -91,15 +83,15 @@ class Watcher:
         clock: the number of the first of its clocks.
     """
 
-    def __init__(self, network: Network, names: Iterable[str], clocks: Sequence[str]) -> None:
+    def __init__(self, network: nta.Network, names: Iterable[str], clocks: Sequence[str]) -> None:
         self._network = network
-        self._clocks = tuple(map(Clock, clocks))
+        self._clocks = tuple(map(nta.Clock, clocks))
         self.clock = len(network.clocks)
         first = len(network.variables)
         self._slots = {name: ex.Slot(first + k) for k, name in enumerate(dict.fromkeys(names))}
         self._unnoted: tuple[ex.Statement, ...] = tuple(_set(s, 0) for s in self._slots.values())
-        self._locations: list[Location] = []
-        self._edges: list[Edge] = []
+        self._locations: list[nta.Location] = []
+        self._edges: list[nta.Edge] = []
 
     def has(self, name: str) -> ex.Expression:
         """Whether a move has a name; false between moves."""
@@ -109,7 +101,7 @@ class Watcher:
         self, bounds: Iterable[ex.ClockCompare] = (), kind: ex.LocationKind = ex.LocationKind.NORMAL
     ) -> int:
         """Add a location with an invariant; its number."""
-        self._locations.append(Location("", kind, Guard(ex.TRUE, tuple(bounds))))
+        self._locations.append(nta.Location("", kind, nta.Guard(ex.TRUE, tuple(bounds))))
         return len(self._locations) - 1
 
     def add_edge(
@@ -128,14 +120,16 @@ class Watcher:
         set_now = tuple(ex.Reset(clock, ex.Constant(0)) for clock in resets)
         unnoted = self._unnoted if watches else ()
         updates = (*unnoted, *set_now) if set_now else unnoted
-        guard = Guard(when, tuple(bounds))
-        self._edges.append(Edge(source, target, guard, None, updates, 1.0, "", "", watches=watches))
+        guard = nta.Guard(when, tuple(bounds))
+        self._edges.append(
+            nta.Edge(source, target, guard, None, updates, 1.0, "", "", watches=watches)
+        )
 
     def is_in(self, location: int) -> ex.Expression:
         """Whether it is in a location."""
         return ex.InLocation(len(self._network.automata), location)
 
-    def network(self, initial: int = 0) -> Network:
+    def network(self, initial: int = 0) -> nta.Network:
         """The network with the watcher, in one of its locations at the start."""
         network, own = (
             self._network,
@@ -146,19 +140,20 @@ class Watcher:
             replace(automaton, edges=tuple(map(self._noting, automaton.edges)))
             for automaton in network.automata
         ]
-        watcher = Automaton("", tuple(self._locations), tuple(self._edges), initial)
+        watcher = nta.Automaton("", tuple(self._locations), tuple(self._edges), initial)
         return replace(
             network,
             clocks=(*network.clocks, *self._clocks),
             variables=(*network.variables, *own),
             automata=(*automata, watcher),
             queries=(),
-            priorities=ranks and Priorities((*ranks.automata, 0), ranks.internal, ranks.channels),
+            priorities=ranks
+            and nta.Priorities((*ranks.automata, 0), ranks.internal, ranks.channels),
             original=network,
             is_watched=True,
         )
 
-    def _noting(self, edge: Edge) -> Edge:
+    def _noting(self, edge: nta.Edge) -> nta.Edge:
         noted = (
             _set(self._slots[name], 1)
             for name in names_of(self._network, edge)

@@ -17,23 +17,12 @@ from math import inf
 from rvmon.diagnostics import Label, Span
 from rvmon.errors import ModelError
 from rvmon.models import model_error
-from rvmon.models.network import Edge, Guard, Network
+from rvmon.models.network import Edge, Guard, Network, evaluate
 from rvmon.models.network import expressions as ex
-from rvmon.models.network.evaluate import (
-    Evaluator,
-    Frame,
-    Locations,
-    Runner,
-    Values,
-    check_time,
-    evaluator,
-    runner,
-    slot_evaluator,
-)
 from rvmon.models.network.guards import alternatives_of
 from rvmon.models.runs import Atom, bound_of
 
-AtomMaker = Callable[[Locations, Values], tuple[Atom, ...]]
+AtomMaker = Callable[[evaluate.Locations, evaluate.Values], tuple[Atom, ...]]
 """The clock bounds of a guard or invariant, given the variables."""
 
 
@@ -55,11 +44,11 @@ class ReadyEdge:
     automaton: int
     number: int
     edge: Edge
-    data: Evaluator | None
+    data: evaluate.Evaluator | None
     atoms: AtomMaker
-    channel: Evaluator | None
+    channel: evaluate.Evaluator | None
     channels: range
-    updates: Runner | None
+    updates: evaluate.Runner | None
 
     @property
     def sends(self) -> bool:
@@ -172,7 +161,7 @@ class Space:
         locations, values, changed = state.locations, state.values, [*state.locations]
         guard = tuple(atom for edge in edges for atom in edge.atoms(locations, values))
         rank = self._rank(state, edges)
-        frame = Frame(values, len(self.network.locals))
+        frame = evaluate.Frame(values, len(self.network.locals))
         try:
             for edge in edges:
                 changed[edge.automaton] = edge.edge.target
@@ -297,16 +286,16 @@ def _ready(network: Network, automaton: int, number: int, grid: int) -> ReadyEdg
     channel, channels = None, range(0)
     if edge.sync is not None:
         slot = edge.sync.slot
-        channel = slot_evaluator(slot)
+        channel = evaluate.slot_evaluator(slot)
         channels = range(slot.first, slot.first + slot.size)
     atoms = atoms_of(edge.guard.clocks, edge.span, grid)
-    updates = runner(edge.updates) if edge.updates else None
+    updates = evaluate.runner(edge.updates) if edge.updates else None
     return ReadyEdge(automaton, number, edge, _data(edge.guard), atoms, channel, channels, updates)
 
 
-def _data(guard: Guard) -> Evaluator | None:
+def _data(guard: Guard) -> evaluate.Evaluator | None:
     """A guard's condition on the variables; `None` if it always holds."""
-    return None if guard.data == ex.TRUE else evaluator(guard.data)
+    return None if guard.data == ex.TRUE else evaluate.evaluator(guard.data)
 
 
 def atoms_of(compares: Sequence[ex.ClockCompare], span: Span | None, grid: int = 1) -> AtomMaker:
@@ -319,11 +308,15 @@ def atoms_of(compares: Sequence[ex.ClockCompare], span: Span | None, grid: int =
         )
         return lambda _locations, _values: fixed
     bounds = [
-        (compare, evaluator(compare.bound), 1 if isinstance(compare.bound, ex.Fractional) else grid)
+        (
+            compare,
+            evaluate.evaluator(compare.bound),
+            1 if isinstance(compare.bound, ex.Fractional) else grid,
+        )
         for compare in compares
     ]
     return lambda locations, values: tuple(
-        _atom(compare, check_time(bound(locations, values), span) * steps)
+        _atom(compare, evaluate.check_time(bound(locations, values), span) * steps)
         for compare, bound, steps in bounds
     )
 
@@ -335,14 +328,14 @@ def _atom(compare: ex.ClockCompare, number: int) -> Atom:
     return clock, 0, bound_of(-number, strict)
 
 
-PiecesMaker = Callable[[Locations, Values], list[tuple[Atom, ...]]]
+PiecesMaker = Callable[[evaluate.Locations, evaluate.Values], list[tuple[Atom, ...]]]
 """The bounds under which a formula holds in a discrete state, in alternatives."""
 
 
 def pieces_of(formula: ex.Expression, grid: int = 1) -> PiecesMaker:
     """Make a function that gives the pieces of a normalised formula that is plain."""
     pieces = [
-        (evaluator(guard.data), atoms_of(guard.clocks, None, grid))
+        (evaluate.evaluator(guard.data), atoms_of(guard.clocks, None, grid))
         for guard in alternatives_of(formula)
     ]
     return lambda locations, values: [

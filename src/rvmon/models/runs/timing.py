@@ -17,19 +17,8 @@ from fractions import Fraction
 from itertools import pairwise, product
 from math import ceil, inf, isqrt
 
+from rvmon.models import runs
 from rvmon.models.network import Network
-from rvmon.models.runs import (
-    Action,
-    Atom,
-    Constraint,
-    Ending,
-    Position,
-    Run,
-    RunStep,
-    Timing,
-    Window,
-    Zone,
-)
 from rvmon.models.runs.exact_times import Rules
 from rvmon.models.runs.moves import Move, State
 
@@ -46,14 +35,14 @@ class TimedStep:
     """
 
     waits: bool
-    leave: tuple[Atom, ...]
+    leave: tuple[runs.Atom, ...]
     resets: tuple[tuple[int, float], ...]
-    enter: tuple[Atom, ...]
+    enter: tuple[runs.Atom, ...]
 
 
 def timing_of(
-    steps: Sequence[TimedStep], start: Zone | None = None, *, rounds: int = 1
-) -> Timing | None:
+    steps: Sequence[TimedStep], start: runs.Zone | None = None, *, rounds: int = 1
+) -> runs.Timing | None:
     """The timed runs along a path; `None` if there are none.
 
     Args:
@@ -67,7 +56,7 @@ def timing_of(
     # Each strict bound on a path lacks one grid step; with more steps in a unit than bounds on the
     # path no cycle can lose a whole unit.
     scale = rounds * size + 1
-    found: list[list[Constraint]] = [[] for _ in range(len(steps) + 1)]
+    found: list[list[runs.Constraint]] = [[] for _ in range(len(steps) + 1)]
     reset_at: dict[int, tuple[int, float]] = {}
     if start is not None:
         born = [0, *range(len(steps) + 1, size)]
@@ -76,7 +65,7 @@ def timing_of(
             if start[x * dim + y] < inf:
                 found[0].append((born[y], born[x], on_grid(start[x * dim + y], scale)))
 
-    def apply(atoms: Iterable[Atom], now: int) -> None:
+    def apply(atoms: Iterable[runs.Atom], now: int) -> None:
         for x, y, bound in atoms:
             # A clock's value now is t[now] − t[its reset] + its value then; clock 0 is 0.
             (p, low), (q, high) = reset_at.get(x, (0, 0.0)), reset_at.get(y, (0, 0.0))
@@ -95,7 +84,7 @@ def timing_of(
         for clock, value in step.resets:
             reset_at[clock] = now, value
         apply(step.enter, now)
-    timing = Timing(found, dim - 1, scale)
+    timing = runs.Timing(found, dim - 1, scale)
     return timing if timing.is_possible else None
 
 
@@ -105,7 +94,7 @@ def on_grid(bound: float, scale: int) -> float:
     return whole * scale - (bound != whole)
 
 
-def windows(timing: Timing) -> list[Window]:
+def windows(timing: runs.Timing) -> list[runs.Window]:
     """The shortest and longest wait before each step, over all runs along the path."""
     found = []
     for low, high, _ in timing.waits:
@@ -113,7 +102,7 @@ def windows(timing: Timing) -> list[Window]:
         if high != inf:
             high_units = int(-(-high // timing.scale))
         found.append(
-            Window(
+            runs.Window(
                 low_units,
                 high_units,
                 low_units * timing.scale != low,
@@ -123,7 +112,7 @@ def windows(timing: Timing) -> list[Window]:
     return found
 
 
-def earliest(timing: Timing) -> list[Fraction]:
+def earliest(timing: runs.Timing) -> list[Fraction]:
     """The delay before each step in the run that does every step as early as possible.
 
     The least solution of difference constraints is one of them, so no choice hinders a later one;
@@ -133,7 +122,7 @@ def earliest(timing: Timing) -> list[Fraction]:
     return [Fraction(int(later - before), timing.scale) for before, later in pairwise(times)]
 
 
-Piece = tuple[Atom, ...]
+Piece = tuple[runs.Atom, ...]
 """Bounds that hold together; without any they hold everywhere."""
 
 
@@ -187,9 +176,9 @@ def make_run(
     network: Network,
     start: State,
     steps: Sequence[PathStep],
-    ending: Ending = Ending.REACHED,
+    ending: runs.Ending = runs.Ending.REACHED,
     loop: int | None = None,
-) -> Run:
+) -> runs.Run:
     """The run along a path that does everything as early as possible.
 
     Args:
@@ -203,24 +192,24 @@ def make_run(
     timing = timing_of([step.timed for step in steps])
     assert timing is not None, "the search found a run along the path"
     run_steps = tuple(
-        RunStep(window, wait, _action(network, step.move), _position(network, step.state))
+        runs.RunStep(window, wait, _action(network, step.move), _position(network, step.state))
         for step, window, wait in zip(steps, windows(timing), earliest(timing), strict=True)
     )
-    run = Run(_position(network, start), run_steps, ending, loop, timing)
+    run = runs.Run(_position(network, start), run_steps, ending, loop, timing)
     # The plain rules, which share nothing with the search, have to accept each run that is shown.
     Rules(network).replay(run)
     return run
 
 
-def _action(network: Network, move: Move | None) -> Action | None:
+def _action(network: Network, move: Move | None) -> runs.Action | None:
     edges = tuple(
         (edge.automaton, network.automata[edge.automaton].edges[edge.number])
         for edge in (() if move is None else move.edges)
         if edge.automaton < len(network.automata)
     )
-    return Action(edges) if edges else None
+    return runs.Action(edges) if edges else None
 
 
-def _position(network: Network, state: State) -> Position:
+def _position(network: Network, state: State) -> runs.Position:
     automata, variables = len(network.automata), len(network.variables)
-    return Position(state.locations[:automata], state.values[:variables])
+    return runs.Position(state.locations[:automata], state.values[:variables])

@@ -15,18 +15,8 @@ from rvmon.models import model_error
 from rvmon.models.network import Guard, Network
 from rvmon.models.network.guards import together
 from rvmon.models.runs import STRICT, Atom, Ending, Run, Zone, close, universe
+from rvmon.models.runs import timing as timings
 from rvmon.models.runs.moves import Space, State, atoms_of, pieces_of
-from rvmon.models.runs.timing import (
-    PathStep,
-    Piece,
-    TimedStep,
-    crossing_step,
-    make_run,
-    mark_step,
-    move_step,
-    on_grid,
-    timing_of,
-)
 from rvmon.models.search.budget import Meter
 from rvmon.models.search.search_plan import Plan, Seek, Sought
 from rvmon.native import extension
@@ -153,7 +143,7 @@ class _Walked(NamedTuple):
 
     end: int
     piece: int
-    step: PathStep
+    step: timings.PathStep
 
 
 def _common_length(first: bytes, second: bytes) -> int:
@@ -194,14 +184,14 @@ class _Paths:
         """The run along a path, to the first of some parts that it can reach."""
         last, steps = self.walk(path)
         for part in self._parts(parts):
-            marked = [*steps, mark_step(last, part)]
-            if timing_of([step.timed for step in marked]) is not None:
+            marked = [*steps, timings.mark_step(last, part)]
+            if timings.timing_of([step.timed for step in marked]) is not None:
                 steps = marked
                 break
         if ending is Ending.DEADLOCK and last.is_time_bounded:
             ending = Ending.TIME_LOCK
         shown = self._network.original or self._network
-        return make_run(shown, self._start, steps, ending, None if loop < 0 else loop)
+        return timings.make_run(shown, self._start, steps, ending, None if loop < 0 else loop)
 
     def fail(self, path: bytes, sought: Sought) -> None:
         """Say what is wrong where a search could not go on."""
@@ -218,7 +208,7 @@ class _Paths:
             if formula is not None:
                 pieces_of(formula)(state.locations, state.values)
 
-    def walk(self, path: bytes) -> tuple[State, list[PathStep]]:
+    def walk(self, path: bytes) -> tuple[State, list[timings.PathStep]]:
         """The last state of a path and its steps.
 
         Of two paths in succession the steps that they begin with are walked once: a search in depth
@@ -246,32 +236,34 @@ class _Paths:
                     there = self._constraint(self._plan.inside, behind, state)
                     leave = here if number else _rounded(here, uppers=True)
                     enter = _rounded(there, uppers=False) if number else there
-                    step = crossing_step(state, leave, enter)
+                    step = timings.crossing_step(state, leave, enter)
                 case _Step.MARK:
                     holds = self._constraint(self._plan.goal, number, state)
                     there = self._constraint(self._plan.inside, behind, state)
-                    step = mark_step(state, (*holds, *there), self._timers)
+                    step = timings.mark_step(state, (*holds, *there), self._timers)
             state, piece = step.state, behind
             self._walked.append(_Walked(at, piece, step))
         return state, [walked.step for walked in self._walked]
 
     def _move(
-        self, state: State, edges: Sequence[tuple[int, int]], leave: Piece, behind: int
-    ) -> PathStep:
+        self, state: State, edges: Sequence[tuple[int, int]], leave: timings.Piece, behind: int
+    ) -> timings.PathStep:
         move = self._space.step(state, edges)
         assert move is not None, "the native search made it"
         if move.failure is not None:
             raise move.failure
         enter = self._constraint(self._plan.inside, behind, move.target)
-        return move_step(state, move, leave, enter)
+        return timings.move_step(state, move, leave, enter)
 
-    def _constraint(self, alternatives: Sequence[Guard], number: int, state: State) -> Piece:
+    def _constraint(
+        self, alternatives: Sequence[Guard], number: int, state: State
+    ) -> timings.Piece:
         """The bounds of an alternative in a state; none for −1."""
         if number < 0:
             return ()
         return atoms_of(alternatives[number].clocks, None)(state.locations, state.values)
 
-    def _parts(self, parts: bytes) -> Iterator[Piece]:
+    def _parts(self, parts: bytes) -> Iterator[timings.Piece]:
         numbers, entries = array("q", parts), self.dim * self.dim
         for at in range(0, len(numbers), entries):
             zone = _zone(numbers[at : at + entries])
@@ -289,7 +281,7 @@ def _bounds(numbers: Sequence[int]) -> Iterator[Atom]:
         yield x, y, number - (0.0 if closed else STRICT)
 
 
-def _rounded(constraint: Piece, *, uppers: bool) -> Piece:
+def _rounded(constraint: timings.Piece, *, uppers: bool) -> timings.Piece:
     """A piece with the instants at which time leaves it, or behind which it enters it."""
     return tuple(
         (x, y, float(-(-bound // 1)) if (x == 0 if uppers else y == 0) else bound)
@@ -297,7 +289,7 @@ def _rounded(constraint: Piece, *, uppers: bool) -> Piece:
     )
 
 
-def time_passes(loop: Sequence[TimedStep], head: Zone, dim: int) -> bool:
+def time_passes(loop: Sequence[timings.TimedStep], head: Zone, dim: int) -> bool:
     """Whether time passes without bound on a loop: going round more often can take longer.
 
     If it does not, the longest time that rounds can take together stops growing: more rounds than
@@ -327,7 +319,7 @@ def time_passes(loop: Sequence[TimedStep], head: Zone, dim: int) -> bool:
     return fewer < _longest(_both(relation, relation), head, dim, scale)
 
 
-def surely_passes(loop: Sequence[TimedStep]) -> bool | None:
+def surely_passes(loop: Sequence[timings.TimedStep]) -> bool | None:
     """Whether time passes without bound on a loop, where its bounds alone say so."""
     highest: dict[int, float] = {}
     for step in loop:
@@ -341,7 +333,9 @@ def surely_passes(loop: Sequence[TimedStep]) -> bool | None:
     return None
 
 
-def _one_round(loop: Sequence[TimedStep], dim: int, rounds: int) -> tuple[NDArray[np.float64], int]:
+def _one_round(
+    loop: Sequence[timings.TimedStep], dim: int, rounds: int
+) -> tuple[NDArray[np.float64], int]:
     """The instants now and when each clock was 0, before and after a round; grid steps in a unit.
 
     Returns:
@@ -350,7 +344,7 @@ def _one_round(loop: Sequence[TimedStep], dim: int, rounds: int) -> tuple[NDArra
     """
     import numpy as np
 
-    timing = timing_of(loop, universe(dim), rounds=rounds)
+    timing = timings.timing_of(loop, universe(dim), rounds=rounds)
     assert timing is not None, "a loop of symbolic states can be gone round"
     before = [0, *range(len(loop) + 1, len(loop) + dim)]
     after, earlier = before[:], [0.0] * dim
@@ -383,7 +377,7 @@ def _longest(relation: NDArray[np.float64], head: Zone, dim: int, scale: int) ->
     for x, y in product(range(dim), repeat=2):
         if head[x * dim + y] < inf:
             # Clock y − clock x is the instant at which x was 0 less that at which y was.
-            bounds[y, x] = min(bounds[y, x], on_grid(head[x * dim + y], scale))
+            bounds[y, x] = min(bounds[y, x], timings.on_grid(head[x * dim + y], scale))
     close(bounds)
     longest = float(bounds[0, dim])
     return longest if longest == inf else -(-longest // scale)

@@ -12,28 +12,11 @@ from functools import cached_property
 
 from rvmon.logic import network_plan
 from rvmon.logic.formula import Core
-from rvmon.monitor.network.piecewise import (
-    EVER,
-    FAR,
-    PAST,
-    Piece,
-    Pieces,
-    Positions,
-    all_of_window,
-    append,
-    earliest,
-    latest,
-    not_before,
-    shift,
-    some_of_window,
-    stamp,
-    unchanged_until,
-    up_to,
-)
+from rvmon.monitor.network import piecewise as pw
 from rvmon.monitor.network.sweep import Carried, Known, since, until
 
 
-def evaluated(node: network_plan.Node, operands: Sequence[Known], positions: Positions) -> Known:
+def evaluated(node: network_plan.Node, operands: Sequence[Known], positions: pw.Positions) -> Known:
     """The known values of a node (not a leaf), from those of its operands."""
     match node:
         case network_plan.Junction():
@@ -46,7 +29,7 @@ def evaluated(node: network_plan.Node, operands: Sequence[Known], positions: Pos
             true, false = operands[0]
             if offset < 0:
                 true, false = positions.extended(true), positions.extended(false)
-            moved = shift(true, offset), shift(false, offset)
+            moved = pw.shift(true, offset), pw.shift(false, offset)
             return _not_early(moved, positions) if offset < 0 else moved
         case _:
             raise ValueError("a leaf has no operands to evaluate")
@@ -55,15 +38,15 @@ def evaluated(node: network_plan.Node, operands: Sequence[Known], positions: Pos
 def _junction(node: network_plan.Junction, operands: Sequence[Known]) -> Known:
     """The conjunction or disjunction of the operands."""
     every = node.every
-    all_: Pieces = EVER
-    some: Pieces = ()
+    all_: pw.Pieces = pw.EVER
+    some: pw.Pieces = ()
     for operand in operands:
-        all_ = latest(all_, operand[not every])
-        some = earliest(some, operand[every])
+        all_ = pw.latest(all_, operand[not every])
+        some = pw.earliest(some, operand[every])
     return (all_, some) if every else (some, all_)
 
 
-def _sweep(node: network_plan.Sweep, operands: Sequence[Known], positions: Positions) -> Known:
+def _sweep(node: network_plan.Sweep, operands: Sequence[Known], positions: pw.Positions) -> Known:
     """`until` or `since`."""
     dual = node.dual
     left, right = operands
@@ -73,19 +56,19 @@ def _sweep(node: network_plan.Sweep, operands: Sequence[Known], positions: Posit
     return _swapped(sweep(stays, meets), dual)
 
 
-def _window(node: network_plan.Window, operand: Known, positions: Positions) -> Known:
+def _window(node: network_plan.Window, operand: Known, positions: pw.Positions) -> Known:
     """Whether the operand is true at some position of a window."""
-    true = some_of_window(positions.at_positions(operand[0]), node.low, node.high)
-    false = all_of_window(positions.or_no_position(operand[1]), node.low, node.high)
+    true = pw.some_of_window(positions.at_positions(operand[0]), node.low, node.high)
+    false = pw.all_of_window(positions.or_no_position(operand[1]), node.low, node.high)
     if node.over is None:
         return _not_early((true, false), positions)
-    return true, not_before(false, 2 * node.over, positions.slope)
+    return true, pw.not_before(false, 2 * node.over, positions.slope)
 
 
-def _not_early(known: Known, positions: Positions) -> Known:
+def _not_early(known: Known, positions: pw.Positions) -> Known:
     """Delay knowledge about a position until that position is reached."""
     slope = positions.slope
-    return not_before(known[0], 1, slope), not_before(known[1], 1, slope)
+    return pw.not_before(known[0], 1, slope), pw.not_before(known[1], 1, slope)
 
 
 def _swapped(known: Known, dual: bool) -> Known:
@@ -123,22 +106,25 @@ class Network:
         noted: Noted,
         first: int,
         limit: int,
-        before: int = PAST,
+        before: int = pw.PAST,
     ) -> None:
         self.plan = plan
         self.limit = limit
         step = gap or 1
         cells = [(t // step, letter) for t, letter in noted if 2 * t < limit]
-        self.start = cells[0][0] if cells else FAR
+        self.start = cells[0][0] if cells else pw.FAR
         stamps = [position for position, _ in cells]
         if cells and first // step < self.start:
             # The core drops letters that decide nothing before the first noted one.
             stamps.insert(0, first // step)
-        self.positions = Positions(gap, stamps)
+        self.positions = pw.Positions(gap, stamps)
         self._leaves = (self._samples if gap is None else self._held)(cells)
         self._known = [
-            (_known_before(up_to(true, limit), before), _known_before(up_to(false, limit), before))
-            for true, false in self._evaluated(self.positions, FAR)
+            (
+                _known_before(pw.up_to(true, limit), before),
+                _known_before(pw.up_to(false, limit), before),
+            )
+            for true, false in self._evaluated(self.positions, pw.FAR)
         ]
 
     def truth(self, t: int) -> Carried:
@@ -161,7 +147,7 @@ class Network:
         while position <= positions.last and positions.slope * position < self.limit:
             if self.value_at(core, position) is None:
                 return position
-            position = positions.following(unchanged_until(self.known_of(core), position) + 1)
+            position = positions.following(pw.unchanged_until(self.known_of(core), position) + 1)
         return None
 
     @cached_property
@@ -179,35 +165,35 @@ class Network:
 
     def _samples(self, cells: Noted) -> list[Known]:
         """The leaves in sampled time; a value also covers the integers back to the last sample."""
-        leaves: list[tuple[list[Piece], list[Piece]]] = [([], []) for _ in self.plan.leaves]
+        leaves: list[tuple[list[pw.Piece], list[pw.Piece]]] = [([], []) for _ in self.plan.leaves]
         behind = self.start
         for position, letter in cells:
             for leaf, value in zip(leaves, letter, strict=True):
-                append(leaf[not value], behind, position, 1 + 2 * position, 0)
+                pw.append(leaf[not value], behind, position, 1 + 2 * position, 0)
             behind = position + 1
         return [*leaves]
 
     def _held(self, cells: Noted) -> list[Known]:
         """The leaves in held or clocked time: each letter is held until the next, or the stamp."""
-        leaves: list[tuple[list[Piece], list[Piece]]] = [([], []) for _ in self.plan.leaves]
+        leaves: list[tuple[list[pw.Piece], list[pw.Piece]]] = [([], []) for _ in self.plan.leaves]
         slope = self.positions.slope
         ends = [position - 1 for position, _ in cells[1:]] + [(self.limit - 1) // slope]
         for (position, letter), end in zip(cells, ends, strict=bool(cells)):
             for leaf, value in zip(leaves, letter, strict=True):
-                append(leaf[not value], position, end, 1, slope)
+                pw.append(leaf[not value], position, end, 1, slope)
         return [*leaves]
 
-    def _evaluated(self, positions: Positions, limit: int) -> list[Known]:
+    def _evaluated(self, positions: pw.Positions, limit: int) -> list[Known]:
         """The values that become known of each node, given the leaves as known at stamp `limit`."""
         nodes = self.plan.nodes
-        if self.start == FAR:
+        if self.start == pw.FAR:
             return [((), ())] * len(nodes)
         leaves = iter(self._leaves)
         known: list[Known] = []
         for node in nodes:
             if isinstance(node, network_plan.Leaf):
                 true, false = next(leaves)
-                known.append((up_to(true, limit), up_to(false, limit)))
+                known.append((pw.up_to(true, limit), pw.up_to(false, limit)))
                 continue
             operands = [known[operand] for operand in network_plan.operands_of(node)]
             known.append(evaluated(node, operands, positions))
@@ -220,12 +206,12 @@ class Network:
             known[-1] = self._extended_back(true), self._extended_back(false)
         return known
 
-    def _extended_back(self, pieces: Pieces) -> Pieces:
+    def _extended_back(self, pieces: pw.Pieces) -> pw.Pieces:
         """Extend the value at the first letter back to the position that is needed."""
-        at = stamp(pieces, self.start)
+        at = pw.stamp(pieces, self.start)
         if at is None:
             return pieces
-        return earliest(pieces, ((self.positions.first, self.start - 1, at, 0),))
+        return pw.earliest(pieces, ((self.positions.first, self.start - 1, at, 0),))
 
 
 def settled(alone: Known, position: int) -> tuple[int, bool] | None:
@@ -245,16 +231,16 @@ def settled(alone: Known, position: int) -> tuple[int, bool] | None:
 def _at(known: Known, position: int) -> Carried:
     """The value at a position with its stamp; `None` if unknown."""
     for value, pieces in zip((True, False), known, strict=True):
-        if (found_at := stamp(pieces, position)) is not None:
+        if (found_at := pw.stamp(pieces, position)) is not None:
             return value, found_at
     return None
 
 
-def _known_before(pieces: Pieces, before: int) -> Pieces:
+def _known_before(pieces: pw.Pieces, before: int) -> pw.Pieces:
     """The pieces with the stamp `PAST` wherever something was known by stamp `before`."""
-    made: list[Piece] = []
+    made: list[pw.Piece] = []
     for left, right, at, slope in pieces:
-        end = (before - at) // slope if slope else FAR if at <= before else -FAR
-        append(made, left, min(right, end), PAST, 0)
-        append(made, max(left, end + 1), right, at, slope)
+        end = (before - at) // slope if slope else pw.FAR if at <= before else -pw.FAR
+        pw.append(made, left, min(right, end), pw.PAST, 0)
+        pw.append(made, max(left, end + 1), right, at, slope)
     return made

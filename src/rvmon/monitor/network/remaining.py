@@ -10,18 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import assert_never
 
-from rvmon.logic.formula import (
-    And,
-    Constant,
-    Core,
-    Literal,
-    Next,
-    Or,
-    Previous,
-    Release,
-    Since,
-    Until,
-)
+from rvmon.logic import formula as mtl
 from rvmon.logic.progress import Duals, opened
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual, both, either
 from rvmon.monitor.network import Network
@@ -50,9 +39,9 @@ class Remaining:
         known = positions.last if positions.sparse else (network.limit - 1) // positions.slope
         self.now = min(known, positions.last)
         self._examined = 0
-        self._required: Core | None = None
+        self._required: mtl.Core | None = None
 
-    def of(self, core: Core, position: int, positive: bool) -> tuple[Residual, list[int]]:
+    def of(self, core: mtl.Core, position: int, positive: bool) -> tuple[Residual, list[int]]:
         """A residual implied by a formula, or by its negation, at a position.
 
         Args:
@@ -77,13 +66,13 @@ class Remaining:
         )
         return residual, [(self.now - anchor + _START) * self.gap for anchor in anchors]
 
-    def _value(self, core: Core, position: int, positive: bool) -> bool | None:
-        if isinstance(core, Constant):
+    def _value(self, core: mtl.Core, position: int, positive: bool) -> bool | None:
+        if isinstance(core, mtl.Constant):
             return core.value is positive
         found = self.network.value_at(core, position)
         return None if found is None else found is positive
 
-    def _at(self, core: Core, position: int, positive: bool) -> Residual:
+    def _at(self, core: mtl.Core, position: int, positive: bool) -> Residual:
         """The residual; a clock is the position where it was started, offset by `_START`."""
         value = self._value(core, position, positive)
         if value is not None:
@@ -92,28 +81,28 @@ class Remaining:
         if before_letters or self._examined > MOST_POSITIONS:
             return HOLDS
         match core:
-            case Constant() | Literal() | Previous() | Since():
+            case mtl.Constant() | mtl.Literal() | mtl.Previous() | mtl.Since():
                 return HOLDS
-            case And(args=args) | Or(args=args):
-                every = isinstance(core, And) is positive
+            case mtl.And(args=args) | mtl.Or(args=args):
+                every = isinstance(core, mtl.And) is positive
                 found = HOLDS if every else FAILS
                 for arg in args:
                     own = self._at(arg, position, positive)
                     found = _both(found, own) if every else either(found, own)
                 return found
-            case Next(operand=operand):
+            case mtl.Next(operand=operand):
                 following = self.network.positions.following(position + 1)
                 if following <= self.now:
                     return self._at(operand, following, positive)
                 return self._atom(core, NO_CLOCK, positive)
-            case Until() | Release() if isinstance(core, Until) is positive:
+            case mtl.Until() | mtl.Release() if isinstance(core, mtl.Until) is positive:
                 return self._some(core, position, positive)
-            case Until() | Release():
+            case mtl.Until() | mtl.Release():
                 return self._every(core, position, positive)
             case _:
                 assert_never(core)
 
-    def _some(self, core: Until | Release, position: int, positive: bool) -> Residual:
+    def _some(self, core: mtl.Until | mtl.Release, position: int, positive: bool) -> Residual:
         """Existential reading: right at some position of the window, left up to it."""
         found, way = FAILS, HOLDS
         for k, _, right_left_out in self._open_positions(core, position, positive):
@@ -127,7 +116,7 @@ class Remaining:
                 return found
         return either(found, _both(way, self._pending(core, position, positive)))
 
-    def _every(self, core: Until | Release, position: int, positive: bool) -> Residual:
+    def _every(self, core: mtl.Until | mtl.Release, position: int, positive: bool) -> Residual:
         """Universal reading: right at all positions of the window, until left releases it."""
         found, release = HOLDS, FAILS
         for k, left_left_out, _ in self._open_positions(core, position, positive):
@@ -142,14 +131,14 @@ class Remaining:
         return _both(found, either(release, self._pending(core, position, positive)))
 
     def _open_positions(
-        self, core: Until | Release, position: int, positive: bool
+        self, core: mtl.Until | mtl.Release, position: int, positive: bool
     ) -> Iterator[tuple[int, bool, bool]]:
         """The positions up to now that matter: others only pass the obligation to the next.
 
         Each comes with two flags: whether positions after it are skipped at which the left
         operand, or the right one, is unknown.
         """
-        some = isinstance(core, Until) is positive
+        some = isinstance(core, mtl.Until) is positive
         k = max(position, self.network.start)
         positions = self.network.positions
         last = self.now
@@ -179,30 +168,30 @@ class Remaining:
                 if k > end:
                     break
 
-    def _end(self, core: Core, position: int) -> int:
+    def _end(self, core: mtl.Core, position: int) -> int:
         """The last integer up to which the knowledge about a formula is as at a position."""
-        if isinstance(core, Constant):
+        if isinstance(core, mtl.Constant):
             return FAR
         return unchanged_until(self.network.known_of(core), position)
 
-    def _is_in_window(self, core: Until | Release, position: int, k: int) -> bool:
+    def _is_in_window(self, core: mtl.Until | mtl.Release, position: int, k: int) -> bool:
         age = (k - position) * self.gap
         return core.low <= age and (core.high is None or age <= core.high)
 
-    def _pending(self, core: Until | Release, position: int, positive: bool) -> Residual:
+    def _pending(self, core: mtl.Until | mtl.Release, position: int, positive: bool) -> Residual:
         """The residual for positions to come: none if the window is over, else the operator."""
         if core.high is not None and (self.now + 1 - position) * self.gap > core.high:
-            return FAILS if isinstance(core, Until) is positive else HOLDS
+            return FAILS if isinstance(core, mtl.Until) is positive else HOLDS
         return self._atom(core, _clock(position), positive, (self.now - position) * self.gap)
 
-    def _atom(self, core: Core, clock: int, positive: bool, age: int = 0) -> Residual:
+    def _atom(self, core: mtl.Core, clock: int, positive: bool, age: int = 0) -> Residual:
         made = self.duals.of(core, positive)
         match made:
-            case Next():
+            case mtl.Next():
                 atom: Atom = (made, clock)
-            case Until(low=low) | Release(low=low):
+            case mtl.Until(low=low) | mtl.Release(low=low):
                 atom = opened(made, clock) if age >= low else (made, clock)
-            case Constant(value=False):
+            case mtl.Constant(value=False):
                 return FAILS
             case _:
                 return HOLDS

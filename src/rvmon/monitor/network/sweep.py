@@ -4,25 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from rvmon.monitor.network.piecewise import (
-    FAR,
-    PAST,
-    Line,
-    Piece,
-    Pieces,
-    append,
-    earliest,
-    latest,
-    stamp,
-)
+from rvmon.monitor.network import piecewise as pw
 
-Known = tuple[Pieces, Pieces]
+Known = tuple[pw.Pieces, pw.Pieces]
 """The pieces where a formula is known to be true, and those where it is known to be false."""
 
 Carried = tuple[bool, int] | None
 """The value at the neighbouring position outside a stretch, with its stamp; `None`: unknown."""
 
-_Side = tuple[bool, Line] | None
+_Side = tuple[bool, pw.Line] | None
 """The value of an operand throughout a stretch, with its stamps; `None`: unknown."""
 
 
@@ -50,40 +40,44 @@ def until(left: Known, right: Known) -> Known:
 def _until_on(first: int, last: int, stays: _Side, meets: _Side, beyond: Carried) -> Known:
     """`until` on a stretch on which neither operand changes."""
     true = _whole(first, last, meets, True)
-    false: Pieces = ()
+    false: pw.Pieces = ()
     # Where both are false, `until` is false whatever follows.
     if meets is not None and not meets[0]:
-        false = latest(_whole(first, last, stays, False), _whole(first, last, meets, False))
+        false = pw.latest(_whole(first, last, stays, False), _whole(first, last, meets, False))
     if beyond is not None:
         value, known = beyond
         side = stays if value else meets
         if side is not None and side[0] is value:
             way = ((first, last, max(_at(side[1], last), known), 0),)
-            true, false = (earliest(true, way), false) if value else (true, earliest(false, way))
+            true, false = (
+                (pw.earliest(true, way), false) if value else (true, pw.earliest(false, way))
+            )
     return true, false
 
 
 def since(left: Known, right: Known) -> Known:
     """`left S right` at all integers, false before the first; the mirror image of `until`."""
     found: list[Known] = []
-    carried: Carried = (False, PAST)
+    carried: Carried = (False, pw.PAST)
     for first, last, stays, meets in _stretches(left, right):
         # True: right met at the first position of the stretch or before it, left true since.
         # False: left false there or before it, right not met since.
-        true = latest(_whole(first, last, stays, True), _from(first, last, meets, carried, True))
-        true = earliest(true, _whole(first, last, meets, True))
-        false = latest(_whole(first, last, meets, False), _from(first, last, stays, carried, False))
+        true = pw.latest(_whole(first, last, stays, True), _from(first, last, meets, carried, True))
+        true = pw.earliest(true, _whole(first, last, meets, True))
+        false = pw.latest(
+            _whole(first, last, meets, False), _from(first, last, stays, carried, False)
+        )
         found.append((true, false))
         carried = _value_at(last, true, false)
     return _joined(found)
 
 
-def _whole(first: int, last: int, side: _Side, value: bool) -> Pieces:
+def _whole(first: int, last: int, side: _Side, value: bool) -> pw.Pieces:
     """The piece of a stretch if its side has a value; else nothing."""
     return ((first, last, *side[1]),) if side is not None and side[0] is value else ()
 
 
-def _from(first: int, last: int, side: _Side, carried: Carried, value: bool) -> Pieces:
+def _from(first: int, last: int, side: _Side, carried: Carried, value: bool) -> pw.Pieces:
     """The stamp of a value at the first position, of the side or carried from before it."""
     stamps = []
     if side is not None and side[0] is value:
@@ -93,27 +87,27 @@ def _from(first: int, last: int, side: _Side, carried: Carried, value: bool) -> 
     return ((first, last, min(stamps), 0),) if stamps else ()
 
 
-def _at(line: Line, position: int) -> int:
+def _at(line: pw.Line, position: int) -> int:
     at, slope = line
     return at + slope * position if slope else at
 
 
-def _value_at(position: int, true: Pieces, false: Pieces) -> Carried:
-    if (found := stamp(true, position)) is not None:
+def _value_at(position: int, true: pw.Pieces, false: pw.Pieces) -> Carried:
+    if (found := pw.stamp(true, position)) is not None:
         return True, found
-    if (found := stamp(false, position)) is not None:
+    if (found := pw.stamp(false, position)) is not None:
         return False, found
     return None
 
 
 def _joined(parts: Iterable[Known]) -> Known:
-    true: list[Piece] = []
-    false: list[Piece] = []
+    true: list[pw.Piece] = []
+    false: list[pw.Piece] = []
     for its_true, its_false in parts:
         for piece in its_true:
-            append(true, *piece)
+            pw.append(true, *piece)
         for piece in its_false:
-            append(false, *piece)
+            pw.append(false, *piece)
     return true, false
 
 
@@ -121,11 +115,11 @@ def _stretches(left: Known, right: Known) -> Iterator[tuple[int, int, _Side, _Si
     """The values of both operands, in maximal stretches on which neither changes."""
     ones, others = _sides(left), _sides(right)
     one, other = next(ones), next(others)
-    first = -FAR
+    first = -pw.FAR
     while True:
         last = min(one[1], other[1])
         yield first, last, one[2], other[2]
-        if last >= FAR:
+        if last >= pw.FAR:
             return
         first = last + 1
         if one[1] == last:
@@ -136,7 +130,7 @@ def _stretches(left: Known, right: Known) -> Iterator[tuple[int, int, _Side, _Si
 
 def _sides(known: Known) -> Iterator[tuple[int, int, _Side]]:
     """The value of an operand over all integers, in pieces without gaps."""
-    at = -FAR
+    at = -pw.FAR
     sides = [
         (left, right, (value, (stamp_, slope)))
         for value, pieces in zip((True, False), known, strict=True)
@@ -147,5 +141,5 @@ def _sides(known: Known) -> Iterator[tuple[int, int, _Side]]:
             yield at, left - 1, None
         yield left, right, side
         at = right + 1
-    if at <= FAR:
-        yield at, FAR, None
+    if at <= pw.FAR:
+        yield at, pw.FAR, None

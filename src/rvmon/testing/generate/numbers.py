@@ -8,31 +8,8 @@ from dataclasses import dataclass, replace
 
 from msgspec import structs
 
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp, UnitRule
-from rvmon.language.checked.formula import (
-    Amount,
-    Arithmetic,
-    Binary,
-    BinaryOp,
-    Captured,
-    Compare,
-    CompareOp,
-    EventAtom,
-    FieldValue,
-    Formula,
-    Literal,
-    Measured,
-    Numeric,
-    Probe,
-    ProbeAtom,
-    SignalValue,
-    UpdateFunction,
-    UpdateValue,
-    WindowValue,
-    itself,
-    passed,
-    windows_in,
-)
 from rvmon.language.checked.names_read import names_in
 from rvmon.language.checked.window_measures import Members
 from rvmon.testing.generate import (
@@ -87,10 +64,10 @@ class Shape:
     form: str = ""
 
 
-_RADIAN = Literal(1, "rad")
+_RADIAN = rv.Literal(1, "rad")
 _UNITS = {
     **dict.fromkeys((UnitRule.TO_ANGLE, UnitRule.DIRECTION, UnitRule.TURN), _RADIAN),
-    UnitRule.PLACES: Literal(1, "m"),
+    UnitRule.PLACES: rv.Literal(1, "m"),
 }
 """The unit of the result of an operation, if it has one."""
 _CALCULATING = tuple(op for op in NumericOp if op is not NumericOp.BIT)
@@ -98,142 +75,151 @@ _CHOOSING = (NumericOp.MIN, NumericOp.MAX)
 """The operations that return one of their operands, so that whole numbers stay within 64 bits."""
 
 
-def comparison(rng: Rng, shape: Shape) -> Formula:
+def comparison(rng: Rng, shape: Shape) -> rv.Formula:
     """A random comparison of numbers, of a payload field, or of a label."""
     if chance(rng, 12):
-        op = pick(rng, (CompareOp.EQ, CompareOp.NE))
-        return Compare(op, SignalValue(LABEL), Literal(pick(rng, LABELS)))
+        op = pick(rng, (rv.CompareOp.EQ, rv.CompareOp.NE))
+        return rv.Compare(op, rv.SignalValue(LABEL), rv.Literal(pick(rng, LABELS)))
     if chance(rng, 4) and not shape.wide:
-        bit = Arithmetic(NumericOp.BIT, (SignalValue(NUMBERS[1]), Literal(rng.randint(0, 2))))
-        return Compare(CompareOp.EQ, bit, Literal(True))
-    op = pick(rng, tuple(CompareOp))
-    left: Numeric = SignalValue(pick(rng, NUMBERS))
+        bit = rv.Arithmetic(
+            NumericOp.BIT, (rv.SignalValue(NUMBERS[1]), rv.Literal(rng.randint(0, 2)))
+        )
+        return rv.Compare(rv.CompareOp.EQ, bit, rv.Literal(True))
+    op = pick(rng, tuple(rv.CompareOp))
+    left: rv.Numeric = rv.SignalValue(pick(rng, NUMBERS))
     if shape.events and chance(rng, 30):
         left = field_value(rng)
     elif chance(rng, 40):
         left = arithmetic(rng, shape)
-    right: Numeric = Literal(pick(rng, WIDE) if shape.wide else rng.randint(-1, 2))
+    right: rv.Numeric = rv.Literal(pick(rng, WIDE) if shape.wide else rng.randint(-1, 2))
     if shape.captured and chance(rng, 60):
-        right = Captured(pick(rng, shape.captured))
+        right = rv.Captured(pick(rng, shape.captured))
     elif chance(rng, 20):
         right = input_number(rng, shape)
-    return Compare(op, right, left) if chance(rng, 10) else Compare(op, left, right)
+    return rv.Compare(op, right, left) if chance(rng, 10) else rv.Compare(op, left, right)
 
 
-def arithmetic(rng: Rng, shape: Shape) -> Numeric:
+def arithmetic(rng: Rng, shape: Shape) -> rv.Numeric:
     """A random expression over the last two updates, or an operation on a few numbers."""
     if chance(rng, 40):
-        functions = (UpdateFunction.PREV,) if shape.wide else tuple(UpdateFunction)
-        return UpdateValue(pick(rng, functions), pick(rng, NUMBERS))
+        functions = (rv.UpdateFunction.PREV,) if shape.wide else tuple(rv.UpdateFunction)
+        return rv.UpdateValue(pick(rng, functions), pick(rng, NUMBERS))
     op = pick(rng, _CHOOSING if shape.wide else _CALCULATING)
     args = [input_number(rng, shape)]
     while len(args) < op.entry.least:
-        further = Literal(rng.randint(0, 2)) if chance(rng, 40) else input_number(rng, shape)
+        further = rv.Literal(rng.randint(0, 2)) if chance(rng, 40) else input_number(rng, shape)
         args.insert(rng.randint(0, len(args)), further)
     return _with_units(op, args)
 
 
-def _with_units(op: NumericOp, args: list[Numeric]) -> Numeric:
+def _with_units(op: NumericOp, args: list[rv.Numeric]) -> rv.Numeric:
     """An operation on numbers without units; its arguments get the units that it requires."""
     rule = op.entry.unit
     if rule is UnitRule.BITS:
-        args = [arg if isinstance(arg, Literal) else SignalValue(NUMBERS[1]) for arg in args]
+        args = [arg if isinstance(arg, rv.Literal) else rv.SignalValue(NUMBERS[1]) for arg in args]
     if rule in (UnitRule.OF_ANGLE, UnitRule.TURN, UnitRule.PLACES):
-        args = [Arithmetic(NumericOp.MUL, (arg, _RADIAN)) for arg in args]
+        args = [rv.Arithmetic(NumericOp.MUL, (arg, _RADIAN)) for arg in args]
     if rule is UnitRule.TURN:
-        args.append(Literal(math.tau, "rad"))
-    found = Arithmetic(op, tuple(args))
+        args.append(rv.Literal(math.tau, "rad"))
+    found = rv.Arithmetic(op, tuple(args))
     unit = _UNITS.get(rule)
-    return found if unit is None else Arithmetic(NumericOp.DIV, (found, unit))
+    return found if unit is None else rv.Arithmetic(NumericOp.DIV, (found, unit))
 
 
-def field_value(rng: Rng) -> Numeric:
+def field_value(rng: Rng) -> rv.Numeric:
     """A field of an event with a payload."""
-    return FieldValue(FURTHER, SIZE) if chance(rng, 35) else FieldValue(CARRIER, FIELD)
+    return rv.FieldValue(FURTHER, SIZE) if chance(rng, 35) else rv.FieldValue(CARRIER, FIELD)
 
 
-def input_number(rng: Rng, shape: Shape) -> Numeric:
+def input_number(rng: Rng, shape: Shape) -> rv.Numeric:
     """A random number to read: of a signal, a field, or captured."""
     if shape.events and chance(rng, 15):
         return field_value(rng)
     if shape.captured and chance(rng, 20):
-        return Captured(pick(rng, shape.captured))
-    return SignalValue(pick(rng, NUMBERS))
+        return rv.Captured(pick(rng, shape.captured))
+    return rv.SignalValue(pick(rng, NUMBERS))
 
 
-def probe(rng: Rng, shape: Shape) -> Formula:
+def probe(rng: Rng, shape: Shape) -> rv.Formula:
     """A random proposition about the updates of a name."""
-    kind = pick(rng, tuple(Probe))
-    events = (*EVENTS, CARRIER, FURTHER) if shape.events and kind is Probe.UPDATED else ()
+    kind = pick(rng, tuple(rv.Probe))
+    events = (*EVENTS, CARRIER, FURTHER) if shape.events and kind is rv.Probe.UPDATED else ()
     names = (*BOOLS, *NUMBERS, *events)
-    return ProbeAtom(kind, pick(rng, names))
+    return rv.ProbeAtom(kind, pick(rng, names))
 
 
-Draw = Callable[[Rng, Shape], Formula]
+Draw = Callable[[Rng, Shape], rv.Formula]
 """Draws an operand."""
 
 
-def late(rng: Rng, shape: Shape) -> Formula:
+def late(rng: Rng, shape: Shape) -> rv.Formula:
     """A comparison of the time since an instant with a constant duration or one from data."""
-    after: Numeric = Literal(pick(rng, (1e-9, 2e-9, 3e-9, 5e-9, 0)))
+    after: rv.Numeric = rv.Literal(pick(rng, (1e-9, 2e-9, 3e-9, 5e-9, 0)))
     if chance(rng, 60):
-        after = Arithmetic(
-            NumericOp.MUL, (input_number(rng, replace(shape, events=False)), Literal(1e-9))
+        after = rv.Arithmetic(
+            NumericOp.MUL, (input_number(rng, replace(shape, events=False)), rv.Literal(1e-9))
         )
     since = pick(rng, shape.instants) if shape.instants and chance(rng, 85) else None
-    return passed(since, after, chance(rng, 50))
+    return rv.passed(since, after, chance(rng, 50))
 
 
-ALONE = tuple(measured for measured in Measured if not measured.recalls)
+ALONE = tuple(measured for measured in rv.Measured if not measured.recalls)
 """The measures that can be compared with a limit alone."""
 EXPRESSION = "expression"
 """The form of windows within numeric expressions."""
 
 
-def amount(rng: Rng, shape: Shape, draw: Draw) -> Formula:
+def amount(rng: Rng, shape: Shape, draw: Draw) -> rv.Formula:
     """A limit on a measure of a formula or number, in a window or over the whole past."""
     mode, _, form = shape.form.rpartition(" ")
     plain = replace(shape, events=False)
     several = form == EXPRESSION or (not form and chance(rng, 30))
     if several and shape.numbers and not shape.wide:
         return _compared(rng, shape, draw, mode)
-    measured = Measured(form) if form and form != EXPRESSION else pick(rng, ALONE)
+    measured = rv.Measured(form) if form and form != EXPRESSION else pick(rng, ALONE)
     if measured.of_numbers and (not shape.numbers or shape.wide):
-        measured = Measured.COUNT
+        measured = rv.Measured.COUNT
     of = _window(rng, shape, draw, measured, mode)
-    limit: Numeric = Literal(pick(rng, (-1, 0, 1, 2, 3, 0.5, 2.5)))
-    if measured is Measured.INTEGRAL:
-        limit = Literal(pick(rng, (-3e-9, 0, 1e-9, 2e-9, 3e-9, 5e-9, 1.5e-9)))
+    limit: rv.Numeric = rv.Literal(pick(rng, (-1, 0, 1, 2, 3, 0.5, 2.5)))
+    if measured is rv.Measured.INTEGRAL:
+        limit = rv.Literal(pick(rng, (-3e-9, 0, 1e-9, 2e-9, 3e-9, 5e-9, 1.5e-9)))
     if not measured.of_numbers:
-        limit = Literal(rng.randint(1, 4))
-    if chance(rng, 20) and measured is not Measured.DURATION and shape.numbers and not shape.wide:
+        limit = rv.Literal(rng.randint(1, 4))
+    if (
+        chance(rng, 20)
+        and measured is not rv.Measured.DURATION
+        and shape.numbers
+        and not shape.wide
+    ):
         limit = input_number(rng, plain)
     return _above(of, limit, chance(rng, 50))
 
 
-def _above(of: WindowValue, limit: Numeric, strict: bool) -> Amount:
-    known = None if isinstance(limit, Literal) else itself(limit)
-    return Amount(of, limit, strict, known=known)
+def _above(of: rv.WindowValue, limit: rv.Numeric, strict: bool) -> rv.Amount:
+    known = None if isinstance(limit, rv.Literal) else rv.itself(limit)
+    return rv.Amount(of, limit, strict, known=known)
 
 
-def _compared(rng: Rng, shape: Shape, draw: Draw, mode: str) -> Formula:
+def _compared(rng: Rng, shape: Shape, draw: Draw, mode: str) -> rv.Formula:
     """A comparison of expressions with windows; at most one window changes between samples."""
 
-    def side(most: int) -> Numeric:
+    def side(most: int) -> rv.Numeric:
         return number_of_windows(rng, shape, draw, most, mode)
 
     if chance(rng, 20):
         alone = _window(rng, shape, draw, pick(rng, ALONE), mode)
-        if alone.measured is Measured.DURATION:
-            alone = structs.replace(alone, measured=Measured.INTEGRAL, value=Literal(1))
+        if alone.measured is rv.Measured.DURATION:
+            alone = structs.replace(alone, measured=rv.Measured.INTEGRAL, value=rv.Literal(1))
         return _above(alone, side(2), chance(rng, 50))
     while True:
-        compared = Compare(pick(rng, tuple(CompareOp)), side(3), side(1))
-        if windows_in(compared.left, compared.right):
+        compared = rv.Compare(pick(rng, tuple(rv.CompareOp)), side(3), side(1))
+        if rv.windows_in(compared.left, compared.right):
             return compared
 
 
-def number_of_windows(rng: Rng, shape: Shape, draw: Draw, most: int = 2, mode: str = "") -> Numeric:
+def number_of_windows(
+    rng: Rng, shape: Shape, draw: Draw, most: int = 2, mode: str = ""
+) -> rv.Numeric:
     """An expression of windows, signals and constants; in `time held` none changes between samples.
 
     Args:
@@ -244,20 +230,20 @@ def number_of_windows(rng: Rng, shape: Shape, draw: Draw, most: int = 2, mode: s
         mode: see `Profile.form`.
     """
 
-    def term() -> Numeric:
+    def term() -> rv.Numeric:
         if chance(rng, 30):
-            return Literal(pick(rng, (-1, 1, 2, 0.5)))
+            return rv.Literal(pick(rng, (-1, 1, 2, 0.5)))
         if chance(rng, 30):
             return input_number(rng, replace(shape, events=False))
-        of = pick(rng, tuple(Measured))
-        if of is Measured.AGO and shape.step:
-            of = Measured.MAX
+        of = pick(rng, tuple(rv.Measured))
+        if of is rv.Measured.AGO and shape.step:
+            of = rv.Measured.MAX
         return _window(rng, shape, draw, of, mode, settled=not shape.step)
 
     found = term()
     for _ in range(rng.randint(0, most)):
         op = pick(rng, _JOINING)
-        found = Arithmetic(op, (found, *(term() for _ in range(op.entry.least - 1))))
+        found = rv.Arithmetic(op, (found, *(term() for _ in range(op.entry.least - 1))))
     return found
 
 
@@ -272,77 +258,77 @@ def _window(
     rng: Rng,
     shape: Shape,
     draw: Draw,
-    measured: Measured,
+    measured: rv.Measured,
     mode: str,
     *,
     settled: bool = False,
-) -> WindowValue:
+) -> rv.WindowValue:
     """A window; `settled`: in `time held`, one that changes only at samples."""
     if settled and measured.of_time:
-        measured = Measured.COUNT
+        measured = rv.Measured.COUNT
     window = None if chance(rng, 15) else rng.randint(1, shape.longest)
     below = replace(shape, future=False)
-    operand: Formula
-    value: Numeric | None = None
-    counted: Formula | None = None
+    operand: rv.Formula
+    value: rv.Numeric | None = None
+    counted: rv.Formula | None = None
     most = None
-    chosen: tuple[Compare, ...] = ()
+    chosen: tuple[rv.Compare, ...] = ()
     bounded = False
     plain = replace(shape, events=False)
-    may_be_last = measured.of is not Members.HELD and measured is not Measured.DURATION
+    may_be_last = measured.of is not Members.HELD and measured is not rv.Measured.DURATION
     if may_be_last and (mode == "last" or chance(rng, 25)) and mode not in ("since", "each"):
         most, window = rng.randint(1, 4), None
         name = pick(rng, (*NUMBERS, CARRIER) if shape.events else NUMBERS)
-        operand = EventAtom(name) if name == CARRIER else ProbeAtom(Probe.UPDATED, name)
-        if measured is Measured.COUNT:
+        operand = rv.EventAtom(name) if name == CARRIER else rv.ProbeAtom(rv.Probe.UPDATED, name)
+        if measured is rv.Measured.COUNT:
             counted = draw(rng, below)
         else:
-            value = FieldValue(CARRIER, FIELD) if name == CARRIER else SignalValue(name)
-            counted = itself(value)
+            value = rv.FieldValue(CARRIER, FIELD) if name == CARRIER else rv.SignalValue(name)
+            counted = rv.itself(value)
     elif not measured.of_numbers:
         operand = draw(rng, below)
     else:
         likely = 90 if mode == "each" else 40
         fields = shape.events and measured.of is not Members.HELD and chance(rng, likely)
-        if settled and measured is Measured.MEAN:
+        if settled and measured is rv.Measured.MEAN:
             fields = True
-        if measured is Measured.VARIANCE and not shape.step:
+        if measured is rv.Measured.VARIANCE and not shape.step:
             fields = True  # of a held number it changes along a curve: the language refuses it
         number = field_value(rng) if fields else _held(rng, plain)
-        if measured is Measured.INTEGRAL and chance(rng, 10):
-            number = Literal(1)
+        if measured is rv.Measured.INTEGRAL and chance(rng, 10):
+            number = rv.Literal(1)
         value = number
         operand, chosen = _member(rng, below, draw, measured, number)
-        bounded = measured in (Measured.DELTA, Measured.AGO) or (
-            measured is Measured.VARIANCE and not fields
+        bounded = measured in (rv.Measured.DELTA, rv.Measured.AGO) or (
+            measured is rv.Measured.VARIANCE and not fields
         )
         if bounded:  # the language requires a duration
             window = window or shape.longest
     since = mode == "since" or chance(rng, 30)
     if shape.instants and since and not (bounded or most):
-        begun = passed(pick(rng, shape.instants), Literal(0), strict=False)
-        operand = Binary(BinaryOp.AND, begun, operand)
-    return WindowValue(measured, operand, window, value, most, counted, chosen)
+        begun = rv.passed(pick(rng, shape.instants), rv.Literal(0), strict=False)
+        operand = rv.Binary(rv.BinaryOp.AND, begun, operand)
+    return rv.WindowValue(measured, operand, window, value, most, counted, chosen)
 
 
-def _held(rng: Rng, shape: Shape) -> Numeric:
+def _held(rng: Rng, shape: Shape) -> rv.Numeric:
     """A held number; the language requires that it reads more than captured values."""
     number = arithmetic(rng, shape) if chance(rng, 30) else input_number(rng, shape)
-    return number if any(names_in(number)) else SignalValue(pick(rng, NUMBERS))
+    return number if any(names_in(number)) else rv.SignalValue(pick(rng, NUMBERS))
 
 
 def _member(
-    rng: Rng, shape: Shape, draw: Draw, measured: Measured, value: Numeric
-) -> tuple[Formula, tuple[Compare, ...]]:
+    rng: Rng, shape: Shape, draw: Draw, measured: rv.Measured, value: rv.Numeric
+) -> tuple[rv.Formula, tuple[rv.Compare, ...]]:
     """The condition on members of a number, and the comparisons for each occurrence."""
-    member: Formula = itself(value)
-    chosen: tuple[Compare, ...] = ()
-    if isinstance(value, Literal):
+    member: rv.Formula = rv.itself(value)
+    chosen: tuple[rv.Compare, ...] = ()
+    if isinstance(value, rv.Literal):
         return draw(rng, shape), ()
-    if isinstance(value, FieldValue) and measured is Measured.SUM and chance(rng, 40):
+    if isinstance(value, rv.FieldValue) and measured is rv.Measured.SUM and chance(rng, 40):
         beside = input_number(rng, replace(shape, events=False))
-        chosen = (Compare(pick(rng, tuple(CompareOp)), value, beside),)
-    may_choose = measured in (Measured.SUM, Measured.INTEGRAL)
+        chosen = (rv.Compare(pick(rng, tuple(rv.CompareOp)), value, beside),)
+    may_choose = measured in (rv.Measured.SUM, rv.Measured.INTEGRAL)
     if may_choose and chance(rng, 40):
-        member = Binary(BinaryOp.AND, draw(rng, shape), member)
+        member = rv.Binary(rv.BinaryOp.AND, draw(rng, shape), member)
     return member, chosen

@@ -5,34 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import partial
 
+from rvmon.language.checked import formula as rv
+from rvmon.language.checked import specification as spec
 from rvmon.language.checked.classify import is_end, windows_of
-from rvmon.language.checked.formula import (
-    Binary,
-    BinaryOp,
-    Bound,
-    BoundAtom,
-    Captured,
-    Compare,
-    CompareOp,
-    EventAtom,
-    FieldValue,
-    Formula,
-    NowValue,
-    Numeric,
-    SignalAtom,
-    SignalValue,
-    Unary,
-    UnaryOp,
-)
-from rvmon.language.checked.specification import (
-    Capture,
-    CheckedSpec,
-    EndPolicy,
-    ForEach,
-    Mode,
-    Requirement,
-    TimeModel,
-)
 from rvmon.testing.generate import (
     BOOLS,
     CARRIER,
@@ -82,7 +57,7 @@ class Profile:
         ignoring: whether signals may `ignore NaN`.
     """
 
-    time: TimeModel | None = None
+    time: spec.TimeModel | None = None
     depth: int = 4
     requirements: int = 2
     many: int = 0
@@ -103,14 +78,14 @@ class Profile:
     ignoring: bool = True
 
 
-def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
+def random_spec(rng: Rng, profile: Profile) -> spec.CheckedSpec:
     """A random specification over a fixed small vocabulary, with bounds of a few ticks.
 
     Args:
         rng: `random.Random` with a seed, or one that draws from Hypothesis.
         profile: the limits.
     """
-    time = profile.time or pick(rng, tuple(TimeModel))
+    time = profile.time or pick(rng, tuple(spec.TimeModel))
     number = rng.randint(1, profile.requirements)
     draw = _requirement
     if profile.many and chance(rng, profile.many):
@@ -124,18 +99,18 @@ def random_spec(rng: Rng, profile: Profile) -> CheckedSpec:
     found = [draw(rng, profile, time, f"R{place}") for place in range(1, number + 1)]
     while profile.form and not any(_has_window(requirement) for requirement in found):
         found[-1] = _requirement(rng, profile, time, f"R{number}")
-    return CheckedSpec(
+    return spec.CheckedSpec(
         name="random",
         title="",
         time=time,
         signals=signals(_stale(rng, profile), _ignoring(rng, profile)),
         events=events(),
         requirements={requirement.id: requirement for requirement in found},
-        period=rng.randint(1, 4) if time is TimeModel.CLOCKED else None,
+        period=rng.randint(1, 4) if time is spec.TimeModel.CLOCKED else None,
     )
 
 
-def _has_window(requirement: Requirement) -> bool:
+def _has_window(requirement: spec.Requirement) -> bool:
     wholes = (requirement.trigger, requirement.consequent)
     return any(True for _ in windows_of(*wholes))
 
@@ -149,19 +124,19 @@ def _ignoring(rng: Rng, profile: Profile) -> frozenset[str]:
     return frozenset(n for n in NUMBERS[:1] if profile.ignoring and chance(rng, 25))
 
 
-def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requirement:
+def _requirement(rng: Rng, profile: Profile, time: spec.TimeModel, name: str) -> spec.Requirement:
     mode = profile.form.rpartition(" ")[0]
     since = mode == "since"
-    captures: tuple[Capture, ...] = ()
+    captures: tuple[spec.Capture, ...] = ()
     if profile.captures and (since or chance(rng, 12)):
         captures = _captures(rng, profile, time)
     for_each = None
     if profile.for_each and (mode == "each" or chance(rng, 12)):
-        for_each = ForEach("each", FieldValue(CARRIER, FIELD))
+        for_each = spec.ForEach("each", rv.FieldValue(CARRIER, FIELD))
     instance = (for_each.name,) if for_each else ()
     instants = ("t0",) if captures and profile.amounts and (since or chance(rng, 50)) else ()
     shape = Shape(
-        step=time is not TimeModel.HELD,
+        step=time is not spec.TimeModel.HELD,
         past=profile.past,
         future=profile.future,
         mixed=profile.mixed,
@@ -178,81 +153,81 @@ def _requirement(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requ
     seen = replace(shape, future=False, captured=instance, amounts=amounts, instants=())
     trigger = _trigger(rng, seen, for_each)
     at_end = is_end(trigger)
-    how = Mode.WHENEVER if not at_end and chance(rng, 35) else Mode.UPON
+    how = spec.Mode.WHENEVER if not at_end and chance(rng, 35) else spec.Mode.UPON
     required = consequent(rng, shape, rng.randint(1, profile.depth))
     if captures and chance(rng, 70):
-        op = pick(rng, (BinaryOp.AND, BinaryOp.OR))
-        required = Binary(op, required, comparison(rng, shape))
-    policy = EndPolicy.DEFAULT
+        op = pick(rng, (rv.BinaryOp.AND, rv.BinaryOp.OR))
+        required = rv.Binary(op, required, comparison(rng, shape))
+    policy = spec.EndPolicy.DEFAULT
     if profile.policies and chance(rng, 35):
-        policy = pick(rng, tuple(EndPolicy)[1:])
-    return Requirement(
+        policy = pick(rng, tuple(spec.EndPolicy)[1:])
+    return spec.Requirement(
         name,
         how,
         trigger,
         required,
         at_end=policy,
         pulse=is_pulse(trigger),
-        captures=(*captures, *(Capture(name, NowValue()) for name in instants)),
+        captures=(*captures, *(spec.Capture(name, rv.NowValue()) for name in instants)),
         for_each=for_each,
     )
 
 
-def _law(rng: Rng, profile: Profile, time: TimeModel, name: str) -> Requirement:
+def _law(rng: Rng, profile: Profile, time: spec.TimeModel, name: str) -> spec.Requirement:
     """`always φ` over truth values and their past."""
-    shape = Shape(time is not TimeModel.HELD, future=False, numbers=False, events=False)
+    shape = Shape(time is not spec.TimeModel.HELD, future=False, numbers=False, events=False)
     lasting = formula(rng, shape, min(profile.depth, 3))
-    start = BoundAtom(Bound.START)
-    return Requirement(
-        name, Mode.UPON, start, Unary(UnaryOp.ALWAYS, lasting), pulse=is_pulse(start)
+    start = rv.BoundAtom(rv.Bound.START)
+    return spec.Requirement(
+        name, spec.Mode.UPON, start, rv.Unary(rv.UnaryOp.ALWAYS, lasting), pulse=is_pulse(start)
     )
 
 
-def _captures(rng: Rng, profile: Profile, time: TimeModel) -> tuple[Capture, ...]:
-    found: list[Capture] = []
+def _captures(rng: Rng, profile: Profile, time: spec.TimeModel) -> tuple[spec.Capture, ...]:
+    found: list[spec.Capture] = []
     for name in ("v", "w")[: 2 if chance(rng, 25) else 1]:
         named = tuple(capture.name for capture in found)
         earlier = Shape(captured=named, wide=profile.wide > 0)
-        simple: tuple[Numeric, ...] = (SignalValue("x"), FieldValue(CARRIER, FIELD))
+        simple: tuple[rv.Numeric, ...] = (rv.SignalValue("x"), rv.FieldValue(CARRIER, FIELD))
         value = arithmetic(rng, earlier) if chance(rng, 25) else pick(rng, simple)
         if profile.amounts and not profile.wide and chance(rng, 40):
             # The language admits no `let` in a window, only its expression.
-            held = Shape(step=time is not TimeModel.HELD, longest=4)
+            held = Shape(step=time is not spec.TimeModel.HELD, longest=4)
             value = number_of_windows(rng, held, partial(_simple, profile))
-        found.append(Capture(name, value))
+        found.append(spec.Capture(name, value))
     return tuple(found)
 
 
-def _simple(profile: Profile, rng: Rng, shape: Shape) -> Formula:
+def _simple(profile: Profile, rng: Rng, shape: Shape) -> rv.Formula:
     """A formula without captured values, for a count."""
     return formula(rng, replace(shape, captured=(), past=profile.past, future=False), 1)
 
 
-def _trigger(rng: Rng, shape: Shape, for_each: ForEach | None) -> Formula:
+def _trigger(rng: Rng, shape: Shape, for_each: spec.ForEach | None) -> rv.Formula:
     if for_each:
-        compared = Compare(CompareOp.EQ, for_each.value, Captured(for_each.name))
-        further = Binary(BinaryOp.AND, compared, formula(rng, shape, 1))
-        level = SignalAtom(pick(rng, BOOLS))
-        either = Binary(BinaryOp.OR, level, compared)
-        options: tuple[Formula, ...] = (EventAtom(CARRIER), compared, further, level, either)
+        compared = rv.Compare(rv.CompareOp.EQ, for_each.value, rv.Captured(for_each.name))
+        further = rv.Binary(rv.BinaryOp.AND, compared, formula(rng, shape, 1))
+        level = rv.SignalAtom(pick(rng, BOOLS))
+        either = rv.Binary(rv.BinaryOp.OR, level, compared)
+        options: tuple[rv.Formula, ...] = (rv.EventAtom(CARRIER), compared, further, level, either)
         if shape.past:
             earlier = past_unary(rng, shape, 1)
             options += (
-                Binary(BinaryOp.AND, compared, earlier),
-                Binary(BinaryOp.OR, earlier, compared),
+                rv.Binary(rv.BinaryOp.AND, compared, earlier),
+                rv.Binary(rv.BinaryOp.OR, earlier, compared),
             )
         return pick(rng, options)
     return drawn(
         rng,
-        (28 if shape.events else 0, lambda: EventAtom(pick(rng, EVENTS))),
+        (28 if shape.events else 0, lambda: rv.EventAtom(pick(rng, EVENTS))),
         (16 if shape.events else 0, lambda: _with_event(rng, shape)),
-        (12, lambda: SignalAtom(pick(rng, BOOLS))),
-        (14, lambda: BoundAtom(Bound.START)),
+        (12, lambda: rv.SignalAtom(pick(rng, BOOLS))),
+        (14, lambda: rv.BoundAtom(rv.Bound.START)),
         (18, lambda: formula(rng, shape, rng.randint(1, 2))),
         (10 if shape.past else 0, lambda: past_unary(rng, shape, 1)),
-        (6, lambda: BoundAtom(Bound.END)),
+        (6, lambda: rv.BoundAtom(rv.Bound.END)),
     )
 
 
-def _with_event(rng: Rng, shape: Shape) -> Formula:
-    return Binary(BinaryOp.AND, EventAtom(pick(rng, EVENTS)), formula(rng, shape, 1))
+def _with_event(rng: Rng, shape: Shape) -> rv.Formula:
+    return rv.Binary(rv.BinaryOp.AND, rv.EventAtom(pick(rng, EVENTS)), formula(rng, shape, 1))

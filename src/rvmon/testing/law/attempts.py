@@ -7,25 +7,16 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import assert_never
 
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.specification import Mode, Requirement
+from rvmon.testing.law import word as law
 from rvmon.testing.law.numbers import events_of, is_born, known_scalar, number
 from rvmon.testing.law.syntax import by_and_or, is_upon_end, subformulas
 from rvmon.testing.law.truths import Truths
-from rvmon.testing.law.word import (
-    EventState,
-    Letter,
-    Rest,
-    Truth,
-    Word,
-    conjunction,
-    disjunction,
-    negation,
-)
 from rvmon.trace.sample import Payload, Scalar
 
 
-def is_pulse(formula: formulas.Formula, *, negated: bool = False) -> bool:
+def is_pulse(formula: rv.Formula, *, negated: bool = False) -> bool:
     """Whether the negation normal form of a trigger (or of its negation) is a pulse.
 
     Source: SEMANTICS, section 3 (Requirements, `upon`).
@@ -37,25 +28,25 @@ def is_pulse(formula: formulas.Formula, *, negated: bool = False) -> bool:
     False
     """
     match formula:
-        case formulas.Constant(value=value):
+        case rv.Constant(value=value):
             return value is negated
-        case formulas.EventAtom():
+        case rv.EventAtom():
             return not negated
-        case formulas.Compare(left=left, right=right):
+        case rv.Compare(left=left, right=right):
             return not negated and bool([*events_of(left), *events_of(right)])
-        case formulas.ProbeAtom(probe=probe):
-            return not negated and probe is not formulas.Probe.KNOWN
-        case formulas.SignalAtom() | formulas.BoundAtom() | formulas.Amount() | formulas.Passed():
+        case rv.ProbeAtom(probe=probe):
+            return not negated and probe is not rv.Probe.KNOWN
+        case rv.SignalAtom() | rv.BoundAtom() | rv.Amount() | rv.Passed():
             return False
-        case formulas.Unary(op=formulas.UnaryOp.NOT, operand=operand):
+        case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
             return is_pulse(operand, negated=not negated)
-        case formulas.Unary(op=op):
-            return not negated and op in (formulas.UnaryOp.RISE, formulas.UnaryOp.FALL)
-        case formulas.Binary(op=formulas.BinaryOp.AND | formulas.BinaryOp.OR as op):
+        case rv.Unary(op=op):
+            return not negated and op in (rv.UnaryOp.RISE, rv.UnaryOp.FALL)
+        case rv.Binary(op=rv.BinaryOp.AND | rv.BinaryOp.OR as op):
             # Of a conjunction, one operand suffices; of a disjunction, all have to be pulses.
-            enough = any if (op is formulas.BinaryOp.AND) is not negated else all
+            enough = any if (op is rv.BinaryOp.AND) is not negated else all
             return enough(is_pulse(part, negated=negated) for part in (formula.left, formula.right))
-        case formulas.Binary():
+        case rv.Binary():
             spelled = by_and_or(formula)
             return spelled is not formula and is_pulse(spelled, negated=negated)
         case _:
@@ -86,7 +77,7 @@ class Start:
     sure: int | None = None
 
     @property
-    def word(self) -> Word:
+    def word(self) -> law.Word:
         """The trace with the occurrences of this instance."""
         return self.view.word
 
@@ -100,7 +91,7 @@ class Start:
         """Whether it is an episode that reached the end of the trace, but may have ended before."""
         if self.view.requirement.mode is Mode.UPON or self.stop is not None:
             return False
-        return any(self.view.trigger[k] is Truth.UNKNOWN for k in self.positions)
+        return any(self.view.trigger[k] is law.Truth.UNKNOWN for k in self.positions)
 
     def restarted(self, position: int) -> Start:
         """The rest of the episode as a new attempt."""
@@ -123,7 +114,7 @@ class View:
     def __init__(
         self,
         requirement: Requirement,
-        word: Word,
+        word: law.Word,
         captured: Mapping[str, Scalar] | None = None,
         first: int = 0,
         *,
@@ -134,41 +125,41 @@ class View:
         self.captured = captured or {}
         self.first = first
         self.doubted = doubted
-        self._readings: dict[Rest, Readings] = {}
+        self._readings: dict[law.Rest, Readings] = {}
 
-    def readings(self, rest: Rest = Rest.UNKNOWN) -> Readings:
+    def readings(self, rest: law.Rest = law.Rest.UNKNOWN) -> Readings:
         """The truth of formulas under an assumption about pending operators."""
         return self._readings.setdefault(rest, Readings(self.word, rest))
 
     @cached_property
-    def trigger(self) -> Sequence[Truth]:
+    def trigger(self) -> Sequence[law.Truth]:
         """The truth of the trigger at each position; UNBORN counts as FALSE."""
         if is_upon_end(self.requirement):
-            return [Truth.FALSE for _ in self.word.letters]
-        return [Truth.FALSE if truth is Truth.UNBORN else truth for truth in self._trigger]
+            return [law.Truth.FALSE for _ in self.word.letters]
+        return [law.Truth.FALSE if truth is law.Truth.UNBORN else truth for truth in self._trigger]
 
     @property
     def is_determined(self) -> bool:
         """Whether the trigger was ever TRUE or FALSE."""
         if is_upon_end(self.requirement):
             return bool(self.word.letters)
-        return any(truth in (Truth.TRUE, Truth.FALSE) for truth in self._trigger)
+        return any(truth in (law.Truth.TRUE, law.Truth.FALSE) for truth in self._trigger)
 
     @cached_property
-    def _trigger(self) -> Sequence[Truth]:
+    def _trigger(self) -> Sequence[law.Truth]:
         truths = Truths(self.word, self.captured)
         return [truths.state(self.requirement.trigger, k) for k in range(len(self.word.letters))]
 
-    def edge(self, k: int) -> Truth:
+    def edge(self, k: int) -> law.Truth:
         """Whether an attempt `upon` the trigger starts at a position."""
         now = self.trigger[k]
         if self.requirement.pulse:
             return now
-        return conjunction([now, negation(self.trigger[k - 1]) if k else Truth.TRUE])
+        return law.conjunction([now, law.negation(self.trigger[k - 1]) if k else law.Truth.TRUE])
 
     def stretch(self, k: int) -> tuple[Sequence[int], int | None]:
         """The positions from `k` on up to the first where the trigger is FALSE, and that one."""
-        later = (j for j in range(k, len(self.trigger)) if self.trigger[j] is Truth.FALSE)
+        later = (j for j in range(k, len(self.trigger)) if self.trigger[j] is law.Truth.FALSE)
         stop = next(later, None)
         return range(k, len(self.trigger) if stop is None else stop), stop
 
@@ -176,7 +167,7 @@ class View:
         """An attempt that captures its values at `position`."""
         captured = self._captures(position)
         lets = [capture.name for capture in self.requirement.captures]
-        hidden = (k for k in positions if self.doubted or self.edge(k) is Truth.UNKNOWN)
+        hidden = (k for k in positions if self.doubted or self.edge(k) is law.Truth.UNKNOWN)
         other = (k for k in hidden if not _same(captured, self._captures(k), lets))
         blurred = next(other, None) if lets else None
         known = (k for k in positions if blurred is None or k < max(blurred, position + 1))
@@ -186,7 +177,7 @@ class View:
         """The first of some positions at which the trigger is surely TRUE, or `None`."""
         if self.doubted:
             return None
-        return next((k for k in positions if self.trigger[k] is Truth.TRUE), None)
+        return next((k for k in positions if self.trigger[k] is law.Truth.TRUE), None)
 
     def _captures(self, position: int) -> dict[str, Scalar]:
         letter = self.word.letters[position]
@@ -198,7 +189,7 @@ class View:
         captured: dict[str, Scalar] = dict(self.captured)
         for capture in self.requirement.captures:
             value = capture.value
-            if formulas.windows_in(value):
+            if rv.windows_in(value):
                 value = Truths(self.word, captured).settled(value, position)
             captured[capture.name] = number(value, letter, payloads, captured)
         return captured
@@ -207,9 +198,9 @@ class View:
         """Whether a signal that the consequent reads has had no value up to a position."""
         letter = self.word.letters[position]
         for part in subformulas(self.requirement.consequent):
-            if isinstance(part, formulas.SignalAtom) and not letter.signals[part.name].born:
+            if isinstance(part, rv.SignalAtom) and not letter.signals[part.name].born:
                 return True
-            if isinstance(part, formulas.Compare) and not is_born(part, letter):
+            if isinstance(part, rv.Compare) and not is_born(part, letter):
                 return True
         return False
 
@@ -221,7 +212,7 @@ def _same(one: Mapping[str, Scalar], other: Mapping[str, Scalar], names: Iterabl
 class Readings:
     """The truth of formulas on a word, cached by captured values."""
 
-    def __init__(self, word: Word, rest: Rest) -> None:
+    def __init__(self, word: law.Word, rest: law.Rest) -> None:
         self._word = word
         self._rest = rest
         self._reached = word.reached
@@ -243,7 +234,7 @@ class Readings:
         return found
 
 
-def obligation(start: Start, readings: Readings) -> Truth:
+def obligation(start: Start, readings: Readings) -> law.Truth:
     """The truth of an attempt's obligation after the prefix that the readings have reached.
 
     Source: SEMANTICS, sections 1 (Birth) and 3 (Doubt, `whenever`); decision record 4.
@@ -251,32 +242,32 @@ def obligation(start: Start, readings: Readings) -> Truth:
     requirement, view = start.view.requirement, start.view
     if is_upon_end(requirement):
         value = readings.of(start.captured).truth(requirement.consequent, start.position)
-        return Truth.UNKNOWN if value is Truth.FALSE and start.sure is None else value
+        return law.Truth.UNKNOWN if value is law.Truth.FALSE and start.sure is None else value
     truths = readings.of(start.captured)
     ended = start.stop is not None and start.stop < truths.known
     required = [_required(start, readings, k) for k in start.positions if k < truths.known]
     if requirement.mode is Mode.UPON and start.sure is not None:
         return required[0]
     blurred = start.blurred is not None and start.blurred < truths.known
-    rest = Truth.UNKNOWN if blurred else truths.release_rest(opened=True)
-    value = conjunction([*required, Truth.TRUE if ended else rest])
-    if value is Truth.FALSE and start.sure is None:
-        return Truth.UNKNOWN
-    if value is Truth.TRUE and counts_in_favour(requirement):
+    rest = law.Truth.UNKNOWN if blurred else truths.release_rest(opened=True)
+    value = law.conjunction([*required, law.Truth.TRUE if ended else rest])
+    if value is law.Truth.FALSE and start.sure is None:
+        return law.Truth.UNKNOWN
+    if value is law.Truth.TRUE and counts_in_favour(requirement):
         last = start.stop if ended and start.stop is not None else truths.known - 1
-        return Truth.UNKNOWN if view.is_unborn(last) else value
+        return law.Truth.UNKNOWN if view.is_unborn(last) else value
     return value
 
 
-def _required(start: Start, readings: Readings, k: int) -> Truth:
+def _required(start: Start, readings: Readings, k: int) -> law.Truth:
     requirement = start.view.requirement
     if start.blurred is not None and k >= start.blurred:
-        return Truth.UNKNOWN
+        return law.Truth.UNKNOWN
     truths = readings.of(start.captured, favour=counts_in_favour(requirement))
     consequent = truths.truth(requirement.consequent, k)
     if requirement.mode is Mode.UPON:
         return consequent
-    return disjunction([negation(start.view.trigger[k]), consequent])
+    return law.disjunction([law.negation(start.view.trigger[k]), consequent])
 
 
 def counts_in_favour(requirement: Requirement) -> bool:
@@ -297,9 +288,9 @@ def starts_upon(view: View) -> list[Start]:
     k = view.first
     while k < len(edges):
         stretch, stop = view.stretch(k)
-        certain = [] if view.doubted else [j for j in stretch if edges[j] is Truth.TRUE]
+        certain = [] if view.doubted else [j for j in stretch if edges[j] is law.Truth.TRUE]
         found += [view.begin(j, [j], j + 1) for j in certain]
-        hidden = [j for j in stretch if edges[j] is not Truth.FALSE and j not in certain]
+        hidden = [j for j in stretch if edges[j] is not law.Truth.FALSE and j not in certain]
         if hidden:
             one = view.begin(hidden[0], hidden, stop)
             found.append(replace(one, sure=None))
@@ -307,7 +298,7 @@ def starts_upon(view: View) -> list[Start]:
     return found
 
 
-def views(requirement: Requirement, word: Word) -> list[View]:
+def views(requirement: Requirement, word: law.Word) -> list[View]:
     """The instances of a requirement on a word: one per value of `for each`, else one.
 
     The first one is for occurrences whose value is unknown; it may not exist.
@@ -335,22 +326,24 @@ def views(requirement: Requirement, word: Word) -> list[View]:
     ]
 
 
-def _field(payload: Payload, field: formulas.FieldValue) -> Scalar:
+def _field(payload: Payload, field: rv.FieldValue) -> Scalar:
     return known_scalar(payload.get(field.field))
 
 
-def _only(letter: Letter, field: formulas.FieldValue, value: Scalar) -> Letter:
+def _only(letter: law.Letter, field: rv.FieldValue, value: Scalar) -> law.Letter:
     """The letter with only those occurrences of the event whose field has the value.
 
     If the field is unknown, so is the occurrence for this value, and its payload.
     """
     whole = letter.events[field.event]
     kept = tuple(
-        replace(occurrence, truth=Truth.UNKNOWN, payload={}) if found is None else occurrence
+        replace(occurrence, truth=law.Truth.UNKNOWN, payload={}) if found is None else occurrence
         for occurrence in whole.occurrences
         if (found := _field(occurrence.payload, field)) is None or found == value
     )
     # Apart from lost occurrences, those for other values are no updates of this one.
-    updated = whole.updated if len(kept) > whole.lost else Truth.UNKNOWN if kept else Truth.FALSE
-    only = {field.event: EventState(updated, kept, whole.lost)}
+    updated = (
+        whole.updated if len(kept) > whole.lost else law.Truth.UNKNOWN if kept else law.Truth.FALSE
+    )
+    only = {field.event: law.EventState(updated, kept, whole.lost)}
     return replace(letter, events={**letter.events, **only})

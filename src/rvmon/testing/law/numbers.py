@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import product
 from typing import Any, assert_never
 
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.testing.law import word
 from rvmon.testing.law.syntax import parts_of
@@ -18,7 +18,7 @@ from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 
 
 def compare(
-    comparison: formulas.Compare,
+    comparison: rv.Compare,
     letter: word.Letter,
     captured: Mapping[str, Scalar],
 ) -> word.Truth:
@@ -42,7 +42,7 @@ def compare(
 
 
 def compare_at(
-    comparison: formulas.Compare,
+    comparison: rv.Compare,
     letter: word.Letter,
     payloads: Mapping[str, Payload],
     captured: Mapping[str, Scalar],
@@ -57,15 +57,15 @@ def compare_at(
     return word.truth_of(_related(comparison.op, left, right))
 
 
-def is_born(comparison: formulas.Compare, letter: word.Letter) -> bool:
+def is_born(comparison: rv.Compare, letter: word.Letter) -> bool:
     """Whether all signals of a comparison have had the values that it reads."""
     return all(
         letter.signals[part.name].moved
-        if isinstance(part, formulas.UpdateValue)
+        if isinstance(part, rv.UpdateValue)
         else letter.signals[part.name].born
         for side in (comparison.left, comparison.right)
         for part in parts_of(side)
-        if isinstance(part, formulas.SignalValue | formulas.UpdateValue)
+        if isinstance(part, rv.SignalValue | rv.UpdateValue)
     )
 
 
@@ -74,12 +74,12 @@ def known_scalar(value: Scalar) -> Scalar:
     return None if isinstance(value, float) and math.isnan(value) else value
 
 
-def events_of(expression: formulas.Numeric) -> Iterator[str]:
+def events_of(expression: rv.Numeric) -> Iterator[str]:
     """The events whose fields the expression reads."""
     match expression:
-        case formulas.FieldValue(event=event):
+        case rv.FieldValue(event=event):
             yield event
-        case formulas.Arithmetic(args=args):
+        case rv.Arithmetic(args=args):
             for arg in args:
                 yield from events_of(arg)
         case _:
@@ -87,7 +87,7 @@ def events_of(expression: formulas.Numeric) -> Iterator[str]:
 
 
 def number(
-    expression: formulas.Numeric,
+    expression: rv.Numeric,
     letter: word.Letter,
     payloads: Mapping[str, Payload],
     captured: Mapping[str, Scalar],
@@ -97,36 +97,36 @@ def number(
     Source: SEMANTICS, sections 2 and 5; decision record 1 (Updates, Arithmetic).
     """
     match expression:
-        case formulas.Literal(value=value):
+        case rv.Literal(value=value):
             return value
-        case formulas.SignalValue(name=name):
+        case rv.SignalValue(name=name):
             return letter.signals[name].value
-        case formulas.FieldValue(event=event, field=field):
+        case rv.FieldValue(event=event, field=field):
             return known_scalar(payloads.get(event, {}).get(field))
-        case formulas.NowValue():
+        case rv.NowValue():
             return None if letter.since is None else letter.instant - letter.since
-        case formulas.Captured(name=name):
+        case rv.Captured(name=name):
             return captured[name]
-        case formulas.UpdateValue(function=function, name=name):
+        case rv.UpdateValue(function=function, name=name):
             return _of_updates(function, name, letter)
-        case formulas.Arithmetic(op=op, args=args):
+        case rv.Arithmetic(op=op, args=args):
             values = (number(arg, letter, payloads, captured) for arg in args)
             return _calculate(op, list(values))
-        case formulas.WindowValue():
+        case rv.WindowValue():
             raise AssertionError("windows are evaluated by `Past`")
         case _:
             assert_never(expression)
 
 
-def _of_updates(function: formulas.UpdateFunction, name: str, letter: word.Letter) -> Scalar:
+def _of_updates(function: rv.UpdateFunction, name: str, letter: word.Letter) -> Scalar:
     state = letter.signals[name]
     last, before = state.last, state.before
     if state.value is None or last is None or before is None or before.value is None:
         return None
-    if function is formulas.UpdateFunction.PREV:
+    if function is rv.UpdateFunction.PREV:
         return before.value
     delta = _calculate(NumericOp.SUB, [last.value, before.value])
-    if function is formulas.UpdateFunction.DELTA:
+    if function is rv.UpdateFunction.DELTA:
         return delta
     scaled = _calculate(NumericOp.MUL, [delta, float(TICKS_PER_SECOND)])
     return _calculate(NumericOp.DIV, [scaled, last.t - before.t])
@@ -264,18 +264,18 @@ def _distance(lat1: float, lon1: float, lat2: float, lon2: float) -> float:
     return 2 * 6371008.8 * math.asin(min(math.sqrt(share), 1.0))
 
 
-_RELATIONS: dict[formulas.CompareOp, Callable[[Any, Any], bool]] = {
-    formulas.CompareOp.EQ: operator.eq,
-    formulas.CompareOp.NE: operator.ne,
-    formulas.CompareOp.LT: operator.lt,
-    formulas.CompareOp.LE: operator.le,
-    formulas.CompareOp.GE: operator.ge,
-    formulas.CompareOp.GT: operator.gt,
+_RELATIONS: dict[rv.CompareOp, Callable[[Any, Any], bool]] = {
+    rv.CompareOp.EQ: operator.eq,
+    rv.CompareOp.NE: operator.ne,
+    rv.CompareOp.LT: operator.lt,
+    rv.CompareOp.LE: operator.le,
+    rv.CompareOp.GE: operator.ge,
+    rv.CompareOp.GT: operator.gt,
 }
 
 
-def _related(op: formulas.CompareOp, left: Scalar, right: Scalar) -> bool:
-    if op not in (formulas.CompareOp.EQ, formulas.CompareOp.NE) and (
+def _related(op: rv.CompareOp, left: Scalar, right: Scalar) -> bool:
+    if op not in (rv.CompareOp.EQ, rv.CompareOp.NE) and (
         isinstance(left, str) or isinstance(right, str)
     ):
         raise TypeError(f"`{left}` {op} `{right}`: labels have no order")

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 from itertools import product
 
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 from rvmon.testing.law.numbers import events_of, number
 from rvmon.testing.law.operators import At, Operators
 from rvmon.testing.law.syntax import is_composed
@@ -98,28 +98,28 @@ class Margins(Operators[Margin]):
         self._found: dict[tuple[int, int, bool], Margin] = {}
         self._states: dict[tuple[int, int], Margin] = {}
 
-    def required(self, formula: formulas.Formula, i: int) -> Range:
+    def required(self, formula: rv.Formula, i: int) -> Range:
         """The robustness of a formula that is required at a position."""
         return self._required(formula, i, True).ranges[Truth.UNKNOWN]
 
-    def _required(self, formula: formulas.Formula, i: int, positive: bool) -> Margin:
+    def _required(self, formula: rv.Formula, i: int, positive: bool) -> Margin:
         key = (id(formula), i, positive)
         if key not in self._found:
             inside = i >= self._first
             self._found[key] = self._margin(formula, i, positive) if inside else _always(ANY)
         return self._found[key]
 
-    def _margin(self, formula: formulas.Formula, i: int, positive: bool) -> Margin:
+    def _margin(self, formula: rv.Formula, i: int, positive: bool) -> Margin:
         if is_composed(formula):
 
-            def sub(part: formulas.Formula, k: int, same: bool = True) -> Margin:
+            def sub(part: rv.Formula, k: int, same: bool = True) -> Margin:
                 return self._required(part, k, positive is same)
 
             return self.operator(formula, i, sub, positive=positive)
         unborn = truth_of(positive) if self._favour else Truth.UNKNOWN
         return _always(self.state(formula, i).ranges[unborn])
 
-    def state(self, formula: formulas.Formula, i: int) -> Margin:
+    def state(self, formula: rv.Formula, i: int) -> Margin:
         """The robustness of a formula of the present and past; it may be UNBORN."""
         key = (id(formula), i)
         if key not in self._states:
@@ -128,24 +128,24 @@ class Margins(Operators[Margin]):
             self._states[key] = Margin(truth, found.ranges)
         return self._states[key]
 
-    def _state(self, formula: formulas.Formula, i: int, truth: Truth) -> Margin:
+    def _state(self, formula: rv.Formula, i: int, truth: Truth) -> Margin:
         match formula:
-            case formulas.Unary() | formulas.Binary():
+            case rv.Unary() | rv.Binary():
                 return self.operator(formula, i, lambda part, k, _=True: self.state(part, k))
             case _ if truth is Truth.UNBORN:
                 return self.of_truth(truth)
-            case formulas.Amount() if formula.has_distance(held=self._held_time):
+            case rv.Amount() if formula.has_distance(held=self._held_time):
                 return self._of_windows(formula.comparison, i)
-            case formulas.Compare(left=left, right=right) if formulas.windows_in(left, right):
+            case rv.Compare(left=left, right=right) if rv.windows_in(left, right):
                 return self._of_windows(formula, i)
-            case formulas.Compare():
+            case rv.Compare():
                 return _always(_compared(formula, self._letters[i], self._captured))
             case _:
                 return self.of_truth(truth)
 
-    def _of_windows(self, formula: formulas.Compare, i: int) -> Margin:
+    def _of_windows(self, formula: rv.Compare, i: int) -> Margin:
         left, right = (self._truths.settled(side, i) for side in (formula.left, formula.right))
-        settled = formulas.Compare(formula.op, left, right)
+        settled = rv.Compare(formula.op, left, right)
         return _always(_compared(settled, self._letters[i], self._captured))
 
     def of_truth(self, truth: Truth) -> Margin:
@@ -189,7 +189,7 @@ class Margins(Operators[Margin]):
         left: At[Margin],
         right: At[Margin],
         i: int,
-        interval: formulas.Interval,
+        interval: rv.Interval,
         *,
         can_be_unborn: bool,
     ) -> Margin:
@@ -204,7 +204,7 @@ class Margins(Operators[Margin]):
         return _of_window(most(ways), states, can_be_unborn)
 
     def held(
-        self, operand: At[Margin], i: int, interval: formulas.Interval, *, can_be_unborn: bool
+        self, operand: At[Margin], i: int, interval: rv.Interval, *, can_be_unborn: bool
     ) -> Margin:
         """See `Operators`."""
         begun = OF_TRUTH[self._lasted(i, interval.high or 0)]
@@ -213,7 +213,7 @@ class Margins(Operators[Margin]):
         value = least([begun, rest, *(value.ranges[Truth.FALSE] for value in values)])
         return _of_window(value, {value.state for value in values}, can_be_unborn)
 
-    def _reaches_out(self, i: int, window: formulas.Interval) -> bool:
+    def _reaches_out(self, i: int, window: rv.Interval) -> bool:
         """Whether a window of the past extends before the first sure position."""
         if self._first == 0:
             return False
@@ -247,9 +247,7 @@ def _of_window(value: Range, states: Set[Truth], can_be_unborn: bool) -> Margin:
     return _unless_unborn(value, Truth.UNBORN if states == {Truth.UNBORN} else Truth.UNKNOWN)
 
 
-def _compared(
-    comparison: formulas.Compare, letter: Letter, captured: Mapping[str, Scalar]
-) -> Range:
+def _compared(comparison: rv.Compare, letter: Letter, captured: Mapping[str, Scalar]) -> Range:
     events = sorted({*events_of(comparison.left), *events_of(comparison.right)})
     ways = []
     for choice in product(*(letter.events[event].occurrences for event in events)):
@@ -260,7 +258,7 @@ def _compared(
 
 
 def _distance(
-    comparison: formulas.Compare,
+    comparison: rv.Compare,
     letter: Letter,
     payloads: Mapping[str, Payload],
     captured: Mapping[str, Scalar],
@@ -271,14 +269,14 @@ def _distance(
         return ANY
     op = comparison.op
     if isinstance(left, str) or isinstance(right, str):
-        return TOP if (left == right) is (op is formulas.CompareOp.EQ) else BOTTOM
+        return TOP if (left == right) is (op is rv.CompareOp.EQ) else BOTTOM
     apart = 0.0 if left == right else float(left - right)
     value = {
-        formulas.CompareOp.LT: 0.0 - apart,  # avoids -0.0
-        formulas.CompareOp.LE: 0.0 - apart,
-        formulas.CompareOp.GT: apart,
-        formulas.CompareOp.GE: apart,
-        formulas.CompareOp.EQ: 0.0 - abs(apart),
-        formulas.CompareOp.NE: abs(apart),
+        rv.CompareOp.LT: 0.0 - apart,  # avoids -0.0
+        rv.CompareOp.LE: 0.0 - apart,
+        rv.CompareOp.GT: apart,
+        rv.CompareOp.GE: apart,
+        rv.CompareOp.EQ: 0.0 - abs(apart),
+        rv.CompareOp.NE: abs(apart),
     }[op]
     return value, value

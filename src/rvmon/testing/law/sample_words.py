@@ -8,19 +8,8 @@ from itertools import dropwhile, pairwise
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.language.checked.specification import CheckedSpec, Event, Signal, TimeModel
+from rvmon.testing.law import word as law
 from rvmon.testing.law.numbers import at_edge, known_scalar
-from rvmon.testing.law.word import (
-    EventState,
-    Letter,
-    Occurrence,
-    Outage,
-    SignalState,
-    Truth,
-    Update,
-    Word,
-    disjunction,
-    truth_of,
-)
 from rvmon.trace.sample import Payload, Sample, Value
 
 MOST_TICKS = 1_000_000
@@ -34,8 +23,8 @@ def word_of(
     end: int | None = None,
     advances: Sequence[int] = (),
     names: frozenset[str] | None = None,
-    outages: Sequence[Outage] = (),
-) -> Word:
+    outages: Sequence[law.Outage] = (),
+) -> law.Word:
     """Lay out a trace position by position.
 
     Args:
@@ -59,7 +48,7 @@ def word_of(
     stamps = [*(sample.t for sample in samples), *(outage.last for outage in outages)]
     reached = max([*advances, *stamps, *_given(end)], default=0)
     if not stamps:
-        return Word((), None, reached)
+        return law.Word((), None, reached)
     samples = without_ignored(spec, samples)
     begun = samples[0].t if samples else None
     first = min([*(outage.first for outage in outages), *_given(begun)])
@@ -77,7 +66,7 @@ def word_of(
         name: _history_of(name, samples, outages, has_source=names is None or name in names)
         for name in (*spec.signals, *spec.events)
     }
-    letters: list[Letter] = []
+    letters: list[law.Letter] = []
     for index, instant in enumerate(instants):
         if _is_sure(spec, instant, begun, outages):
             before = instants[index - 1] if index else None
@@ -86,7 +75,7 @@ def word_of(
             letters.append(replace(_letter(spec, instant, so_far), since=since))
         else:
             letters.append(_blank(spec, instant))
-    return Word(tuple(letters), known_to, reached)
+    return law.Word(tuple(letters), known_to, reached)
 
 
 def without_ignored(spec: CheckedSpec, samples: Sequence[Sample]) -> Sequence[Sample]:
@@ -112,7 +101,7 @@ def _given(instant: int | None) -> Iterable[int]:
 def _positions(
     spec: CheckedSpec,
     samples: Sequence[Sample],
-    outages: Iterable[Outage],
+    outages: Iterable[law.Outage],
     first: int,
     end: int,
 ) -> Sequence[int]:
@@ -128,7 +117,9 @@ def _positions(
             return range(-(-first // period) * period, end + 1, period)
 
 
-def _is_sure(spec: CheckedSpec, instant: int, begun: int | None, outages: Iterable[Outage]) -> bool:
+def _is_sure(
+    spec: CheckedSpec, instant: int, begun: int | None, outages: Iterable[law.Outage]
+) -> bool:
     """Whether an instant is surely a position; where it may be none, every formula is unknown.
 
     In an outage of sampled time no tick surely is, even if a sample was read there: `next` and
@@ -146,12 +137,12 @@ def _is_sure(spec: CheckedSpec, instant: int, begun: int | None, outages: Iterab
     return begun is not None and begun <= instant
 
 
-def _blank(spec: CheckedSpec, instant: int) -> Letter:
+def _blank(spec: CheckedSpec, instant: int) -> law.Letter:
     """The letter of a possible position."""
-    unknown = SignalState(
-        updated=Truth.UNKNOWN, changed=Truth.UNKNOWN, born=True, moved=True, lost=True
+    unknown = law.SignalState(
+        updated=law.Truth.UNKNOWN, changed=law.Truth.UNKNOWN, born=True, moved=True, lost=True
     )
-    return Letter(
+    return law.Letter(
         instant,
         dict.fromkeys(spec.signals, unknown),
         dict.fromkeys(spec.events, _UNKNOWN_EVENT),
@@ -159,7 +150,7 @@ def _blank(spec: CheckedSpec, instant: int) -> Letter:
     )
 
 
-_UNKNOWN_EVENT = EventState(Truth.UNKNOWN, (Occurrence(Truth.UNKNOWN, {}),), lost=1)
+_UNKNOWN_EVENT = law.EventState(law.Truth.UNKNOWN, (law.Occurrence(law.Truth.UNKNOWN, {}),), lost=1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,7 +183,7 @@ class _History:
     """
 
     entries: Sequence[_Entry]
-    outages: Sequence[Outage]
+    outages: Sequence[law.Outage]
     before: int | None
     instant: int
     has_source: bool
@@ -223,7 +214,7 @@ class _History:
 
 
 def _history_of(
-    name: str, samples: Sequence[Sample], outages: Sequence[Outage], *, has_source: bool
+    name: str, samples: Sequence[Sample], outages: Sequence[law.Outage], *, has_source: bool
 ) -> _History:
     """All updates of a name; lost ones come before one that was read with the same stamp.
 
@@ -244,15 +235,15 @@ def _history_of(
     return _History(entries, of_name, None, last, has_source)
 
 
-def _letter(spec: CheckedSpec, instant: int, history: Mapping[str, _History]) -> Letter:
-    return Letter(
+def _letter(spec: CheckedSpec, instant: int, history: Mapping[str, _History]) -> law.Letter:
+    return law.Letter(
         instant,
         {name: _signal(history[name], signal) for name, signal in spec.signals.items()},
         {name: _event(history[name], event) for name, event in spec.events.items()},
     )
 
 
-def _event(history: _History, event: Event) -> EventState:
+def _event(history: _History, event: Event) -> law.EventState:
     if not history.has_source or history.is_within:
         return _UNKNOWN_EVENT
     new = [entry for entry in history.entries if history.is_new(entry)]
@@ -261,7 +252,7 @@ def _event(history: _History, event: Event) -> EventState:
         for entry in new
         for occurrence in _occurrences(entry.value)
     )
-    return EventState(_updated(history), occurrences, sum(entry.lost for entry in new))
+    return law.EventState(_updated(history), occurrences, sum(entry.lost for entry in new))
 
 
 def _at_edge(payload: Payload, event: Event) -> Payload:
@@ -271,13 +262,15 @@ def _at_edge(payload: Payload, event: Event) -> Payload:
     }
 
 
-def _signal(history: _History, signal: Signal) -> SignalState:
+def _signal(history: _History, signal: Signal) -> law.SignalState:
     if not history.has_source:
-        return SignalState(updated=Truth.UNKNOWN, changed=Truth.UNKNOWN, born=True, moved=True)
+        return law.SignalState(
+            updated=law.Truth.UNKNOWN, changed=law.Truth.UNKNOWN, born=True, moved=True
+        )
     if not history.entries:
-        return SignalState()
+        return law.SignalState()
     updates = [
-        Update(entry.t, at_edge(_update(entry.t, entry.value).value, signal.type.kind))
+        law.Update(entry.t, at_edge(_update(entry.t, entry.value).value, signal.type.kind))
         for entry in history.entries
     ]
     last, within = updates[-1], history.is_within
@@ -285,7 +278,7 @@ def _signal(history: _History, signal: Signal) -> SignalState:
     # The lost updates may have been the first value, and the update after it.
     may_be_born = bool(history.outages)
     since_birth = list(dropwhile(lambda update: update.value is None, updates))
-    return SignalState(
+    return law.SignalState(
         value=None if stale or within else last.value,
         updated=_updated(history),
         changed=_changed(history, updates),
@@ -297,46 +290,46 @@ def _signal(history: _History, signal: Signal) -> SignalState:
     )
 
 
-def _updated(history: _History) -> Truth:
+def _updated(history: _History) -> law.Truth:
     """Whether an update of the name belongs to this position."""
     if history.is_within:
-        return Truth.UNKNOWN
+        return law.Truth.UNKNOWN
     kept = any(history.is_new(entry) and not entry.lost for entry in history.entries)
-    return disjunction([truth_of(kept), _if_lost(history)])
+    return law.disjunction([law.truth_of(kept), _if_lost(history)])
 
 
-def _changed(history: _History, updates: Sequence[Update]) -> Truth:
+def _changed(history: _History, updates: Sequence[law.Update]) -> law.Truth:
     """Whether an update to another value belongs to it."""
     if history.is_within:
-        return Truth.UNKNOWN
+        return law.Truth.UNKNOWN
     pairs = zip(pairwise(updates), history.entries[1:], strict=True)
     new = (_differ(*pair) for pair, entry in pairs if history.is_new(entry))
-    return disjunction([*new, _if_lost(history)])
+    return law.disjunction([*new, _if_lost(history)])
 
 
-def _if_lost(history: _History) -> Truth:
-    return Truth.UNKNOWN if history.is_touched else Truth.FALSE
+def _if_lost(history: _History) -> law.Truth:
+    return law.Truth.UNKNOWN if history.is_touched else law.Truth.FALSE
 
 
-def _update(t: int, value: Value) -> Update:
+def _update(t: int, value: Value) -> law.Update:
     if not isinstance(value, bool | int | float | str):
         value = None
-    return Update(t, known_scalar(value))
+    return law.Update(t, known_scalar(value))
 
 
-def _differ(earlier: Update, later: Update) -> Truth:
+def _differ(earlier: law.Update, later: law.Update) -> law.Truth:
     if earlier.value is None or later.value is None:
-        return Truth.UNKNOWN
-    return truth_of(earlier.value != later.value)
+        return law.Truth.UNKNOWN
+    return law.truth_of(earlier.value != later.value)
 
 
-def _occurrences(entry: Value) -> Iterable[Occurrence]:
+def _occurrences(entry: Value) -> Iterable[law.Occurrence]:
     match entry:
         case None:
-            return (Occurrence(Truth.UNKNOWN, {}),)
+            return (law.Occurrence(law.Truth.UNKNOWN, {}),)
         case tuple():
-            return tuple(Occurrence(Truth.TRUE, payload) for payload in entry)
+            return tuple(law.Occurrence(law.Truth.TRUE, payload) for payload in entry)
         case bool() | int() | float() | str():
-            return (Occurrence(Truth.TRUE, {}),) if entry else ()
+            return (law.Occurrence(law.Truth.TRUE, {}),) if entry else ()
         case payload:
-            return (Occurrence(Truth.TRUE, payload),)
+            return (law.Occurrence(law.Truth.TRUE, payload),)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import assert_never
 
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 from rvmon.testing.law.amounts import UNKNOWN, Past
 from rvmon.testing.law.numbers import as_ticks, compare, number
 from rvmon.testing.law.operators import At, Operators, is_within
@@ -76,7 +76,7 @@ class Truths(Operators[Truth]):
         """The number of known positions."""
         return self._known
 
-    def truth(self, formula: formulas.Formula, i: int, *, positive: bool = True) -> Truth:
+    def truth(self, formula: rv.Formula, i: int, *, positive: bool = True) -> Truth:
         """The truth of a required formula at a known position: never UNBORN.
 
         Args:
@@ -96,10 +96,10 @@ class Truths(Operators[Truth]):
             (self._pending if value is Truth.UNKNOWN else self._settled)[key] = value
         return value
 
-    def _truth(self, formula: formulas.Formula, i: int, positive: bool) -> Truth:
+    def _truth(self, formula: rv.Formula, i: int, positive: bool) -> Truth:
         if is_composed(formula):
 
-            def sub(part: formulas.Formula, k: int, same: bool = True) -> Truth:
+            def sub(part: rv.Formula, k: int, same: bool = True) -> Truth:
                 return self.truth(part, k, positive=positive is same)
 
             return self.operator(formula, i, sub, positive=positive)
@@ -108,7 +108,7 @@ class Truths(Operators[Truth]):
             return value
         return truth_of(positive) if self._favour else Truth.UNKNOWN
 
-    def state(self, formula: formulas.Formula, i: int) -> Truth:
+    def state(self, formula: rv.Formula, i: int) -> Truth:
         """The truth of a formula of the present and past at a position; it may be UNBORN.
 
         At a possible position every formula is UNKNOWN, even a constant.
@@ -121,43 +121,43 @@ class Truths(Operators[Truth]):
             value = self._states[key] = self._state(formula, i)
         return value
 
-    def _state(self, formula: formulas.Formula, i: int) -> Truth:
+    def _state(self, formula: rv.Formula, i: int) -> Truth:
         letter = self._letters[i]
         match formula:
-            case formulas.Constant(value=value):
+            case rv.Constant(value=value):
                 return truth_of(value)
-            case formulas.SignalAtom(name=name):
+            case rv.SignalAtom(name=name):
                 state = letter.signals[name]
                 if state.value is None:
                     return Truth.UNKNOWN if state.born else Truth.UNBORN
                 return truth_of(bool(state.value))
-            case formulas.EventAtom(name=name):
+            case rv.EventAtom(name=name):
                 return disjunction(o.truth for o in letter.events[name].occurrences)
-            case formulas.Compare(left=left, right=right) if formulas.windows_in(left, right):
+            case rv.Compare(left=left, right=right) if rv.windows_in(left, right):
                 return Past(self._letters, self._captured, self.state).compared(formula, i)
-            case formulas.Compare():
+            case rv.Compare():
                 return compare(formula, letter, self._captured)
-            case formulas.ProbeAtom(probe=probe, name=name):
+            case rv.ProbeAtom(probe=probe, name=name):
                 return probed(probe, name, letter)
-            case formulas.BoundAtom(bound=bound):
-                if bound is formulas.Bound.END:
+            case rv.BoundAtom(bound=bound):
+                if bound is rv.Bound.END:
                     raise ValueError("`end` stands alone as a trigger, never inside a formula")
                 return self._is_first(i)
-            case formulas.Unary() | formulas.Binary():
+            case rv.Unary() | rv.Binary():
                 return self.operator(formula, i, lambda part, k, _=True: self.state(part, k))
-            case formulas.Amount():
+            case rv.Amount():
                 return Past(self._letters, self._captured, self.state).truth(formula, i)
-            case formulas.Passed():
+            case rv.Passed():
                 return self._passed(formula, i)
             case _:
                 assert_never(formula)
 
-    def settled(self, expression: formulas.Numeric, i: int) -> formulas.Numeric:
+    def settled(self, expression: rv.Numeric, i: int) -> rv.Numeric:
         """An expression with each window replaced by its value at a position."""
         past = Past(self._letters, self._captured, self.state)
         return past.settled(expression, i) if self._letters[i].sure else UNKNOWN
 
-    def _passed(self, formula: formulas.Passed, i: int) -> Truth:
+    def _passed(self, formula: rv.Passed, i: int) -> Truth:
         """Whether enough time has passed; UNKNOWN if that depends on when the trace began."""
         after = number(formula.after, self._letters[i], {}, self._captured)
         since = 0 if formula.since is None else self._captured[formula.since]
@@ -188,7 +188,7 @@ class Truths(Operators[Truth]):
         left: At[Truth],
         right: At[Truth],
         i: int,
-        interval: formulas.Interval,
+        interval: rv.Interval,
         *,
         can_be_unborn: bool,
     ) -> Truth:
@@ -209,7 +209,7 @@ class Truths(Operators[Truth]):
         return disjunction(seen) if seen and not seen & shows_birth else value
 
     def held(
-        self, operand: At[Truth], i: int, interval: formulas.Interval, *, can_be_unborn: bool
+        self, operand: At[Truth], i: int, interval: rv.Interval, *, can_be_unborn: bool
     ) -> Truth:
         """See `Operators`."""
         values = [operand(k) for k in self._window(i, interval)]
