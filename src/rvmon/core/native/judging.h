@@ -148,6 +148,9 @@ typedef struct {
 #define OF_TRIGGER RV_NEVER
 #define OF_EACH_TICK (RV_NEVER - 1)
 
+/* Instead of a slot of the pool: the youngest attempt of the queue. */
+#define IN_QUEUE (-2)
+
 /* `count` consecutive attempts of a queue in one location, with the same clocks. */
 typedef struct {
     int32_t location;
@@ -273,7 +276,7 @@ typedef struct {
     int32_t last;              /* its end; -1 */
     int32_t undecidable;       /* list of its undecidable attempts, which are never looked at again; -1:
                                 * empty */
-    int32_t current;           /* the attempt of the current episode; -1 */
+    int32_t current;           /* the attempt of the current episode; IN_QUEUE: the youngest there; -1 */
     int32_t letter;            /* the letter class of the last step, in the worse reading */
     int32_t other;             /* in the better reading */
     int32_t worse;             /* running sum of the letter, worse reading: nodes add their weights as

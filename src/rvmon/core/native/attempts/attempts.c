@@ -131,8 +131,15 @@ void leave_episode(run *r, int32_t index)
 void take_episode_trigger(run *r, int32_t index, int64_t t)
 {
     const judge_plan *j = &r->part->judges[index];
-    const int32_t current = r->judges[index].current;
-    if (r->truth[j->running] == IS_FALSE) {
+    const int32_t truth = r->truth[j->running];
+    int32_t current = r->judges[index].current;
+    if ((current == IN_QUEUE)
+        && ((truth == IS_UNKNOWN) || ((truth == IS_FALSE) && is_true(r, j->unborn)))) {
+        dissolve_queue(r, index, r->judges[index].position);
+        r->judges[index].slides = true; /* positions since then are still to be passed */
+        current = r->judges[index].current;
+    }
+    if (truth == IS_FALSE) {
         if (current >= 0) {
             attempt *x = attempt_at(r->home, current);
             x->cannot_pass = x->cannot_pass || is_true(r, j->unborn);
@@ -164,24 +171,30 @@ void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decisi
     }
 }
 
+/* The attempt of the running episode is decided at `t`. If it fails, the judge is listed: `again` says from
+ * which position another attempt follows. */
+void decide_current(run *r, int32_t index, bool fails, int64_t t)
+{
+    judge *j = &r->judges[index];
+    leave_episode(r, index);
+    if (fails && (r->part->judges[index].again >= 0)) {
+        j->failed_at = t;
+        if (!j->is_failing_listed) {
+            j->is_failing_listed = true;
+            r->failing[r->failing_count] = index;
+            r->failing_count++;
+        }
+    }
+}
+
 /* Decide an attempt by the prefix up to `t`. INCONCLUSIVE where a pass is excluded (a signal of the
- * consequent was unborn at the episode's end) or a failure is (the attempt is in doubt). A sure episode
- * that fails is listed: `again` says from which position another attempt follows. */
+ * consequent was unborn at the episode's end) or a failure is (the attempt is in doubt). */
 void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t)
 {
     const judge_plan *j = &r->part->judges[index];
     const attempt *x = attempt_at(r->home, at);
     if (is_current(r, index, at)) {
-        leave_episode(r, index);
-        if (!passed && x->sure && (j->again >= 0)) {
-            judge *own = &r->judges[index];
-            own->failed_at = t;
-            if (!own->is_failing_listed) {
-                own->is_failing_listed = true;
-                r->failing[r->failing_count] = index;
-                r->failing_count++;
-            }
-        }
+        decide_current(r, index, !passed && x->sure, t);
     }
     if (passed ? x->cannot_pass : !x->sure) {
         conclude(r, index, at, RV_INCONCLUSIVE, RV_OPEN, t,

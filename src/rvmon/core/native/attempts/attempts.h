@@ -47,6 +47,7 @@ void leave_episode(run *r, int32_t index);
 void take_episode_trigger(run *r, int32_t index, int64_t t);
 void conclude(run *r, int32_t index, int32_t at, uint8_t verdict, uint8_t decision, int64_t t,
               int64_t note);
+void decide_current(run *r, int32_t index, bool fails, int64_t t);
 void decide(run *r, int32_t index, int32_t at, bool passed, int64_t t);
 void remove_attempt(run *r, int32_t index, int32_t before, int32_t at);
 bool is_undecidable(const attempt *x);

@@ -11,7 +11,8 @@
  *
  * Readings of the unknown would double the states: at the first unknown letter the queue is dissolved
  * into attempts of the pool, which drive.c takes one by one. The judge's list is empty while its queue
- * is not, and the other way round. Steps are in queue_steps.c. */
+ * is not, and the other way round. The attempt of a running episode is the youngest. Steps are in
+ * queue_steps.c. */
 #include "attempts/attempts.h"
 #include "notes/notes.h"
 #include "results/results.h"
@@ -34,7 +35,7 @@ bool make_queue(run *r, int32_t index)
 {
     const judge_plan *own = &r->part->judges[index];
     judge *j = &r->judges[index];
-    if (((own->flags & JUDGE_EPISODIC) != 0) || (own->trigger < 0) || (own->automaton < 0)
+    if (((own->flags & JUDGE_HIDDEN) != 0) || (own->trigger < 0) || (own->automaton < 0)
         || (r->part->machines[index].clocks > QUEUED_CLOCKS) || (GAP(r) > 1)
         || (r->part->plan->captured > 0) || (j->queue != NULL)) {
         return true;
@@ -194,9 +195,16 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     g.j->count++;
     x.number = g.j->count;
     x.spare = 0;
+    if (runs_on(r, index)) {
+        leave_episode(r, index);
+        g.j->current = IN_QUEUE;
+    }
     if (begun->location <= PASSED) {
         segment initial;
         set_begun(&initial, g.a->initial);
+        if (g.j->current == IN_QUEUE) {
+            decide_current(r, index, begun->location == FAILED, t);
+        }
         report_queued(&g, &x, &initial, begun->location == PASSED, t);
         return true;
     }
@@ -261,12 +269,15 @@ void dissolve_queue(run *r, int32_t index, int64_t tick)
         j->last = at;
         one = next_queued(r, index, &place, tick);
     }
+    if (j->current == IN_QUEUE) {
+        j->current = j->last;
+    }
     j->sorted = false;
     clear_queue(j);
 }
 
-/* Report the queued attempts, which are open at the end of the trace. They are sure, so that `outcomes`
- * depends on the rule for the end alone. */
+/* Report the queued attempts, which are open at the end of the trace. They are sure and can pass, so that
+ * `outcomes` depends on the rule for the end alone. */
 void queue_close(run *r, int32_t index, int64_t end, int64_t reached)
 {
     const judge_plan *own = &r->part->judges[index];

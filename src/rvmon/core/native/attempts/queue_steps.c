@@ -80,6 +80,9 @@ static void tell_decided(const queueing *g, const segment *s, int32_t from, int3
                          int64_t t)
 {
     int32_t i;
+    if ((g->j->current == IN_QUEUE) && (end == g->q->count)) {
+        decide_current(g->r, g->index, !passed, t);
+    }
     for (i = from; i < end; i++) {
         report_queued(g, item(g->q, i), s, passed, t);
     }

@@ -334,6 +334,9 @@ void settle_all(run *r, int64_t end, int64_t reached)
         if (r->truth_log != NULL) {
             note_open_count(r, i);
         }
+        if ((r->judges[i].current == IN_QUEUE) && is_true(r, r->part->judges[i].unborn)) {
+            dissolve_queue(r, i, r->judges[i].position);
+        }
         if (!queue_is_empty(&r->judges[i])) {
             queue_close(r, i, end, reached);
         }

@@ -120,6 +120,7 @@ static void carry_queue(carrier *c, run *r, int32_t index)
     int32_t count = q->count;
     int32_t segment_count = q->now.count;
     int32_t left;
+    bool current = r->judges[index].current == IN_QUEUE;
     int64_t before = -LIMIT;
     int32_t i;
     carry_size(c, &count, MOST, 12);
@@ -144,6 +145,11 @@ static void carry_queue(carrier *c, run *r, int32_t index)
         }
     }
     demand(c, left == 0);
+    carry_flag(c, &current);
+    if (c->reading && current) {
+        demand(c, (count > 0) && (r->judges[index].current < 0) && runs_on(r, index));
+        r->judges[index].current = IN_QUEUE;
+    }
 }
 
 static void carry_counts(carrier *c, judge *j)
