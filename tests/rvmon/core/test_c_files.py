@@ -34,6 +34,7 @@ NARROW = ("gcc", *STRICT, "-m32", "-msse2", "-mfpmath=sse")
 STRICTEST = (*STRICT, "-Wconversion", "-Wshadow")
 PLAIN = ("gcc", *STRICTEST)
 GREEN = {"1", "3"}
+LARGE = 1 << 20
 """Passed, and not triggered."""
 
 
@@ -134,7 +135,9 @@ def test_short_memory_is_never_green(exported):
     """Whatever the block: judged as with a heap, or refused, or said; then nothing has passed."""
     exported = exported(list(judged("memory", 40)))
     spoilt = 0
-    for number, whole in enumerate(exported.judge([(number, HEAP) for number in range(40)])):
+    on_heap = exported.judge([(number, HEAP) for number in range(40)])
+    for number, whole in enumerate(exported.judge([(number, LARGE) for number in range(40)])):
+        assert without_memory(whole) == without_memory(on_heap[number])
         enough = int(whole[-1].split()[-1])
         steps = {*range(0, enough, -(-enough // 40)), *range(enough - 400, enough, 16)}
         sizes = [*sorted(steps), enough, 2 * enough]

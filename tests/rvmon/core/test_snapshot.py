@@ -207,5 +207,5 @@ def test_a_head_says_what_it_is():
     plan = planned(REQUIREMENTS)
     data = plan.monitor(frozenset()).save()
     magic, hash_, size = struct.unpack_from("<8sQQ", data)
-    assert (magic, size) == (b"rvvshot1", len(data))
+    assert (magic, size) == (b"rvvshot2", len(data))
     assert hash_ == struct.unpack_from("<Q", plan.packed.data, 24)[0]

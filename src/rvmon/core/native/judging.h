@@ -143,15 +143,17 @@ typedef struct {
 /* The most clocks of an automaton whose attempts may stand in a queue; the plan's maker stops there. */
 #define QUEUED_CLOCKS 6
 
-/* Clocks of a segment that are no common instant: reset at each attempt's trigger; and reset at each
- * tick so far, of which the last is the judge's `position`. */
+/* Clocks of a segment that are no common instant: reset at each attempt's trigger; reset at each tick so
+ * far, of which the last is the judge's `position`; and reset at an instant of each attempt (`own`), none
+ * earlier than that of the attempt before. */
 #define OF_TRIGGER RV_NEVER
 #define OF_EACH_TICK (RV_NEVER - 1)
+#define OF_EACH_ATTEMPT (RV_NEVER - 2)
 
 /* Instead of a slot of the pool: the youngest attempt of the queue. */
 #define IN_QUEUE (-2)
 
-/* `count` consecutive attempts of a queue in one location, with the same clocks. */
+/* `count` consecutive attempts of a queue in one location, with clocks of one kind. */
 typedef struct {
     int32_t location;
     int32_t count;
@@ -170,11 +172,13 @@ typedef struct {
     int64_t due;               /* ticks until its region changes; NEVER */
     int32_t letter;            /* -1: none began yet */
     int32_t location;
+    uint32_t sliding;          /* by clock, whether each tick resets it while the letter stays */
     bool rests;                /* the next equal letter leaves it there */
 } beginning;
 
 typedef struct {
     queued *items;             /* a ring, the oldest first */
+    int64_t *own;              /* by slot of the ring and clock of the automaton; NULL: not needed yet */
     int32_t room;              /* a power of two, or 0 */
     int32_t head;
     int32_t count;

@@ -74,10 +74,9 @@ void reach_judge(run *r, int32_t index, int64_t t);
 bool drive_from(run *r, int32_t index, int32_t at, int64_t t);
 
 /* ---- queue.c: attempts in bulk */
-bool make_queue(run *r, int32_t index);
+bool has_queue(run *r, int32_t index);
 void clear_queue(judge *j);
 bool queue_is_empty(const judge *j);
-bool is_queued(const run *r, int32_t index);
 void queue_visit(run *r, int32_t index, int64_t t);
 void queue_pass(run *r, int32_t index, int64_t t);
 void queue_reach(run *r, int32_t index, int64_t t);
@@ -94,7 +93,7 @@ typedef struct {
     int32_t end;
 } queue_place;
 
-attempt *next_queued(const run *r, int32_t index, queue_place *p, int64_t tick);
+attempt *next_queued(run *r, int32_t index, queue_place *p, int64_t tick);
 
 /* Whether a judge has attempts that a position may concern. */
 static inline bool has_attempts(const judge *j)
@@ -130,17 +129,32 @@ static inline queued *item(const queue *q, int32_t i)
     return &q->items[(q->head + i) & (q->room - 1)];
 }
 
-/* The instant at which a clock of a segment was reset, of an attempt of it; `tick`: the last one by which
- * clocks were reset that each tick resets. */
-static inline int64_t instant_of_clock(int64_t clock, int64_t triggered, int64_t tick)
+/* The own instant of a clock of the i-th oldest attempt. */
+static inline int64_t *own_instant(const queueing *g, int32_t i, int32_t c)
 {
-    return (clock < LIMIT) ? clock : ((clock == OF_TRIGGER) ? triggered : tick);
+    return &g->q->own[(size_t)((g->q->head + i) & (g->q->room - 1)) * (size_t)g->a->clocks + (size_t)c];
+}
+
+/* The instant at which clock `c` of the i-th oldest attempt, which stands in segment `s`, was reset;
+ * `tick`: the last one by which clocks were reset that each tick resets. */
+static inline int64_t instant_of_clock(const queueing *g, const segment *s, int32_t c, int32_t i,
+                                       int64_t tick)
+{
+    const int64_t clock = s->clocks[c];
+    if (clock < LIMIT) {
+        return clock;
+    }
+    if (clock == OF_TRIGGER) {
+        return item(g->q, i)->triggered;
+    }
+    return (clock == OF_EACH_ATTEMPT) ? *own_instant(g, i, c) : tick;
 }
 
 /* ---- queue.c */
-queued *queue_slot(rv_monitor *m, queue *q, int32_t i, bool append);
+queued *queue_slot(rv_monitor *m, const machine *a, queue *q, int32_t i, bool append);
 segment *next_segment(rv_monitor *m, segments *all);
-void report_queued(const queueing *g, const queued *one, const segment *s, bool passed, int64_t t);
+bool make_own_instants(rv_monitor *m, const machine *a, queue *q);
+void report_queued(const queueing *g, int32_t i, const segment *s, bool passed, int64_t t);
 
 /* ---- queue_steps.c */
 void count_edge(const queueing *g, int32_t location, int32_t target, int32_t count, int64_t t);

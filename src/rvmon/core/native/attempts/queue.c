@@ -1,13 +1,13 @@
-/* Attempts in bulk: a queue in the order of their triggers, divided into segments of equal state.
+/* Attempts in bulk: a queue in the order of their triggers, divided into segments of like state.
  *
  * A state is a location and its clocks, each an instant that all attempts of a segment share, or the
- * trigger of each. An edge takes a clock from another or resets it now: so what attempts share, they
- * share behind it, too, if they took the same edge, and these differ only where an age that counts from
- * the trigger is in another region. The ages of a segment fall from its first attempt to its last, so
- * the attempts of one region stand together, and a letter moves a whole segment, split where such a
- * region ends (binary search). Neighbours that come to the same state become one segment; mostly they
- * soon do, as a letter that is good or bad for one is for all. A position costs O(segments * regions *
- * log attempts) plus the attempts it decides, and an open attempt takes 16 bytes.
+ * trigger of each, or an own instant of each. An edge takes a clock from another or resets it now: so what
+ * attempts share, they share behind it, too, if they took the same edge, and these differ only where an
+ * age is in another region. The ages of a segment never rise from its first attempt to its last, so the
+ * attempts of one region stand together, and a letter moves a whole segment, split where such a region
+ * ends (binary search). Neighbours that come to one location become one segment, if their instants ascend
+ * and are the same or few. A position costs O(segments * regions * log attempts) plus the attempts it
+ * decides; an open attempt takes 16 bytes, and 8 for each clock once one has own instants.
  *
  * Readings of the unknown would double the states: at the first unknown letter the queue is dissolved
  * into attempts of the pool, which drive.c takes one by one. The judge's list is empty while its queue
@@ -19,33 +19,33 @@
 
 #include <string.h>
 
-bool is_queued(const run *r, int32_t index)
-{
-    return r->judges[index].queue != NULL;
-}
-
 bool queue_is_empty(const judge *j)
 {
     return (j->queue == NULL) || (j->queue->count == 0);
 }
 
-/* Give a judge an empty queue if its attempts can stand in one: several at a time, each sure and triggered
- * by an instant of its own, which nothing but letters and time moves. False: memory is short. */
-bool make_queue(run *r, int32_t index)
+/* Whether attempts of a judge can stand in a queue: several at a time, each triggered by an instant of its
+ * own, which nothing but letters and time moves. A monitor in one block has no queues: its memory is
+ * reserved for attempts of the pool. */
+static bool may_queue(const run *r, int32_t index)
 {
     const judge_plan *own = &r->part->judges[index];
+    return ((own->flags & JUDGE_HIDDEN) == 0) && (own->trigger >= 0) && (own->automaton >= 0)
+           && (r->part->machines[index].clocks <= QUEUED_CLOCKS) && (GAP(r) <= 1)
+           && (r->part->plan->captured == 0) && (r->home->monitor->memory.from.allocate != NULL);
+}
+
+/* Whether a judge has a queue, which is made when it is first asked for; false also if memory is short. */
+bool has_queue(run *r, int32_t index)
+{
     judge *j = &r->judges[index];
-    if (((own->flags & JUDGE_HIDDEN) != 0) || (own->trigger < 0) || (own->automaton < 0)
-        || (r->part->machines[index].clocks > QUEUED_CLOCKS) || (GAP(r) > 1)
-        || (r->part->plan->captured > 0) || (j->queue != NULL)) {
-        return true;
+    if ((j->queue == NULL) && may_queue(r, index)) {
+        j->queue = arena_take(&r->home->monitor->memory, sizeof *j->queue);
+        if (j->queue != NULL) {
+            j->queue->latest.letter = -1;
+        }
     }
-    j->queue = arena_take(&r->home->monitor->memory, sizeof *j->queue);
-    if (j->queue == NULL) {
-        return false;
-    }
-    j->queue->latest.letter = -1;
-    return true;
+    return j->queue != NULL;
 }
 
 void clear_queue(judge *j)
@@ -60,10 +60,10 @@ void clear_queue(judge *j)
 /* A queued attempt in the form of the pool's, in the part's scratch slot: valid until the next call.
  * `tick`: the last one by which clocks were reset that each tick resets. `due` is in the past, so that it
  * is driven when it is put into the pool. */
-static attempt *attempt_of_queued(const run *r, const machine *a, const queued *one,
-                                  const segment *s, int64_t tick)
+static attempt *attempt_of_queued(const queueing *g, int32_t i, const segment *s, int64_t tick)
 {
-    attempt *x = r->home->scratch_attempt;
+    const queued *one = item(g->q, i);
+    attempt *x = g->r->home->scratch_attempt;
     int32_t c;
     x->triggered = one->triggered;
     x->due = -LIMIT;
@@ -72,16 +72,16 @@ static attempt *attempt_of_queued(const run *r, const machine *a, const queued *
     x->location = s->location;
     x->sure = true;
     x->doubted_at = RV_NO_TIME;
-    for (c = 0; c < a->widths[s->location]; c++) {
-        x->clocks[c] = instant_of_clock(s->clocks[c], one->triggered, tick);
+    for (c = 0; c < g->a->widths[s->location]; c++) {
+        x->clocks[c] = instant_of_clock(g, s, c, i, tick);
     }
     return x;
 }
 
-/* Report a queued attempt that is decided at `t`; `s`: as it stood just before. */
-void report_queued(const queueing *g, const queued *one, const segment *s, bool passed, int64_t t)
+/* Report the i-th oldest attempt, which is decided at `t`; `s`: as it stood just before. */
+void report_queued(const queueing *g, int32_t i, const segment *s, bool passed, int64_t t)
 {
-    const attempt *x = attempt_of_queued(g->r, g->a, one, s, t - 1);
+    const attempt *x = attempt_of_queued(g, i, s, t - 1);
     int64_t note = -1;
     if (g->r->truth_log != NULL) {
         hold_token(g->r->home->monitor, g->a, s->location, x->clocks);
@@ -90,27 +90,52 @@ void report_queued(const queueing *g, const queued *one, const segment *s, bool 
     report(g->r, g->index, x, x->number, passed ? RV_PASS : RV_FAIL, RV_BY_PREFIX, t, note);
 }
 
-/* Double the ring of a queue, which is full; false: memory is short. */
-static bool widen_queue(rv_monitor *m, queue *q)
+/* Give each slot of the ring an own instant of each clock; false: memory is short. */
+bool make_own_instants(rv_monitor *m, const machine *a, queue *q)
 {
+    int32_t room = 0;
+    if (q->own == NULL) {
+        q->own = widened(m, NULL, &room, q->room, (size_t)a->clocks * sizeof *q->own);
+    }
+    return q->own != NULL;
+}
+
+/* Double the ring of a queue, which is full; false: memory is short. */
+static bool widen_queue(rv_monitor *m, const machine *a, queue *q)
+{
+    const size_t each = (size_t)a->clocks * sizeof *q->own;
     const int32_t was = q->room;
-    queued *made = widened(m, q->items, &q->room, (int64_t)was + 1, sizeof *made);
+    int32_t room = was;
+    queued *made = widened(m, q->items, &room, (int64_t)was + 1, sizeof *made);
+    int64_t *own = q->own;
     if (made == NULL) {
         return false;
     }
     q->items = made;
+    if (own != NULL) {
+        room = was;
+        own = widened(m, own, &room, (int64_t)was + 1, each);
+        if (own == NULL) {
+            return false;
+        }
+        q->own = own;
+    }
+    q->room = room;
     if (q->head > 0) { /* the youngest, in front of the oldest, come behind the others */
         (void)memcpy(&made[was], made, (size_t)q->head * sizeof *made);
+        if (own != NULL) {
+            (void)memcpy(&own[was * a->clocks], own, (size_t)q->head * each);
+        }
     }
     return true;
 }
 
 /* The i-th slot of a queue; with `append` a new one at its end (`i` is the old count). NULL: memory is
  * short. */
-queued *queue_slot(rv_monitor *m, queue *q, int32_t i, bool append)
+queued *queue_slot(rv_monitor *m, const machine *a, queue *q, int32_t i, bool append)
 {
     if (append) {
-        if ((q->count == q->room) && !widen_queue(m, q)) {
+        if ((q->count == q->room) && !widen_queue(m, a, q)) {
             return NULL;
         }
         q->count++;
@@ -151,31 +176,54 @@ static const beginning *begun_at(const queueing *g, int64_t t)
         (void)step_token(g->a, &k, t, g->j->letter);
         b->letter = g->j->letter;
         b->location = k.location;
-        b->rests = (k.location <= PASSED) || (rests(g->a, &k, t, b->letter, &due, &slides) && !slides);
+        b->rests = (k.location <= PASSED) || rests(g->a, &k, t, b->letter, &due, &slides);
         b->due = (due == NEVER) ? NEVER : due - t;
+        b->sliding = 0;
+        if (slides) {
+            (void)step_token(g->a, &k, t + 1, b->letter);
+        }
+        for (c = 0; slides && (c < g->a->widths[b->location]); c++) {
+            b->sliding |= (k.clocks[c] == t + 1) ? ((uint32_t)1 << c) : 0U;
+        }
     }
     return b;
 }
 
-/* Whether an attempt that begins at `t` in a location is in the state of a segment. */
-static bool begins_in(const queueing *g, const segment *s, int32_t location, int64_t t)
+/* The state in a location all of whose clocks began with the trigger, and some of which each tick resets. */
+static void set_begun(segment *s, int32_t location, uint32_t sliding)
 {
-    bool same = s->location == location;
     int32_t c;
-    for (c = 0; same && (c < g->a->widths[location]); c++) {
-        same = (s->clocks[c] == OF_TRIGGER) || (s->clocks[c] == t);
+    s->location = location;
+    s->count = 0;
+    for (c = 0; c < QUEUED_CLOCKS; c++) {
+        s->clocks[c] = (((sliding >> c) & 1U) != 0U) ? OF_EACH_TICK : OF_TRIGGER;
+    }
+}
+
+/* Whether an attempt that begins at `t` is in the state of a segment. */
+static bool begins_in(const queueing *g, const beginning *b, const segment *s, int64_t t)
+{
+    bool same = s->location == b->location;
+    int32_t c;
+    for (c = 0; same && (c < g->a->widths[b->location]); c++) {
+        const int64_t clock = s->clocks[c];
+        same = (((b->sliding >> c) & 1U) != 0U)
+                   ? (clock == OF_EACH_TICK)
+                   : ((clock == OF_TRIGGER) || (clock == OF_EACH_ATTEMPT) || (clock == t));
     }
     return same;
 }
 
-/* The state in a location all of whose clocks began with the trigger. */
-static void set_begun(segment *s, int32_t location)
+/* The youngest attempt, which began at `t`, joins a segment: it has own instants where others have. */
+static void begin_in(const queueing *g, segment *s, int64_t t)
 {
     int32_t c;
-    s->location = location;
-    for (c = 0; c < QUEUED_CLOCKS; c++) {
-        s->clocks[c] = OF_TRIGGER;
+    for (c = 0; c < g->a->widths[s->location]; c++) {
+        if (s->clocks[c] == OF_EACH_ATTEMPT) {
+            *own_instant(g, g->q->count - 1, c) = t;
+        }
     }
+    s->count++;
 }
 
 /* Start an attempt at `t`: step it once, report it if that decides it, else append it. The last segment
@@ -186,42 +234,39 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     const beginning *begun = begun_at(&g, t);
     queue *q = g.q;
     segment *last = (q->now.count > 0) ? &q->now.at[q->now.count - 1] : NULL;
-    queued *made;
+    queued *made = queue_slot(r->home->monitor, g.a, q, q->count, true);
     int64_t due;
-    queued x;
+    if (made == NULL) {
+        return false;
+    }
     count_begin(r, index, t);
     count_edge(&g, g.a->initial, begun->location, 1, t);
-    x.triggered = t;
     g.j->count++;
-    x.number = g.j->count;
-    x.spare = 0;
+    made->triggered = t;
+    made->number = g.j->count;
+    made->spare = 0;
     if (runs_on(r, index)) {
         leave_episode(r, index);
         g.j->current = IN_QUEUE;
     }
     if (begun->location <= PASSED) {
         segment initial;
-        set_begun(&initial, g.a->initial);
+        set_begun(&initial, g.a->initial, 0);
         if (g.j->current == IN_QUEUE) {
             decide_current(r, index, begun->location == FAILED, t);
         }
-        report_queued(&g, &x, &initial, begun->location == PASSED, t);
+        report_queued(&g, q->count - 1, &initial, begun->location == PASSED, t);
+        q->count--;
         return true;
     }
-    if ((last == NULL) || !begins_in(&g, last, begun->location, t)) {
+    if ((last == NULL) || !begins_in(&g, begun, last, t)) {
         last = next_segment(r->home->monitor, &q->now);
         if (last == NULL) {
             return false;
         }
-        set_begun(last, begun->location);
-        last->count = 0;
+        set_begun(last, begun->location, begun->sliding);
     }
-    made = queue_slot(r->home->monitor, q, q->count, true);
-    if (made == NULL) {
-        return false;
-    }
-    *made = x;
-    last->count++;
+    begin_in(&g, last, t);
     due = sum(t, begun->due);
     if (!begun->rests) {
         set_restless(r, index);
@@ -233,9 +278,10 @@ bool queue_begin(run *r, int32_t index, int64_t t)
 
 /* The next attempt of a judge's queue from a place on, which starts as zeros, oldest first, as it stands at
  * `tick`, in the form of the pool's; NULL: there is none. It is valid until the next call. */
-attempt *next_queued(const run *r, int32_t index, queue_place *p, int64_t tick)
+attempt *next_queued(run *r, int32_t index, queue_place *p, int64_t tick)
 {
-    const queue *q = r->judges[index].queue;
+    const queueing g = queueing_of(r, index);
+    const queue *q = g.q;
     attempt *x;
     if ((q == NULL) || (p->item == q->count)) {
         return NULL;
@@ -244,7 +290,7 @@ attempt *next_queued(const run *r, int32_t index, queue_place *p, int64_t tick)
         p->end += q->now.at[p->segments].count;
         p->segments++;
     }
-    x = attempt_of_queued(r, &r->part->machines[index], item(q, p->item), &q->now.at[p->segments - 1], tick);
+    x = attempt_of_queued(&g, p->item, &q->now.at[p->segments - 1], tick);
     p->item++;
     return x;
 }

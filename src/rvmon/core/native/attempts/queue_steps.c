@@ -8,14 +8,19 @@
 
 #include <string.h>
 
-/* The first item of [from, end) that was triggered after `t`; `end`: none. Mostly it is among the first, so
- * twice as many are looked at each time, then half as many. */
-static int32_t first_after(const queue *q, int32_t from, int32_t end, int64_t t)
+/* The most items of a segment that are given own instants, which it had in common, to join another: so a
+ * merge costs little, whatever its segments are. */
+#define FEW 64
+
+/* The first item of [from, end), all in one segment, whose clock was reset after `t`; `end`: none. Mostly
+ * it is among the first, so twice as many are looked at each time, then half as many. */
+static int32_t first_after(const queueing *g, const segment *s, int32_t c, int32_t from, int32_t end,
+                           int64_t t)
 {
     int32_t low = from;
     int32_t left = end - from;
     int32_t near = 1;
-    while ((near < left) && (item(q, low + near - 1)->triggered <= t)) {
+    while ((near < left) && (instant_of_clock(g, s, c, low + near - 1, t) <= t)) {
         low += near;
         left -= near;
         near *= 2;
@@ -26,10 +31,10 @@ static int32_t first_after(const queue *q, int32_t from, int32_t end, int64_t t)
     }
     while (left > 1) { /* a conditional move: a branch here would be mispredicted half the time */
         const int32_t half = left / 2;
-        low += (item(q, low + half - 1)->triggered <= t) ? half : 0;
+        low += (instant_of_clock(g, s, c, low + half - 1, t) <= t) ? half : 0;
         left -= half;
     }
-    return low + ((item(q, low)->triggered <= t) ? 1 : 0);
+    return low + ((instant_of_clock(g, s, c, low, t) <= t) ? 1 : 0);
 }
 
 /* The ages at which a clock of a location enters the next region. */
@@ -47,8 +52,14 @@ static int32_t settled_at(const machine *a, int32_t row, int32_t location)
     return (truth == IS_UNKNOWN) ? location : ((truth == IS_TRUE) ? PASSED : FAILED);
 }
 
+/* Whether the items of a segment have instants of a clock that differ. */
+static bool differs(const segment *s, int32_t c)
+{
+    return (s->clocks[c] == OF_TRIGGER) || (s->clocks[c] == OF_EACH_ATTEMPT);
+}
+
 /* The row of item `from` of a segment at `t`, and the end of the items of [from, end) that share it: ages
- * from the trigger fall along them, so that they come to lower regions, if to others. */
+ * fall along them, if they differ, so that they come to lower regions, if to others. */
 static int32_t end_of_row(const queueing *g, const segment *s, int32_t from, int32_t end, int64_t t,
                           int32_t *row)
 {
@@ -59,13 +70,13 @@ static int32_t end_of_row(const queueing *g, const segment *s, int32_t from, int
     for (c = 0; c < a->widths[s->location]; c++) {
         int32_t region;
         const int64_t *cuts = cuts_of(a, s->location, c, &region);
-        const int64_t clock = instant_of_clock(s->clocks[c], item(g->q, from)->triggered, t - 1);
+        const int64_t clock = instant_of_clock(g, s, c, from, t - 1);
         while ((region > 0) && (clock > t - cuts[region - 1])) {
             region--;
         }
         *row += region * a->strides[s->location * a->clocks + c];
-        if ((region > 0) && (s->clocks[c] == OF_TRIGGER)) {
-            until = first_after(g->q, from, until, t - cuts[region - 1]);
+        if ((region > 0) && differs(s, c)) {
+            until = first_after(g, s, c, from, until, t - cuts[region - 1]);
         }
     }
     return until;
@@ -84,7 +95,7 @@ static void tell_decided(const queueing *g, const segment *s, int32_t from, int3
         decide_current(g->r, g->index, !passed, t);
     }
     for (i = from; i < end; i++) {
-        report_queued(g, item(g->q, i), s, passed, t);
+        report_queued(g, i, s, passed, t);
     }
 }
 
@@ -103,17 +114,67 @@ typedef struct {
     int32_t count;
 } remaining;
 
-/* Keep the items [from, end), which are in state `s` now; they move up over decided ones. */
-static void keep_items(const queueing *g, remaining *kept, const segment *s, int32_t from, int32_t end)
+/* Whether clock `c` may become one of own instants where the items [from, end) of `s` follow those of
+ * `last`, of which the youngest is `before`: instants ascend, and few have to be written. What was reset
+ * just now, or at each tick, may go on so: it stays apart. */
+static bool may_be_own(const queueing *g, const segment *last, int32_t before, const segment *s,
+                       int32_t from, int32_t end, int32_t c, int64_t t)
+{
+    const int64_t one = last->clocks[c];
+    const int64_t other = s->clocks[c];
+    return (one != OF_EACH_TICK) && (other != OF_EACH_TICK) && (other != t)
+           && ((one == OF_EACH_ATTEMPT) || (last->count <= FEW))
+           && ((other == OF_EACH_ATTEMPT) || (end - from <= FEW))
+           && (instant_of_clock(g, last, c, before, t) <= instant_of_clock(g, s, c, from, t));
+}
+
+/* Give the items [from, end) of a segment the instant of a clock as their own. */
+static void make_own(const queueing *g, const segment *s, int32_t from, int32_t end, int32_t c)
+{
+    int32_t i;
+    for (i = from; (s->clocks[c] != OF_EACH_ATTEMPT) && (i < end); i++) {
+        *own_instant(g, i, c) = instant_of_clock(g, s, c, i, 0);
+    }
+}
+
+/* Whether the items [from, end), which are in state `s` at `t`, become part of the last segment of those
+ * kept, whose items end at `behind`; its clocks are changed accordingly. */
+static bool join_last(const queueing *g, segment *last, int32_t behind, const segment *s, int32_t from,
+                      int32_t end, int64_t t)
+{
+    uint32_t own = 0;
+    bool same = last->location == s->location;
+    int32_t c;
+    for (c = 0; same && (c < g->a->widths[s->location]); c++) {
+        if ((last->clocks[c] != s->clocks[c]) || (s->clocks[c] == OF_EACH_ATTEMPT)) {
+            own |= (uint32_t)1 << c;
+            same = may_be_own(g, last, behind - 1, s, from, end, c, t);
+        }
+    }
+    if (!same || ((own != 0U) && !make_own_instants(g->r->home->monitor, g->a, g->q))) {
+        return false;
+    }
+    for (c = 0; c < g->a->widths[s->location]; c++) {
+        if (((own >> c) & 1U) != 0U) {
+            make_own(g, last, behind - last->count, behind, c);
+            make_own(g, s, from, end, c);
+            last->clocks[c] = OF_EACH_ATTEMPT;
+        }
+    }
+    return true;
+}
+
+/* Keep the items [from, end), which are in state `s` at `t`; they move up over decided ones. */
+static void keep_items(const queueing *g, remaining *kept, const segment *s, int32_t from, int32_t end,
+                       int64_t t)
 {
     segments *all = &g->q->next;
     segment *last = (all->count > 0) ? &all->at[all->count - 1] : NULL;
-    bool same = (last != NULL) && (last->location == s->location);
     int32_t i;
-    for (i = 0; same && (i < g->a->widths[s->location]); i++) {
-        same = last->clocks[i] == s->clocks[i];
+    if (kept->count == 0) {
+        kept->base = from;
     }
-    if (!same) {
+    if ((last == NULL) || !join_last(g, last, kept->base + kept->count, s, from, end, t)) {
         last = next_segment(g->r->home->monitor, all);
         if (last == NULL) {
             return;
@@ -122,11 +183,13 @@ static void keep_items(const queueing *g, remaining *kept, const segment *s, int
         last->count = 0;
     }
     last->count += end - from;
-    if (kept->count == 0) {
-        kept->base = from;
-    }
     for (i = from; (kept->base + kept->count != from) && (i < end); i++) {
-        *item(g->q, kept->base + kept->count + (i - from)) = *item(g->q, i);
+        const int32_t place = kept->base + kept->count + (i - from);
+        *item(g->q, place) = *item(g->q, i);
+        if (g->q->own != NULL) {
+            (void)memcpy(own_instant(g, place, 0), own_instant(g, i, 0),
+                         (size_t)g->a->clocks * sizeof *g->q->own);
+        }
     }
     kept->count += end - from;
 }
@@ -142,18 +205,50 @@ static void replace_segments(queue *q, const remaining *kept)
     q->next = was;
 }
 
-/* The state behind an edge that is taken at `t`. */
-static segment moved_by(const machine *a, const segment *s, int32_t number, int64_t t)
+/* Let an item take its own instants from those of its clocks that an edge names. */
+static void take_own(const queueing *g, int32_t i, const int32_t *sources, int32_t count)
 {
+    int64_t was[QUEUED_CLOCKS];
+    int64_t *own = own_instant(g, i, 0);
+    int32_t c;
+    (void)memcpy(was, own, (size_t)g->a->clocks * sizeof *own);
+    for (c = 0; c < count; c++) {
+        own[c] = (sources[c] < 0) ? own[c] : was[sources[c]];
+    }
+}
+
+/* The state of the items [from, end) of a segment behind an edge that they take at `t`. */
+static segment moved_by(const queueing *g, const segment *s, int32_t from, int32_t end, int32_t number,
+                        int64_t t)
+{
+    const machine *a = g->a;
     const int32_t *sources = &a->sources[number * a->clocks];
+    bool others = false;
     segment made;
     int32_t c;
+    int32_t i;
     made.location = a->targets[number];
     for (c = 0; c < a->widths[made.location]; c++) {
         const int64_t clock = (sources[c] < 0) ? t : s->clocks[sources[c]];
         made.clocks[c] = (clock == OF_EACH_TICK) ? t - 1 : clock;
+        others = others || ((clock == OF_EACH_ATTEMPT) && (sources[c] != c));
+    }
+    for (i = from; others && (i < end); i++) {
+        take_own(g, i, sources, a->widths[made.location]);
     }
     return made;
+}
+
+/* Whether two clocks of the items [from, end) of a segment were reset together. */
+static bool are_same_clocks(const queueing *g, const segment *s, int32_t from, int32_t end, int32_t one,
+                            int32_t other)
+{
+    bool same = s->clocks[one] == s->clocks[other];
+    int32_t i;
+    for (i = from; same && (one != other) && (s->clocks[one] == OF_EACH_ATTEMPT) && (i < end); i++) {
+        same = *own_instant(g, i, one) == *own_instant(g, i, other);
+    }
+    return same;
 }
 
 /* Whether all items of a segment, which was stepped at `t`, stay in its state at the next position if the
@@ -177,7 +272,7 @@ static bool rests_all(const queueing *g, segment *s, int32_t from, int32_t end, 
         for (c = 0; c < a->widths[s->location]; c++) {
             if ((sources[c] < 0) && (GAP(g->r) == 1) && (s->clocks[c] == t)) {
                 slid |= (uint32_t)1 << c;
-            } else if ((sources[c] < 0) || (s->clocks[sources[c]] != s->clocks[c])) {
+            } else if ((sources[c] < 0) || !are_same_clocks(g, s, at, until, sources[c], c)) {
                 return false;
             } else {
                 /* The clock stays. */
@@ -207,9 +302,9 @@ static int64_t next_region(const queueing *g, const segment *s, int32_t from, in
         const int64_t *cuts = cuts_of(g->a, s->location, c, &count);
         for (i = 0; (i < count) && (s->clocks[c] != OF_EACH_TICK); i++) {
             int64_t clock = s->clocks[c];
-            if (clock == OF_TRIGGER) {
-                const int32_t one = first_after(g->q, from, end, t - cuts[i]);
-                clock = (one < end) ? item(g->q, one)->triggered : -LIMIT;
+            if (differs(s, c)) {
+                const int32_t one = first_after(g, s, c, from, end, t - cuts[i]);
+                clock = (one < end) ? instant_of_clock(g, s, c, one, t) : -LIMIT;
             }
             found = (clock + cuts[i] > t) ? least(found, clock + cuts[i]) : found;
         }
@@ -257,10 +352,10 @@ static void step_queue(const queueing *g, int64_t t, bool is_position)
             if (target <= PASSED) {
                 tell_decided(g, s, from, until, target == PASSED, t);
             } else if (is_position) {
-                const segment moved = moved_by(g->a, s, number, t);
-                keep_items(g, &kept, &moved, from, until);
+                const segment moved = moved_by(g, s, from, until, number, t);
+                keep_items(g, &kept, &moved, from, until, t);
             } else {
-                keep_items(g, &kept, s, from, until);
+                keep_items(g, &kept, s, from, until, t);
             }
             from = until;
         }

@@ -98,8 +98,8 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
     if (r->truth_log != NULL) {
         note_trigger(r, index, triggered);
     }
-    if (judged_here && is_queued(r, index) && (j->first < 0) && (j->letter == j->other)
-        && (!runs_on(r, index) || is_sure(r, index))) {
+    if (judged_here && (j->first < 0) && (j->letter == j->other)
+        && (!runs_on(r, index) || is_sure(r, index)) && has_queue(r, index)) {
         if (r->margins != NULL) {
             margins_begin(r, index, t, measured_attempt(r, triggered, j->count + 1U));
         }

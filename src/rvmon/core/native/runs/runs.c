@@ -93,7 +93,6 @@ run *new_run(home *h)
 {
     rv_monitor *m = h->monitor;
     cutter c = {NULL, 0};
-    int32_t i;
     run *made = arena_take(&m->memory, sizeof *made);
     if (made == NULL) {
         m->spoilt = true;
@@ -112,12 +111,6 @@ run *new_run(home *h)
     made->block = c.block;
     c.used = 0;
     made->copied = cut_block(&c, made);
-    for (i = 0; i < h->part->plan->judges.count; i++) {
-        if (!make_queue(made, i)) {
-            m->spoilt = true;
-            return NULL;
-        }
-    }
     if (m->keeps_notes && !make_notes(made)) {
         m->spoilt = true;
         return NULL;

@@ -102,20 +102,31 @@ static int32_t carry_attempts(carrier *c, run *r, int32_t index, int32_t *first)
     return last;
 }
 
-/* The clocks of a segment, as many as its location has. */
-static void carry_segment_clocks(carrier *c, const machine *a, segment *s)
+/* The clocks of a segment, as many as its location has; its attempts are those from `first` on. */
+static void carry_segment_clocks(carrier *c, const queueing *g, segment *s, int32_t first)
 {
     int32_t i;
-    for (i = 0; !is_lost(c) && (i < a->widths[s->location]); i++) {
+    int32_t k;
+    for (i = 0; !is_lost(c) && (i < g->a->widths[s->location]); i++) {
+        int64_t before = -LIMIT;
         carry_long(c, &s->clocks[i], 1 - LIMIT, OF_TRIGGER);
-        demand(c, (s->clocks[i] < LIMIT) || (s->clocks[i] >= OF_EACH_TICK));
+        demand(c, (s->clocks[i] < LIMIT) || (s->clocks[i] >= OF_EACH_ATTEMPT));
+        if ((s->clocks[i] != OF_EACH_ATTEMPT) || !make_own_instants(c->m, g->a, g->q)) {
+            continue;
+        }
+        for (k = first; (k < first + s->count) && !is_lost(c); k++) {
+            int64_t *own = own_instant(g, k, i);
+            carry_long(c, own, before, LIMIT);
+            before = *own;
+        }
     }
 }
 
 /* A queue: its attempts, oldest first, then its segments, which have to add up to them. */
 static void carry_queue(carrier *c, run *r, int32_t index)
 {
-    queue *q = r->judges[index].queue;
+    const queueing g = queueing_of(r, index);
+    queue *q = g.q;
     const int32_t locations = automaton_of(r, index)->locations;
     int32_t count = q->count;
     int32_t segment_count = q->now.count;
@@ -125,7 +136,7 @@ static void carry_queue(carrier *c, run *r, int32_t index)
     int32_t i;
     carry_size(c, &count, MOST, 12);
     for (i = 0; (i < count) && !is_lost(c); i++) {
-        queued *one = queue_slot(c->m, q, i, c->reading);
+        queued *one = queue_slot(c->m, g.a, q, i, c->reading);
         if (one != NULL) {
             carry_instant(c, &one->triggered);
             carry_count(c, &one->number);
@@ -140,8 +151,8 @@ static void carry_queue(carrier *c, run *r, int32_t index)
         if (one != NULL) {
             carry_int(c, &one->location, WAITING, locations);
             carry_int(c, &one->count, 1, (int64_t)left + 1);
+            carry_segment_clocks(c, &g, one, count - left);
             left -= one->count;
-            carry_segment_clocks(c, &r->part->machines[index], one);
         }
     }
     demand(c, left == 0);
@@ -198,6 +209,7 @@ static void carry_judge(carrier *c, run *r, int32_t index)
     judge *j = &r->judges[index];
     const automaton_plan *a = automaton_of(r, index);
     const int32_t classes = (a != NULL) ? a->classes : 1;
+    bool in_queue;
     carry_long(c, &j->position, -LIMIT, LIMIT - 1);
     carry_long(c, &j->lag, 0, NEVER);
     carry_instant_or(c, &j->failed_at, NEVER);
@@ -212,7 +224,10 @@ static void carry_judge(carrier *c, run *r, int32_t index)
     carry_flag(c, &j->blind);
     j->last = carry_attempts(c, r, index, &j->first);
     (void)carry_attempts(c, r, index, &j->undecidable);
-    if (j->queue != NULL) {
+    in_queue = !queue_is_empty(j);
+    carry_flag(c, &in_queue);
+    demand(c, !in_queue || has_queue(r, index)); /* a monitor in one block has no queues */
+    if (in_queue && !is_lost(c)) {
         carry_queue(c, r, index);
     }
     if (is_chained(r, index)) {
