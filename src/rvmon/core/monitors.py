@@ -175,10 +175,10 @@ def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkP
     network = plan_of(rule.required, gap)
     chain = None if rule.stepped else chain_of(network, gap)
     nested = chain is not None and len(chain.windows) > 1
-    # Of a `whenever` few attempts are open at a time: to step each costs least. An outage may hold
-    # any number of samples: automata read its letter at each instant.
-    few = rule.requirement.mode is Mode.WHENEVER
-    if rule.automaton is not None and (few or gap is None) and not nested:
+    # Episodes do not overlap, so that their clocks ascend: automata step them together. An outage
+    # may hold any number of samples: automata read its letter at each instant.
+    apart = rule.requirement.mode is Mode.WHENEVER
+    if rule.automaton is not None and (apart or gap is None) and not nested:
         return rule.automaton
     return network, chain
 
