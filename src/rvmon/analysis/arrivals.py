@@ -50,10 +50,6 @@ class Arrivals:
     A look begins at any instant, with the last update of each signal before it: so it takes only
     formulas of the moment, see `is_of_moment`. A recording with outages is none for it.
 
-    Args:
-        spec: the specification.
-        names: the signals and events that have a source; `None`: all.
-
     Attributes:
         found: by attempt the instant, ticks; `None`: it did not come so far.
     """

@@ -38,9 +38,6 @@ def combinations_of(spec: CheckedSpec, states: Sequence[State]) -> frozenset[Tru
 
     Operators with memory, and comparisons other than of a name with a constant, are taken as free,
     so a combination that is not in the result is impossible.
-
-    Returns:
-        A superset of the possible combinations; `None` if there are too many.
     """
     table = Letters(spec).table(states, lambda truths: truths)
     return None if table is None else frozenset(table.rows.values())

@@ -56,11 +56,6 @@ class Implication(Struct, frozen=True):
 class ConflictSearch:
     """Searches for conflicts among requirements each of which can pass by itself.
 
-    Args:
-        together: answers reachability queries.
-        subjects: the requirements.
-        deadline: by `time.monotonic`, seconds.
-
     Attributes:
         conflicts: found so far; none contains another one.
         pairs: the number of pairs that read a common name.
@@ -305,12 +300,8 @@ def implications_among(
 ) -> tuple[list[Implication], bool]:
     """The requirements that one or several others imply, each with a minimal set of these.
 
-    Args:
-        together: answers reachability queries.
-        subjects: the requirements that may imply another one.
-        falling: the requirements that can fail, and so may be implied.
-        conflicts: sets that cannot all hold; they would imply anything, so they are excluded.
-        deadline: by `time.monotonic`, seconds.
+    Only of `falling`, which can fail, that is asked. Conflicts would imply anything, so they are
+    excluded.
 
     Returns:
         The implications, and whether all requirements were tested. Of requirements that imply each

@@ -31,15 +31,7 @@ def every_rule() -> Mapping[str, Rule]:
 
 
 def page_of(code: str) -> str:
-    """The page of a code as Markdown.
-
-    Args:
-        code: such as `RV012`, or a name such as `unknown-signal`; a name that occurs twice means
-            the code of specifications, not of models.
-
-    Raises:
-        UnknownNameError: there is no such code; the message lists similar ones.
-    """
+    """The page of a code, or of a name (of specifications before models), as Markdown."""
     rules = every_rule()
     named = {rules[known].name: rules[known] for known in sorted(rules, reverse=True)}
     rule = rules.get(code.upper()) or named.get(code.lower())

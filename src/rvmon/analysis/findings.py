@@ -46,13 +46,7 @@ class Examination(Struct, frozen=True):
 
 
 def examine(spec: CheckedSpec, subjects: Sequence[Subject], seconds: float) -> Examination:
-    """Analyse requirements: each alone, then pairs, then larger sets.
-
-    Args:
-        spec: declares the names.
-        subjects: its requirements.
-        seconds: the budget; analyses not reached within it count as not decided.
-    """
+    """Analyse requirements: each alone, then pairs, then larger sets, as far as seconds reach."""
     deadline = time.monotonic() + seconds
     results: dict[str, Possible] = {}
     for subject in subjects:

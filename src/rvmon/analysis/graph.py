@@ -26,11 +26,7 @@ ANY = -1
 
 
 def cubes_of(vectors: Iterable[Cube], never: Collection[Cube] = ()) -> tuple[Cube, ...]:
-    """Prime cubes that cover the vectors, chosen greedily.
-
-    Args:
-        vectors: to be covered.
-        never: impossible vectors, which may be covered or not.
+    """Prime cubes that cover the vectors, chosen greedily; `never`: these may be covered or not.
 
     Source: Quine 1952, McCluskey 1956; the choice of primes is greedy.
 

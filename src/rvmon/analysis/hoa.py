@@ -39,9 +39,6 @@ def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
     fulfils what is required, `F` when none does; the automaton accepts the words that come to `P`.
     Letters that inputs cannot bring about lead anywhere: no label speaks of them, nor is a
     proposition listed that none of the others needs.
-
-    Raises:
-        RvmonError: it has windows, no automaton, or too many propositions.
     """
     name, automaton = compiled.requirement.id, compiled.automaton
     if automaton is None:
@@ -138,9 +135,6 @@ class _Machine:
     def least(self, first: Set[Cube]) -> list[tuple[str, Edges]]:
         """The states that are reached, that at the trigger first: what is said there, its edges.
 
-        Args:
-            first: the letters that there can be at the trigger.
-
         Source: partition refinement, Moore 1956; of letters that cannot be nothing is asked.
         """
         blocks = self._blocks()
@@ -213,11 +207,7 @@ def _label(cube: Sequence[int]) -> str:
 
 
 def automaton_json(compiled: CompiledRequirement, spec: CheckedSpec) -> dict[str, object]:
-    """Locations with what is required there, edges with their conditions; ages in ticks.
-
-    Raises:
-        RvmonError: it has no automaton.
-    """
+    """Locations with what is required there, edges with their conditions; ages in ticks."""
     requirement, automaton = compiled.requirement, compiled.automaton
     if automaton is None:
         raise RvmonError(f"error: {requirement.id} has no automaton: {compiled.refusal}")

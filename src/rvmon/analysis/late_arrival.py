@@ -68,11 +68,6 @@ def late_in(
     """By number of the attempt, the instant (ticks) after the deadline when the response came.
 
     Attempts that missed no deadline, and those whose response never came, are left out.
-
-    Args:
-        attempts: the attempts of a requirement.
-        waits: from `waits_of`.
-        seen: the truths of the waits over the recording.
     """
     responses = {}
     for attempt in attempts:

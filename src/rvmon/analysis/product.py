@@ -80,16 +80,7 @@ class Together:
     def can_reach(
         self, subjects: Sequence[Subject], offsets: Sequence[int], aim: Aim
     ) -> bool | None:
-        """Whether attempts can reach a goal.
-
-        Args:
-            subjects: with automata and triggers.
-            offsets: of each trigger, ticks after the first.
-            aim: the goal, evaluated as if the run ended at a state.
-
-        Returns:
-            `False` if it is impossible, `True` if it may be possible, `None` if the search exceeds
-            its limits.
+        """Whether attempts can reach a goal; `False` is sure, `None`: the search had to end.
 
         Source: emptiness of a product of timed automata, after Alur and Dill 1994.
         """

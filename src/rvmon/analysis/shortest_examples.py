@@ -64,12 +64,7 @@ class Player:
         self._run = self._planned.monitor(frozenset())
 
     def play(self, samples: Sequence[Sample], end: int) -> Played:
-        """Judge a short run.
-
-        Args:
-            samples: at least one.
-            end: the instant at which the run ends, ticks, at or after the last sample.
-        """
+        """Judge a short run of one sample at least, which ends at an instant (ticks)."""
         run = self._run
         run.reset()
         for sample in samples:
@@ -147,13 +142,6 @@ def shortest_examples(
     few counts as a sample. A sample takes one of the valuations that the formulas distinguish, a
     short step after the last one, or within a tick of an instant at which a window opens or
     closes.
-
-    Args:
-        compiled: the specification.
-        requirements: its requirements to be judged.
-        goal: classifies a run.
-        wanted: the kinds of examples; the search ends when all are found.
-        budget: the limits at which it gives up.
 
     Cost: about 25 microseconds per run.
     """
@@ -343,13 +331,7 @@ class Analysis(Struct, frozen=True):
 
 
 def analyse(compiled: CompiledSpec, *, seconds: float = 8.0, timelines: int = 3) -> Analysis:
-    """Analyse a specification.
-
-    Args:
-        compiled: the specification.
-        seconds: the budget of `examine`.
-        timelines: the most conflicts for which a timeline is sought.
-    """
+    """Analyse a specification."""
     subjects = [
         Subject(
             requirement.requirement,

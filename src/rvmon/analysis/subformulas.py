@@ -90,14 +90,7 @@ def dissect(
     attempt: Attempt,
     names: frozenset[str] | None = None,
 ) -> Breakdown:
-    """Dissect an attempt.
-
-    Args:
-        spec: the specification.
-        samples: the recording, in order of time.
-        end: the last instant of the recording, ticks.
-        attempt: an attempt of one of its requirements on this recording.
-        names: the signals and events that have a source; `None`: all.
+    """Dissect an attempt on a recording that ends at an instant (ticks).
 
     Source: SEMANTICS 2; Kleene's value by a pessimistic and an optimistic reading (SEMANTICS 1).
     """
@@ -170,25 +163,13 @@ def why_not_triggered(
     end: int,
     names: frozenset[str] | None = None,
 ) -> str:
-    """One sentence: the parts that the trigger lacked when it came nearest; "" if none applies.
-
-    Args:
-        spec: the specification.
-        requirement: a requirement that was not triggered.
-        samples: the recording, in order of time.
-        end: its last instant, ticks.
-        names: the signals and events that have a source; `None`: all.
-    """
+    """One sentence: the parts that the trigger lacked when it came nearest; "" if none applies."""
     trigger = TriggerParts(spec, requirement)
     return trigger.miss_in(look_through(spec, [trigger.question], samples, end, names))
 
 
 class TriggerParts:
     """The parts of a trigger, by which it is said why it did not come; of any recording.
-
-    Args:
-        spec: the specification.
-        requirement: the owner of the trigger.
 
     Attributes:
         question: asks for the operands; for none of `for each`, which is not explained.

@@ -121,14 +121,8 @@ def look_through(
 ) -> RecordedTruths:
     """Evaluate formulas over a recording, which is read once.
 
-    Args:
-        spec: the specification.
-        questions: the formulas.
-        pieces: the recording, in order of time.
-        end: its last instant, ticks.
-        names: the signals and events that have a source; `None`: all.
-        plans: a cache of plans from calls with other recordings; new plans are added.
-        outages: the outages of the recording; ignored for a `HeldRecording`, which has its own.
+    Plans of calls with other recordings are taken from `plans`, and new ones added. A
+    `HeldRecording` has outages of its own.
 
     Cost: one pass in C for each `Question.whose`. Memory is linear in the number of changes of
     truth values, in sampled time in the number of samples.
@@ -367,13 +361,7 @@ def parts_of(requirement: Requirement, attempt: Attempt) -> Question:
 def truths_of_parts(
     requirement: Requirement, attempt: Attempt, seen: RecordedTruths
 ) -> dict[int, Truth]:
-    """The truths of trigger, consequent and their subformulas, by `id()` of the formula.
-
-    Args:
-        requirement: the requirement.
-        attempt: an attempt of it.
-        seen: the truths of `parts_of(requirement, attempt)` over the recording.
-    """
+    """The truths of trigger, consequent and their subformulas, by `id()` of the formula."""
     question = parts_of(requirement, attempt)
     pairs = zip(question.formulas, seen.truths(question), strict=True)
     return {id(formula): truth for formula, truth in pairs}

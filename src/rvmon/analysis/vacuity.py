@@ -79,14 +79,10 @@ def possible(
 ) -> Possible:
     """The possible behaviour of a requirement, by reachability on its automaton.
 
+    Without a `trigger` it is the end of the trace, without an `automaton` that does not close.
+
     An over-approximation: past operators and complex comparisons are taken as free propositions,
     and the order in which ages cross their bounds is free.
-
-    Args:
-        spec: declares the names.
-        trigger: the trigger; `None` if it is the end of the trace.
-        automaton: the automaton of the requirement; `None` if it does not close.
-        policy: `at end` of the requirement.
 
     Source: AUTOMATA 2, regions after Alur and Dill 1994.
     """
@@ -131,10 +127,6 @@ class _Reach:
 
     The age of a clock just started is known exactly; of the others only the region.
 
-    Args:
-        automaton: to be explored.
-        gap: ticks between two positions; `None` if any number of ticks may pass.
-
     Attributes:
         rows: the reachable rows of undecided locations.
         failed: whether an attempt can fail.
@@ -149,12 +141,7 @@ class _Reach:
         self.passed = False
 
     def run(self, first: set[int], letters: set[int]) -> None:
-        """Explore from the trigger.
-
-        Args:
-            first: the classes of letters possible at the trigger.
-            letters: the classes possible at any position.
-        """
+        """Explore from the trigger, by the classes of letters possible there, and anywhere."""
         waiting = list(self._step(self.automaton.initial, (), first))
         seen = set(waiting)
         while waiting:

@@ -82,12 +82,6 @@ class WindowValues:
     """Evaluates windows while a recording is read.
 
     Each window is captured by a requirement of its own that is triggered at the instant.
-
-    Args:
-        spec: the specification.
-        asked: instants and windows.
-        origin: the first instant of the recording, ticks.
-        recording: gives names, end and outages; its samples are passed to `take`.
     """
 
     def __init__(

@@ -87,10 +87,7 @@ def program() -> int:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line and return its exit code.
-
-    Args:
-        arguments: without the program's name; default `sys.argv[1:]`.
+    """Run the command line, default `sys.argv[1:]`, and return its exit code.
 
     >>> main(["--version"])
     rvmon 0.1.0, law 3
@@ -101,11 +98,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
-    """Run the chosen subcommand; errors become a message and an exit code, never a traceback.
-
-    Args:
-        parsed: gives the words of the command line.
-    """
+    """Run the chosen subcommand; errors become a message and an exit code, never a traceback."""
     _open_closed()
     spell()  # a narrow encoding costs signs, not the answer
     try:

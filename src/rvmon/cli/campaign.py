@@ -35,12 +35,7 @@ INTERRUPTED = 130
 
 
 def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:
-    """Run the command line of a campaign and return its exit code.
-
-    Args:
-        campaign: the campaign.
-        arguments: without the program's name; default `sys.argv[1:]`.
-    """
+    """Run the command line of a campaign, default `sys.argv[1:]`, and return its exit code."""
 
     def parsed() -> Namespace:
         parser = Parser(description=f"{campaign.name}: generate, play and evaluate tests.")
@@ -109,10 +104,7 @@ def _run(arguments: Namespace) -> int:
 def run_tests(campaign: Campaign, arguments: Namespace) -> int:
     """Play a campaign, show it, compare it with what was expected, and return an exit code.
 
-    Args:
-        campaign: the campaign.
-        arguments: the options of `add_run_options`; perhaps `strategy`, `robot`, `spec` and
-            `format`.
+    `arguments` has the options of `add_run_options`; perhaps `strategy`, `robot`, `spec`, `format`.
     """
     from rvmon.cli.campaign_run import conduct, is_as_expected, show
 
@@ -162,12 +154,7 @@ def _mutate(arguments: Namespace) -> int:
 
 
 def names_of(listed: str | None, known: Sequence[str], what: str) -> tuple[str, ...]:
-    """Read names that are separated by commas.
-
-    Args:
-        listed: on the command line; `None`: all.
-        known: the existing ones.
-        what: the word for one, also of its option.
+    """Read names that are separated by commas; `None`: all.
 
     Raises:
         UnknownNameError: one does not exist, or none is named.

@@ -30,18 +30,7 @@ def conduct_closing(
     arguments: Namespace,
     words: Sequence[object],
 ) -> tuple[Closed, CampaignJudgement]:
-    """Close holes, show what came of it, write the suite.
-
-    Args:
-        campaign: the campaign.
-        robot: of its robots the one that is tested.
-        strategies: the strategies that tests are drawn from; none: those of the campaign.
-        arguments: the options of `add_closing_options`.
-        words: the command that does it again, and its other options.
-
-    Returns:
-        What came of it, and how the suite stands against what was expected.
-    """
+    """Close holes, show what came of it, write the suite; returns how that is judged, too."""
     campaign = replace(campaign, robots={robot: campaign.robots[robot]})
     folder = output_folder(arguments.out) if arguments.out else None
     before = dated_files(folder) if folder is not None else {}

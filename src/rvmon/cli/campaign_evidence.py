@@ -34,11 +34,7 @@ from rvmon.verdicts.serialise import VerdictRow
 
 
 def begun(campaign: Campaign, path: str) -> tuple[dict[str, bytes], list[str]]:
-    """The texts of requirements, before the campaign is played, and after.
-
-    Raises:
-        RvmonError: evidence cannot be kept of it.
-    """
+    """The texts of requirements, before the campaign is played, and after."""
     refuse_no_file(path)
     specs = {name: robot.spec for name, robot in campaign.robots.items() if robot.spec is not None}
     if len(specs) < len(campaign.robots):
@@ -54,11 +50,7 @@ def write_campaign(
     specs: Mapping[str, Spec],
     words: Sequence[object],
 ) -> None:
-    """Write the evidence of a campaign.
-
-    Raises:
-        RvmonError: requirements have changed meanwhile, or it cannot be written.
-    """
+    """Write the evidence of a campaign."""
     campaign = results.plan.campaign
     if begun(campaign, path) != before:
         raise RvmonError("--evidence: requirements have changed meanwhile: run it again")
@@ -118,11 +110,7 @@ def _rows(job: Job, outcome: Outcome) -> Iterator[VerdictRow]:
 
 
 def as_kept(campaign: Campaign, kept: Kept) -> Campaign:
-    """The campaign as it made evidence: with its robots, judged by the requirements in there.
-
-    Raises:
-        RvmonError: the campaign has no such robot.
-    """
+    """The campaign as it made evidence: with its robots, judged by the requirements in there."""
     if unknown := kept.specs.keys() - campaign.robots.keys():
         raise RvmonError(f"{campaign.name} has no robot {', '.join(sorted(unknown))}")
     robots = {name: replace(campaign.robots[name], spec=spec) for name, spec in kept.specs.items()}
@@ -132,11 +120,7 @@ def as_kept(campaign: Campaign, kept: Kept) -> Campaign:
 def played_again(
     campaign: Campaign, kept: Kept, chosen: Sequence[str], jobs: int
 ) -> Iterator[VerdictRow]:
-    """Play tests of evidence again; their code is not measured.
-
-    Raises:
-        RvmonError: a test is none, or not there.
-    """
+    """Play tests of evidence again; their code is not measured."""
     tests = []
     for name in chosen:
         robot, _, test = name.partition("/")

@@ -67,11 +67,7 @@ class Conducted(Struct, frozen=True):
         return self.results.cut_short == INTERRUPTED
 
     def judged(self, *, strict: bool) -> CampaignJudgement:
-        """Compare the campaign with what was expected of it.
-
-        Args:
-            strict: verdicts that are inconclusive or not triggered are wrong as well.
-        """
+        """Compare the campaign with what was expected of it; if `strict`, I and NT are wrong."""
         robots = self.summary.robots.items()
         requirements = {name: tuple(robot.requirements) for name, robot in robots}
         shares: dict[RobotRequirement, dict[str, Decision]] = {}
@@ -89,18 +85,7 @@ def conduct(
     words: Sequence[object],
     stack: ExitStack,
 ) -> Conducted:
-    """Plan, load the requirements, play, count, write.
-
-    Args:
-        campaign: the campaign.
-        strategies: the strategies that make tests.
-        arguments: the options of `add_run_options`.
-        words: the command that runs it again, and its other options.
-        stack: closes what was needed meanwhile.
-
-    Raises:
-        TestError: there is nothing to be played.
-    """
+    """Plan, load the requirements, play, count, write; `stack` closes what was needed meanwhile."""
     if arguments.shard is not None and not arguments.out:
         raise RvmonError("--shard keeps its results in a folder: name it with --out")
     if arguments.shard is not None and arguments.evidence:
@@ -156,11 +141,7 @@ def conduct(
 
 
 def _refuse_nothing(chosen: Plan) -> None:
-    """Say why no test is to be played.
-
-    Raises:
-        TestError: always.
-    """
+    """Say why no test is to be played."""
     tests = [test for several in chosen.tests.values() for test in several]
     robots = " and ".join(chosen.campaign.robots)
     written_for = " and ".join(sorted({test.robot for test in tests if test.robot is not None}))
@@ -177,16 +158,7 @@ def written(
     again: str,
     spool: Path | None = None,
 ) -> Conducted:
-    """Count what came out, and write it to a folder.
-
-    Args:
-        results: of the tests.
-        specs: the specifications that judged them.
-        folder: for tables, tests and pages; `None` writes nothing.
-        arguments: the options of `add_playing_options`.
-        again: the command that runs the tests again.
-        spool: has what was recorded of tests, so that they are not played again for their pages.
-    """
+    """Count what came out, and write it to a folder, if any; `spool` has what was recorded."""
     campaign = results.plan.campaign
     summary = summarise(results, specs)
     tables = campaign.presentation.tables(summary)
@@ -330,11 +302,7 @@ def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
 
 
 def _job(campaign: Campaign, arguments: Namespace) -> Job:
-    """The test, on the robot that was asked for, else its own, else the campaign's first.
-
-    Raises:
-        UnknownNameError: there is no such robot.
-    """
+    """The test, on the robot that was asked for, else its own, else the campaign's first."""
     test = load_test(arguments.test, campaign.test)
     name = arguments.robot or test.robot or next(iter(campaign.robots))
     if name not in campaign.robots:

@@ -79,11 +79,7 @@ def _analysed(checked: CheckedSpec, seconds: float) -> tuple[Sequence[Diagnostic
 
 
 def _bound(path: str, checked: CheckedSpec) -> list[str]:
-    """Remarks on a binding: names left to the topics' names, and names fed by the same field.
-
-    Raises:
-        RvmonError: it does not fit the specification.
-    """
+    """Remarks on a binding: names left to the topics' names, and names fed by the same field."""
     from rvmon.recordings.binding import load_binding
 
     bounds = load_binding(path, checked).bounds

@@ -84,11 +84,7 @@ def _compare(
 
 
 def _some(shown: frozenset[str], path: str, labels: tuple[str, ...]) -> frozenset[str]:
-    """The labels that a recording shows.
-
-    Raises:
-        TraceError: there are none, so that any model would explain it.
-    """
+    """The labels that a recording shows; where there are none, any model would explain it."""
     if not shown:
         known = f"its actions are {', '.join(labels)}" if labels else "no edge of it has a label"
         raise TraceError(

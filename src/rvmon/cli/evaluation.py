@@ -62,12 +62,7 @@ class Options(Struct, frozen=True):
 def spec_and_options(
     arguments: argparse.Namespace, name: str | None = None
 ) -> tuple[Spec, Options]:
-    """The specification that judges, and the options of judging.
-
-    Args:
-        arguments: the options of `rvmon run`.
-        name: of the specification in messages; default its path.
-    """
+    """The specification that judges, and the options of judging."""
     loaded = load(arguments.spec, name=name, const=constants_of(arguments.const))
     spec = reading_spec(loaded, arguments)
     return spec, Options(
@@ -89,12 +84,6 @@ def _shows_counts_alone(arguments: argparse.Namespace) -> bool:
 
 class RecordingCoverage:
     """Finds coverage on one recording, beside judging it.
-
-    Args:
-        spec: may have coverpoints.
-        options: say what is asked for.
-        recording: is judged.
-        end: the instant to which it is judged, ticks; default its last sample.
 
     Attributes:
         hits: what was hit of the coverage model, if all of it was asked for.
@@ -125,11 +114,7 @@ class RecordingCoverage:
             yield piece
 
     def finished(self) -> dict[str, Any]:
-        """What was found, for the report, when all of the recording went by.
-
-        Raises:
-            TraceError: coverage cannot be found.
-        """
+        """What was found, for the report, when all of the recording went by."""
         if self._run is None:
             return {}
         from rvmon.coverage import covered_groups, illegal
@@ -178,15 +163,10 @@ def judge_all(
 ) -> Iterator[Judged]:
     """Judge recordings, in their order.
 
-    Args:
-        spec: reads as the options say.
-        traces: paths.
-        options: of judging.
-        jobs: processes, 1 judges here; or the address of a scheduler of Dask. If one of several is
-            lost, so are the verdicts on what comes behind the last that was judged in order, and
-            each of these says so.
-        writes_json: whether processes write the reports as JSON, too: this one alone would take a
-            tenth of the time for all of them, while the others rest.
+    If one of several processes is lost, or a scheduler of Dask that `jobs` names, so are the
+    verdicts on what comes behind the last that was judged in order, and each of these says so. With
+    `writes_json` processes write the reports as JSON, too: this one alone would take a tenth of the
+    time for all of them, while the others rest.
     """
     done = 0
     is_alone = len(traces) == 1
@@ -224,14 +204,7 @@ def _judge_apart(spec: Spec, trace: str, options: Options, *, writes_json: bool)
 
 @without_copies()
 def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -> Judged:
-    """Judge one recording; if it is broken, what was decided before the break stays decided.
-
-    Args:
-        spec: reads as the options say.
-        trace: the path.
-        options: of judging.
-        is_alone: whether this process judges nothing else.
-    """
+    """Judge one recording; if it is broken, what was decided before the break stays decided."""
     before: list[Attempt] = []
     began = time.monotonic()
     try:

@@ -44,11 +44,7 @@ Again = Callable[[Kept, Sequence[str], int], Iterable[VerdictRow]]
 
 
 def run_evidence(arguments: argparse.Namespace) -> int:
-    """Verify, say what was found, and return the exit code.
-
-    Raises:
-        RvmonError: it is no evidence.
-    """
+    """Verify, say what was found, and return the exit code."""
     differ: list[str] = []
     unchecked: list[str] = []
     try:
@@ -119,11 +115,7 @@ def _shown(recordings: Mapping[str, str]) -> Iterator[tuple[str, str]]:
 
 
 def _expect_derived(kept: Kept) -> None:
-    """See that the matrix follows from requirements and verdicts.
-
-    Raises:
-        TamperedError: it does not.
-    """
+    """See that the matrix follows from requirements and verdicts."""
     const = constants_of(kept.about.judging.const if kept.about.judging else ())
     specs = {robot: load(path, const=const) for robot, path in kept.specs.items()}
     try:
@@ -174,14 +166,7 @@ def is_recording(path: str) -> bool:
 def begun(
     arguments: argparse.Namespace, traces: Sequence[str]
 ) -> tuple[dict[str, bytes], list[str], dict[str, str]]:
-    """The inputs on which verdicts depend, before anything is judged, and after.
-
-    Returns:
-        What `texts_of` returns, and the SHA-256 of the recordings by path.
-
-    Raises:
-        RvmonError: evidence cannot be kept of it.
-    """
+    """What `texts_of` gives before and after judging, and the SHA-256 of the recordings by path."""
     hashes: dict[str, str] = {}
     for trace in traces:
         if not is_recording(trace) or shown_path(trace) in hashes:
@@ -196,17 +181,7 @@ def write_run(
     judged: Sequence[Judged],
     before: tuple[dict[str, bytes], list[str], dict[str, str]],
 ) -> None:
-    """Write the evidence of recordings.
-
-    Args:
-        arguments: of `rvmon run`.
-        spec: the specification that judged.
-        judged: the recordings.
-        before: the result of `begun` before these were judged.
-
-    Raises:
-        RvmonError: it cannot be written, or what was judged has changed meanwhile.
-    """
+    """Write the evidence of recordings, unless an input has changed meanwhile."""
     if begun(arguments, list(before[2])) != before:
         raise RvmonError("--evidence: an input has changed meanwhile: run it again")
     entries, (main, *binding), recordings = before

@@ -46,12 +46,6 @@ def looked_up(requirement: Requirement, failed: int) -> int:
 class FailureNotes:
     """Notes on the failures of a recording as it is judged.
 
-    Args:
-        spec: the specification.
-        recording: is judged.
-        only: ids of the requirements, or `None` for all.
-        core: judges it.
-
     Attributes:
         late: by requirement and number of the attempt, when what it awaited came after all, ticks;
             `None`: it did not, or nothing was awaited. It lacks what cannot be known so.

@@ -116,11 +116,7 @@ def declare(parser: Parser, *names: str) -> None:
 
 
 def asked_ids(arguments: argparse.Namespace, spec: Spec) -> tuple[str, ...] | None:
-    """The requirements that what the options `ONLY` leave; `None`: all.
-
-    Raises:
-        UnknownNameError: there is no such requirement, severity or tag, or none that fits all.
-    """
+    """The requirements that the options `ONLY` leave; `None`: all."""
     from rvmon.language.checked.names_read import labelled
 
     ids = ids_of(arguments.only, spec)
@@ -135,11 +131,7 @@ def names_in(text: str) -> list[str]:
 
 
 def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
-    """The requirements of a list with commas; `None`: all.
-
-    Raises:
-        UnknownNameError: the list is empty, or there is no such requirement.
-    """
+    """The requirements of a list with commas; `None`: all."""
     from rvmon.language.checked.names_read import requirements_asked
 
     if listed is None:
@@ -172,9 +164,6 @@ def budget_of(arguments: argparse.Namespace) -> Budget:
 def constants_of(texts: Iterable[str]) -> dict[str, str]:
     """The values by name.
 
-    Raises:
-        RvmonError: a text has another form.
-
     >>> constants_of(["T=2 s"])
     {'T': '2 s'}
     """
@@ -183,11 +172,7 @@ def constants_of(texts: Iterable[str]) -> dict[str, str]:
 
 
 def model_constants_of(texts: Iterable[str]) -> dict[str, int]:
-    """The values by name, of a model, whose constants are whole numbers.
-
-    Raises:
-        RvmonError: a text has another form.
-    """
+    """The values by name, of a model, whose constants are whole numbers."""
     constants = {}
     for name, value in named_values("--const", texts, form := "NAME=NUMBER, such as N=4"):
         digits = value.strip().removeprefix("-")
@@ -198,11 +183,7 @@ def model_constants_of(texts: Iterable[str]) -> dict[str, int]:
 
 
 def named_values(option: str, texts: Iterable[str], form: str) -> Iterator[tuple[str, str]]:
-    """The names and values of an option's texts, of a form that is given with an example.
-
-    Raises:
-        RvmonError: a text has another form.
-    """
+    """The names and values of an option's texts, of a form that is given with an example."""
     for text in texts:
         name, _, value = text.partition("=")
         if not name.strip() or not value.strip():
@@ -211,15 +192,7 @@ def named_values(option: str, texts: Iterable[str], form: str) -> Iterator[tuple
 
 
 def refuse_over(written: Iterable[str | None], read: Iterable[str | None]) -> None:
-    """Say before anything is done that it would write over what it reads, or has written.
-
-    Args:
-        written: files; `None`: the user named none.
-        read: files, likewise.
-
-    Raises:
-        RvmonError: one is the same as another.
-    """
+    """Say before anything is done that it would write over what it reads, or has written."""
     known = list(filter(None, read))
     taken = set()
     for one in filter(None, written):
@@ -240,11 +213,7 @@ def _is_same_file(one: str, other: str) -> bool:
 
 @contextmanager
 def at_most(megabytes: int | None) -> Iterator[None]:
-    """Let this process, and those that it starts, take so much memory; `None`: any.
-
-    Raises:
-        RvmonError: the memory was not enough, or this system sets no limits.
-    """
+    """Let this process, and those that it starts, take so much memory; `None`: any."""
     try:
         with _limited(megabytes):
             yield

@@ -74,11 +74,7 @@ SAMPLES_PER_LOOK = 4096
 
 @contextmanager
 def bar(what: str, total: float) -> Iterator[Callable[[float], None]]:
-    """Show how far work is, once it has taken a second; only a terminal sees it.
-
-    Yields:
-        What is to be called with the units done so far.
-    """
+    """Gives what is told the units done so far; a terminal sees work of over a second."""
     if not sys.stderr.isatty():
         yield lambda _: None
         return
@@ -112,11 +108,7 @@ def _console() -> Console:
 
 @contextmanager
 def busy(what: str) -> Iterator[Callable[[str], None] | None]:
-    """Tell a person at a terminal what is being done, where nobody knows how far it is.
-
-    Yields:
-        What is to be called with other words for it; `None` where nobody sees them.
-    """
+    """Gives what takes other words for what is done; `None` where nobody sees them."""
     if not sys.stderr.isatty():
         yield None
         return
@@ -125,12 +117,7 @@ def busy(what: str) -> Iterator[Callable[[str], None] | None]:
 
 
 def shown_while_reading(recording: FileRecording, parts: Iterator[T]) -> Iterator[T]:
-    """The parts of a recording as they are read, with a progress bar.
-
-    Args:
-        recording: knows the progress.
-        parts: its samples, or pieces of it with many rows each.
-    """
+    """The parts of a recording as they are read, with a progress bar."""
     from rvmon.trace.sample import Sample  # which help has no need of
 
     with bar(recording.path, 1.0) as show:

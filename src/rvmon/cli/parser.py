@@ -86,9 +86,6 @@ class Parser(argparse.ArgumentParser):
 def positive(text: str) -> int:
     """Read a whole number of at least 1.
 
-    Raises:
-        argparse.ArgumentTypeError: it is none; `argparse` says which option it stands at.
-
     >>> positive("3")
     3
     """
@@ -101,9 +98,6 @@ def positive(text: str) -> int:
 def shard(text: str) -> Shard:
     """Read which of how many shares of the work is to be done.
 
-    Raises:
-        argparse.ArgumentTypeError: it is none.
-
     >>> shard("2/4")
     Shard(number=2, total=4)
     """
@@ -115,9 +109,6 @@ def shard(text: str) -> Shard:
 
 def number_or_folder(text: str) -> int | Path:
     """Read how many tests there are to be, or where they are.
-
-    Raises:
-        argparse.ArgumentTypeError: it is neither.
 
     >>> number_or_folder("3")
     3
@@ -138,9 +129,6 @@ _TIME = re.compile(r"\s*([+-]?[\d.]+(?:e[+-]?\d+)?)\s*([a-z]*)\s*", re.ASCII)
 def ticks(text: str) -> int:
     """Read an instant, exactly: seconds, or a number with its unit.
 
-    Raises:
-        argparse.ArgumentTypeError: it is no time, or too far away.
-
     >>> ticks("10 s"), ticks("1700000000.000000001"), ticks("500ms")
     (10000000000, 1700000000000000001, 500000000)
     """
@@ -156,9 +144,6 @@ def ticks(text: str) -> int:
 
 def span(text: str) -> int:
     """Read a duration of at least 0, as `ticks` reads instants.
-
-    Raises:
-        argparse.ArgumentTypeError: it is none, or too long.
 
     >>> span("2 min")
     120000000000
@@ -189,9 +174,6 @@ def span_s(text: str) -> float:
 
 def percentage(text: str) -> float:
     """Read a percentage, with or without its sign, as a share from 0 to 1.
-
-    Raises:
-        argparse.ArgumentTypeError: it is none, or beyond 100.
 
     >>> percentage("95%"), percentage("99.5")
     (0.95, 0.995)

@@ -35,13 +35,7 @@ _AT_ONCE = 16_384
 
 
 class Remembered:
-    """The pieces of a recording as they were judged, if they are few; else notes on its failures.
-
-    Args:
-        spec: the specification.
-        recording: is judged.
-        only: ids of the requirements, or `None` for all.
-    """
+    """The pieces of a recording as they are judged, if they are few; else notes on failures."""
 
     def __init__(self, spec: Spec, recording: FileRecording, only: Sequence[str] | None) -> None:
         self._judged = spec, recording, only

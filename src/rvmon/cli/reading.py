@@ -63,9 +63,6 @@ def allowed_names(text: str | None) -> bool | tuple[str, ...]:
 def mapped_names(texts: Sequence[str]) -> dict[str, str]:
     """The values of `--map`: columns by declared name.
 
-    Raises:
-        RvmonError: a text has another form, or a name stands twice.
-
     >>> mapped_names(["speed=Speed [m/s]"])
     {'speed': 'Speed [m/s]'}
     """
@@ -117,27 +114,14 @@ def reading_spec(spec: Spec, arguments: argparse.Namespace) -> Spec:
 
 
 def refuse_empty(spec: Spec) -> None:
-    """Refuse a specification by which everything is fine, such as one that was cut off or emptied.
-
-    Raises:
-        RvmonError: there is no requirement, no goal and no coverpoint.
-    """
+    """Refuse a specification by which everything is fine, such as one that was cut off."""
     checked = spec.checked
     if not (spec.requirements or checked.covers or checked.coverpoints):
         raise RvmonError(f"{checked.name} has no requirement: there is nothing to check")
 
 
 def opened(spec: Spec, trace: str, *, only: Collection[str] | None = None) -> FileRecording:
-    """The recording at a path, for a specification that knows how to read it.
-
-    Args:
-        spec: the specification.
-        trace: the path.
-        only: the names that are read of it; `None`: all that are declared.
-
-    Raises:
-        TraceError: it cannot be opened, or its header is wrong.
-    """
+    """The recording at a path, as a specification reads it, with all names or only some."""
     from rvmon.recordings.recording import FileRecording
 
     schema = spec.schema
@@ -160,12 +144,7 @@ ATTEMPT_HELP = (
 
 
 def named_attempt(text: str, spec: Spec) -> tuple[str, str | None]:
-    """The requirement that is meant, and the name of the attempt if one is.
-
-    Raises:
-        RvmonError: the text is no such name.
-        UnknownNameError: there is no such requirement.
-    """
+    """The requirement that is meant, and the name of the attempt if one is."""
     match = re.fullmatch(r"(?P<name>[^#?]+)((?P<mark>[#?])(?P<number>\d{1,9}))?", text)
     if match is None:
         raise RvmonError(
@@ -180,12 +159,7 @@ def named_attempt(text: str, spec: Spec) -> tuple[str, str | None]:
 
 
 def chosen_attempt(report: Report, name: str, exact: str | None) -> Attempt:
-    """The attempt that is meant: without a name the first failed, else open, else any.
-
-    Raises:
-        RvmonError: the requirement has no attempt.
-        UnknownNameError: it has others.
-    """
+    """The attempt that is meant: without a name the first failed, else open, else any."""
     from rvmon.report.wording import without_attempts
 
     attempts = sorted(report.attempts, key=lambda attempt: (attempt.in_doubt, attempt.number))
@@ -227,14 +201,7 @@ def relax(parser: argparse.ArgumentParser, words: Sequence[str]) -> None:
 
 @contextmanager
 def unpacked(arguments: argparse.Namespace) -> Iterator[Case | None]:
-    """The reproducer that is named as the specification; the arguments then say what it says.
-
-    Args:
-        arguments: with `spec`, and the options `READING`, `--const` and `--allow-missing`.
-
-    Raises:
-        RvmonError: it cannot be read, or they say otherwise.
-    """
+    """The reproducer that is named as the specification; the arguments then say what it says."""
     if not arguments.spec.endswith(ENDING):
         yield None
         return

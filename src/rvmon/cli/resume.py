@@ -81,18 +81,9 @@ def unfinished(
 ) -> Unfinished:
     """A run whose verdicts go to a file.
 
-    Args:
-        out: the file.
-        traces: paths of the recordings.
-        spec: the specification that judges.
-        options: of judging.
-        reading: the options for reading recordings: words of the command line, files.
-        resume: whether it goes on from where an earlier one was ended, if there is one; what
-            judges, how, and by which program has to be the same, and so has each recording.
-        shards: files of shards to take what they judged from; their recordings may be elsewhere.
-
-    Raises:
-        RvmonError: what is unfinished was judged otherwise, or the file cannot be written.
+    To `resume` goes on from where an earlier run was ended, if there is one: what judges, how
+    (`reading`: words of the command line, files), and by which program has to be the same, and so
+    has each recording. Recordings of shards may be elsewhere.
     """
     path = path_of(out)
     heading = _heading(spec, options, reading)
@@ -127,11 +118,8 @@ def _judged_before(
 ) -> dict[str, Judged]:
     """The results of an earlier run, without recordings whose file has changed since.
 
-    Args:
-        entries: of a journal.
-        stamps: of files now, by recording.
-        is_moved: whether the files may have been those of another machine: a copy has the size of
-            what it is copied from, and a time of its own; it may be missing.
+    `is_moved`: the files may have been those of another machine: a copy has the size of what it is
+    copied from, and a time of its own; it may be missing.
     """
 
     def is_same(entry: _Entry) -> bool:

@@ -22,11 +22,7 @@ if TYPE_CHECKING:
 
 
 def write_results(path: str, spec: Spec, judged: Sequence[Judged]) -> None:
-    """Write the verdicts as a table (`--out`).
-
-    Raises:
-        RvmonError: it cannot be written.
-    """
+    """Write the verdicts as a table (`--out`)."""
     import rvmon
     from rvmon.verdicts import LAW
     from rvmon.verdicts.table_file import write_results as write
@@ -51,11 +47,7 @@ def write_files(
     known: KnownFailures,
     reproducer: str,
 ) -> None:
-    """Write what else was asked for: coverage, JUnit, MCAP, pages.
-
-    Raises:
-        RvmonError: a file cannot be written.
-    """
+    """Write what else was asked for: coverage, JUnit, MCAP, pages."""
     reports = [result.report for result in judged if result.report is not None]
     if arguments.coverage is not None:
         _record_coverage(Path(arguments.coverage), spec, judged, known)

@@ -257,11 +257,7 @@ def _follow(
 
 
 def _replace(arguments: argparse.Namespace, live: Live) -> None:
-    """Have what watches go on with the specification as it is now.
-
-    Raises:
-        RvmonError: it cannot be used, or names what nobody listens to.
-    """
+    """Have what watches go on with the specification as it is now."""
     spec = _loaded(arguments)
     if arguments.source.startswith(_TOPICS):
         known = live.spec.schema
@@ -298,11 +294,7 @@ def _age(path: str) -> tuple[int, int] | None:
 
 
 def _opened(arguments: argparse.Namespace) -> FileIO:
-    """The lines to evaluate.
-
-    Raises:
-        RvmonError: they cannot be read, or the source is a recording of another format.
-    """
+    """The lines to evaluate; a recording of another format is refused."""
     source: str = arguments.source
     try:
         if not _is_recording(source):

@@ -173,12 +173,7 @@ class View(Output):
 
 
 def output_named(name: str | None, *, failures_only: bool) -> Output:
-    """The output of a name; by default a view on a terminal, and lines elsewhere.
-
-    Args:
-        name: `view`, `text` or `json`.
-        failures_only: whether what passed is left out.
-    """
+    """The output of a name; by default a view on a terminal, and lines elsewhere."""
     kinds = {"view": View, "text": Output, "json": JsonOutput}
     chosen = name or ("view" if sys.stdout.isatty() else "text")
     return kinds[chosen](failures_only=failures_only)
@@ -197,10 +192,7 @@ def _line(judgement: Judgement) -> str:
 def print_status(driver: Driver, printer: Printer, height: int | None = None) -> None:
     """Print robots and their requirements, those first that need a look.
 
-    Args:
-        driver: of the robots.
-        printer: prints them.
-        height: the number of lines; requirements that do not fit are counted. `None`: all.
+    `height`: the number of lines; requirements that do not fit are counted. `None`: all.
     """
     statuses = driver.status(most_open=_MOST_OPEN)
     robots = sorted(statuses.values(), key=lambda status: _need(fold(status.verdicts.values())))
@@ -265,11 +257,7 @@ _KEEP = 1000
 
 
 def refuse_others(arguments: argparse.Namespace) -> None:
-    """Refuse options that a watch with a state does without.
-
-    Raises:
-        RvmonError: there is one.
-    """
+    """Refuse options that a watch with a state does without."""
     refuse_over([arguments.state], [arguments.spec, arguments.source, arguments.binding])
     if "://" in arguments.source or arguments.source.startswith(("ros1:", "dds:")):
         raise RvmonError("--state: a run that is kept is of lines: a pipe or a file")
@@ -293,12 +281,7 @@ def watch_kept(
 ) -> int:
     """Judge lines until there are no more, and return the exit code.
 
-    Args:
-        arguments: of the command.
-        spec: the specification of the robot.
-        only: ids of the requirements; default all.
-        lines: the input lines.
-        is_file: whether they begin anew with each process: those that were taken are passed over.
+    `is_file`: lines begin anew with each process: those that were taken are passed over.
     """
 
     def report(number: int, attempt: Attempt) -> None:
@@ -344,9 +327,6 @@ def _behind_taken(
     """The lines of a file, blank in place of those that were taken.
 
     Those before the last one are marked, which may be one that is being written.
-
-    Raises:
-        RvmonError: those that were taken are not in the file.
     """
     taken, (count, known) = monitor.taken, monitor.mark
     other = RvmonError(

@@ -42,11 +42,7 @@ DATABASES = (".dbc", ".kcd", ".sym", ".arxml")
 
 
 def databases_beside(path: str | os.PathLike[str]) -> list[str]:
-    """The files beside a log of CAN that say what its frames hold; none beside another recording.
-
-    Raises:
-        OSError: their folder cannot be read.
-    """
+    """The files beside a log of CAN that say what its frames hold; none beside others."""
     folder, name = os.path.split(path)
     if MESSAGE_FORMATS.get(os.path.splitext(name)[1].lower()) not in ("can", "mdf"):
         return []

@@ -91,11 +91,7 @@ def cells_of_array(
 ) -> Cells:
     """An array as a column.
 
-    Args:
-        values: of truth values, integers or floats.
-        given: bool[n], where there is a value; `None`: everywhere.
-        kind: the declared kind.
-        gaps: values that stand for no update.
+    `given`: bool[n], where there is a value; `None`: everywhere.
 
     Raises:
         NotPlainError: it holds other values than were declared.
@@ -156,13 +152,7 @@ def cells_of_labels(
 
 
 def cells_of_values(cells: Sequence[Any], kind: Kind, gaps: Gaps, nothing: object = None) -> Cells:
-    """Values of Python as a column.
-
-    Args:
-        cells: values as samples have them.
-        kind: the declared kind.
-        gaps: values that stand for no update.
-        nothing: stands for no update, too.
+    """Values of Python as a column; `nothing`, too, stands for no update.
 
     Raises:
         NotPlainError: one of them is none of its kind.

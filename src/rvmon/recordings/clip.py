@@ -38,10 +38,6 @@ CLIPPED = {
 def refuse_place(path: str, out: str | None) -> None:
     """Say, before any work is done for it, that a piece of a recording cannot go to a place.
 
-    Args:
-        path: of the recording.
-        out: the place; `None`: one that suits it.
-
     Raises:
         RvmonError: no piece can be cut out of the recording's format, or the place has the ending
             of another, or is a folder that is there.
@@ -70,20 +66,7 @@ def refuse_place(path: str, out: str | None) -> None:
 
 
 def clip(path: str, piece: Piece, out: str) -> Copied:
-    """Write a piece of a recording, whole or not at all.
-
-    Args:
-        path: of the recording; its copy, where it is an address.
-        piece: the part to cut out.
-        out: the new file, or folder of ROS 2; see `refuse_place`.
-
-    Returns:
-        What of it is in the piece.
-
-    Raises:
-        RvmonError: a package is not installed, or the piece cannot be written.
-        TraceError: the recording cannot be read up to the end of the piece, or has nothing in it.
-    """
+    """Write a piece of a recording (of an address: of its copy), whole or not at all."""
     with writing(out), staged(out) as made:
         try:
             copied = _written(path, piece, made)
@@ -112,13 +95,7 @@ def _written(path: str, piece: Piece, out: Path) -> Copied:
 
 
 def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
-    """Write a piece of a file, and report what is in it.
-
-    Raises:
-        RvmonError: there is no pyarrow.
-        TraceError: the file cannot be read.
-        OSError: a file cannot be read or written.
-    """
+    """Write a piece of a file, and report what is in it."""
     schema = parquet_file(path).schema_arrow
     if piece.held:  # the row that brings values along lacks others
         for place, field in enumerate(schema):

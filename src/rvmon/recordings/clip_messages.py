@@ -34,19 +34,11 @@ def clip_messages(path: str, form: str, piece: Piece, out: Path) -> Copied:
     """Write a piece of a recording of messages, and report what is in it.
 
     Where the stamps of headers count, what is copied was recorded between the first and the last
+    message that lie in the piece. Of each topic that feeds what it brings along, and of each that
+    serves late subscribers, the last message is put at its start.
+
+    Where the stamps of headers count, what is copied was recorded between the first and the last
     message that lie in the piece.
-
-    Args:
-        path: of the recording.
-        form: `ros1`, `ros2` or `mcap`.
-        piece: the part to cut out; of each topic that feeds what it brings along, and of each that
-            serves late subscribers, the last message is put at its start.
-        out: the new file or folder.
-
-    Raises:
-        RvmonError: what reads or writes it is not installed.
-        TraceError: it cannot be read.
-        OSError: a file cannot be read or written.
     """
     place = local_path(path)
     with closing(open_messages(place, form, piece.schema)) as source:
@@ -76,11 +68,7 @@ def _chosen(
 ) -> Iterator[tuple[int, _Raw]]:
     """The messages of a piece with the instants that they get.
 
-    Args:
-        read: gives those of the recording.
-        piece: as it was recorded.
-        brought: the topics of which the last message before it comes along.
-        latched: the channels of which that is so.
+    The last message before the piece comes along of topics (`brought`) and channels (`latched`).
     """
     last: dict[Any, _Raw] = {}
     topics = {*brought, *(topic for topic, _ in latched)}
@@ -232,12 +220,8 @@ def _clip_bag(
 ) -> Copied:
     """Write a piece of a bag.
 
-    Args:
-        form: `ros1` or `ros2`.
-        path: of the bag.
-        piece: as it was recorded.
-        brought: topics of which the last message before it comes along.
-        made: whether that is so of a connection; what is said of one in the new bag; its writer.
+    `made`: whether the last message of a connection comes along; what is said of one in the new
+    bag; its writer.
     """
     is_latched, declared, writer = made
     with bag_errors(form), bag_readers()[form](path) as reader, writer:

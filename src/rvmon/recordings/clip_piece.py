@@ -70,12 +70,7 @@ def values_before(
 ) -> dict[str, Value]:
     """The last values that signals had before an instant, but for those that get one at it.
 
-    Args:
-        samples: of the whole recording.
-        start: the instant, ticks.
-        schema: the declared names.
-        stale_after: by signal the ticks after which a value counts no more.
-        ordered: whether no sample comes late.
+    `stale_after`: by signal the ticks after which a value counts no more.
 
     >>> from rvmon.trace.schema import Kind
     >>> schema = Schema({"speed": Kind.REAL, "ready": Kind.BOOL}, {"go": {}})
@@ -136,12 +131,7 @@ def stamp_number(ticks: int, stamps: Stamps) -> int | float:
 
 
 def clip_text(path: str, piece: Piece, out: Path, *, is_csv: bool) -> Copied:
-    """Write a piece of a text, and report what is in it.
-
-    Raises:
-        TraceError: a row up to the end of the piece cannot be read.
-        OSError: a file cannot be read or written.
-    """
+    """Write a piece of a text, and report what is in it."""
     copied = Copied()
     with (
         opened(path) as (plain, _),

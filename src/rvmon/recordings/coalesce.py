@@ -49,11 +49,6 @@ def coalesce(
     Events are or-ed, payloads of one event are collected in a tuple; of a signal's values the
     last one is kept and two that differ are counted.
 
-    Args:
-        samples: in source order.
-        events: the names that are events; all others are signals.
-        conflicts: counts differing values.
-
     >>> pair = [Sample(1, {"go": True, "v": 1.0}), Sample(1, {"go": False, "v": 2.0})]
     >>> [dict(sample.values) for sample in coalesce(pair, {"go"}, Conflicts())]
     [{'go': True, 'v': 2.0}]

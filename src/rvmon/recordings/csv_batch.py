@@ -42,11 +42,6 @@ def csv_batches(
 ) -> Iterator[Batch | Iterator[Row]]:
     """The rows of a text, in order.
 
-    Args:
-        text: of which the header was taken.
-        layout: of the columns.
-        ignoring: the signals that take no unknown value.
-
     Raises:
         TraceError: with the line's number; the rows above it have been given out.
         UnicodeDecodeError: it is no text.
@@ -114,11 +109,7 @@ class _Reader:
         return Found(numbers, says, lines, odd, labels, counts)
 
     def batch(self, text: CsvText[Found]) -> Generator[Batch, None, tuple[int, int]]:
-        """Take what can be read at once.
-
-        Returns:
-            How that ended, and where an odd row ends.
-        """
+        """Take what can be read at once; gives how that ended, and where an odd row ends."""
         source = text.rest
         if text.start == len(source):
             return _ALL, 0

@@ -101,13 +101,7 @@ def read_layout(header: list[str], schema: Schema) -> Layout:
 
 
 def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
-    """Match names, none of which stands twice, with the declared ones.
-
-    Args:
-        header: of all columns, in order.
-        stamps: of the time column, one of them; it is no signal.
-        schema: the declared names, and what columns are called.
-    """
+    """Match names, none of which stands twice, with the declared ones, but for the stamps."""
     aliases = schema.aliases
     signals, events, ignored = [], [], []
     for index, column in enumerate(header):

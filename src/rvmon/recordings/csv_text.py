@@ -47,9 +47,6 @@ class CsvText(Generic[_Found]):
         is_whole: whether all of the file was read at once, so that nothing more is read of it.
         found: gives what was found in all of `rest`, if that was read ahead.
         lost: the names that are unknown as the last line has no end.
-
-    Raises:
-        UnicodeDecodeError: it is no text; so does whatever reads on.
     """
 
     def __init__(self, file: BinaryIO) -> None:

@@ -53,10 +53,6 @@ class Joined:
     begin with: `status.armed` is the column `armed` of `log_17_status_0.csv`. A name lasts as long
     as its own file says: nothing is carried into rows of others, and nothing is resampled.
 
-    Args:
-        files: of any formats, each opened by its schema of `schemas_of`; or tables in memory.
-        rows: makes samples of theirs.
-
     Attributes:
         names: declared names that have a file; `None`: any may come.
         end: the last instant, ticks, if all of them say one.
@@ -64,9 +60,6 @@ class Joined:
         ignored: the same, counted.
         outages: the outages, in order.
         count: 0: nobody has counted the rows.
-
-    Raises:
-        TraceError: two files have one name.
     """
 
     count = 0
@@ -92,11 +85,7 @@ class Joined:
         self.outages = sorted(_outages_of(files), key=lambda outage: outage.since)
 
     def blocks(self) -> Iterator[Batch | list[Row]]:
-        """The rows in order of time: as columns what lies between the ends of batches of files.
-
-        Raises:
-            TraceError: with file and line.
-        """
+        """The rows in order of time: as columns what lies between the ends of batches of files."""
         from rvmon.recordings.batch import outer_join
 
         number = 1
@@ -196,13 +185,7 @@ def topics_of(paths: Sequence[str]) -> list[tuple[str, str]]:
 
 
 def schemas_of(paths: Sequence[str], of_messages: Sequence[bool], schema: Schema) -> list[Schema]:
-    """The schema of each file: a name that begins with the file's own is that of its column.
-
-    Args:
-        paths: of the files.
-        of_messages: for each, whether it holds messages, where topics lead to names.
-        schema: the declared names, and how the files give them.
-    """
+    """The schema of each file: a name that begins with the file's own is that of its column."""
     return [
         replace(schema, stamps=None) if is_of_messages else _schema_of(topics, schema)
         for is_of_messages, topics in zip(of_messages, topics_of(paths), strict=True)

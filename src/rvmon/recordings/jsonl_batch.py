@@ -37,14 +37,7 @@ _MARK = b"\xef\xbb\xbf"
 def jsonl_batches(
     file: BinaryIO, schema: Schema, ignored: Counter[str], found_stamps: Callable[[Stamps], None]
 ) -> Iterator[Batch | Iterator[Row]]:
-    """The rows of a text, in order.
-
-    Args:
-        file: is read from its start.
-        schema: the declared names.
-        ignored: names that are not declared are counted here.
-        found_stamps: told what the stamps of the first line are.
-    """
+    """The rows of a text, in order; `found_stamps` is told what its stamps are."""
     line = 0
     for text in whole_pieces(file, places.BLOCK):
         if not line and schema.stamps is None:
@@ -77,11 +70,7 @@ def _numbered(rows: Iterator[Row], before: int) -> Iterator[Row]:
 
 
 def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:
-    """A piece as columns.
-
-    Raises:
-        NotPlainError: it has to be read line by line.
-    """
+    """A piece as columns; `NotPlainError`: it has to be read line by line."""
     lines = text.count(b"\n") + (not text.endswith(b"\n"))
     if schema.stamps is not None or schema.columns or b"\r" in text:
         raise NotPlainError("stamps or names have another form")
@@ -124,15 +113,8 @@ def _collect(
 ) -> int:
     """Put the values of stamps and declared names into columns, and count those of other names.
 
-    Args:
-        objects: one of each line, empty where it has none.
-        prefix: of the names in them.
-        schema: the declared names.
-        columns: by name the value of each line, `UNSET` where there is none.
-        others: the counts of undeclared names.
-
-    Returns:
-        How many names stand in the objects, those of objects within them as well.
+    `objects` has one of each line, empty where it has none, `columns` the value of each, `UNSET`
+    where there is none. Gives how many names stand in the objects, and in those within them.
     """
     count = sum(map(len, objects))
     for key in dict.fromkeys(chain.from_iterable(objects)):
@@ -157,11 +139,7 @@ def _collect(
 
 
 def instants_of(stamps: list[Any], unit: Stamps) -> NDArray[np.int64]:
-    """The ticks of some stamps.
-
-    Raises:
-        NotPlainError: they are no plain numbers, or out of range.
-    """
+    """The ticks of some stamps; `NotPlainError`: they are no plain numbers, or out of range."""
     found = np.array(stamps if set(map(type, stamps)) <= {int, float} else [])
     if len(found) != len(stamps) or found.dtype.kind not in ("i" if unit.unit == "ns" else "fi"):
         raise NotPlainError("its stamps are no plain numbers")

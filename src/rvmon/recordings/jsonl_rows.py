@@ -44,13 +44,7 @@ _APART_IN_BYTES = re.compile(rb'"\s+:')
 def jsonl_samples(
     lines: Iterable[str], schema: Schema, ignored: Counter[str]
 ) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
-    """Line number, ticks and values of each line that is not blank.
-
-    Args:
-        lines: text, one JSON object a line.
-        schema: the declared names.
-        ignored: names that the spec does not declare are counted here.
-    """
+    """Line number, ticks and values of each line but blank ones; undeclared names are counted."""
     for name in schema.columns:
         if name not in schema.signals and name not in schema.events:
             raise TraceError(

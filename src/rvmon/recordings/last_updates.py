@@ -19,12 +19,7 @@ Update = tuple[int, Scalar]
 
 
 class LastUpdates:
-    """Keeps the last update of some signals.
-
-    Args:
-        names: of the signals.
-        ignoring: those of which that they are unknown is no update.
-    """
+    """Keeps the last update of some signals; of those in `ignoring` unknown is none."""
 
     def __init__(self, names: Set[str], ignoring: frozenset[str]) -> None:
         self._names = names

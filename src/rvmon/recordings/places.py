@@ -104,12 +104,7 @@ def named_errors(path: str | Path) -> Iterator[None]:
 
 @contextmanager
 def created(path: Path) -> Iterator[BinaryIO]:
-    """A new file to write; it is packed as its ending says.
-
-    Raises:
-        RvmonError: a package is not installed.
-        OSError: it cannot be written.
-    """
+    """A new file to write; it is packed as its ending says."""
     packed = endings_of(str(path))[1]
     with open(path, "wb") as raw:
         if not packed:

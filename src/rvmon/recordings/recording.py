@@ -308,11 +308,7 @@ class FileRecording:
 
 
 def messages_of(path: str) -> MessageFile:
-    """A recording of messages, looked at.
-
-    Raises:
-        TraceError: it cannot be read, or holds no messages.
-    """
+    """A recording of messages, looked at."""
     recording = FileRecording(path, Schema({}, {}))
     if recording._joined is not None:
         raise TraceError(f"{path}: of several files bindings are proposed one by one: name each")

@@ -46,10 +46,6 @@ def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
     They do if their median step would be 5 s or more, and either all are whole numbers or a
     thousand of them would take 10,000 s or more. A unit that a person has named is not doubted.
 
-    Args:
-        times: the first `LOOKED_AT` instants of a recording in ticks, or all.
-        stamps: as which they were read.
-
     >>> doubt_unit([20 * TICKS_PER_SECOND * k for k in range(10)], Stamps("t", "s"))[0].remark
     'from stamp to stamp it is 20 s: are these milliseconds? `--time t:ms` (if not: `--time t:s`)'
     """

@@ -255,12 +255,7 @@ def _occurrence(value: Any, fields: Mapping[str, Kind], gaps: Gaps) -> Any:
 
 
 class HeldRecording(Sequence[Sample]):
-    """The samples of a recording; those of columns take a tenth of the memory of samples.
-
-    Args:
-        pieces: of the recording, in order.
-        outages: its outages.
-    """
+    """The samples of a recording; those of columns take a tenth of the memory of samples."""
 
     def __init__(self, pieces: Iterable[Batch | Sample], outages: Sequence[Outage] = ()) -> None:
         self.pieces = tuple(pieces)
@@ -283,11 +278,7 @@ class HeldRecording(Sequence[Sample]):
         return next(iter(self)) if place == 0 else list(self)[place]
 
     def as_known(self, names: Set[str]) -> Iterator[Batch | Sample]:
-        """The pieces, in which names are unknown while they are lost.
-
-        Args:
-            names: all that a recording without names may lose.
-        """
+        """The pieces, in which names are unknown while they are lost; `names`: all."""
         waiting = deque(sorted(self.outages, key=lambda outage: outage.since))
         turns = sorted({t for outage in waiting for t in (outage.since, outage.until)})
         lasting: list[tuple[int, Set[str]]] = []

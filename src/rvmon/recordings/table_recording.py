@@ -125,12 +125,7 @@ class TableRecording:
 
 
 def stamps_of_column(stamps: Stamps, column: Any) -> Stamps:
-    """The stamps of a column as its type says them: of dates, unless a unit is stated; durations.
-
-    Args:
-        stamps: as its name, or a person, says them.
-        column: an array, or what else has a type of its cells.
-    """
+    """The stamps of a column as its type says them: dates, if no unit is stated; durations."""
     if not stamps.is_stated and is_of_dates(column):
         return Stamps(stamps.column, "iso", is_stated=True)
     if is_of_durations(column):
@@ -240,11 +235,7 @@ def _refuse(values: NDArray[Any], most: int, stamps: Stamps) -> None:
 
 
 def batch_of_table(columns: Mapping[str, Any], layout: Layout) -> Batch:
-    """A table as one batch.
-
-    Raises:
-        NotPlainError: a column holds something else, or stamps are dates; who reads rows says what.
-    """
+    """A table as one batch; `NotPlainError`: who reads rows says what is wrong."""
     try:
         times = instants(columns[layout.stamps.column], layout.stamps)
         cells = {

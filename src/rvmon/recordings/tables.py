@@ -72,10 +72,6 @@ def _distinct(names: Sequence[str], columns: Sequence[Any]) -> dict[str, Any]:
 def cells_of(name: str, column: Any) -> list[Any]:
     """The cells of a column; dates and durations as text: they are no numbers of seconds.
 
-    Args:
-        name: of the column.
-        column: an array, NumPy's with a mask too, a list, a column of Arrow, pandas or polars.
-
     Returns:
         Values as Python has them; `None` where there is none: null, masked, missing in a column of
         pandas that distinguishes that from NaN by its type.

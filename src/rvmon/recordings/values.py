@@ -21,11 +21,7 @@ _ABSENT = frozenset({"na", "n/a", "<na>", "none", "null", "nil"})
 
 
 def scalar_of_text(text: str, kind: Kind) -> Scalar:
-    """Read one cell of text.
-
-    Args:
-        text: not empty; `nan` (any case) reads as NaN, but for labels.
-        kind: the declared kind of the signal or field.
+    """Read a cell, which is not empty; `nan` (any case) reads as NaN, but for labels.
 
     >>> [scalar_of_text("1.0", kind) for kind in (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)]
     [True, 1, 1.0, '1.0']
@@ -116,10 +112,6 @@ def plain(cell: Any) -> Any:
 
 def as_declared(value: Any, kind: Kind) -> Any:
     """A value as its kind takes it; one that the kind does not take, as it is.
-
-    Args:
-        value: as `plain` gives it.
-        kind: the declared kind of the signal or field.
 
     Returns:
         0 and 1 as truth values, whole floats as the whole numbers that they are, whole numbers as

@@ -314,11 +314,7 @@ def shown_attempts(report: Report) -> dict[str, list[Attempt]]:
 
 
 def opening(report: Report) -> tuple[str, Attempt | None]:
-    """The requirement and attempt on which a page opens: the first F, else I, else any.
-
-    Raises:
-        RvmonError: the specification has no requirement.
-    """
+    """The requirement and attempt on which a page opens: the first F, else I, else any."""
     if not report.verdicts:
         raise RvmonError("a page shows requirements, and the specification has none: add one")
     for verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS):

@@ -135,9 +135,6 @@ def changes_of(
 class RunChanges:
     """Collects the changes of signals and events, piece by piece of a run.
 
-    Args:
-        spec: declares them.
-
     Attributes:
         by_name: the changes of each so far.
     """

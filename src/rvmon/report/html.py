@@ -32,10 +32,7 @@ Child = ET.Element | str | None
 def e(tag: str, attributes: Mapping[str, object] | None = None, *children: Child) -> ET.Element:
     """An element with its children: elements, texts (escaped when written), `None` for nothing.
 
-    Args:
-        tag: of HTML or SVG.
-        attributes: by name; `None` and `False` leave one out, `True` writes it without value.
-        children: in order.
+    Attributes that are `None` or `False` are left out, `True` is written without value.
 
     >>> to_html(e("p", {"class": "x"}, "a < b ", e("code", None, "c")))
     '<p class="x">a &lt; b <code>c</code></p>'

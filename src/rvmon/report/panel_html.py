@@ -145,11 +145,6 @@ def _marked(line: str, position: int, blame: Blame | None) -> tuple[str, str, st
 def headline(run: str, panel: Panel, origin: int) -> str:
     """One line on the outcome of a requirement in a run, or of one attempt.
 
-    Args:
-        run: its name.
-        panel: about the attempt.
-        origin: the instant from which people count seconds, ticks.
-
     >>> from rvmon.report.time_axis import View
     >>> from rvmon.verdicts.attempt import Attempt
     >>> from rvmon.verdicts import Verdict

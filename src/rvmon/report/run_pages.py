@@ -161,20 +161,8 @@ def write_run_pages(
 ) -> list[Path]:
     """Write a page per recording, and `index.html` if there are several.
 
-    Args:
-        folder: made if it does not exist.
-        spec: the specification.
-        reports: one per recording, named by `trace`.
-        read: from the name of a recording, its samples.
-        command: from the name of a recording, the command that judges it again.
-        broken: recordings that could not be judged, each with its error.
-        known: failures that are accepted.
-
-    Returns:
-        The files, the index last.
-
-    Raises:
-        RvmonError: the folder cannot be written to.
+    `read` gives the samples of a recording, `command` what judges it again, `broken` the errors of
+    those that could not be judged.
     """
     output_folder(folder)
     passing = [report for report in reports if Verdict.PASS in report.verdicts.values()]

@@ -74,11 +74,6 @@ def whole_run(report: Report, first: int) -> View:
 def round_instants(view: View, origin: int, count: int = 6) -> list[int]:
     """Round instants within a view, about `count` of them, for the labels of an axis.
 
-    Args:
-        view: the shown part.
-        origin: the instant that is shown as 0 s, ticks.
-        count: the number wanted.
-
     >>> second = 1_000_000_000
     >>> [t // second for t in round_instants(View(0, 10 * second), 0)]
     [0, 2, 4, 6, 8, 10]

@@ -48,13 +48,8 @@ def track_row(
 ) -> ET.Element:
     """Draw one track.
 
-    Args:
-        track: the track.
-        view: the stretch of time that is shown.
-        end: the last instant of the run, ticks.
-        blamed: instants of the blamed samples, ticks.
-        reference: the same signal in another run, drawn behind, dashed.
-        reference_end: the last instant of that run.
+    `blamed` are instants of samples, and `reference` is the same signal in another run, drawn
+    behind.
     """
     plot = e("div", {"class": f"plot {track.kind.value}"})
     if track.absent:

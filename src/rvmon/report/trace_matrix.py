@@ -69,13 +69,7 @@ def trace_matrix(
 ) -> list[Traced]:
     """The recordings and tests that show each requirement, in the order of the specification.
 
-    Args:
-        specs: by robot; of recordings by an empty name.
-        items: from `rows_by_item`.
-        planted: the faults of tests on a robot that had one, by robot and test.
-
-    Raises:
-        ValueError: a verdict is none.
+    `specs` are by robot, of recordings by an empty name; `planted` has the faults of tests.
     """
     matrix: list[Traced] = []
     for robot, spec in specs.items():

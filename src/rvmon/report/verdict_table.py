@@ -114,11 +114,7 @@ def print_table(
 ) -> None:
     """Print a table of verdicts, as many groups side by side as fit.
 
-    Args:
-        table: the counts.
-        printer: prints it.
-        further: by label, tables whose counts stand in further lines of each row; matched by
-            requirement and by name of the group.
+    `further` has by label tables whose counts stand in further lines of each row.
     """
     further = further or {}
     width = _width(table, *further.values())

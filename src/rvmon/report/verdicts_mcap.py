@@ -64,11 +64,7 @@ _Message = tuple[int, str, Mapping[str, Any]]
 
 
 def refuse_mcap(path: str) -> None:
-    """Say, before anything is judged, that verdicts cannot be written as MCAP.
-
-    Raises:
-        RvmonError: the name has another ending, or a package is missing.
-    """
+    """Say, before anything is judged, that verdicts cannot be written as MCAP."""
     if not path.endswith(".mcap"):
         raise RvmonError(f"cannot write {path}: the name of an MCAP file ends in .mcap")
     if find_spec("mcap") is None:
@@ -89,12 +85,7 @@ def write_verdicts(
 ) -> None:
     """Write states of requirements, attempts and values over time, and the layout next to it.
 
-    Args:
-        path: of the MCAP file.
-        spec: the specification that judged.
-        report: of the recording.
-        samples: of the recording, up to its end, in order; none: the values are left out.
-        scene: the motion of the robot, if it is known.
+    Without samples, which go up to the end, values are left out.
 
     Raises:
         RvmonError: a file cannot be written, or an instant is before 1970.

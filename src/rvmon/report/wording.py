@@ -22,10 +22,6 @@ NO_VALUES: Mapping[str, str] = MappingProxyType({})
 def without_attempts(verdict: Verdict, miss: str) -> str:
     """Why a requirement has no attempt.
 
-    Args:
-        verdict: of the requirement: `NT`, or `I` if its trigger was never known.
-        miss: the near miss of its trigger; "" if it was not computed.
-
     >>> without_attempts(Verdict.NOT_TRIGGERED, "`near` was never true")
     'never triggered: `near` was never true'
     >>> without_attempts(Verdict.INCONCLUSIVE, "")
@@ -56,12 +52,7 @@ def full_reason(attempt: Attempt, report: Report) -> str:
 
 
 def reason_text(attempt: Attempt, came: int | None, values: Mapping[str, str] = NO_VALUES) -> str:
-    """The reason of an attempt, with values at its decision, and how late the response came.
-
-    Args:
-        attempt: any.
-        came: the instant of a late response, ticks; `None` if none is known.
-        values: by signal, its value at the decision, with its unit.
+    """The reason of an attempt, with values at its decision, and when the response came late.
 
     >>> from rvmon.verdicts.attempt import Blame
     >>> from rvmon.verdicts import Verdict
@@ -86,10 +77,6 @@ def reason_text(attempt: Attempt, came: int | None, values: Mapping[str, str] = 
 
 def health_facts(entries: Sequence[Health], origin: int) -> Iterator[tuple[str, str]]:
     """Entries of input health in words, as pairs of names and fact.
-
-    Args:
-        entries: of a run.
-        origin: its first instant, ticks.
 
     >>> speed = Health(HealthKind.NAN, "speed", 3, 2 * TICKS_PER_SECOND, ("R1",))
     >>> for fact in health_facts([speed, Health(HealthKind.IGNORED, "x", remark="unknown")], 0):
@@ -220,10 +207,6 @@ def wrapped(sentence: str, width: int) -> str:
     """A sentence in lines, the first indented by two columns, the others by four.
 
     A number is kept on one line with its unit, and with `name =` before it.
-
-    Args:
-        sentence: without line breaks.
-        width: columns that a line may take.
 
     >>> print(wrapped("`released` occurred at 4.75 s, 0.75 s after the trigger", 32))
       `released` occurred at 4.75 s,

@@ -148,10 +148,6 @@ _EARLY = (
 def measured_attempt(attempt: Attempt, robustness: float | None) -> Attempt:
     """A copy of an attempt with its robustness set; lazy fields stay lazy.
 
-    Args:
-        attempt: without robustness.
-        robustness: in SI units; `None` if it has none.
-
     >>> measured_attempt(Attempt("R1", 1, 0, 5, Verdict.PASS, reason="`p`"), 0.5).robustness
     0.5
     """

@@ -103,10 +103,6 @@ class _File(msgspec.Struct, forbid_unknown_fields=True):
 def read_known(path: str | Path, requirements: Collection[str]) -> list[KnownFailure]:
     """Read a file of known failures: TOML, a table `[[known]]` for each.
 
-    Args:
-        path: of the file.
-        requirements: the ids of the existing requirements.
-
     Raises:
         RvmonError: the file cannot be read, is malformed, or has an unknown requirement.
     """

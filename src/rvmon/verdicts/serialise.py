@@ -110,11 +110,7 @@ def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
 
 
 def decode(text: str | bytes) -> tuple[ReportJson, list[Attempt]]:
-    """Read the document and the attempts of a report written by `encode`.
-
-    Raises:
-        TraceError: the text is no report.
-    """
+    """Read the document and the attempts of a report written by `encode`."""
     try:
         document = msgspec.json.decode(text, type=ReportJson)
         attempts = [
@@ -204,11 +200,7 @@ def column_types() -> dict[str, type]:
 
 
 def arrow_table(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> pyarrow.Table:
-    """Rows as an Arrow table; `about` becomes metadata of its schema.
-
-    Raises:
-        RvmonError: pyarrow is needed.
-    """
+    """Rows as an Arrow table; `about` becomes metadata of its schema."""
     with needed("this table", "pyarrow"):
         import pyarrow
     types = {
@@ -227,11 +219,7 @@ def arrow_table(rows: Iterable[VerdictRow], about: Mapping[str, str]) -> pyarrow
 
 
 def pandas_frame(table: pyarrow.Table) -> pandas.DataFrame:
-    """A table of verdicts as a pandas data frame; instants are the nullable `Int64`.
-
-    Raises:
-        RvmonError: pandas is needed.
-    """
+    """A table of verdicts as a pandas data frame; instants are the nullable `Int64`."""
     with needed("this table", "pandas"):
         import pandas
     import pyarrow
@@ -242,11 +230,7 @@ def pandas_frame(table: pyarrow.Table) -> pandas.DataFrame:
 
 
 def polars_frame(table: pyarrow.Table) -> polars.DataFrame:
-    """A table of verdicts as a polars data frame.
-
-    Raises:
-        RvmonError: polars is needed.
-    """
+    """A table of verdicts as a polars data frame."""
     with needed("this table", "polars"):
         import polars
     frame = polars.from_arrow(table)

@@ -24,11 +24,7 @@ _SQL_TYPES = {str: "TEXT", int: "INTEGER", float: "REAL", bool: "INTEGER"}
 
 
 def refuse_format(path: str | Path) -> None:
-    """Refuse an output file early, before anything is judged.
-
-    Raises:
-        RvmonError: its suffix is unknown, or a package for it is missing.
-    """
+    """Refuse an output file early, before anything is judged."""
     _, packages = _form(path)
     for package in packages:
         if find_spec(package) is None:
@@ -37,11 +33,6 @@ def refuse_format(path: str | Path) -> None:
 
 def write_results(path: str | Path, rows: Iterable[VerdictRow], about: Mapping[str, str]) -> None:
     """Write verdicts to a file in the format of its suffix; an existing file is replaced.
-
-    Args:
-        path: ends in `.csv`, `.parquet` or `.sqlite`.
-        rows: the verdicts.
-        about: metadata on the specification and versions; not written to CSV.
 
     Raises:
         RvmonError: the suffix is unknown, a package is missing, or the file cannot be written.
@@ -133,9 +124,6 @@ def read_results(path: str | Path) -> list[VerdictRow]:
     """Read verdicts that `rvmon run` wrote: with `--out`, or as JSON with `--format json`.
 
     Only names, verdict, reason and error of each row are read.
-
-    Raises:
-        RvmonError: the file is missing or has other contents, or a package is missing.
     """
     forms = {
         ".csv": _read_csv,

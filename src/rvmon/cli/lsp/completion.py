@@ -28,15 +28,7 @@ _OWN = re.compile(r"(?<![\w.])(?:let|each)\s+([^\W\d][\w.]*)|\Adefine\s+\w[\w.]*
 
 
 def proposals(names: Names, place: Span) -> tuple[Span, dict[str, str]]:
-    """The completions at a place.
-
-    Args:
-        names: of the file as it was when it could last be read.
-        place: in the file as it is.
-
-    Returns:
-        The place of the word begun there, and its completions, each with its kind.
-    """
+    """The word begun at a place, and its completions, each with its kind, by names last read."""
     text = place.source.text[: place.start]
     line = _NO_CODE.sub("", text[text.rfind("\n") + 1 :])
     word = _BEGUN.search(text)

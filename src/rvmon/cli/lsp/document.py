@@ -43,10 +43,6 @@ _WIDTHS = {
 class Text:
     """A text with its lines; pygls would end them at a form feed or U+2028, which no editor does.
 
-    Args:
-        raw: as the editor has it.
-        encoding: in whose units columns are counted.
-
     Source: Language Server Protocol 3.17, Text Documents and Position.
     """
 
@@ -125,13 +121,7 @@ Key = tuple[str, int]
 
 
 class Document:
-    """A text that is being written.
-
-    Args:
-        uri: its address in the editor.
-        text: as it is now.
-        read: gives the text of a file that it imports.
-    """
+    """A text that is being written; `read` gives the text of a file that it imports."""
 
     def __init__(self, uri: str, text: Text, read: Callable[[Path], str]) -> None:
         self.uri = uri

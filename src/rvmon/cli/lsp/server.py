@@ -170,11 +170,7 @@ def _places(server: Server, params: lsp.ReferenceParams | lsp.RenameParams) -> l
 
 
 def _rename(server: Server, params: lsp.RenameParams) -> lsp.WorkspaceEdit | None:
-    """The edits that give a name another one, wherever it stands.
-
-    Raises:
-        JsonRpcInvalidParams: it cannot have that name.
-    """
+    """The edits that give a name another one, wherever it stands."""
     document = server.document(params.text_document.uri)
     touched = document.names.at(document.place(params.position))
     if touched is None:

@@ -42,11 +42,7 @@ _EVENT = ("topic", "type", "value", "fields", "on", "clock")
 
 
 def load_binding(path: str | Path, spec: CheckedSpec) -> Binding:
-    """Read a binding.
-
-    Args:
-        path: of a TOML file, see docs/reference/bindings.md.
-        spec: declares the names that it binds.
+    """Read a binding; docs/reference/bindings.md says what is in it.
 
     Raises:
         RvmonError: it cannot be read, or does not fit the specification.
@@ -223,13 +219,7 @@ def _expect_known(content: Mapping[str, Any], known: Mapping[str, Any]) -> None:
 
 
 def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaArguments]) -> Schema:
-    """A schema with the reading options of a caller.
-
-    Args:
-        spec: the specification.
-        schema: its schema, which gives the defaults.
-        **options: see `rvmon.session.Spec.reading`, also for the errors.
-    """
+    """A schema with the options of `rvmon.session.Spec.reading`, which says what they mean."""
     path, time, clock = options.get("binding"), options.get("time"), options.get("clock")
     bound = schema.binding if path is None else load_binding(path, spec)
     fields = [f"{name}.{field}" for name, own in schema.events.items() for field in own]

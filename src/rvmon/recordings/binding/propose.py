@@ -173,13 +173,7 @@ def _signal_lines(type_: Type, candidate: Candidate, ranges: Ranges) -> Iterator
 
 
 def _unit_of(declared: str, candidate: Candidate, largest: float) -> tuple[str, str]:
-    """The unit of a value, and a remark unless the messages say it.
-
-    Args:
-        declared: the unit of the name.
-        candidate: the source.
-        largest: of its values, without their sign.
-    """
+    """The unit of a value, and a remark unless the messages say it; `largest`: without its sign."""
     dimension = parse_unit(declared).dimension
     units = [unit.symbol or "1" for unit in candidate.meaning.units if unit.dimension == dimension]
     if units:

@@ -89,10 +89,7 @@ def errors_as_damage(
 ) -> Iterator[None]:
     """Turns whatever a library raises into an error of the file: damage shows anywhere.
 
-    Args:
-        form: of the file, for people.
-        fix: the advice.
-        fixes: the same by a word of the error that says more.
+    `fix` is the advice, and `fixes` the same by a word of the error that says more.
     """
     try:
         yield

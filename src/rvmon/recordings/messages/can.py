@@ -60,9 +60,7 @@ _PDU_2 = 240
 class FrameMessages(Messages):
     """An open log, gone through once for what is in it.
 
-    Args:
-        path: of it.
-        definitions: texts of databases by file name; without any, those beside the log count.
+    Without texts of databases, by file name, those beside the log count.
 
     Attributes:
         topics: by name, one a message of the database that the log has; the name says the channel
@@ -169,10 +167,6 @@ class FrameMessages(Messages):
 
 class _Lines:
     """The lines of a text, with what was lost between those that are frames.
-
-    Args:
-        file: the open text.
-        patterns: of some of its lines; see `_TEXTS`.
 
     Attributes:
         why: something was lost since the last frame; empty: nothing.

@@ -32,14 +32,7 @@ class ColumnTopic(Struct, frozen=True):
 
 
 class ColumnMessages(Messages):
-    """An open recording of such topics.
-
-    Args:
-        topics: in order.
-        end: the last instant of all, ticks.
-        outages: the outages, in order.
-        close: closes the file.
-    """
+    """An open recording of such topics; `close` closes the file."""
 
     def __init__(
         self,
@@ -79,9 +72,7 @@ class ColumnMessages(Messages):
 class LateColumn:
     """A column that is read when it is first asked for.
 
-    Args:
-        form: of the file, for people.
-        read: gives its values, and where they are invalid, if somewhere.
+    `read` gives its values, and where they are invalid, if somewhere.
     """
 
     def __init__(self, form: str, read: Callable[[], tuple[Any, Any]]) -> None:

@@ -55,13 +55,7 @@ _OF_THE_LOG = frozenset({"FMT", "FMTU", "UNIT", "MULT"})
 
 
 def dataflash_messages(path: Path) -> ColumnMessages:
-    """Open a log.
-
-    Raises:
-        RvmonError: pymavlink is not installed.
-        TraceError: it is no such log, or a damaged one.
-        OSError: it cannot be opened.
-    """
+    """Open a log."""
     with needed("DataFlash", "pymavlink"):
         from pymavlink.DFReader import DFReader_binary
     with open(path, "rb") as file:

@@ -102,11 +102,6 @@ class MessageFile:
         count: of its messages; 0 if nobody knows.
         skew: of the clocks of those who sent what was read last.
         outages: its outages, in order.
-
-    Raises:
-        RvmonError: what reads it is not installed.
-        TraceError: it cannot be read, or does not fit the binding.
-        OSError: it cannot be opened.
     """
 
     def __init__(self, path: str, form: str, schema: Schema) -> None:

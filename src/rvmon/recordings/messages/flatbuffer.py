@@ -54,17 +54,10 @@ class _Type(msgspec.Struct, frozen=True):
 
 
 class FlatBuffers:
-    """Decodes the messages of a schema.
-
-    Args:
-        schema: a `.bfbs`, as `flatc --binary --schema` makes it.
-        name: of the table that a message is.
+    """Decodes messages by a `.bfbs` (`flatc --binary --schema`), and the name of a table.
 
     Attributes:
         leaves: the kinds of the fields, by their path.
-
-    Raises:
-        Exception: it is none; what struct raises.
     """
 
     def __init__(self, schema: bytes, name: str) -> None:
@@ -88,11 +81,7 @@ class FlatBuffers:
                 yield path, {_BOOL: Kind.BOOL, _STRING: Kind.LABEL}.get(kind, real)
 
     def decode(self, data: bytes) -> Mapping[str, Any]:
-        """The fields of a message, by name; what is not sent and has no default is absent.
-
-        Raises:
-            Exception: it is none; what struct raises.
-        """
+        """The fields of a message, by name; what is not sent and has no default is absent."""
         message = _Packed(data)
         return dict(self._values(message, message.follow(0), self._root))
 

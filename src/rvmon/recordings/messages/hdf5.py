@@ -46,14 +46,7 @@ _Tree = dict[str, Any]
 def array_messages(path: Path, stamps: Stamps | None) -> column_topics.ColumnMessages:
     """Open a file: each group, or structure, that has stamps is a topic.
 
-    Args:
-        path: of it.
-        stamps: the array of stamps, as `group/name`; `None`: what is called so in each group.
-
-    Raises:
-        RvmonError: what reads it is not installed.
-        TraceError: it is no such file, a damaged one, or has no stamps.
-        OSError: it cannot be opened.
+    `stamps`: the array of stamps, as `group/name`; `None`: what is called so in each group.
     """
     with open(path, "rb") as file:
         head = file.read(520)

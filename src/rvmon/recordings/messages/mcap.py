@@ -38,17 +38,7 @@ _ROS = {"ros1msg": ("msg", True), "ros2msg": ("msg", False), "ros2idl": ("idl", 
 
 
 def mcap_messages(path: Path, definitions: Mapping[str, str]) -> Messages:
-    """Open a file.
-
-    Args:
-        path: of the file.
-        definitions: of messages of ROS by type, which the file may lack.
-
-    Raises:
-        RvmonError: what reads it is not installed.
-        TraceError: it is no MCAP file, or a damaged one.
-        OSError: it cannot be opened.
-    """
+    """Open a file; it may lack definitions of messages of ROS."""
     with open(path, "rb") as file:
         head = file.read(64)
     if not head:

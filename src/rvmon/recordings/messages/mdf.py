@@ -31,13 +31,7 @@ _IDENTIFIER = 0x1FFFFFFF
 
 
 def open_measurement(path: Path) -> Any:
-    """Open a file with the library.
-
-    Raises:
-        RvmonError: asammdf is not installed.
-        TraceError: it is no such file, or a damaged one.
-        OSError: it cannot be opened.
-    """
+    """Open a file with the library."""
     with needed("MDF", "asammdf"):
         from asammdf import MDF
     with open(path, "rb") as file:

@@ -31,13 +31,7 @@ _FIX = {
 
 
 class BagMessages(Messages):
-    """An open bag.
-
-    Args:
-        path: a `.bag`, `.db3` or `.mcap` file, or a folder of ROS 2.
-        form: `ros1` or `ros2`.
-        definitions: of messages by type, which the bag may lack.
-    """
+    """An open bag: a `.bag`, `.db3` or `.mcap` file, or a folder of ROS 2."""
 
     def __init__(self, path: Path, form: str, definitions: Mapping[str, str]) -> None:
         self._form = form
@@ -156,13 +150,8 @@ def ros_topic(
 ) -> tuple[Topic, Callable[[bytes], Any]]:
     """A topic of messages of ROS, and what decodes them.
 
-    Args:
-        name: of the topic.
-        type_name: of its messages, `package/msg/Name`.
-        definition: of them; without a text it has to be among the others, or one of ROS itself.
-        is_ros1: whether they are packed as ROS 1 does.
-        others: definitions by type.
-        first: gives the first message, if there is one: a definition of ROS has to fit it.
+    Without a text of its own the type has to be among the `others`, or one of ROS itself, whose
+    definition has to fit the `first` message, if there is one.
     """
     if definition[1]:
         store, fault = _store(type_name, *definition)

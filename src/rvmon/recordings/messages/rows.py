@@ -68,16 +68,7 @@ class MessageReaders:
     def take(
         self, topic: Topic, logged: int, content: Any
     ) -> Iterator[tuple[int, dict[str, Value]]]:
-        """The values of a message with its stamp, by each clock in use.
-
-        Args:
-            topic: of the message.
-            logged: ticks at which it came, or was recorded.
-            content: an object with attributes, or a mapping.
-
-        Raises:
-            TraceError: it does not fit what is declared.
-        """
+        """The values of a message with its stamp, by each clock; `logged`: when it came."""
         made = self._made.get(topic.name)
         if made is None:
             made = self._made[topic.name] = self._make(topic)

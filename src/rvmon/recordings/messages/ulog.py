@@ -48,13 +48,7 @@ class _Watched:
 
 
 def ulog_messages(path: Path) -> ColumnMessages:
-    """Open a log.
-
-    Raises:
-        RvmonError: pyulog is not installed.
-        TraceError: it is no such log, or a damaged one.
-        OSError: it cannot be opened.
-    """
+    """Open a log."""
     with needed("ULog", "pyulog"):
         from pyulog import ULog
     with open(path, "rb") as file, redirect_stdout(StringIO()):

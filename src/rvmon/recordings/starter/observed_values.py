@@ -211,12 +211,7 @@ class Column(Struct):
         return self.shape.kind is None
 
     def updates_in(self, times: NDArray[np.int64], cells: Cells) -> Updates:
-        """The updates of a signal in rows.
-
-        Args:
-            times: int64[n] ticks, of the rows.
-            cells: n of them.
-        """
+        """The updates of a signal in rows."""
         values: NDArray[Any] = cells.values
         if cells.labels is not None:
             numbers = self.course.labels

@@ -51,12 +51,7 @@ Recorded = tuple["NDArray[np.int64]", Mapping[str, Updates]]
 
 
 def shapes_of(path: str, stamps: Stamps | None = None) -> Shapes:
-    """Look at the names and values of a recording.
-
-    Args:
-        path: of it.
-        stamps: the name of its time column; default `t` or `t_ns`.
-    """
+    """Look at the names and values of a recording."""
     form = format_of(path)
     if form == JOINED:
         return _of_files(files_of(path), stamps)
@@ -200,11 +195,7 @@ MOST_NAMED = 3
 
 
 def profile_of(path: str, time: str | None = None) -> Profile:
-    """Look a recording over, as `rvmon run` will read it.
-
-    Args:
-        path: of the recording.
-        time: the column of stamps and its unit, as `Spec.reading` takes it.
+    """Look a recording over, as `rvmon run` will read it; `time` as `Spec.reading` takes it.
 
     Raises:
         TraceError: the file cannot be read; place and cause are named.
@@ -235,11 +226,7 @@ def bound_profile(path: str, schema: Schema) -> Profile:
 
 
 def followed(path: str, schema: Schema, shapes: Shapes) -> Profile:
-    """Follow names over time; a recording that is not in order is put in order.
-
-    Raises:
-        TraceError: it cannot be read, or none of them has a value.
-    """
+    """Follow names over time; a recording that is not in order is put in order."""
     with named_errors(path):
         try:
             return _followed(FileRecording(path, schema), shapes)
