@@ -9,24 +9,8 @@ from typing import TYPE_CHECKING
 
 from rvmon.analysis.late_arrival import first_after, may_be_awaited
 from rvmon.analysis.truths import Plans, Question, Truth, look_through
+from rvmon.language.checked import formula as formulas
 from rvmon.language.checked.classify import subformulas
-from rvmon.language.checked.formula import (
-    Arithmetic,
-    Binary,
-    Compare,
-    Constant,
-    EventAtom,
-    FieldValue,
-    Formula,
-    Literal,
-    Numeric,
-    Probe,
-    ProbeAtom,
-    SignalAtom,
-    SignalValue,
-    Unary,
-    numbers_in,
-)
 from rvmon.language.checked.operators import Tense
 from rvmon.language.checked.specification import CheckedSpec, TimeModel
 from rvmon.language.print import format_formula
@@ -74,7 +58,7 @@ class Arrivals:
         self._since: int | None = None
         self._first = self._rows = _FEW * len(awaited)
 
-    def ask(self, key: Key, formula: Formula | None, deadline: int) -> None:
+    def ask(self, key: Key, formula: formulas.Formula | None, deadline: int) -> None:
         """Look out for a formula from a deadline (ticks) on; `None`: nothing was awaited.
 
         Where the deadline is in what was taken, or the formula is none for this, `found` lacks it.
@@ -154,7 +138,7 @@ class Arrivals:
         return [Sample(t, found[t]) for t in sorted(found)]
 
 
-def is_of_moment(formula: Formula, time: TimeModel) -> bool:
+def is_of_moment(formula: formulas.Formula, time: TimeModel) -> bool:
     """Whether its truth follows from the last update of each signal, and what comes at an instant.
 
     In clocked time an event counts at a later instant.
@@ -165,31 +149,36 @@ def is_of_moment(formula: Formula, time: TimeModel) -> bool:
     )
 
 
-def _is_of_moment(part: Formula) -> bool:
+def _is_of_moment(part: formulas.Formula) -> bool:
     match part:
-        case Constant() | SignalAtom() | EventAtom():
+        case formulas.Constant() | formulas.SignalAtom() | formulas.EventAtom():
             return True
-        case ProbeAtom(probe=probe):
-            return probe is not Probe.CHANGED
-        case Compare(left=left, right=right):
-            return all(map(_is_held, numbers_in(left, right)))
-        case Unary(op=op) | Binary(op=op):
+        case formulas.ProbeAtom(probe=probe):
+            return probe is not formulas.Probe.CHANGED
+        case formulas.Compare(left=left, right=right):
+            return all(map(_is_held, formulas.numbers_in(left, right)))
+        case formulas.Unary(op=op) | formulas.Binary(op=op):
             return op.entry.tense is Tense.PRESENT
         case _:
             return False
 
 
-def _is_momentary(part: Formula) -> bool:
+def _is_momentary(part: formulas.Formula) -> bool:
     match part:
-        case EventAtom():
+        case formulas.EventAtom():
             return True
-        case ProbeAtom(probe=probe):
-            return probe is not Probe.KNOWN
-        case Compare(left=left, right=right):
-            return any(isinstance(number, FieldValue) for number in numbers_in(left, right))
+        case formulas.ProbeAtom(probe=probe):
+            return probe is not formulas.Probe.KNOWN
+        case formulas.Compare(left=left, right=right):
+            return any(
+                isinstance(number, formulas.FieldValue)
+                for number in formulas.numbers_in(left, right)
+            )
         case _:
             return False
 
 
-def _is_held(number: Numeric) -> bool:
-    return isinstance(number, Literal | SignalValue | FieldValue | Arithmetic)
+def _is_held(number: formulas.Numeric) -> bool:
+    return isinstance(
+        number, formulas.Literal | formulas.SignalValue | formulas.FieldValue | formulas.Arithmetic
+    )

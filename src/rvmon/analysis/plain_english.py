@@ -5,28 +5,8 @@ from __future__ import annotations
 from typing import assert_never
 
 from rvmon.core.monitors import machine_of
+from rvmon.language.checked import formula as formulas
 from rvmon.language.checked.classify import has_future
-from rvmon.language.checked.formula import (
-    TRIGGERED,
-    Amount,
-    Binary,
-    BinaryOp,
-    Bound,
-    BoundAtom,
-    Compare,
-    CompareOp,
-    Constant,
-    EventAtom,
-    Formula,
-    Interval,
-    Measured,
-    Passed,
-    Probe,
-    ProbeAtom,
-    SignalAtom,
-    Unary,
-    UnaryOp,
-)
 from rvmon.language.checked.formula import Literal as NumericLiteral
 from rvmon.language.checked.operators import Tense
 from rvmon.language.checked.rewrite import chain
@@ -41,9 +21,9 @@ from rvmon.monitor.requirement_plans import planned_rule
 from rvmon.texts import counted, listed
 
 _PROBED = {
-    Probe.KNOWN: ("is known", "is not known"),
-    Probe.UPDATED: ("is updated", "is not updated"),
-    Probe.CHANGED: ("gets another value", "gets no other value"),
+    formulas.Probe.KNOWN: ("is known", "is not known"),
+    formulas.Probe.UPDATED: ("is updated", "is not updated"),
+    formulas.Probe.CHANGED: ("gets another value", "gets no other value"),
 }
 _AT_END = {
     EndPolicy.DEFAULT: "",
@@ -61,7 +41,7 @@ def requirement_in_words(requirement: Requirement) -> list[str]:
     lines += [
         f"There, `{capture.name}` is what {format_numeric(capture.value)} was when it started."
         for capture in requirement.captures
-        if capture.name != TRIGGERED
+        if capture.name != formulas.TRIGGERED
     ]
     if requirement.for_each is not None:
         each = requirement.for_each
@@ -77,11 +57,11 @@ def requirement_in_words(requirement: Requirement) -> list[str]:
 def _starts(requirement: Requirement) -> str:
     trigger = requirement.trigger
     match trigger:
-        case BoundAtom(bound=Bound.START):
+        case formulas.BoundAtom(bound=formulas.Bound.START):
             return "Once, from the start of the recording"
-        case BoundAtom(bound=Bound.END):
+        case formulas.BoundAtom(bound=formulas.Bound.END):
             return "Once, when the recording ends"
-        case Constant(value=True) if requirement.mode is Mode.WHENEVER:
+        case formulas.Constant(value=True) if requirement.mode is Mode.WHENEVER:
             return "At every instant of the recording"
         case _:
             pass
@@ -98,7 +78,7 @@ def _required(requirement: Requirement) -> str:
     return f"at that very instant, {text}" if at_once else text
 
 
-def in_words(formula: Formula, *, positive: bool = True) -> str:
+def in_words(formula: formulas.Formula, *, positive: bool = True) -> str:
     """A formula, or its negation, as an English clause.
 
     >>> released = EventAtom("released")
@@ -106,50 +86,54 @@ def in_words(formula: Formula, *, positive: bool = True) -> str:
     'for 2 s, released does not occur'
     """
     match formula:
-        case Constant(value=value):
+        case formulas.Constant(value=value):
             return "nothing is asked" if value is positive else "the impossible is asked"
-        case SignalAtom(name=name):
+        case formulas.SignalAtom(name=name):
             return f"{name} is {'true' if positive else 'false'}"
-        case EventAtom(name=name):
+        case formulas.EventAtom(name=name):
             return f"{name} occurs" if positive else f"{name} does not occur"
-        case Compare(op=op, left=left, right=right):
+        case formulas.Compare(op=op, left=left, right=right):
             verb = (op if positive else op.denied).said
             return f"{format_numeric(left)} {verb} {format_numeric(right)}"
-        case ProbeAtom(probe=probe, name=name):
+        case formulas.ProbeAtom(probe=probe, name=name):
             return f"{name} {_PROBED[probe][0 if positive else 1]}"
-        case BoundAtom(bound=bound):
-            what = "the first instant" if bound is Bound.START else "the last instant"
+        case formulas.BoundAtom(bound=bound):
+            what = "the first instant" if bound is formulas.Bound.START else "the last instant"
             return f"it is {'' if positive else 'not '}{what}"
-        case Unary(op=UnaryOp.NOT, operand=operand):
+        case formulas.Unary(op=formulas.UnaryOp.NOT, operand=operand):
             return in_words(operand, positive=not positive)
-        case Unary(
-            op=UnaryOp.ONCE,
-            operand=Binary(
-                left=ProbeAtom(probe=Probe.UPDATED, name=name),
-                right=BoundAtom(bound=Bound.START),
+        case formulas.Unary(
+            op=formulas.UnaryOp.ONCE,
+            operand=formulas.Binary(
+                left=formulas.ProbeAtom(probe=formulas.Probe.UPDATED, name=name),
+                right=formulas.BoundAtom(bound=formulas.Bound.START),
             ),
         ) if length := _age(formula.interval):
             verb = "was updated in the last" if positive else "has not been updated for"
             return f"{name} {verb} {length}"
-        case Binary(op=BinaryOp.AND | BinaryOp.OR as op):
-            word = "and" if (op is BinaryOp.AND) is positive else "or"
+        case formulas.Binary(op=formulas.BinaryOp.AND | formulas.BinaryOp.OR as op):
+            word = "and" if (op is formulas.BinaryOp.AND) is positive else "or"
             return listed([_clause(part, positive) for part in chain(formula, op)], word)
-        case Unary() | Binary():
+        case formulas.Unary() | formulas.Binary():
             return _by_entry(formula, positive)
-        case Amount():
+        case formulas.Amount():
             return _amount(formula, positive)
-        case Passed(since=since, after=after, strict=strict):
-            op = CompareOp.GT if strict else CompareOp.GE
+        case formulas.Passed(since=since, after=after, strict=strict):
+            op = formulas.CompareOp.GT if strict else formulas.CompareOp.GE
             verb = (op if positive else op.denied).said
             return f"the time since {since or 'the first instant'} {verb} {format_numeric(after)}"
         case _:
             assert_never(formula)
 
 
-def _amount(formula: Amount, positive: bool) -> str:
+def _amount(formula: formulas.Amount, positive: bool) -> str:
     of = formula.of
     parts = chain(of.counted or of.operand)
-    chosen = [part for part in parts if not (isinstance(part, Passed) and part.since == TRIGGERED)]
+    chosen = [
+        part
+        for part in parts
+        if not (isinstance(part, formulas.Passed) and part.since == formulas.TRIGGERED)
+    ]
     back = "so far" if len(chosen) == len(parts) else "since the trigger"
     back = back if of.window is None else f"in the last {format_duration(of.window)}"
     back = back if of.most is None else f"at the last {of.most} updates"
@@ -158,11 +142,15 @@ def _amount(formula: Amount, positive: bool) -> str:
     known = "" if positive else "not "
     least = formula.limit.value if isinstance(formula.limit, NumericLiteral) else None
     if isinstance(least, int) and of.value is None:
-        often = f"{least} times" if of.measured is Measured.COUNT else format_duration(least)
+        often = (
+            f"{least} times" if of.measured is formulas.Measured.COUNT else format_duration(least)
+        )
         often = f"more than {often}" if formula.strict else f"{often} or more"
-        often = f"{known}{often}" if of.measured is Measured.COUNT else f"for {known}{often}"
+        often = (
+            f"{known}{often}" if of.measured is formulas.Measured.COUNT else f"for {known}{often}"
+        )
         return f"{often} {back}, {what}"
-    op = CompareOp.GT if formula.strict else CompareOp.GE
+    op = formulas.CompareOp.GT if formula.strict else formulas.CompareOp.GE
     verb = (op if positive else op.denied).said
     if of.value is None or isinstance(of.value, NumericLiteral):  # a count, or a sum of constants
         often = "for how long" if of.measured.of_time else "how often"
@@ -172,7 +160,7 @@ def _amount(formula: Amount, positive: bool) -> str:
     return f"{amount} {verb} {format_numeric(formula.limit)}"
 
 
-def _by_entry(formula: Unary | Binary, positive: bool) -> str:
+def _by_entry(formula: formulas.Unary | formulas.Binary, positive: bool) -> str:
     """An operator formula in the wording of the operator table."""
     entry = formula.op.entry
     text = entry.said if positive else entry.denied or f"not so: {entry.said}"
@@ -182,10 +170,10 @@ def _by_entry(formula: Unary | Binary, positive: bool) -> str:
 class _Parts(dict[str, str]):
     """The placeholders in the wording of an operator, computed on access."""
 
-    def __init__(self, formula: Unary | Binary) -> None:
+    def __init__(self, formula: formulas.Unary | formulas.Binary) -> None:
         super().__init__()
         self._formula = formula
-        self._interval = formula.interval or Interval()
+        self._interval = formula.interval or formulas.Interval()
 
     def __missing__(self, part: str) -> str:
         window = _back if self._formula.op.entry.tense is Tense.PAST else _ahead
@@ -202,25 +190,25 @@ class _Parts(dict[str, str]):
                 name = part.removeprefix("no_")
                 return _clause(self._operand(name), name == part)
 
-    def _operand(self, name: str) -> Formula:
-        operand: Formula = getattr(self._formula, "operand" if name == "it" else name)
+    def _operand(self, name: str) -> formulas.Formula:
+        operand: formulas.Formula = getattr(self._formula, "operand" if name == "it" else name)
         return operand
 
 
-def _age(interval: Interval | None) -> str:
+def _age(interval: formulas.Interval | None) -> str:
     """The length of a window [0, D], by which `once updated(x)` is an age; else ""."""
     if interval is None or interval.low or interval.high is None:
         return ""
     return format_duration(interval.high)
 
 
-def _begins(operand: Formula, positive: bool) -> str:
-    if isinstance(operand, SignalAtom):
+def _begins(operand: formulas.Formula, positive: bool) -> str:
+    if isinstance(operand, formulas.SignalAtom):
         return f"{operand.name} becomes {'true' if positive else 'false'}"
     return f"it becomes so that {_clause(operand, positive)}"
 
 
-def _ahead(interval: Interval, *, some: bool) -> str:
+def _ahead(interval: formulas.Interval, *, some: bool) -> str:
     """The window of `F` (`some`) or `G`, relative to the present."""
     low, high = interval.low, interval.high
     if high is None:
@@ -234,7 +222,7 @@ def _ahead(interval: Interval, *, some: bool) -> str:
     return f"at some time {window}" if some else f"all the time from {window}"
 
 
-def _back(interval: Interval, *, some: bool) -> str:
+def _back(interval: formulas.Interval, *, some: bool) -> str:
     """The window of `O` (`some`) or `H`, relative to the present."""
     low, high = interval.low, interval.high
     if high is None:
@@ -247,19 +235,21 @@ def _back(interval: Interval, *, some: bool) -> str:
     return f"at some time {window}" if some else f"all the time from {window}"
 
 
-def _ago(interval: Interval) -> str:
-    if interval == Interval():
+def _ago(interval: formulas.Interval) -> str:
+    if interval == formulas.Interval():
         return "once "
     return f"({_back(interval, some=True)}) "
 
 
-def _clause(formula: Formula, positive: bool) -> str:
+def _clause(formula: formulas.Formula, positive: bool) -> str:
     """A formula inside another one: in brackets unless it is a simple clause."""
     text = in_words(formula, positive=positive)
     inner = formula
-    while isinstance(inner, Unary) and inner.op is UnaryOp.NOT:
+    while isinstance(inner, formulas.Unary) and inner.op is formulas.UnaryOp.NOT:
         inner = inner.operand
-    plain = not isinstance(inner, Binary) and not (isinstance(inner, Unary) and ", " in text)
+    plain = not isinstance(inner, formulas.Binary) and not (
+        isinstance(inner, formulas.Unary) and ", " in text
+    )
     return text if plain else f"({text})"
 
 

@@ -21,16 +21,8 @@ from rvmon.analysis.truths import (
     subformulas,
     truths_of_parts,
 )
+from rvmon.language.checked import formula as formulas
 from rvmon.language.checked.classify import is_end
-from rvmon.language.checked.formula import (
-    Binary,
-    BinaryOp,
-    BoundAtom,
-    Constant,
-    EventAtom,
-    Formula,
-    SignalAtom,
-)
 from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.language.print import format_formula
@@ -114,8 +106,8 @@ def part_truths_of(
     """The truth of trigger, consequent and their subformulas, from `start` to `stop` (ticks)."""
     truths = truths_of_parts(requirement, attempt, seen)
     part_truths = []
-    parts: list[tuple[str, Formula]] = [("required", requirement.consequent)]
-    if not isinstance(requirement.trigger, BoundAtom | Constant):
+    parts: list[tuple[str, formulas.Formula]] = [("required", requirement.consequent)]
+    if not isinstance(requirement.trigger, formulas.BoundAtom | formulas.Constant):
         parts.insert(0, ("trigger", requirement.trigger))
     for part, whole in parts:
         for depth, formula in subformulas(whole, 0):
@@ -136,7 +128,7 @@ class _Part(Struct, frozen=True):
         reads: the signals that it reads.
     """
 
-    formula: Formula
+    formula: formulas.Formula
     text: str
     place: int
     reads: frozenset[str]
@@ -176,7 +168,10 @@ class TriggerParts:
     """
 
     def __init__(self, spec: CheckedSpec, requirement: Requirement) -> None:
-        options = [_flat(part, BinaryOp.AND) for part in _flat(requirement.trigger, BinaryOp.OR)]
+        options = [
+            _flat(part, formulas.BinaryOp.AND)
+            for part in _flat(requirement.trigger, formulas.BinaryOp.OR)
+        ]
         if requirement.for_each is not None:
             options = []
         self.question = Question(tuple(dict.fromkeys(chain(*options))))
@@ -222,9 +217,9 @@ class Looking:
         return self._triggers[requirement]
 
 
-def _flat(formula: Formula, op: BinaryOp) -> tuple[Formula, ...]:
+def _flat(formula: formulas.Formula, op: formulas.BinaryOp) -> tuple[formulas.Formula, ...]:
     match formula:
-        case Binary(op=connective, left=left, right=right) if connective is op:
+        case formulas.Binary(op=connective, left=left, right=right) if connective is op:
             return tuple(dict.fromkeys((*_flat(left, op), *_flat(right, op))))
         case _:
             return (formula,)
@@ -237,7 +232,7 @@ def _miss(parts: tuple[_Part, ...], truths: Sequence[Truth]) -> _Miss:
         return _Miss((), parts, None)
     instants = distinct([one[:, 0] for one in spans])
     true = np.array([hold(one, instants) for one in spans])
-    events = true[[isinstance(part.formula, EventAtom) for part in parts]].sum(axis=0)
+    events = true[[isinstance(part.formula, formulas.EventAtom) for part in parts]].sum(axis=0)
     best = int(np.argmax(true.sum(axis=0) * (len(parts) + 1) + events))
     is_there = true[:, best].tolist()
     there = tuple(part for part, is_true in zip(parts, is_there, strict=True) if is_true)
@@ -253,7 +248,7 @@ def _sentence(miss: _Miss, truths: Sequence[Truth], origin: int) -> str:
         return f"its trigger was true{when}, but not known to be false before: no edge was seen"
     rest = miss.there[0].formula
     for part in miss.there[1:]:
-        rest = Binary(BinaryOp.AND, rest, part.formula)
+        rest = formulas.Binary(formulas.BinaryOp.AND, rest, part.formula)
     unknown = any(not hold(truths[part.place].false, at) for part in miss.missing)
     lacking = "was never known to be true" if unknown else "was never true"
     while_ = f"while `{format_formula(rest)}` was (first at {format_instant(at, origin)})"
@@ -269,18 +264,18 @@ def _apart(
     for part in parts:
         word = "was never true"
         spans = truths[part.place].false.tolist()
-        if isinstance(part.formula, SignalAtom) and part.formula.name in valueless:
+        if isinstance(part.formula, formulas.SignalAtom) and part.formula.name in valueless:
             word = valueless[part.formula.name]
         elif not spans:
             word = "was never known"
         elif spans[0] != [seen.begin, seen.end]:
             word = "was never known to be true"
-        elif isinstance(part.formula, EventAtom):
+        elif isinstance(part.formula, formulas.EventAtom):
             word = "never occurred"
         groups.setdefault(word, []).append(part)
     for word, alike in groups.items():
         yield f"{_either(alike)} {word}"
-    signals = {part.formula.name for part in parts if isinstance(part.formula, SignalAtom)}
+    signals = {part.formula.name for part in parts if isinstance(part.formula, formulas.SignalAtom)}
     for name in sorted(valueless.keys() - signals):
         yield f"`{name}` {valueless[name]}"
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+from rvmon import evidence
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_plan import Job, Outcome, Results
 from rvmon.cdv.campaign_summary import CampaignSummary
@@ -17,17 +18,6 @@ from rvmon.cdv.tables import to_json as document_json
 from rvmon.cdv.test import from_json, to_json
 from rvmon.coverage import Ending
 from rvmon.errors import RvmonError
-from rvmon.evidence import (
-    COVERAGE,
-    About,
-    Kept,
-    coverage_json,
-    own_program,
-    package_versions,
-    sha256_of,
-    texts_of,
-    write_evidence,
-)
 from rvmon.files import refuse_no_file
 from rvmon.session import Spec
 from rvmon.verdicts.serialise import VerdictRow
@@ -39,7 +29,7 @@ def begun(campaign: Campaign, path: str) -> tuple[dict[str, bytes], list[str]]:
     specs = {name: robot.spec for name, robot in campaign.robots.items() if robot.spec is not None}
     if len(specs) < len(campaign.robots):
         raise RvmonError("--evidence: there is nothing to check: give each robot requirements")
-    return texts_of(specs)
+    return evidence.texts_of(specs)
 
 
 def write_campaign(
@@ -55,10 +45,10 @@ def write_campaign(
     if begun(campaign, path) != before:
         raise RvmonError("--evidence: requirements have changed meanwhile: run it again")
     tests = {_name(played.job): played.job.test for played in results.played}
-    about = About(
+    about = evidence.About(
         name=campaign.name,
-        packages=package_versions(campaign.packages),
-        programs={"rvmon": own_program()} | programs_of(campaign),
+        packages=evidence.package_versions(campaign.packages),
+        programs={"rvmon": evidence.own_program()} | programs_of(campaign),
         specs=dict(zip(specs, before[1], strict=True)),
         command=[campaign.program or Path(sys.argv[0]).name, *map(str, words)],
         timeout_s=campaign.timeout_s,
@@ -81,16 +71,16 @@ def write_campaign(
         **before[0],
         **{f"tests/{test.name}.json": to_json(test) for test in tests.values()},
         "table.json": document_json(table),
-        COVERAGE: coverage_json(covered),
+        evidence.COVERAGE: evidence.coverage_json(covered),
     }
     rows = (row for played in results.played for row in _rows(played.job, played.outcome))
-    write_evidence(path, about, entries, specs, rows)
+    evidence.write_evidence(path, about, entries, specs, rows)
 
 
 def programs_of(campaign: Campaign) -> dict[str, str]:
     """SHA-256 of the folders and files that outcomes of a campaign depend on, by name."""
     return {
-        path.name if path.is_dir() else f"{path.parent.name}/{path.name}": sha256_of(path)
+        path.name if path.is_dir() else f"{path.parent.name}/{path.name}": evidence.sha256_of(path)
         for path in sources_of(campaign)
     }
 
@@ -109,7 +99,7 @@ def _rows(job: Job, outcome: Outcome) -> Iterator[VerdictRow]:
         yield VerdictRow(name, verdict="F", reason=hit)
 
 
-def as_kept(campaign: Campaign, kept: Kept) -> Campaign:
+def as_kept(campaign: Campaign, kept: evidence.Kept) -> Campaign:
     """The campaign as it made evidence: with its robots, judged by the requirements in there."""
     if unknown := kept.specs.keys() - campaign.robots.keys():
         raise RvmonError(f"{campaign.name} has no robot {', '.join(sorted(unknown))}")
@@ -118,7 +108,7 @@ def as_kept(campaign: Campaign, kept: Kept) -> Campaign:
 
 
 def played_again(
-    campaign: Campaign, kept: Kept, chosen: Sequence[str], jobs: int
+    campaign: Campaign, kept: evidence.Kept, chosen: Sequence[str], jobs: int
 ) -> Iterator[VerdictRow]:
     """Play tests of evidence again; their code is not measured."""
     tests = []

@@ -12,27 +12,12 @@ from tempfile import TemporaryDirectory
 
 from msgspec import Struct
 
-from rvmon.cdv import tables
+from rvmon.cdv import campaign_text, gate, tables
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_page import choose_examples, comparable_jobs
 from rvmon.cdv.campaign_plan import Job, Plan, Played, Results, plan, plan_of_folder
 from rvmon.cdv.campaign_summary import CampaignSummary
-from rvmon.cdv.campaign_text import (
-    dated_files,
-    left_over,
-    print_summary,
-    typed,
-    write_tables,
-    write_tests,
-)
 from rvmon.cdv.coverage import coverage_model
-from rvmon.cdv.gate import (
-    CampaignJudgement,
-    RobotRequirement,
-    judge_campaign,
-    judge_test,
-    junit_xml,
-)
 from rvmon.cdv.outcome_counts import summarise
 from rvmon.cdv.play import INTERRUPTED, Bench, PlayerApart, execute, outcome_of
 from rvmon.cdv.replay_pages import Replay, play_again, replay_page, write_pages
@@ -66,16 +51,16 @@ class Conducted(Struct, frozen=True):
         """Whether a person ended it before all was played."""
         return self.results.cut_short == INTERRUPTED
 
-    def judged(self, *, strict: bool) -> CampaignJudgement:
+    def judged(self, *, strict: bool) -> gate.CampaignJudgement:
         """Compare the campaign with what was expected of it; if `strict`, I and NT are wrong."""
         robots = self.summary.robots.items()
         requirements = {name: tuple(robot.requirements) for name, robot in robots}
-        shares: dict[RobotRequirement, dict[str, Decision]] = {}
+        shares: dict[gate.RobotRequirement, dict[str, Decision]] = {}
         for name, robot in robots:
             for strategy, figures in robot.strategies.items():
                 for requirement, decision in figures.shares.items():
                     shares.setdefault((name, requirement), {})[strategy] = decision
-        return judge_campaign(self.results, requirements, shares, strict=strict)
+        return gate.judge_campaign(self.results, requirements, shares, strict=strict)
 
 
 def conduct(
@@ -91,7 +76,7 @@ def conduct(
     if arguments.shard is not None and arguments.evidence:
         raise RvmonError("--evidence is of all tests: give it to the command that joins the shards")
     folder = output_folder(arguments.out) if arguments.out else None
-    before = dated_files(folder) if folder is not None else {}
+    before = campaign_text.dated_files(folder) if folder is not None else {}
     with busy("generating tests"):
         if arguments.suite is not None:
             chosen = plan_of_folder(campaign, arguments.suite)
@@ -110,7 +95,7 @@ def conduct(
     if arguments.suite is not None:
         amount = ["--suite", arguments.suite]
     same = [command, *amount, *others]
-    again = typed(campaign.program, [*same, "--out", arguments.out])
+    again = campaign_text.typed(campaign.program, [*same, "--out", arguments.out])
     kept = None
     if folder is not None:
         kept = unfinished(folder, chosen, specs, again, arguments.shard)
@@ -131,7 +116,7 @@ def conduct(
         warn(f"{arguments.evidence}: not written: evidence is of whole campaigns")
     elif texts is not None:
         write_campaign(arguments.evidence, texts, results, conducted.summary, specs, same)
-    if folder is not None and (remark := left_over(folder, before)):
+    if folder is not None and (remark := campaign_text.left_over(folder, before)):
         warn(remark)
     if kept is not None and results.cut_short:
         warn(f"{kept.path}: the same command plays the rest")
@@ -165,8 +150,8 @@ def written(
     if folder is None:
         return Conducted(results, summary, tables)
     with busy("writing tables"):
-        write_tables(folder, summary, tables, campaign.presentation)
-        write_tests(folder, results)
+        campaign_text.write_tables(folder, summary, tables, campaign.presentation)
+        campaign_text.write_tests(folder, results)
         played = frozenset(played.job.test.strategy for played in results.played)
         campaign.presentation.write_more(folder, played)
     witnesses = {test for table in tables.values() for test in table.witnesses.values()}
@@ -200,7 +185,7 @@ def show(campaign: Campaign, conducted: Conducted, form: str) -> None:
         )
         return
     printer = page_printer()
-    print_summary(summary, conducted.tables, printer, campaign.presentation.foremost)
+    campaign_text.print_summary(summary, conducted.tables, printer, campaign.presentation.foremost)
     work = campaign.presentation.work(summary)
     printer.sentences(f"{counted(summary.finished, 'test')} in {summary.seconds:.1f} s: {work}.")
     if summary.cut_short:
@@ -220,10 +205,12 @@ SHOWN = 20
 """Lines about what is wrong; `--junit` has all of them."""
 
 
-def is_as_expected(campaign: Campaign, judgement: CampaignJudgement, arguments: Namespace) -> bool:
+def is_as_expected(
+    campaign: Campaign, judgement: gate.CampaignJudgement, arguments: Namespace
+) -> bool:
     """Print, and write as JUnit XML, what a campaign came to; return whether all is as expected."""
     if arguments.junit is not None:
-        write_file(arguments.junit, junit_xml(campaign.name, judgement))
+        write_file(arguments.junit, gate.junit_xml(campaign.name, judgement))
     for what, count in judgement.known.items():
         warn(f"{what} ({counted(count, 'test')})")
     wrong = judgement.wrong
@@ -257,7 +244,7 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
             play_again(one.test, bench, wants_scene=False).judged
             for one in comparable_jobs(job, (), ())
         ]
-        command = typed(campaign.program, words)
+        command = campaign_text.typed(campaign.program, words)
         page = replay_page(played, job.robot, spec, command=command, others=others)
         # The file is named after the test's file: what it says inside is no path.
         name = Path(arguments.test).stem
@@ -265,7 +252,7 @@ def replay(campaign: Campaign, arguments: Namespace) -> int:
         lines = [json.dumps({"t_ns": sample.t, **sample.values}) + "\n" for sample in judged[1]]
         write_whole(folder / f"{name}.jsonl", "".join(lines))
     if arguments.expected:
-        wrong = judge_test(
+        wrong = gate.judge_test(
             Played(job, outcome_of(played.recorded)), campaign.expected_failures
         ).wrong
         for what in wrong:

@@ -8,17 +8,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from rvmon import __version__
+from rvmon.cli import reading
 from rvmon.cli.evaluation import Judged, Options, judge
 from rvmon.cli.options import constants_of, refuse_over
 from rvmon.cli.output import say, warn
-from rvmon.cli.reading import (
-    ENDING,
-    allowed_names,
-    chosen_attempt,
-    named_attempt,
-    opened,
-    reading_spec,
-)
 from rvmon.errors import RvmonError
 from rvmon.files import refuse_no_file
 from rvmon.language.checked.specification import Mode
@@ -40,7 +33,9 @@ def run_clip(arguments: argparse.Namespace) -> int:
         raise RvmonError("a reproducer shows an attempt: name it, such as R1#3")
     if arguments.attempt is None and arguments.start is None and arguments.stop is None:
         raise RvmonError("name what to cut out: an attempt such as R1#3, or --from T and --to T")
-    spec = reading_spec(load(arguments.spec, const=constants_of(arguments.const)), arguments)
+    spec = reading.reading_spec(
+        load(arguments.spec, const=constants_of(arguments.const)), arguments
+    )
     refuse_place(data, out)
     refuse_over([out, case], [data, arguments.spec, arguments.binding])
     for one in (out, case):
@@ -48,8 +43,8 @@ def run_clip(arguments: argparse.Namespace) -> int:
             refuse_no_file(one)
     attempt = None
     if arguments.attempt is not None:
-        name, exact = named_attempt(arguments.attempt, spec)
-        attempt = chosen_attempt(_report(spec, arguments, data, name), name, exact)
+        name, exact = reading.named_attempt(arguments.attempt, spec)
+        attempt = reading.chosen_attempt(_report(spec, arguments, data, name), name, exact)
     piece = _piece(spec, arguments, attempt)
     with TemporaryDirectory(prefix="rvmon-") as folder:
         place = out or str(Path(folder, name_of(data)))
@@ -73,12 +68,12 @@ def run_clip(arguments: argparse.Namespace) -> int:
 
 def _places(arguments: argparse.Namespace) -> tuple[str | None, str | None]:
     out, case = arguments.out, arguments.reproducer
-    if out is not None and out.endswith(ENDING) and case is None:
+    if out is not None and out.endswith(reading.ENDING) and case is None:
         out, case = None, out
     if out is None and case is None:
         raise RvmonError("name where it goes to: -o FILE, or --reproducer FILE.rvcase")
-    if case is not None and not case.endswith(ENDING):
-        raise RvmonError(f"cannot write {case}: the name of a reproducer ends in {ENDING}")
+    if case is not None and not case.endswith(reading.ENDING):
+        raise RvmonError(f"cannot write {case}: the name of a reproducer ends in {reading.ENDING}")
     return out, case
 
 
@@ -119,13 +114,13 @@ def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) ->
 
 
 def _judged(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Judged:
-    allowed = allowed_names(arguments.allow_missing)
+    allowed = reading.allowed_names(arguments.allow_missing)
     return judge(spec, trace, Options((name,), allow_missing=allowed), is_alone=True)
 
 
 def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -> Piece:
     """The piece to cut out, with the values carried into it."""
-    recording = opened(spec, arguments.data)
+    recording = reading.opened(spec, arguments.data)
     ordered = spec.checked.max_delay is None
     start, stop = -TIME_LIMIT, TIME_LIMIT
     if attempt is not None:

@@ -10,26 +10,12 @@ from pathlib import Path
 
 import msgspec
 
+from rvmon import evidence
 from rvmon.cli.evaluation import Judged, judge_all, spec_and_options
 from rvmon.cli.options import constants_of
 from rvmon.cli.output import bar, say
 from rvmon.cli.run_output import rows_of
 from rvmon.errors import RvmonError, TraceError
-from rvmon.evidence import (
-    COVERAGE,
-    About,
-    Judging,
-    Kept,
-    TamperedError,
-    coverage_json,
-    derived_entries,
-    opened_evidence,
-    own_program,
-    package_versions,
-    sha256_of,
-    texts_of,
-    write_evidence,
-)
 from rvmon.recordings import form_of_folder
 from rvmon.recordings.places import files_of
 from rvmon.report.trace_matrix import Row, rows_by_item
@@ -39,7 +25,7 @@ from rvmon.verdicts import LAW
 from rvmon.verdicts.serialise import VerdictRow
 from rvmon.verdicts.table_file import csv_bytes
 
-Again = Callable[[Kept, Sequence[str], int], Iterable[VerdictRow]]
+Again = Callable[[evidence.Kept, Sequence[str], int], Iterable[VerdictRow]]
 """Judges recordings, or plays tests, again, on so many processes."""
 
 
@@ -48,9 +34,9 @@ def run_evidence(arguments: argparse.Namespace) -> int:
     differ: list[str] = []
     unchecked: list[str] = []
     try:
-        with opened_evidence(arguments.file) as kept:
+        with evidence.opened_evidence(arguments.file) as kept:
             _verify(kept, arguments, differ, unchecked)
-    except TamperedError as error:
+    except evidence.TamperedError as error:
         differ.append(str(error))
     for heading, facts in (("differs", differ), ("not checked", unchecked)):
         for one in facts:
@@ -63,7 +49,7 @@ def run_evidence(arguments: argparse.Namespace) -> int:
 
 
 def _verify(
-    kept: Kept, arguments: argparse.Namespace, differ: list[str], unchecked: list[str]
+    kept: evidence.Kept, arguments: argparse.Namespace, differ: list[str], unchecked: list[str]
 ) -> None:
     about = kept.about
     say(f"{arguments.file}: {about.name}, evaluated by rvmon {about.rvmon}, law {about.law}")
@@ -71,7 +57,7 @@ def _verify(
     for name, sha256 in _shown(about.recordings):
         if not is_recording(name):
             unchecked.append(f"{name} is not there")
-        elif sha256_of(*map(Path, files_of(name))) != sha256:
+        elif evidence.sha256_of(*map(Path, files_of(name))) != sha256:
             differ.append(f"{name} is not the recording that was evaluated")
         else:
             continue
@@ -79,7 +65,7 @@ def _verify(
     if about.law != LAW:
         unchecked.append(f"verdicts, which are of law {about.law}: this rvmon has law {LAW}")
         return
-    is_same = about.programs.get("rvmon") == own_program()
+    is_same = about.programs.get("rvmon") == evidence.own_program()
     if is_same:
         _expect_derived(kept)
     else:
@@ -114,19 +100,19 @@ def _shown(recordings: Mapping[str, str]) -> Iterator[tuple[str, str]]:
             show(count)
 
 
-def _expect_derived(kept: Kept) -> None:
+def _expect_derived(kept: evidence.Kept) -> None:
     """See that the matrix follows from requirements and verdicts."""
     const = constants_of(kept.about.judging.const if kept.about.judging else ())
     specs = {robot: load(path, const=const) for robot, path in kept.specs.items()}
     try:
-        derived = derived_entries(kept.about, specs, kept.items)
+        derived = evidence.derived_entries(kept.about, specs, kept.items)
     except ValueError as error:
-        raise TamperedError(f"a verdict is none: {error}") from None
+        raise evidence.TamperedError(f"a verdict is none: {error}") from None
     if not derived.items() <= kept.entries.items():
-        raise TamperedError("the matrix does not follow from requirements and verdicts")
+        raise evidence.TamperedError("the matrix does not follow from requirements and verdicts")
 
 
-def _judged_again(kept: Kept, chosen: Sequence[str], jobs: int) -> Iterator[VerdictRow]:
+def _judged_again(kept: evidence.Kept, chosen: Sequence[str], jobs: int) -> Iterator[VerdictRow]:
     options_kept = msgspec.structs.asdict(kept.about.judging) if kept.about.judging else {}
     options_kept |= {"spec": kept.specs[""], "binding": kept.binding, "coverage": None}
     spec, options = spec_and_options(argparse.Namespace(**options_kept))
@@ -171,8 +157,8 @@ def begun(
     for trace in traces:
         if not is_recording(trace) or shown_path(trace) in hashes:
             raise RvmonError(f"--evidence: {trace}: name files that are there, each once")
-        hashes[shown_path(trace)] = sha256_of(*map(Path, files_of(trace)))
-    return *texts_of({"": arguments.spec}, arguments.binding), hashes
+        hashes[shown_path(trace)] = evidence.sha256_of(*map(Path, files_of(trace)))
+    return *evidence.texts_of({"": arguments.spec}, arguments.binding), hashes
 
 
 def write_run(
@@ -185,19 +171,19 @@ def write_run(
     if begun(arguments, list(before[2])) != before:
         raise RvmonError("--evidence: an input has changed meanwhile: run it again")
     entries, (main, *binding), recordings = before
-    how = msgspec.convert(arguments, Judging, from_attributes=True)
-    about = About(
+    how = msgspec.convert(arguments, evidence.Judging, from_attributes=True)
+    about = evidence.About(
         name=spec.checked.name,
-        packages=package_versions(),
-        programs={"rvmon": own_program()},
+        packages=evidence.package_versions(),
+        programs={"rvmon": evidence.own_program()},
         specs={"": main},
         recordings=recordings,
         judging=msgspec.structs.replace(how, binding=binding[0] if binding else None),
     )
     if arguments.coverage is not None:
         covered = (spec.coverage_model.model, [result.hits for result in judged])
-        entries = {**entries, COVERAGE: coverage_json({"": covered})}
-    write_evidence(arguments.evidence, about, entries, {"": spec}, rows_of_judged(judged))
+        entries = {**entries, evidence.COVERAGE: evidence.coverage_json({"": covered})}
+    evidence.write_evidence(arguments.evidence, about, entries, {"": spec}, rows_of_judged(judged))
 
 
 def rows_of_judged(judged: Sequence[Judged]) -> Iterator[VerdictRow]:

@@ -10,14 +10,7 @@ from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rvmon.cli.evaluation import (
-    Judged,
-    Options,
-    as_known,
-    compare_expected,
-    judge_all,
-    spec_and_options,
-)
+from rvmon.cli import evaluation
 from rvmon.cli.options import ids_of, refuse_over
 from rvmon.cli.output import rendered, say_json, warn
 from rvmon.cli.reading import reading_words, refuse_empty, shown_name, unpacked
@@ -50,7 +43,9 @@ def run_run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
-    spec, options = spec_and_options(arguments, None if case is None else shown_name(case.spec))
+    spec, options = evaluation.spec_and_options(
+        arguments, None if case is None else shown_name(case.spec)
+    )
     _show_warnings(spec)
     refuse_empty(spec)
     traces = list(found_recordings(arguments.traces))
@@ -75,7 +70,7 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
     if before is not None:
         write_run(arguments, spec, judged, before)
     if case is not None:
-        compare_expected(judged[0], case)
+        evaluation.compare_expected(judged[0], case)
     if len(reports) < len(judged):
         return 2
     failed = any(_failed(report, known, strict=arguments.strict) for report in reports)
@@ -98,12 +93,12 @@ def _judged(
     arguments: argparse.Namespace,
     traces: Sequence[str],
     spec: Spec,
-    options: Options,
+    options: evaluation.Options,
     case: Case | None,
-) -> list[Judged]:
+) -> list[evaluation.Judged]:
     """Judge the recordings, but for those that a run which was ended has judged."""
     judge = partial(
-        judge_all,
+        evaluation.judge_all,
         jobs=arguments.dask or arguments.jobs,
         writes_json=arguments.format == "json",
     )
@@ -112,7 +107,7 @@ def _judged(
     if arguments.out is None or (len(traces) == 1 and not (arguments.shard or shards)):
         recordings = list(judge(spec, traces, options))  # there is nothing to go on with
         if case is not None:
-            recordings = [as_known(judged, case) for judged in recordings]
+            recordings = [evaluation.as_known(judged, case) for judged in recordings]
     else:
         from rvmon.cli.resume import unfinished
 
@@ -210,7 +205,7 @@ def _show_warnings(spec: Spec) -> None:
         warn(f"properties are not evaluated on runs: {', '.join(alone)}; {by}")
 
 
-def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[Judged]) -> None:
+def _show(arguments: argparse.Namespace, spec: Spec, judged: Sequence[evaluation.Judged]) -> None:
     for result in judged:
         if result.error:
             warn(f"error: {result.error}")
@@ -240,7 +235,7 @@ def _show_known(known: KnownFailures, reports: Sequence[Report]) -> None:
         warn(f"warning: {remark}")
 
 
-def _show_doubts(judged: Sequence[Judged]) -> None:
+def _show_doubts(judged: Sequence[evaluation.Judged]) -> None:
     """Warn of what may not be what it seems, as the text for people does."""
     for result in judged:
         for health in () if result.report is None else result.report.health:
@@ -248,7 +243,7 @@ def _show_doubts(judged: Sequence[Judged]) -> None:
                 warn(f"warning: {result.trace}: `{health.name}`: {health.remark}")
 
 
-def _json(judged: Judged, spec: Spec) -> str:
+def _json(judged: evaluation.Judged, spec: Spec) -> str:
     if judged.report is not None:
         return judged.text or judged.report.to_json(spec.requirements)
     from rvmon.verdicts.serialise import encode_broken

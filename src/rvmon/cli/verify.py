@@ -11,17 +11,7 @@ from typing import TYPE_CHECKING, Any
 from rvmon.cli.options import budget_of, model_constants_of, named_values
 from rvmon.cli.output import busy, rendered, say, say_json, warn
 from rvmon.errors import RvmonError, UnknownNameError
-from rvmon.models.describe import (
-    extreme_data,
-    extreme_text,
-    observation_data,
-    outcome_data,
-    run_lines,
-    sampled_data,
-    simulation_data,
-    suite_data,
-    trajectory_lines,
-)
+from rvmon.models import describe
 from rvmon.models.language.elaborate import chosen_queries
 from rvmon.models.language.load import load_network
 from rvmon.models.network import Chance, Extremes, Mean, Network, Query, Simulation
@@ -72,31 +62,33 @@ def _decide(network: Network, arguments: argparse.Namespace, budget: Budget) -> 
                     going = Meter(budget, watch).goes_on
                     one = sample(extended, query, seed=arguments.seed, watch=going)
                     failed |= bool(one.margin) and not one.holds
-                    data["simulated"].append(sampled_data(one))
+                    data["simulated"].append(describe.sampled_data(one))
                     if in_words:
                         _print_sampled(one)
                 case Simulation():
                     going = Meter(budget, watch).goes_on
                     drawn = trajectories(extended, query, seed=arguments.seed, watch=going)
-                    data["simulated"].append(simulation_data(query, drawn))
+                    data["simulated"].append(describe.simulation_data(query, drawn))
                     if in_words:
                         _print_query(query, "simulated")
                         for number, run in enumerate(drawn, start=1):
                             say(f"    run {number}:")
-                            for line in trajectory_lines(extended, query, run):
+                            for line in describe.trajectory_lines(extended, query, run):
                                 say(f"      {line}")
                         say(flush=True)
                 case Extremes():
                     values = list(extremes(extended, query, budget=budget, watch=watch))
                     failed |= not all(extreme.exact for extreme in values)
-                    data["extremes"] += [extreme_data(extended, extreme) for extreme in values]
+                    data["extremes"] += [
+                        describe.extreme_data(extended, extreme) for extreme in values
+                    ]
                     if in_words:
                         _print_extremes(extended, values)
                 case _:
                     policy = Policy(arguments.trace)
                     outcome = verify(extended, query, budget=budget, watch=watch, policy=policy)
                     failed |= not outcome.holds
-                    data["queries"].append(outcome_data(extended, outcome))
+                    data["queries"].append(describe.outcome_data(extended, outcome))
                     if in_words:
                         _print_outcome(extended, outcome)
     if not in_words:
@@ -116,7 +108,7 @@ def _print_query(query: Query, word: str) -> None:
 def _print_run(network: Network, run: Run | None, kind: str) -> None:
     if run is not None:
         say(f"    {kind}:")
-        for line in run_lines(network, run):
+        for line in describe.run_lines(network, run):
             say(f"      {line}")
 
 
@@ -138,7 +130,7 @@ def _print_extremes(network: Network, values: Sequence[Extreme]) -> None:
     )
     for extreme in values:
         statistics = extreme.statistics
-        say(f"    {extreme_text(extreme)}")
+        say(f"    {describe.extreme_text(extreme)}")
         say(f"    {statistics.visited:,} states, {statistics.seconds:.2f} s")
         _print_run(network, extreme.run, "there" if extreme.attained else "near it")
     say(flush=True)
@@ -163,11 +155,11 @@ def _show_suite(network: Network, arguments: argparse.Namespace, budget: Budget)
     with _shown() as watch:
         suite = build_suite(network, criterion, budget=budget, watch=watch)
     if arguments.format == "json":
-        say_json(json.dumps(suite_data(network, suite), indent=2))
+        say_json(json.dumps(describe.suite_data(network, suite), indent=2))
         return int(bool(suite.stopped))
     for number, (shown, items) in enumerate(suite.runs, start=1):
         say(f"run {number}, {len(items)} new:")
-        for line in run_lines(network, shown):
+        for line in describe.run_lines(network, shown):
             say(f"  {line}")
     total = suite.covered + len(suite.missing)
     say(f"{len(suite.runs)} runs go through {suite.covered} of {total} {criterion}")
@@ -212,7 +204,9 @@ def check_spec(
             _print_observation(observation, spec)
     if arguments.format == "json":
         say_json(
-            json.dumps({"requirements": [observation_data(o) for o in observations]}, indent=2)
+            json.dumps(
+                {"requirements": [describe.observation_data(o) for o in observations]}, indent=2
+            )
         )
     return int(any(not observation.holds for observation in observations))
 
@@ -236,7 +230,7 @@ def _print_observation(observation: Observation, spec: Spec) -> None:
         if shown is None:
             continue
         say(f"    {name}:")
-        for line in run_lines(observation.network, shown):
+        for line in describe.run_lines(observation.network, shown):
             say(f"      {line}")
         if name != "triggered":
             for line in _timeline(observation, shown, spec):

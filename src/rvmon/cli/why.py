@@ -8,17 +8,9 @@ from dataclasses import replace
 
 from rvmon.analysis.subformulas import dissect, why_not_triggered
 from rvmon.analysis.window_values import WindowValues, unit_of, windows_blamed
+from rvmon.cli import reading
 from rvmon.cli.options import constants_of
 from rvmon.cli.output import busy, say_json, shown_while_reading
-from rvmon.cli.reading import (
-    allowed_names,
-    chosen_attempt,
-    named_attempt,
-    opened,
-    reading_spec,
-    shown_name,
-    unpacked,
-)
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.print import format_window
@@ -39,24 +31,24 @@ from rvmon.verdicts.report import Report
 
 def run_why(arguments: argparse.Namespace) -> int:
     """Judge the recording, take the attempt apart, show it, and return the exit code."""
-    with unpacked(arguments) as case:
+    with reading.unpacked(arguments) as case:
         if case is not None:
             if arguments.attempt is not None:
                 raise RvmonError("a reproducer brings its recording along: name only an attempt")
             arguments.attempt = arguments.trace or case.attempt
             arguments.trace = case.recording
-        return _explain(arguments, None if case is None else shown_name(case.spec))
+        return _explain(arguments, None if case is None else reading.shown_name(case.spec))
 
 
 def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     if arguments.trace == "-":
         raise RvmonError("error: standard input can be read once only: save the recording first")
-    spec = reading_spec(
+    spec = reading.reading_spec(
         load(arguments.spec, name=known_as, const=constants_of(arguments.const)), arguments
     )
-    name, exact = named_attempt(arguments.attempt, spec)
-    recording = opened(spec, arguments.trace)
-    allowed = allowed_names(arguments.allow_missing)
+    name, exact = reading.named_attempt(arguments.attempt, spec)
+    recording = reading.opened(spec, arguments.trace)
+    allowed = reading.allowed_names(arguments.allow_missing)
     mapped = spec.schema.named
     expect_names(spec.checked, recording, mapped, only=[name], allowed=allowed)
     is_cut = arguments.until is not None
@@ -76,7 +68,7 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
         requirement = spec.requirements[name]
         miss = why_not_triggered(spec.checked, requirement, samples, report.end, recording.names)
         report = replace(report, misses={name: miss})
-    attempt = chosen_attempt(report, name, exact)
+    attempt = reading.chosen_attempt(report, name, exact)
     assert report.end is not None, "a recording with an attempt has an end"
     with busy(f"taking {attempt.name} apart"):
         breakdown = dissect(spec.checked, samples, report.end, attempt, recording.names)

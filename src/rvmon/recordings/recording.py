@@ -21,20 +21,12 @@ from rvmon.recordings import (
     FORMATS,
     MESSAGE_FORMS,
     form_of_folder,
+    places,
 )
 from rvmon.recordings.csv_dialect import bare_names, opened_as_csv
 from rvmon.recordings.csv_rows import Layout, read_layout, split_lines
 from rvmon.recordings.csv_text import CsvText
 from rvmon.recordings.joined import Joined, schemas_of
-from rvmon.recordings.places import (
-    JOINT,
-    endings_of,
-    files_of,
-    is_address,
-    local_path,
-    named_errors,
-    opened,
-)
 from rvmon.recordings.rows import LOOKED_AT, Row, Rows, doubt_unit
 from rvmon.texts import cannot_read
 from rvmon.trace.sample import Health, HealthKind, Outage, Sample
@@ -110,7 +102,10 @@ class FileRecording:
         self._begun: tuple[CsvText[Found], Layout] | None = None
         self._text: CsvText[Found] | None = None
         if self._format == "csv":
-            with named_errors(self.path), opened_as_csv(self.path, schema.stamps) as (plain, _):
+            with (
+                places.named_errors(self.path),
+                opened_as_csv(self.path, schema.stamps) as (plain, _),
+            ):
                 text: CsvText[Found] = CsvText(plain)
                 layout = self._layout(text)
             self._take_names(layout)
@@ -118,16 +113,16 @@ class FileRecording:
         elif self._format == "parquet":
             from rvmon.recordings.parquet import parquet_layout
 
-            with named_errors(self.path):
-                self._take_names(parquet_layout(local_path(self.path), schema))
+            with places.named_errors(self.path):
+                self._take_names(parquet_layout(places.local_path(self.path), schema))
         elif self.is_of_messages:
             from rvmon.recordings.messages.file import MessageFile
 
-            with named_errors(self.path):
+            with places.named_errors(self.path):
                 self._messages = MessageFile(self.path, self._format, schema)
             self.names, self.end = self._messages.names, self._messages.end
         elif self._format == JOINED:
-            paths = files_of(self.path)
+            paths = places.files_of(self.path)
             of_messages = [format_of(path) in MESSAGE_FORMS for path in paths]
             files = zip(paths, schemas_of(paths, of_messages, schema), strict=True)
             parts = [FileRecording(*file, ordered=ordered) for file in files]
@@ -163,7 +158,7 @@ class FileRecording:
         return self._some(self.samples())
 
     def _some(self, read: Iterator[_Piece]) -> Iterator[_Piece]:
-        with named_errors(self.path):
+        with places.named_errors(self.path):
             yield from read
             if not self.rows.count:
                 raise TraceError("holds no sample")
@@ -205,7 +200,7 @@ class FileRecording:
         if self._format == "parquet":
             from rvmon.recordings.parquet import parquet_batches_of
 
-            yield from parquet_batches_of(local_path(self.path), self._schema)
+            yield from parquet_batches_of(places.local_path(self.path), self._schema)
             return
         if self._begun is not None:
             begun, self._begun = self._begun, None
@@ -253,7 +248,7 @@ class FileRecording:
         if not first and self._stamps.unit == "s" and self.path != "-":
             bare = replace(self._schema, signals={}, events={})
             again = FileRecording(self.path, bare, ordered=self._ordered)
-            with named_errors(self.path):
+            with places.named_errors(self.path):
                 deque(islice(again.samples(), LOOKED_AT), 0)
             first, self._stamps = again.rows.first, again._stamps
         return doubt_unit(first, self._stamps)
@@ -304,7 +299,7 @@ class FileRecording:
             return nullcontext((sys.stdin.buffer, sys.stdin.buffer))
         if self._format == "csv":
             return opened_as_csv(self.path, self._schema.stamps)
-        return opened(self.path)
+        return places.opened(self.path)
 
 
 def messages_of(path: str) -> MessageFile:
@@ -319,7 +314,7 @@ def messages_of(path: str) -> MessageFile:
 
 def can_be_read_again(path: str) -> bool:
     """Whether a recording is a file, and not a stream that is gone when it was read."""
-    if path == "-" or is_address(path):
+    if path == "-" or places.is_address(path):
         return path != "-"
     try:
         return not S_ISFIFO(os.stat(path).st_mode)
@@ -331,14 +326,14 @@ def format_of(path: str) -> str:
     """The format that a name stands for."""
     if path == "-":
         return "jsonl"
-    if JOINT in path and not os.path.lexists(path):
+    if places.JOINT in path and not os.path.lexists(path):
         return JOINED
-    if not is_address(path) and (form := form_of_folder(path)):
+    if not places.is_address(path) and (form := form_of_folder(path)):
         return form
-    if is_address(path) and path.endswith("/"):
+    if places.is_address(path) and path.endswith("/"):
         return "ros2"
-    suffix, packed = endings_of(path)
-    if suffix not in FORMATS and not (is_address(path) or Path(path).exists()):
+    suffix, packed = places.endings_of(path)
+    if suffix not in FORMATS and not (places.is_address(path) or Path(path).exists()):
         raise TraceError(cannot_read(path, FileNotFoundError(ENOENT, os.strerror(ENOENT))))
     if suffix not in FORMATS:
         known = ", ".join(FORMATS)

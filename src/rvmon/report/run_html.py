@@ -9,15 +9,9 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from itertools import groupby, islice
 
+from rvmon.report import panel_html
 from rvmon.report.attempt_panels import Panel, RunPage, opening, panel_id, panels_of
 from rvmon.report.html import e, render
-from rvmon.report.panel_html import (
-    has_unknown,
-    headline,
-    panel_timeline,
-    parts_timeline,
-    spec_lines,
-)
 from rvmon.report.time_axis import View, moment, whole_run
 from rvmon.report.timeline import axis_row, place_of
 from rvmon.report.tracks import PLACES, Outline, Scene, Track, TrackKind
@@ -111,7 +105,7 @@ def run_page(content: RunPage) -> str:
     ]
     return render(
         "run.html",
-        title=headline(content.run.name, first, report.origin).replace("`", ""),
+        title=panel_html.headline(content.run.name, first, report.origin).replace("`", ""),
         spec=content.spec,
         run=content.run,
         report=report,
@@ -123,10 +117,10 @@ def run_page(content: RunPage) -> str:
         most_drawn=MOST_DRAWN,
         panels=panels,
         first=first,
-        timeline_of=lambda panel: panel_timeline(
+        timeline_of=lambda panel: panel_html.panel_timeline(
             panel, content.spec.requirements[panel.requirement], report
         ),
-        parts_of=lambda panel: parts_timeline(panel, report),
+        parts_of=lambda panel: panel_html.parts_timeline(panel, report),
         siblings=partial(_siblings, panels, report),
         scene=None if scene is None else scene_svg(scene, first.instant),
         command=content.command,
@@ -137,11 +131,11 @@ def run_page(content: RunPage) -> str:
         stamped=format_stamped,
         health_facts=health_facts,
         forecast_sentence=forecast_sentence,
-        has_unknown=has_unknown,
-        headline=headline,
+        has_unknown=panel_html.has_unknown,
+        headline=panel_html.headline,
         value_text=value_text,
         moment=moment,
-        spec_lines=spec_lines,
+        spec_lines=panel_html.spec_lines,
     )
 
 
