@@ -182,11 +182,7 @@ class Factory:
     # State formulas.
 
     def _state(
-        self,
-        op: StateOp,
-        args: tuple[State, ...] = (),
-        leaf: Leaf | None = None,
-        **fields: Any,
+        self, op: StateOp, args: tuple[State, ...] = (), leaf: Leaf | None = None, **fields: Any
     ) -> State:
         key = (op, args, leaf, *fields.items())
         found = self._known.get(key)

@@ -30,12 +30,7 @@ class Reader(Reading[Four]):
     """
 
     def __init__(
-        self,
-        factory: Factory,
-        period: int | None,
-        *,
-        measured: bool = False,
-        held: bool = False,
+        self, factory: Factory, period: int | None, *, measured: bool = False, held: bool = False
     ) -> None:
         self.factory = factory
         self.period = period

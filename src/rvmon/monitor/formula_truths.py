@@ -93,10 +93,7 @@ class TruthsRun:
 
 
 def known_truths(
-    spec: CheckedSpec,
-    formulas: Sequence[Core],
-    samples: Iterable[Sample],
-    end: int,
+    spec: CheckedSpec, formulas: Sequence[Core], samples: Iterable[Sample], end: int
 ) -> list[Known]:
     """Evaluate formulas at all positions of a recording; see `TruthsRun`.
 

@@ -47,12 +47,7 @@ def _truth(sense: Sense, value: int, *, better: bool) -> bool:
 
 
 def _noted(
-    compiled: CompiledRequirement,
-    gap: int | None,
-    letters: Letters,
-    position: int,
-    *,
-    better: bool,
+    compiled: CompiledRequirement, gap: int | None, letters: Letters, position: int, *, better: bool
 ) -> Noted:
     """The letters to replay; those before `position` (ticks) only if the formula looks back."""
     plan, propositions = compiled.network_plan, compiled.alphabet.propositions

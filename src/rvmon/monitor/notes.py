@@ -164,11 +164,7 @@ class NoteExplainer:
         then = _by_text(texts, self._then(note))
         begun = _instant(words[1])
         places = self._places
-        return (
-            leaves,
-            values,
-            TruthValues(origin, self._gap, begun, values, words, places, then),
-        )
+        return leaves, values, TruthValues(origin, self._gap, begun, values, words, places, then)
 
     def _letter(self, values: Sequence[int], *, passed: bool) -> int:
         """The letter of the reading that decided."""
@@ -210,13 +206,7 @@ class NoteExplainer:
         if note.flags & _NETWORK:
             position = note.words[6]
             network = at_decision(
-                self.compiled,
-                self._gap,
-                note.letters,
-                position,
-                attempt.triggered,
-                passed,
-                note.at,
+                self.compiled, self._gap, note.letters, position, attempt.triggered, passed, note.at
             )
             why = explained_by_network(
                 self.compiled, network, position, passed, note.at, attempt.triggered, flow

@@ -140,14 +140,7 @@ class PlannedCore(Struct, frozen=True):
         if absent:
             coming = {name: number for name, number in coming.items() if name not in absent}
             is_absent = bytes(name in absent for name in self.numbers)
-        attempts = (
-            Attempt,
-            self.packed.ids,
-            VERDICTS,
-            DECISIONS,
-            self._details,
-            many,
-        )
+        attempts = (Attempt, self.packed.ids, VERDICTS, DECISIONS, self._details, many)
         return native.Monitor(
             self.packed.data,
             (coming, self.words, self.kinds, self.limits),

@@ -237,11 +237,7 @@ def report_of_run(
     verdicts: dict[str, Verdict] = {}
     counts: dict[str, dict[Verdict, int]] = {}
     for name, (failed, passed, inconclusive, complete) in zip(ids, run.counts(), strict=True):
-        counted = {
-            Verdict.PASS: passed,
-            Verdict.FAIL: failed,
-            Verdict.INCONCLUSIVE: inconclusive,
-        }
+        counted = {Verdict.PASS: passed, Verdict.FAIL: failed, Verdict.INCONCLUSIVE: inconclusive}
         counts[name] = counted
         some = [verdict for verdict, count in counted.items() if count]
         verdicts[name] = fold(some, complete=bool(complete))

@@ -67,14 +67,7 @@ def evaluate(
         end = samples.end if end is None else end
         names = samples.names if names is None else names
     listed = [entry if isinstance(entry, Sample) else Sample(*entry) for entry in samples]
-    word = word_of(
-        checked,
-        listed,
-        end=end,
-        advances=advances,
-        names=names,
-        outages=tuple(outages),
-    )
+    word = word_of(checked, listed, end=end, advances=advances, names=names, outages=tuple(outages))
     followings = judge_views(checked, word, listed)
     return report_on(checked, followings, origin=listed[0].t if listed else 0, end=word.end)
 

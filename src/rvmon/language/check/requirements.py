@@ -126,11 +126,7 @@ def _check_name(checker: Checker, name: Ident, named: dict[str, Ident]) -> None:
 
 
 def _parts(
-    checker: Checker,
-    item: items.RequirementItem,
-    outer: Scope,
-    inner: Scope,
-    ctl: Property | None,
+    checker: Checker, item: items.RequirementItem, outer: Scope, inner: Scope, ctl: Property | None
 ) -> Parts:
     match item.body:
         case items.Bare(formula=expression):

@@ -63,10 +63,7 @@ def traps_at_start(
 
 
 def capture_traps(
-    mode: Mode,
-    trigger: rv.Formula,
-    captures: Iterable[tuple[LetClause, Capture]],
-    time: TimeModel,
+    mode: Mode, trigger: rv.Formula, captures: Iterable[tuple[LetClause, Capture]], time: TimeModel
 ) -> Iterator[Diagnostic]:
     """Captured values that are not those that a reader takes them for."""
     occurring = {name for name, truth in facts_of(trigger).items() if truth}

@@ -186,13 +186,7 @@ class NumericOp(StrEnum):
     CEIL = "ceil", _exact(1, 1, UnitRule.SAME, math.ceil, "the whole number not below, in its unit")
     ROUND = (
         "round",
-        _exact(
-            1,
-            1,
-            UnitRule.SAME,
-            nearest_whole,
-            "the nearest whole number, halves away from 0",
-        ),
+        _exact(1, 1, UnitRule.SAME, nearest_whole, "the nearest whole number, halves away from 0"),
     )
     SIGN = "sign", _exact(1, 1, UnitRule.SIGN, sign, "1, 0 or −1")
     MOD = (
@@ -201,10 +195,7 @@ class NumericOp(StrEnum):
             2, 2, UnitRule.SAME, operator.mod, True, "the remainder of x / y, with the sign of y"
         ),
     )
-    CLAMP = (
-        "clamp",
-        _exact(3, 3, UnitRule.SAME, clamp, "x, at least y, and then at most z"),
-    )
+    CLAMP = ("clamp", _exact(3, 3, UnitRule.SAME, clamp, "x, at least y, and then at most z"))
     SIN = "sin", _library(1, UnitRule.OF_ANGLE, math.sin, "the sine of an angle")
     COS = "cos", _library(1, UnitRule.OF_ANGLE, math.cos, "the cosine of an angle")
     TAN = "tan", _library(1, UnitRule.OF_ANGLE, math.tan, "the tangent of an angle")
@@ -240,10 +231,7 @@ class NumericOp(StrEnum):
         "shift_right",
         _exact(2, 2, UnitRule.BITS, shifted_right, "x, its bits y places down"),
     )
-    BIT = (
-        "bit",
-        _exact(2, 2, UnitRule.BITS, bit, "bit y of x is set; the lowest is bit 0"),
-    )
+    BIT = ("bit", _exact(2, 2, UnitRule.BITS, bit, "bit y of x is set; the lowest is bit 0"))
 
     @property
     def is_function(self) -> bool:

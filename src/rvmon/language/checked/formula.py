@@ -192,11 +192,7 @@ class CompareOp(StrEnum):
 
 _MIRROR = str.maketrans("<>", "><")
 
-_DENIED = {
-    CompareOp.LT: CompareOp.GE,
-    CompareOp.LE: CompareOp.GT,
-    CompareOp.EQ: CompareOp.NE,
-}
+_DENIED = {CompareOp.LT: CompareOp.GE, CompareOp.LE: CompareOp.GT, CompareOp.EQ: CompareOp.NE}
 
 
 class Constant(Struct, frozen=True):

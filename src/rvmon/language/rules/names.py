@@ -36,9 +36,7 @@ circle = Breach(
     "it starts here",
 )
 too_deep = Breach(
-    IMPORT,
-    f"imports are nested more than {DEEPEST} levels deep",
-    "import the last file directly",
+    IMPORT, f"imports are nested more than {DEEPEST} levels deep", "import the last file directly"
 )
 
 

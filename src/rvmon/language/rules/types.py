@@ -106,9 +106,7 @@ last_of_several = Breach(
     "write `last(5, x)`, `last(8, beat.ms < 500)`",
 )
 two_windows = Breach(
-    WRONG_ARGUMENTS,
-    "`{}` has two windows",
-    "leave the duration out, or what limits it before",
+    WRONG_ARGUMENTS, "`{}` has two windows", "leave the duration out, or what limits it before"
 )
 since_no_trigger = Breach(
     WRONG_ARGUMENTS,
@@ -150,9 +148,7 @@ choice_alone = Breach(
 
 
 many_outcomes = Breach(
-    WRONG_TYPE,
-    "`{0}` chooses between more than {1} numbers",
-    "split it into several requirements",
+    WRONG_TYPE, "`{0}` chooses between more than {1} numbers", "split it into several requirements"
 )
 not_constant = Breach(
     WRONG_TYPE, "`{}` changes during a run, expected a constant", "use a number or a `const`"

@@ -67,11 +67,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
     # Without all automata, which is an error itself, queries have no meaning.
     complete = bool(symbols) and not findings.has("TA019")
     queries = _queries(
-        document.queries if complete else (),
-        names,
-        findings,
-        diagonals,
-        lenient=document.open_ints,
+        document.queries if complete else (), names, findings, diagonals, lenient=document.open_ints
     )
     signals = _signals(document.signals if complete else (), names, findings)
     _check_channels(parts, automata, findings)

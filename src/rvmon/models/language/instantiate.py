@@ -64,11 +64,7 @@ def processes_of(
 
 
 def _instances(
-    family: Family,
-    families: Mapping[str, Family],
-    top: sc.Scope,
-    resolver: Resolver,
-    priority: int,
+    family: Family, families: Mapping[str, Family], top: sc.Scope, resolver: Resolver, priority: int
 ) -> Iterator[Process]:
     """One process for each choice of the parameters' values."""
     _refuse_circle(family, families)
@@ -178,11 +174,7 @@ def location_names(template: automaton_syntax.Template, findings: Findings) -> d
 
 
 def automaton_of(
-    process: Process,
-    names: Mapping[str, int],
-    parts: Parts,
-    resolver: Resolver,
-    findings: Findings,
+    process: Process, names: Mapping[str, int], parts: Parts, resolver: Resolver, findings: Findings
 ) -> nta.Automaton:
     """The automaton that a process is; what is wrong goes to `findings`."""
     template, scope = process.template, process.scope

@@ -76,13 +76,7 @@ class Answer:
     spans: Mapping[int, tuple[float, float]]
 
 
-def seek(
-    network: Network,
-    sought: Sought,
-    meter: Meter,
-    *,
-    proper_only: bool = False,
-) -> Answer:
+def seek(network: Network, sought: Sought, meter: Meter, *, proper_only: bool = False) -> Answer:
     """Search for a run.
 
     Args:

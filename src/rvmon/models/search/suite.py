@@ -164,9 +164,7 @@ def _items_on(network: Network, run: Run, criterion: Criterion) -> frozenset[Ite
     return frozenset(items[criterion])
 
 
-def _chosen(
-    found: Sequence[tuple[Run, frozenset[Item]]],
-) -> Iterator[tuple[Run, tuple[Item, ...]]]:
+def _chosen(found: Sequence[tuple[Run, frozenset[Item]]]) -> Iterator[tuple[Run, tuple[Item, ...]]]:
     left = {item for _, items in found for item in items}
     while left:
         # The first of the best, so that equal networks have equal suites.

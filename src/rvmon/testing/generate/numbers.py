@@ -255,13 +255,7 @@ _JOINING = (
 
 
 def _window(
-    rng: Rng,
-    shape: Shape,
-    draw: Draw,
-    measured: rv.Measured,
-    mode: str,
-    *,
-    settled: bool = False,
+    rng: Rng, shape: Shape, draw: Draw, measured: rv.Measured, mode: str, *, settled: bool = False
 ) -> rv.WindowValue:
     """A window; `settled`: in `time held`, one that changes only at samples."""
     if settled and measured.of_time:

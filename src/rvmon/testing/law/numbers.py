@@ -18,9 +18,7 @@ from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 
 
 def compare(
-    comparison: rv.Compare,
-    letter: word.Letter,
-    captured: Mapping[str, Scalar],
+    comparison: rv.Compare, letter: word.Letter, captured: Mapping[str, Scalar]
 ) -> word.Truth:
     """The truth of a comparison; over fields of an event `e` it means `e and comparison`.
 

@@ -53,9 +53,7 @@ _FUTURE = {
     *(BinaryOp.UNTIL, BinaryOp.RELEASE, BinaryOp.WEAK_UNTIL, BinaryOp.STRONG_RELEASE),
 }
 
-_BOOLEAN = {
-    *(UnaryOp.NOT, BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLIES, BinaryOp.IFF, BinaryOp.XOR),
-}
+_BOOLEAN = {UnaryOp.NOT, BinaryOp.AND, BinaryOp.OR, BinaryOp.IMPLIES, BinaryOp.IFF, BinaryOp.XOR}
 
 
 def speaks_of_future(formula: Formula) -> bool:
