@@ -161,7 +161,6 @@ def joined(stride: int, children: tuple[Tree, ...]) -> Tree:
 Edge = tuple[int, tuple[int, ...]]
 """Target location and the sources of its clocks."""
 
-
 MOST_TABLED = 1 << 16
 """Letters of which the classes stand in a table; of more, in a diagram."""
 

@@ -29,7 +29,6 @@ FAILS: Residual = frozenset()
 _MOST_PAIRS = 1 << 10
 """The most pairs of clauses that `both` reduces under a limit, whatever the limit."""
 
-
 _KEPT = 1 << 12
 """The number of results of `both` and of `_reduced` in their caches: building an automaton asks for
 most of them again, in each region and at each letter."""

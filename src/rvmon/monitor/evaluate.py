@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from rvmon.language.checked.specification import CheckedSpec
     from rvmon.recordings.batch import Batch, Cells, Occurrences
 
-
 _LAYOUTS: Mapping[Kind, int] = {Kind.REAL: 0, Kind.INT: 1, Kind.BOOL: 2, Kind.LABEL: 1}
 """The numbers of layouts of values in `core.h`."""
 

@@ -177,7 +177,6 @@ ANY = "samples"
 _UNREAD = ""
 """Stands for all names that no requirement reads: in sampled time, losing one loses a position."""
 
-
 _MOST_ENTRIES = 1_000
 """Beyond this many entries, new reasons are counted together as "for other reasons"."""
 

@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 _OPEN = DECISIONS.index(Decision.OPEN)
 
-
 RECORD = np.dtype(
     [
         *((name, np.int64) for name in ("triggered", "decided", "captured", "note")),

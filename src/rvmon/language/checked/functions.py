@@ -67,7 +67,6 @@ _OF_UPDATES = (
     Function("rate", UpdateFunction.RATE, (Argument.SIGNAL,), "that difference per second"),
 )
 
-
 LAST = "last"
 """The function that only stands in windows: `last(n, x)`."""
 _COUNTED = (Argument.FORMULA, Argument.DURATION)

@@ -13,19 +13,14 @@ DEEPEST = 20
 
 IMPORT = Rule("RV016", "import", Severity.ERROR)
 
-
 unreadable = Breach(
     IMPORT, "cannot read `{1}`: {2}", "the path is relative to the file that imports"
 )
-
-
 outside = Breach(
     IMPORT,
     "cannot read `{1}`: it lies outside {2}, the folder of the project",
     "copy it into the project, or name its folder in RVMON_ALLOW_IMPORTS",
 )
-
-
 unknown_library = Breach(
     IMPORT, "no library named `{1}`", 'there is {2}; a file is imported as "{1}.rv", in quotes'
 )
@@ -39,9 +34,7 @@ too_deep = Breach(
     IMPORT, f"imports are nested more than {DEEPEST} levels deep", "import the last file directly"
 )
 
-
 RESERVED_NAME = Rule("RV010", "reserved-name", Severity.ERROR)
-
 
 reserved = Breach(
     RESERVED_NAME,
@@ -54,7 +47,6 @@ UNKNOWN_LABEL = Rule("RV013", "unknown-label", Severity.ERROR)
 UNKNOWN_FUNCTION = Rule("RV014", "unknown-function", Severity.ERROR)
 RECURSIVE = Rule("RV015", "recursive-definition", Severity.ERROR)
 UNUSED = Rule("RV017", "unused-name", Severity.WARNING)
-
 
 double = Breach(DOUBLE_NAME, "{2} `{1}` is declared twice", "rename one of them", "first here")
 """A second declaration: its name, and what of, such as `requirement`."""
@@ -80,18 +72,12 @@ def unknown_label(span: Span, name: str, labels: tuple[str, ...]) -> Diagnostic:
 
 
 unknown_function = Breach(UNKNOWN_FUNCTION, "no function or macro named `{1}`", "{2}")
-
-
 recursive = Breach(
     RECURSIVE,
     "`{1}` is defined by itself: {2}",
     "for a condition without end use `always`, `until` and the like",
 )
 double_item = Breach(DOUBLE_NAME, "a file has one `{1}` item", other="first here")
-
-
 built_in = Breach(DOUBLE_NAME, "`{}` is a function of the language", "choose another name")
-
-
 unused = Breach(UNUSED, "`{1} {2}` is used nowhere", "remove it, or look for what should use it")
 """An unused `define`, `const` or `let`: which of them, and its name."""

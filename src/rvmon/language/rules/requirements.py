@@ -14,7 +14,6 @@ AT_TRIGGER = Rule("RV047", "false-at-trigger", Severity.WARNING)
 AT_FIRST = Rule("RV048", "false-at-first", Severity.WARNING)
 ONCE_CAPTURED = Rule("RV049", "captured-once", Severity.WARNING)
 
-
 no_value = Breach(
     NO_VALUE,
     "`{0}` has no value unless `{1}` occurs at the trigger, which does not require it",
@@ -59,7 +58,6 @@ UNKNOWN_POLICY = Rule("RV045", "unknown-policy", Severity.ERROR)
 NEVER_READ = Rule("RV046", "never-read", Severity.WARNING)
 RUN_SHARE = Rule("RV075", "bad-run-share", Severity.ERROR)
 
-
 future_trigger = Breach(
     FUTURE_TRIGGER,
     "`{}` refers to the future, and a trigger has to be known at once",
@@ -75,22 +73,16 @@ end_in_scope = Breach(
     "`upon end` takes no scope: the end of the run may lie outside of it",
     "state the condition for the end in the consequent",
 )
-
-
 one_instant = Breach(
     ONE_INSTANT,
     "`{}` is checked at one instant only",
     "write for how long or until when (`within D`, `for D`), or `immediately {}`",
 )
-
-
 bare_instant = Breach(
     ONE_INSTANT,
     "`{0}` is checked at one instant only, the start of the run",
     "did you mean `always ({0})`? If the start is meant, write `immediately ({0})`",
 )
-
-
 mixed_trigger = Breach(
     MIXED_TRIGGER,
     "`{0}` is an event and `{1}` a state: while the state holds, the event triggers nothing",
@@ -114,8 +106,6 @@ bad_run_share = Breach(
     "`{}` is no percentage between 0 and 100",
     "write `in at least 95 % of runs`; for all runs the clause is left out",
 )
-
-
 never_read = Breach(
     NEVER_READ,
     "{1} `{2}` is read by no requirement",
@@ -123,14 +113,12 @@ never_read = Breach(
 )
 """A declared name that nothing reads: `signal` or `event`, and the name."""
 
-
 MOST_COMBINATIONS = 10_000
 """Crosses with more combinations are refused."""
 
 BIN = Rule("RV060", "bin", Severity.ERROR)
 CROSS = Rule("RV061", "cross", Severity.ERROR)
 EMPTY_BIN = Rule("RV062", "empty-bin", Severity.WARNING)
-
 
 bin_without_values = Breach(
     BIN,
@@ -174,8 +162,6 @@ def no_coverpoint(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
 
 
 same_point = Breach(CROSS, "`{}` stands twice in one cross", "name it once")
-
-
 too_many_combinations = Breach(
     CROSS,
     f"{{1:,}} combinations are more than {MOST_COMBINATIONS:,}",
@@ -187,13 +173,11 @@ bad_condition = Breach(
     "write comparisons of coverpoints with their bins: `gaze == no and location != yes`",
 )
 
-
 PATH_OUTSIDE = Rule("RV050", "path-quantifier", Severity.ERROR)
 BARE_TIME = Rule("RV051", "time-without-quantifier", Severity.ERROR)
 FOREIGN_NAME = Rule("RV052", "name-of-a-model", Severity.WARNING)
 NO_RESPONSE = Rule("RV053", "role-split", Severity.ERROR)
 NOT_LINEAR = Rule("RV054", "not-on-one-run", Severity.ERROR)
-
 
 path_outside = Breach(
     PATH_OUTSIDE,
@@ -212,8 +196,6 @@ no_path_formula = Breach(
     "`A[ ]` and `E[ ]` hold `φ U ψ`; for the others write `A[] φ`, `AF φ`, `E<> φ`",
 )
 path_in_number = Breach(PATH_OUTSIDE, "a path quantifier stands inside `{}`")
-
-
 foreign_name = Breach(
     FOREIGN_NAME,
     "`{1}` is no name of this file and is taken for a clock or location of a model",
@@ -227,13 +209,9 @@ no_property = Breach(
 nothing_written = Breach(
     NOT_LINEAR, "there is no property to be monitored", "add a clause `property A[] (…)`"
 )
-
-
 no_goal = Breach(
     NOT_LINEAR, "there is no property that runs should show", "add a clause `property E<> (…)`"
 )
-
-
 reads_model = Breach(
     NOT_LINEAR,
     "`{1}` reads a clock or location of a model, which no run shows",

@@ -73,8 +73,6 @@ def comparison_chain(left: Span, first: str, middle: Span, second: str, right: S
 too_deep = Breach(
     TOO_DEEP, "this is nested more than {1} levels deep", "split it into several requirements"
 )
-
-
 too_large = Breach(
     TOO_DEEP,
     "this has more than {1:,} operators once its macros are expanded",

@@ -45,8 +45,6 @@ compared_truth = Breach(
     "`{}` is true or false and is not compared",
     "write `p` for `p == true`, `not p` for `p == false`, `p <-> q` for `p == q`",
 )
-
-
 age_alone = Breach(
     WRONG_TYPE,
     "`{}` can only be compared with a constant duration, by < <= > >=",
@@ -113,8 +111,6 @@ since_no_trigger = Breach(
     "`{}` is counted from a trigger, and there is none here",
     "use it in the consequent: `upon e then always count(f since trigger) <= 3`",
 )
-
-
 not_of_last = Breach(
     WRONG_ARGUMENTS,
     "`{1}` is of a time, not of updates",
@@ -127,14 +123,11 @@ not_added = Breach(
 )
 """Numbers that are not measured by a function: it, and of what it is."""
 
-
 count_of_state = Breach(
     WRONG_TYPE,
     "in `time held` `{0}` holds at every nanosecond of a stretch, and is not counted",
     "count where it begins, `rise({0})`, or measure it: `duration({0}, …)`",
 )
-
-
 amount_of_future = Breach(
     WRONG_TYPE,
     "`{1}` is of the past, and `{0}` refers to the future",
@@ -145,21 +138,16 @@ choice_alone = Breach(
     "`{}` is a choice, expected one number",
     "compare each side: `if φ then x <= 1 else x <= 2`",
 )
-
-
 many_outcomes = Breach(
     WRONG_TYPE, "`{0}` chooses between more than {1} numbers", "split it into several requirements"
 )
 not_constant = Breach(
     WRONG_TYPE, "`{}` changes during a run, expected a constant", "use a number or a `const`"
 )
-
-
 argument_count = Breach(
     WRONG_ARGUMENTS, "`{1}` takes {2}, {3} given", "arguments are separated by commas"
 )
 """Too many or too few: the function, how many it takes, in words, and how many are given."""
-
 
 argument_kind = Breach(WRONG_ARGUMENTS, "`{1}` needs {2}, `{0}` is none")
 """An argument of the wrong kind: the function, and which is needed, with its article."""
@@ -187,15 +175,10 @@ power_of_unit = Breach(
     "`{0}` leaves open which power of [{1}] comes out",
     "write a whole number up to 9, or divide the base by one of its units",
 )
-
-
 mismatch = Breach(UNIT_MISMATCH, "[{1}] {3} [{2}]", "both sides need units of the same kind")
 """Units of different kinds: both, and `compared with` and the like."""
 
-
 missing_unit = Breach(MISSING_UNIT, "`{0}` needs a unit", "did you mean `{0} {1}`?")
-
-
 superfluous_unit = Breach(
     UNIT_MISMATCH,
     "[{1}] meets `{2}`, which has no unit",
@@ -230,7 +213,6 @@ out_of_range = Breach(
 label_use = Breach(
     LABELS, "`{}` is a label", "labels are compared with their signal by `==` and `!=` only"
 )
-
 
 NO_DURATION = Rule("RV030", "no-duration", Severity.ERROR)
 PART_OF_TICK = Rule("RV031", "part-of-a-tick", Severity.ERROR)
@@ -289,14 +271,11 @@ def reversed_bounds(span: Span, low: Span, high: Span) -> Diagnostic:
 not_positive = Breach(EMPTY_INTERVAL, "{1} must be longer than 0", "give it some time: `1 ms`")
 """A duration of 0 where it makes no sense: its use."""
 
-
 late_weak_window = Breach(
     LATE_WEAK_WINDOW,
     "`{1}` takes no window that starts after 0",
     "let it start at 0, or write it with `U` or `R`",
 )
-
-
 step_in_held_time = Breach(
     STEP_IN_HELD_TIME,
     "`{1}` has no meaning in `time held`: it would refer to the next nanosecond",
@@ -313,8 +292,6 @@ ago_of_samples = Breach(
     "`{}` asks for an instant at which there may be no sample",
     "use `prev(x)`, `once[D, D] φ`, or `time held`",
 )
-
-
 no_window = Breach(
     NO_WINDOW,
     "`{1}` takes no interval",

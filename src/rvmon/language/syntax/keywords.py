@@ -59,7 +59,6 @@ CLAUSE_WORDS = frozenset(
 NOT_UNITS = RESERVED | INFIX_WORDS | CLAUSE_WORDS | frozenset(("input", "output", "stale", "of"))
 """Words that do not count as the unit of a number before them."""
 
-
 _ITEM = (  # compiled where a text is split: a start of `rvmon` seldom does
     rf"^[ \t\ufeff]*(?P<word>{'|'.join(ITEM_WORDS)}|max(?=\s+delay))(?!\w|\.\w)"
     r"(?P<named>[ \t]*(?:\w[\w.]*|`[^`\n]*`)[ \t]*:)?"

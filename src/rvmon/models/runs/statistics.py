@@ -44,7 +44,6 @@ MOST_TRIALS = 1_000_000
 MEAN_WAIT = 10.0
 """Units of time by which a wait without end exceeds its beginning on average."""
 
-
 Drawn = TypeVar("Drawn")
 
 
