@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from enum import StrEnum
-from fractions import Fraction
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
@@ -114,7 +113,11 @@ def _bound(name: str, table: Mapping[str, Any], spec: CheckedSpec) -> Bound:
     if not is_signal:
         kinds = spec.schema.events[name]
         fields = _table(table, "fields", "value")
-        _expect_known(fields, kinds)
+        for field in fields:
+            if field not in kinds:
+                there = f"there are {', '.join(kinds)}" if kinds else "it has none"
+                meant = did_you_mean(field, kinds, there)
+                raise RvmonError(f"no field `{field}` is declared: {meant}")
         if on_change and value is None and not fields:
             raise RvmonError('`on = "change"` needs a `value` or `fields` that can change')
         terms = {field: _value(text, f"fields.{field}") for field, text in fields.items()}
@@ -158,14 +161,10 @@ def _converted(value: Term, given: str, kind: Kind, declared: str) -> Term:
         raise RvmonError(f"unknown unit `{error}`") from None
     if source.dimension != target.dimension:
         raise RvmonError(f"[{given}] cannot be converted to [{declared}], as it is declared")
-    return _scaled(value, source.factor / target.factor)
-
-
-def _scaled(value: Term, factor: Fraction) -> Term:
-    """The value times a factor; rounded once if the factor or its inverse is an integer."""
+    factor = source.factor / target.factor
     if factor == 1:
         return value
-    if factor.numerator == 1:
+    if factor.numerator == 1:  # it is rounded once if the factor or its inverse is an integer
         divide = NumericOp.DIV.entry.apply
         return Applied(divide, (value, Constant(float(factor.denominator))), "")
     return Applied(NumericOp.MUL.entry.apply, (value, Constant(float(factor))), "")
@@ -202,20 +201,12 @@ def _choice(content: Mapping[str, Any], key: str, choices: type[_Choice]) -> _Ch
     return None if value is None else choices(value)
 
 
-def _expect_keys(content: Mapping[str, Any], known: Iterable[str], what: str) -> None:
-    names = list(known)
-    for key in content:
-        if key not in names:
-            of = f" of {what}" if what else ""
-            meant = did_you_mean(key, names, f"there are {', '.join(names)}")
-            raise RvmonError(f"no key `{key}`{of}: {meant}")
-
-
-def _expect_known(content: Mapping[str, Any], known: Mapping[str, Any]) -> None:
+def _expect_keys(content: Mapping[str, Any], known: Sequence[str], what: str) -> None:
     for key in content:
         if key not in known:
-            listed = f"there are {', '.join(known)}" if known else "it has none"
-            raise RvmonError(f"no field `{key}` is declared: {did_you_mean(key, known, listed)}")
+            of = f" of {what}" if what else ""
+            meant = did_you_mean(key, known, f"there are {', '.join(known)}")
+            raise RvmonError(f"no key `{key}`{of}: {meant}")
 
 
 def reading_schema(spec: CheckedSpec, schema: Schema, **options: Unpack[SchemaArguments]) -> Schema:

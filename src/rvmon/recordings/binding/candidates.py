@@ -86,6 +86,11 @@ class Candidate(Struct, frozen=True):
     implied: tuple[str, ...] = ()
 
     @property
+    def key(self) -> tuple[str, str]:
+        """What the values are of: the topic's name and the expression."""
+        return self.topic.name, self.value
+
+    @property
     def is_command(self) -> bool:
         """Whether it says what should be, and not what is."""
         words = {*words_of(self.topic.name), *self.own}
@@ -284,10 +289,9 @@ def ranges_of(
     ranges: dict[tuple[str, str], Range] = {}
     readers: dict[str, list[tuple[Range, Get]]] = defaultdict(list)
     for candidate in candidates:
-        key = candidate.topic.name, candidate.value
-        if candidate.value and key not in ranges:
-            ranges[key] = Range()
-            readers[candidate.topic.name].append((ranges[key], getter(term_of(candidate.value))))
+        if candidate.value and candidate.key not in ranges:
+            kept = ranges[candidate.key] = Range()
+            readers[candidate.topic.name].append((kept, getter(term_of(candidate.value))))
     with suppress(TraceError):
         for number, (topic, _, content) in enumerate(source.read(set(readers))):
             if number == MOST:

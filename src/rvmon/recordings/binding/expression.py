@@ -137,16 +137,15 @@ def term_of(text: str) -> Term:
     (Field(path=('ranges', 0)), Constant(value=1))
     """
     # Words of the language may be names of fields.
-    quoted = _PATH.sub(lambda found: _quoted(found[0]), text)
+    quoted = _PATH.sub(
+        lambda found: found[0] if found[0] in _WORDS or found[0][0] == "`" else f"`{found[0]}`",
+        text,
+    )
     expression, wrong = parse_expression(Source("value", quoted))
     if expression is None:
         first = wrong[0]
         raise RvmonError(f"{first.message}{f': {first.help}' if first.help else ''}")
     return _term(expression)
-
-
-def _quoted(name: str) -> str:
-    return name if name in _WORDS or name.startswith("`") else f"`{name}`"
 
 
 def _term(expression: expressions.Expression) -> Term:
@@ -170,10 +169,6 @@ def _term(expression: expressions.Expression) -> Term:
             return Applied(CONNECTIVES[op], (_term(left), _term(right)), op.value)
         case expressions.Prefix(op=UnaryOp.NOT, operand=operand):
             return Applied(operator.not_, (_term(operand),), "not")
-        case expressions.Call(function=function, args=[expressions.Comparison() as comparison]) if (
-            function.text in _OF_ELEMENTS
-        ):
-            return _of_elements(function.text, comparison)
         case expressions.Call(function=function, args=args):
             return _applied(function.text, args)
     raise RvmonError(
@@ -193,16 +188,6 @@ def _number(value: Fraction | None, unit: str) -> Constant:
         raise RvmonError("a number is too large") from None
 
 
-def _of_elements(name: str, comparison: expressions.Comparison) -> Term:
-    """A comparison of each element of an array with a number."""
-    left, right = _term(comparison.left), _term(comparison.right)
-    if not isinstance(left, Field) or not isinstance(right, Constant):
-        raise RvmonError(f"`{name}` compares an array with a number: `{name}(ranges < 0.3)`")
-    holds, decisive = comparison.op.holds, _OF_ELEMENTS[name]
-    operation = partial(compared, holds=holds, limit=right.value, decisive=decisive)
-    return Applied(operation, (Elements(left),), name)
-
-
 def _applied(name: str, args: Sequence[expressions.Expression]) -> Term:
     terms = tuple(map(_term, args))
     if name in TURNS:
@@ -218,6 +203,14 @@ def _applied(name: str, args: Sequence[expressions.Expression]) -> Term:
     if name in _OF_ARRAYS and len(terms) == 1 and isinstance(terms[0], Field):
         return Applied(_OF_ARRAYS[name], (Elements(terms[0]),), name)
     if name in _OF_ELEMENTS:
+        match args, terms:
+            case (
+                [expressions.Comparison(op=op)],
+                [Applied(args=(Field() as array, Constant() as of))],
+            ):
+                decisive = _OF_ELEMENTS[name]
+                holds = partial(compared, holds=op.holds, limit=of.value, decisive=decisive)
+                return Applied(holds, (Elements(array),), name)
         raise RvmonError(f"`{name}` compares an array with a number: `{name}(ranges < 0.3)`")
     known = {op.value: op for op in NumericOp if op.is_function}
     if name not in known:

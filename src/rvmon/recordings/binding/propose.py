@@ -90,7 +90,10 @@ def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:
         lines += ["", f"[bind.{_key(name)}]  # {_described(types.get(name))}"]
         if guess := wanted[name].guess:
             lines.append(f"# A guess: {guess}.")
-        lines += _place_lines(candidate, ranges)
+        lines.append(f"topic = {_text(candidate.topic.name)}")
+        lines.append(f"type = {_text(candidate.topic.type)}")
+        if candidate.value:
+            lines.append(f"value = {_text(candidate.value)}{_range(candidate, ranges)}")
         if name in types:
             lines += _signal_lines(types[name], candidate, ranges)
         else:
@@ -112,22 +115,14 @@ def _has_codes(type_: Type | None, candidate: Candidate) -> bool:
 def _with_values(found: Found, ranges: Ranges, type_: Type | None) -> Found:
     """Without what counts parts of a unit, and what never has a value, unless that is all."""
     if type_ is not None and type_.unit:
-        found = [
-            (score, candidate)
-            for score, candidate in found
-            if not _is_raw(candidate, type_.unit, ranges)
-        ]
-    kept = [
-        (score, candidate)
-        for score, candidate in found
-        if (own := ranges.get((candidate.topic.name, candidate.value))) is None or own.count
-    ]
+        found = [one for one in found if not _is_raw(one[1], type_.unit, ranges)]
+    kept = [one for one in found if (own := ranges.get(one[1].key)) is None or own.count]
     return kept or found
 
 
 def _is_raw(candidate: Candidate, unit: str, ranges: Ranges) -> bool:
     """Whether it is a whole number whose unit nobody says, and too large for the plain one."""
-    own = ranges.get((candidate.topic.name, candidate.value))
+    own = ranges.get(candidate.key)
     if own is None or own.high is None or own.low is None or candidate.unit is not None:
         return False
     plain = _plain_unit(parse_unit(unit).dimension)
@@ -136,21 +131,12 @@ def _is_raw(candidate: Candidate, unit: str, ranges: Ranges) -> bool:
 
 def _is_idle(found: Found, ranges: Ranges) -> bool:
     """Whether the best is a number that never changes, and another one does."""
-    best, *others = (
-        ranges.get((candidate.topic.name, candidate.value), Range()) for _, candidate in found
-    )
+    best, *others = (ranges.get(candidate.key, Range()) for _, candidate in found)
     return best.is_constant and any(own.low != own.high for own in others)
 
 
-def _place_lines(candidate: Candidate, ranges: Ranges) -> Iterator[str]:
-    yield f"topic = {_text(candidate.topic.name)}"
-    yield f"type = {_text(candidate.topic.type)}"
-    if candidate.value:
-        yield f"value = {_text(candidate.value)}{_range(candidate, ranges)}"
-
-
 def _range(candidate: Candidate, ranges: Ranges) -> str:
-    own = ranges.get((candidate.topic.name, candidate.value))
+    own = ranges.get(candidate.key)
     return f"  # {own}" if own is not None else ""
 
 
@@ -160,7 +146,7 @@ def _place(candidate: Candidate, ranges: Ranges) -> str:
 
 
 def _signal_lines(type_: Type, candidate: Candidate, ranges: Ranges) -> Iterator[str]:
-    values = ranges.get((candidate.topic.name, candidate.value), Range())
+    values = ranges.get(candidate.key, Range())
     if type_.unit:
         symbol, remark = _unit_of(type_.unit, candidate, max(values.high or 0, -(values.low or 0)))
         yield f"unit = {_text(symbol)}{remark}"
@@ -238,7 +224,7 @@ def _open_lines(
 def _shared(chosen: Mapping[str, Candidate]) -> tuple[tuple[str, ...], ...]:
     names: dict[tuple[str, str], list[str]] = defaultdict(list)
     for name, candidate in chosen.items():
-        names[candidate.topic.name, candidate.value].append(name)
+        names[candidate.key].append(name)
     return tuple(tuple(own) for own in names.values() if len(own) > 1)
 
 

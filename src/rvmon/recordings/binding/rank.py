@@ -145,17 +145,15 @@ def _is_alike(first: Candidate, second: Candidate, *, is_exact: bool) -> bool:
     """Whether the first must be better by a whole word: of twins, and of ambiguous codes."""
     if first.topic.name == second.topic.name:
         return first.is_code and not is_exact
-    is_twin = (first.value, first.topic.type) == (second.value, second.topic.type)
-    return is_twin or first.is_code
+    return first.is_code or (first.value, first.topic.type) == (second.value, second.topic.type)
 
 
 def _fits(wanted: Wanted, type_: Type, candidate: Candidate) -> bool:
     """Whether kind, unit, role, modifiers and axis agree with the name."""
     if candidate.kind not in _FITTING[type_.kind] or candidate.topic.fault:
         return False
-    if candidate.meaning.sort is Sort.QUATERNION:
-        return False
-    if ("command" in wanted.words) != candidate.is_command:
+    is_odd = candidate.meaning.sort is Sort.QUATERNION
+    if is_odd or ("command" in wanted.words) != candidate.is_command:
         return False
     asked = {word for word in wanted.words if word in MODIFIERS}
     if not (modifiers_of(candidate) - {"command"} <= asked) or _is_of_another(wanted, candidate):

@@ -166,34 +166,11 @@ _TELLING = frozenset({"degC K", "V", "A", "W", "J", "Pa", "N"})
 _TURNING = frozenset({"angular", "yaw", "turn", "turning", "roll", "pitch", "gyro", "steering"})
 
 _ENDINGS = (
-    ("m_s2", "m/s^2"),
-    ("m_s", "m/s"),
-    ("mps", "m/s"),
-    ("kmh", "km/h"),
-    ("kph", "km/h"),
-    ("rad_s", "rad/s"),
-    ("deg_s", "deg/s"),
-    ("rad", "rad"),
-    ("deg", "deg"),
-    ("rpm", "rpm"),
-    ("hz", "Hz"),
-    ("mm", "mm"),
-    ("cm", "cm"),
-    ("m", "m"),
-    ("ms", "ms"),
-    ("s", "s"),
-    ("mv", "mV"),
-    ("v", "V"),
-    ("ma", "mA"),
-    ("a", "A"),
-    ("w", "W"),
-    ("pa", "Pa"),
-    ("celsius", "degC"),
-    ("degc", "degC"),
-    ("percent", "%"),
-    ("pct", "%"),
-    ("kg", "kg"),
+    "m_s2=m/s^2 m_s=m/s mps=m/s kmh=km/h kph=km/h rad_s=rad/s deg_s=deg/s rad=rad deg=deg rpm=rpm "
+    "hz=Hz mm=mm cm=cm m=m ms=ms s=s mv=mV v=V ma=mA a=A w=W pa=Pa celsius=degC degc=degC "
+    "percent=% pct=% kg=kg"
 )
+"""Units by what stands behind a `_` of a name, the longest first."""
 
 
 def words_of(text: str) -> list[str]:
@@ -274,4 +251,5 @@ def unit_in_name(field: str) -> str:
     ('m/s', '%', '')
     """
     last = re.sub(r"(?<=[a-z])(?=[A-Z])", "_", field.rpartition(".")[2]).casefold()
-    return next((unit for end, unit in _ENDINGS if last.endswith(f"_{end}")), "")
+    known = (pair.partition("=") for pair in _ENDINGS.split())
+    return next((unit for end, _, unit in known if last.endswith(f"_{end}")), "")

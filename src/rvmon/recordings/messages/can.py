@@ -308,12 +308,8 @@ def _group(key: _Key) -> _Key:
 
 
 def _topic(name: str, message: Any) -> Topic:
-    leaves, units = {}, {}
-    for signal in message.signals:
-        path = path_of(signal.name)
-        leaves[path] = _kind(signal)
-        if signal.unit:
-            units[path] = signal.unit
+    leaves = {path_of(signal.name): _kind(signal) for signal in message.signals}
+    units = {path_of(signal.name): signal.unit for signal in message.signals if signal.unit}
     return Topic(name, message.name, leaves, units=units)
 
 
@@ -327,9 +323,8 @@ def _is_named(signal: Any) -> bool:
 def _kind(signal: Any) -> Kind:
     if _is_named(signal):
         return Kind.LABEL
-    if signal.conversion.is_float or signal.conversion.scale != int(signal.conversion.scale):
-        return Kind.REAL
-    if signal.conversion.offset != int(signal.conversion.offset):
+    scale, offset = signal.conversion.scale, signal.conversion.offset
+    if signal.conversion.is_float or scale != int(scale) or offset != int(offset):
         return Kind.REAL
     return Kind.BOOL if signal.length == 1 else Kind.INT
 

@@ -125,16 +125,13 @@ def _tree(columns: Columns) -> dict[str, Any]:
     """Columns by the steps of their paths; `esc[0].rpm` is in the element 0 of `esc`."""
     tree: dict[str, Any] = {}
     for path, column in columns.items():
-        *above, last = _steps(path)
-        inner = tree
+        found = re.findall(r"[^.\[\]]+", path)
+        *above, last = [int(step) if step.isdigit() else step for step in found]
+        inner: dict[Any, Any] = tree
         for step in above:
             inner = inner.setdefault(step, {})
         inner[last] = column
     return tree
-
-
-def _steps(path: str) -> list[Any]:
-    return [int(step) if step.isdigit() else step for step in re.findall(r"[^.\[\]]+", path)]
 
 
 def leaves_of(columns: Columns) -> dict[str, Kind]:

@@ -15,29 +15,8 @@ from rvmon.recordings.messages import Topic, errors_as_damage
 from rvmon.recordings.messages.column_topics import ColumnMessages, Columns, ColumnTopic, leaves_of
 from rvmon.trace.sample import Outage
 
-_TYPES: dict[str, Any] = {
-    "a": ("<i2", (32,)),
-    "b": "i1",
-    "B": "u1",
-    "g": "<f2",
-    "h": "<i2",
-    "H": "<u2",
-    "i": "<i4",
-    "I": "<u4",
-    "f": "<f4",
-    "n": "S4",
-    "N": "S16",
-    "Z": "S64",
-    "c": "<i2",
-    "C": "<u2",
-    "e": "<i4",
-    "E": "<u4",
-    "L": "<i4",
-    "d": "<f8",
-    "M": "u1",
-    "q": "<i8",
-    "Q": "<u8",
-}
+_CODES = "i1 u1 <f2 <i2 <u2 <i4 <u4 <f4 S4 S16 S64 <i2 <u2 <i4 <u4 <i4 <f8 u1 <i8 <u8"
+_TYPES = {"a": ("<i2", (32,)), **dict(zip("bBghHiIfnNZcCeELdMqQ", _CODES.split(), strict=True))}
 """Types of NumPy by the letters of a format."""
 
 _MAGIC = b"\xa3\x95"

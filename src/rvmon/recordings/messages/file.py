@@ -211,13 +211,20 @@ def names_in(source: MessageFile) -> Mapping[str, Looked]:
                     entries[topic].setdefault(path, value)
             if counts[topic] == (_FIRST_OF_MANY if keys[topic] else _FIRST):
                 reading.discard(topic)
-    return {topic: _named(found[topic], entries[topic]) for topic in wanted}
+    return {
+        topic: Looked(
+            frozenset(name for leaf in _FRAMES for name in found[topic].get(leaf, ()) if name),
+            {leaf: tuple(own) for leaf, own in found[topic].items() if leaf not in _FRAMES},
+            entries[topic],
+        )
+        for topic in wanted
+    }
 
 
 def _entries(steps: Sequence[str], content: Any) -> Iterator[tuple[str, str]]:
     """The path and the value of each key: of arrays in elements that have a name, too."""
-    for element in _elements(steps[0], content):
-        is_last = len(steps) == 2
+    found, is_last = part_of(content, steps[0]), len(steps) == 2
+    for element in found if isinstance(found, list | tuple) else ():
         [name] = _texts("key" if is_last else "name", element) or [""]
         if not name or name != name.strip() or not set(name).isdisjoint("[]`"):
             continue
@@ -229,11 +236,6 @@ def _entries(steps: Sequence[str], content: Any) -> Iterator[tuple[str, str]]:
             yield from ((f"{steps[0]}[{name}].{path}", value) for path, value in inner)
 
 
-def _elements(array: str, content: Any) -> Sequence[Any]:
-    found = part_of(content, array)
-    return found if isinstance(found, list | tuple) else ()
-
-
 def _texts(leaf: str, content: Any) -> list[str]:
     path = field_of(leaf.removesuffix("[]"))
     if path is None:
@@ -242,9 +244,3 @@ def _texts(leaf: str, content: Any) -> list[str]:
         value = getter(path)(content)
         return [value] if isinstance(value, str) else [str(one) for one in value or ()]
     return []
-
-
-def _named(found: Mapping[str, list[str]], entries: Mapping[str, str]) -> Looked:
-    frames = frozenset(name for leaf in _FRAMES for name in found.get(leaf, ()) if name)
-    joints = {leaf: tuple(names) for leaf, names in found.items() if leaf not in _FRAMES}
-    return Looked(frames, joints, entries)

@@ -79,6 +79,9 @@ def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
     with errors_as_damage(_FORM):
         file = h5py.File(path, "r")
 
+    def read(dataset: Any, turned: bool) -> Any:
+        return dataset[()].T if turned else dataset[()]
+
     def tree_of(group: Any) -> _Tree:
         found: _Tree = {}
         for name, inner in group.items():
@@ -90,15 +93,11 @@ def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
                 shape = inner.shape[::-1] if turned else inner.shape
                 unit = inner.attrs.get("units", inner.attrs.get("unit", ""))
                 unit = unit.decode("utf-8", "replace") if isinstance(unit, bytes) else str(unit)
-                found[name] = _Array(partial(_read, inner, turned), shape, inner.dtype, unit)
+                found[name] = _Array(partial(read, inner, turned), shape, inner.dtype, unit)
         return found
 
     with errors_as_damage(_FORM):
         return tree_of(file), file.close
-
-
-def _read(dataset: Any, turned: bool) -> Any:
-    return dataset[()].T if turned else dataset[()]
 
 
 def _matrices(path: Path) -> _Tree:

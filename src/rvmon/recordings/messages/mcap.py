@@ -220,12 +220,7 @@ def _object(decode: Decode, data: bytes) -> Mapping[str, Any]:
     return found
 
 
-_DESCRIBED = {
-    "boolean": Kind.BOOL,
-    "integer": Kind.INT,
-    "number": Kind.REAL,
-    "string": Kind.LABEL,
-}
+_DESCRIBED = dict(zip(("boolean", "integer", "number", "string"), Kind, strict=True))
 
 _DEEPEST = 20
 """Schemas nested more deeply are not followed."""

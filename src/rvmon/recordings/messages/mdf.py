@@ -55,7 +55,10 @@ def mdf_messages(path: Path) -> column_topics.ColumnMessages | None:
         if groups and not kept:
             file.close()
             return None
-        names = column_topics.distinct([_name(file.groups[one], one) for one in kept])
+        channels = {one: file.groups[one].channel_group for one in kept}
+        called = [own.acq_name or own.comment or f"group_{one}" for one, own in channels.items()]
+        lines = [name.partition("\n")[0] for name in called]
+        names = column_topics.distinct([f"/{column_topics.path_of(line)}" for line in lines])
         topics = [_topic(file, name, one) for name, one in zip(names, kept, strict=True)]
         ends = [int(_times(file, one).max()) for one in kept if _counts_time(file, one)]
     return column_topics.ColumnMessages(topics, max(ends, default=None), close=file.close)
@@ -115,11 +118,6 @@ def _quietly_freed() -> Iterator[None]:
                     temporary.close()
             trace = trace.tb_next
         raise
-
-
-def _name(group: Any, number: int) -> str:
-    called = group.channel_group.acq_name or group.channel_group.comment or f"group_{number}"
-    return f"/{column_topics.path_of(called.partition(chr(10))[0])}"
 
 
 def _counts_time(file: Any, group: int) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any
 
 from msgspec import Struct, field
@@ -233,27 +234,22 @@ class Skew(Struct):
         """Take a message."""
         found = self.by_topic.get(topic.name)
         if found is None:
-            found = self.by_topic[topic.name] = Differences(_stamp_of(topic))
+            stamp = None
+            with suppress(TraceError):
+                stamp = stamp_getter(topic)
+            found = self.by_topic[topic.name] = Differences(stamp)
         if found.stamp is not None:
             found.note(logged, content)
 
     def doubts(self) -> list[Health]:
         """The doubts about the clocks, by topic."""
-        known = {
-            name: differences
-            for name, differences in self.by_topic.items()
-            if differences.count >= ENOUGH
-        }
-        nearest = min((min(differences.lots) for differences in known.values()), default=0)
+        known = {name: own for name, own in self.by_topic.items() if own.count >= ENOUGH}
+        nearest = min((min(own.lots) for own in known.values()), default=0)
         doubts = []
         for name, differences in known.items():
             if remarks := _remarks(differences, nearest, len(known)):
-                remark = "; ".join(remarks)
-                doubts.append(
-                    Health(
-                        HealthKind.CLOCK, name, differences.count, differences.first, remark=remark
-                    )
-                )
+                count, first, remark = differences.count, differences.first, "; ".join(remarks)
+                doubts.append(Health(HealthKind.CLOCK, name, count, first, remark=remark))
         return doubts
 
 
@@ -270,10 +266,3 @@ def _remarks(differences: Differences, nearest: int, topics: int) -> list[str]:
         away = "further from" if differences.change > 0 else "nearer to"
         remarks.append(f"headers come {format_ticks(abs(differences.change))} {away} the log")
     return [*remarks, "do the clocks agree?"] if remarks else []
-
-
-def _stamp_of(topic: Topic) -> Callable[[Any], int] | None:
-    try:
-        return stamp_getter(topic)
-    except TraceError:
-        return None

@@ -109,12 +109,11 @@ def _lines(table: _Table) -> Iterator[Iterator[tuple[int, list[str]]]]:
         opened_as_csv(table.path, table.stamps) as (plain, _),
         TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
     ):
-        yield _ended(bounded_lines(text))
+        yield _ended(CopiedLines(bounded_lines(text)))
 
 
-def _ended(lines: Iterator[str]) -> Iterator[tuple[int, list[str]]]:
+def _ended(copied: CopiedLines) -> Iterator[tuple[int, list[str]]]:
     """The lines, split: what lacks its end may be half a line."""
-    copied = CopiedLines(lines)
     for line, row in split_lines(copied):
         if not copied.taken().endswith(("\n", "\r")):
             raise TraceError(f"line {line}: it has no end: was it cut off? If not, end the line")
@@ -172,11 +171,12 @@ def _rows(name: str, table: _Table) -> Iterator[Message]:
     with _lines(table) as rows:
         header, stamps = _header(table, rows)
         time = header.index(stamps.column)
-        places = [
-            (place, column.partition("[")[0].split("."), _element(column), table.kinds[column])
-            for place, column in enumerate(header)
-            if column in table.kinds
-        ]
+        places = []
+        for place, column in enumerate(header):
+            if column in table.kinds:
+                path, _, index = column.removesuffix("]").partition("[")
+                at = int(index) if index else None
+                places.append((place, path.split("."), at, table.kinds[column]))
         last: int | None = None
         for line, row in rows:
             if len(row) != len(header):
@@ -196,11 +196,6 @@ def _rows(name: str, table: _Table) -> Iterator[Message]:
             yield name, t, content
 
 
-def _element(column: str) -> int | None:
-    found = re.search(r"\[(\d+)\]$", column)
-    return int(found[1]) if found else None
-
-
 def _put(content: dict[str, Any], steps: Sequence[str], element: int | None, value: Any) -> None:
     inner = content
     for step in steps[:-1]:
@@ -214,9 +209,7 @@ def _put(content: dict[str, Any], steps: Sequence[str], element: int | None, val
 
 
 def _value(cell: str, kind: Kind | None) -> Any:
-    if kind is Kind.LABEL:
-        return cell
     if kind is Kind.BOOL and (cell in TRUE_WORDS or cell in FALSE_WORDS):
         return cell in TRUE_WORDS
-    number = _number(cell)
+    number = None if kind is Kind.LABEL else _number(cell)
     return cell if number is None else number

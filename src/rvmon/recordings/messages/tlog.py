@@ -56,10 +56,7 @@ class TelemetryMessages(Messages):
         self.count = len(self._times)
         self.end = max(max(self._times), max((outage.until for outage in self.outages), default=0))
         senders = Counter(self._called(key) for key in self._keys if key not in self._lost)
-        self._names = [
-            "" if key in self._lost else self._name(key, is_only=senders[self._called(key)] == 1)
-            for key in self._keys
-        ]
+        self._names = ["" if key in self._lost else self._name(key, senders) for key in self._keys]
         self.topics = {
             name: self._topic(name, key)
             for name, key in zip(self._names, self._keys, strict=True)
@@ -154,10 +151,9 @@ class TelemetryMessages(Messages):
         known = self._dialect.mavlink_map.get(number) if extra == _OURS else None
         return f"message_{number}" if known is None else str(known.msgname)
 
-    def _name(self, key: _Key, *, is_only: bool) -> str:
-        _, system, component, _ = key
+    def _name(self, key: _Key, senders: Mapping[str, int]) -> str:
         name = self._called(key)
-        return f"/{name}" if is_only else f"/sys{system}_comp{component}/{name}"
+        return f"/{name}" if senders[name] == 1 else f"/sys{key[1]}_comp{key[2]}/{name}"
 
     def _topic(self, name: str, key: _Key) -> Topic:
         number, _, _, extra = key

@@ -56,11 +56,7 @@ class Transform(Struct, frozen=True):
         a, b, c = vector
         # Twice the cross product of the axis and the vector.
         p, q, r = 2 * (y * c - z * b), 2 * (z * a - x * c), 2 * (x * b - y * a)
-        return (
-            a + w * p + y * r - z * q,
-            b + w * q + z * p - x * r,
-            c + w * r + x * q - y * p,
-        )
+        return a + w * p + y * r - z * q, b + w * q + z * p - x * r, c + w * r + x * q - y * p
 
 
 def _product(a: _Quaternion, b: _Quaternion) -> _Quaternion:
@@ -103,7 +99,15 @@ class WithTransforms(Messages):
                 way = _way(outer, inner, frames)
                 # A message about frames beside the way changes nothing, and is no update.
                 if way is not None and not heard.isdisjoint(way[1]):
-                    yield made, t, _content(way[0])
+                    shift, turn = way[0].shift, way[0].turn
+                    yield (
+                        made,
+                        t,
+                        {
+                            "translation": dict(zip("xyz", shift, strict=True)),
+                            "rotation": dict(zip("xyzw", turn, strict=True)),
+                        },
+                    )
 
     def close(self) -> None:
         """Close the files."""
@@ -114,10 +118,8 @@ def _take(message: Any, frames: dict[str, tuple[str, Transform]]) -> str:
     """Note what a message says of a frame; gives the frame."""
     own, outer = message.child_frame_id.lstrip("/"), message.header.frame_id.lstrip("/")
     shift, turn = message.transform.translation, message.transform.rotation
-    frames[own] = (
-        outer,
-        Transform((shift.x, shift.y, shift.z), (turn.x, turn.y, turn.z, turn.w)),
-    )
+    way = Transform((shift.x, shift.y, shift.z), (turn.x, turn.y, turn.z, turn.w))
+    frames[own] = outer, way
     return str(own)
 
 
@@ -149,13 +151,6 @@ def _above(
         found[outer] = way, names
         here = outer
     return found
-
-
-def _content(transform: Transform) -> Mapping[str, Any]:
-    return {
-        "translation": dict(zip("xyz", transform.shift, strict=True)),
-        "rotation": dict(zip("xyzw", transform.turn, strict=True)),
-    }
 
 
 def sends_transforms(topics: Mapping[str, Topic]) -> bool:
