@@ -32,11 +32,11 @@ check: $(VENV)/.dev $(VENV)/.docs  ## lint, types, layers, C by gcc and clang, t
 	@$(BIN)/rvmon format --check $$(find specs examples -name '*.rv')
 	@$(BIN)/mypy
 	@$(BIN)/lint-imports
-	@$(BIN)/python -m tests.tools.lint_c $(WARNINGS)
+	@$(BIN)/python .ci/lint_c.py $(WARNINGS)
 	@$(BIN)/python -m sphinx -W --keep-going -q docs out/docs
 
 sanitize: $(VENV)/.dev  ## run the tests of the native core with what watches memory and undefined behaviour
-	@$(BIN)/python -m tests.tools.sanitize
+	@$(BIN)/python -m fuzz.sanitize
 
 docs: $(VENV)/.docs  ## make the documentation site, without warnings: out/docs/index.html
 	@$(BIN)/python -m sphinx -W --keep-going -q docs out/docs

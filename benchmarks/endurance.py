@@ -32,8 +32,8 @@ from typing import Any
 
 import numpy as np
 from benchmarks.program import program
-from tests.tools import killed_watch
-from tests.tools.killed_watch import Forked
+from tests.rvmon.live import killed_watch
+from tests.rvmon.live.killed_watch import Forked
 
 import handover.cli
 import rvmon

@@ -24,11 +24,11 @@ from pathlib import Path
 
 from benchmarks.program import program
 from fuzz.driver import Found, fuzz
+from fuzz.sanitize import guarded_memory
 from tests.rvmon.core.put_away import HEAD, Twins
+from tests.rvmon.models.search.plans import search_plans
 from tests.tools.drive import told
 from tests.tools.random_specs import truths_plan, with_random_coverage
-from tests.tools.sanitize import guarded_memory
-from tests.tools.timed_plans import search_plans
 
 from rvmon.core.pack import pack
 from rvmon.coverage.monitor import Bins

@@ -16,9 +16,9 @@ from typing import Any
 from benchmarks.comparisons.comparison import Comparison
 from fuzz.damage import damaged
 from fuzz.targets import TARGETS, run, seeds
+from tests.rvmon.laws.lossy_doors import DOORS, outcomes
 from tests.tools.differential import Campaign, cases_of
 from tests.tools.doors import Content, content_of, doors, whole
-from tests.tools.lossy_doors import DOORS, outcomes
 
 from rvmon.errors import RvmonError
 from rvmon.session import Spec

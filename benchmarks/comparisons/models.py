@@ -7,8 +7,8 @@ from random import Random
 
 from benchmarks.comparisons.comparison import Comparison
 from benchmarks.comparisons.timed_ltl import LinearTruth, random_linear, satisfied_by
+from tests.rvmon.models.search.timed_ctl import holds_at_start
 from tests.tools.differential import Campaign
-from tests.tools.timed_ctl import holds_at_start
 from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import Steps, TooManyRegionsError, shows
 

@@ -3,7 +3,7 @@
 from itertools import islice
 
 import pytest
-from tests.tools.lossy_doors import DOORS, outcomes, trials
+from tests.rvmon.laws.lossy_doors import DOORS, outcomes, trials
 
 pytestmark = pytest.mark.law
 RUNS = 30

@@ -3,7 +3,7 @@
 import random
 
 import pytest
-from tests.tools import killed_watch
+from tests.rvmon.live import killed_watch
 
 import rvmon
 from rvmon.cli import main

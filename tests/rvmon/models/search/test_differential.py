@@ -1,7 +1,7 @@
 """The model checker agrees with the region graph, which shares no code with its search."""
 
 import pytest
-from tests.tools.timed_ctl import holds_at_start
+from tests.rvmon.models.search.timed_ctl import holds_at_start
 from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import Steps, TooManyRegionsError, shows
 

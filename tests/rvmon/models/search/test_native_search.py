@@ -9,8 +9,8 @@ from random import Random
 from threading import Thread
 
 import pytest
+from tests.rvmon.models.search.plans import search_plans
 from tests.tools.timed_generate import random_model
-from tests.tools.timed_plans import search_plans
 
 from rvmon.models.language.load import load_network, loads_network
 from rvmon.models.network import LeadsToFormula

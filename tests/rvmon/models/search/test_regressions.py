@@ -1,7 +1,7 @@
 """Cases in which the model checker once was wrong, found by comparison with the region graph."""
 
 import pytest
-from tests.tools.timed_ctl import holds_at_start
+from tests.rvmon.models.search.timed_ctl import holds_at_start
 from tests.tools.timed_generate import random_model
 from tests.tools.timed_regions import shows
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from tests.tools.timed_generate import random_model
+
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import loads_network
 from rvmon.models.network import Asked, LeadsToFormula, Network
@@ -21,7 +23,6 @@ from rvmon.models.network.guards import normal_form
 from rvmon.models.search.budget import Policy
 from rvmon.models.search.ltl import ways_of
 from rvmon.models.search.search_plan import Plan, Seek, Sought
-from tests.tools.timed_generate import random_model
 
 _LINEAR = "G F (P0.l0 or x > 1)", "(F G P0.l1 and not (b U x < 2))"
 _NESTS = "AG (EF[<=2] P0.l1 or A[not P0.l0 U[<=3] deadlock] or EX AF x > 1)"

@@ -9,6 +9,7 @@ Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993, secti
 from __future__ import annotations
 
 import networkx as nx
+from tests.tools.timed_regions import Region, RegionGraph, Steps, truth_of
 
 from rvmon.models.network import Asked, LeadsToFormula, Network, Query
 from rvmon.models.network.expressions import (
@@ -22,7 +23,6 @@ from rvmon.models.network.expressions import (
     UnaryOperation,
 )
 from rvmon.models.network.guards import is_plain, parts_of
-from tests.tools.timed_regions import Region, RegionGraph, Steps, truth_of
 
 Regions = frozenset[Region]
 

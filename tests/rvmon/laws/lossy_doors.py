@@ -18,6 +18,10 @@ from random import Random
 from time import sleep
 from typing import Any
 
+from tests.tools.differential import cases_of
+from tests.tools.law import judge, word
+from tests.tools.sound import is_spoken_of, narrowed
+
 from rvmon.adapters.json_objects import JsonObjects, feed_lines
 from rvmon.errors import TraceError
 from rvmon.live import Driver, DurableMonitor, Live, SimulatedClock
@@ -26,9 +30,6 @@ from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.trace.sample import Sample
 from rvmon.verdicts import Verdict
-from tests.tools.differential import cases_of
-from tests.tools.law import judge, word
-from tests.tools.sound import is_spoken_of, narrowed
 
 FILLINGS = 6
 """So many times what was lost is filled in: once by what it really was."""

@@ -13,7 +13,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[1]
 COPY = ROOT / "out" / "sanitized"
 GROWN = "void *widened("
 MEMORY = "src/rvmon/core/native/memory.c"

@@ -15,9 +15,10 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
+from tests.tools.servers import LONG
+
 from rvmon.cli import main
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND
-from tests.tools.servers import LONG
 
 
 class Forked:

@@ -1,6 +1,6 @@
 """Compile all C of the extensions, by gcc, by clang, and for 32 bits.
 
-    python -m tests.tools.lint_c [WARNING …]
+    python .ci/lint_c.py [WARNING …]
 
 What binds to Python is compiled twice: with Python's headers, and with the declarations of its own.
 A compiler that is missing is named and passed over, in CI (`$CI`) it is an error.
@@ -17,7 +17,7 @@ import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-PACKAGE = Path(__file__).parents[2] / "src" / "rvmon"
+PACKAGE = Path(__file__).parents[1] / "src" / "rvmon"
 FOLDERS = [PACKAGE / room / "native" for room in ("core", "models", "recordings")]
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off")  # some warnings come with optimising alone
 TRIAL = "#include <stdint.h>\n#include <stdlib.h>\nint main(void) { return 0; }\n"
