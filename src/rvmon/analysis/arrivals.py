@@ -33,12 +33,10 @@ class Arrivals:
 
     A look begins at any instant, with the last update of each signal before it: so it takes only
     formulas of the moment, see `is_of_moment`. A recording with outages is none for it.
-
-    Attributes:
-        found: by attempt the instant, ticks; `None`: it did not come so far.
     """
 
     def __init__(self, spec: CheckedSpec, names: frozenset[str] | None) -> None:
+        # by attempt the instant, ticks; `None`: it did not come so far
         self.found: dict[Key, int | None] = {}
         self._spec = spec
         self._names = names

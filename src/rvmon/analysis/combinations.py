@@ -44,16 +44,12 @@ def combinations_of(spec: CheckedSpec, states: Sequence[State]) -> frozenset[Tru
 
 
 class Table(Struct, Generic[T], frozen=True):
-    """The possible values of a group of formulas, by the cases of its sources.
+    """The possible values of a group of formulas, by the cases of its sources."""
 
-    Attributes:
-        sources: the sources that the formulas depend on.
-        leaves: per source, the leaves that read it; a subformula with memory is its own leaf.
-        rows: by the truth values of the leaves of each source, the value of the group.
-    """
-
-    sources: tuple[Source, ...]
+    sources: tuple[Source, ...]  # the sources that the formulas depend on
+    # per source, the leaves that read it; a subformula with memory is its own leaf
     leaves: tuple[tuple[State, ...], ...]
+    # by the truth values of the leaves of each source, the value of the group
     rows: Mapping[tuple[Truths, ...], T]
 
 

@@ -35,15 +35,10 @@ class Member(Struct, frozen=True):
 
 
 class Conflict(Struct, frozen=True):
-    """Requirements that cannot all hold.
+    """Requirements that cannot all hold."""
 
-    Attributes:
-        ids: a minimal set; a requirement that is triggered twice occurs twice.
-        offsets: for each, the ticks from the first trigger to its own.
-    """
-
-    ids: tuple[str, ...]
-    offsets: tuple[int, ...]
+    ids: tuple[str, ...]  # a minimal set; a requirement that is triggered twice occurs twice
+    offsets: tuple[int, ...]  # for each, the ticks from the first trigger to its own
 
 
 class Implication(Struct, frozen=True):
@@ -355,10 +350,7 @@ def _by_one(
 
 
 def _by_several(
-    together: Together,
-    implied: Subject,
-    others: Sequence[Subject],
-    bad: Sequence[frozenset[str]],
+    together: Together, implied: Subject, others: Sequence[Subject], bad: Sequence[frozenset[str]]
 ) -> list[Subject] | None:
     by: list[Subject] = []
     for other in others:

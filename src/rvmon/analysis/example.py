@@ -16,48 +16,31 @@ from rvmon.verdicts.attempt import Attempt
 
 
 class Example(Struct, frozen=True):
-    """A short run with its verdicts.
+    """A short run with its verdicts."""
 
-    Attributes:
-        samples: the samples, in order of time.
-        end: the end of the trace, ticks.
-        verdicts: by requirement.
-        attempts: all attempts of the run.
-    """
-
-    samples: tuple[Sample, ...]
-    end: int
-    verdicts: Mapping[str, Verdict]
-    attempts: Sequence[Attempt]
+    samples: tuple[Sample, ...]  # the samples, in order of time
+    end: int  # the end of the trace, ticks
+    verdicts: Mapping[str, Verdict]  # by requirement
+    attempts: Sequence[Attempt]  # all attempts of the run
 
 
 class Budget(Struct, frozen=True):
-    """Limits of a search for examples.
+    """Limits of a search for examples."""
 
-    Attributes:
-        runs: the most runs judged.
-        samples: the most samples of one run.
-        step: default distance of two samples, ticks; `None`: small relative to the durations of
-            the requirements.
-    """
-
-    runs: int = 4000
-    samples: int = 6
+    runs: int = 4000  # the most runs judged
+    samples: int = 6  # the most samples of one run
+    # default distance of two samples, ticks; `None`: small relative to the durations of the
+    # requirements
     step: int | None = None
 
 
 class Found(Struct, frozen=True):
-    """The result of a search for examples.
+    """The result of a search for examples."""
 
-    Attributes:
-        examples: by kind, the example with the fewest samples, then the earliest end.
-        runs: the number of runs judged.
-        exhausted: whether the whole search space was examined.
-    """
-
+    # by kind, the example with the fewest samples, then the earliest end
     examples: Mapping[str, Example]
-    runs: int
-    exhausted: bool
+    runs: int  # the number of runs judged
+    exhausted: bool  # whether the whole search space was examined
 
 
 def intervals_of(formula: Formula) -> Iterator[Interval]:

@@ -20,29 +20,19 @@ from rvmon.texts import listed
 
 
 class Examination(Struct, frozen=True):
-    """The results of all analyses.
+    """The results of all analyses."""
 
-    Attributes:
-        possible: by requirement.
-        conflicts: minimal sets that cannot all hold.
-        implications: requirements that others make superfluous.
-        undecided: ids for which it was not decided whether they can trigger, fail and pass.
-        pairs: the number of pairs that read a common name.
-        pairs_undecided: the number of these not decided, or not reached within the budget.
-        sets_undecided: the number of larger sets examined but not decided.
-        whole_sets: all sets of up to this size were examined; `None` if those of any size were.
-        implications_done: whether every requirement was tested for being implied.
-    """
-
-    possible: Mapping[str, Possible]
-    conflicts: tuple[Conflict, ...]
-    implications: tuple[Implication, ...]
+    possible: Mapping[str, Possible]  # by requirement
+    conflicts: tuple[Conflict, ...]  # minimal sets that cannot all hold
+    implications: tuple[Implication, ...]  # requirements that others make superfluous
+    # ids for which it was not decided whether they can trigger, fail and pass
     undecided: tuple[str, ...]
-    pairs: int
-    pairs_undecided: int
-    sets_undecided: int
+    pairs: int  # the number of pairs that read a common name
+    pairs_undecided: int  # the number of these not decided, or not reached within the budget
+    sets_undecided: int  # the number of larger sets examined but not decided
+    # all sets of up to this size were examined; `None` if those of any size were
     whole_sets: int | None
-    implications_done: bool
+    implications_done: bool  # whether every requirement was tested for being implied
 
 
 def examine(spec: CheckedSpec, subjects: Sequence[Subject], seconds: float) -> Examination:

@@ -72,35 +72,21 @@ CLOCKS = "xyzuvwabcd"
 
 
 class Place(Struct, frozen=True):
-    """A location.
+    """A location."""
 
-    Attributes:
-        name: `start`, `A`, `B`, …, `P` or `F`.
-        required: the residual in words; "" for `P` and `F`.
-        location: its index in the automaton.
-    """
-
-    name: str
-    required: str
-    location: int
+    name: str  # `start`, `A`, `B`, …, `P` or `F`
+    required: str  # the residual in words; "" for `P` and `F`
+    location: int  # its index in the automaton
 
 
 class Edge(Struct, frozen=True):
-    """An edge.
+    """An edge."""
 
-    Attributes:
-        source: name of its source place.
-        target: name of its target place.
-        condition: the condition on the input; "" if there is none.
-        when: the guard on the clocks; "" if there is none.
-        sets: the clocks that are started or renamed, as text.
-    """
-
-    source: str
-    target: str
-    condition: str
-    when: str
-    sets: str
+    source: str  # name of its source place
+    target: str  # name of its target place
+    condition: str  # the condition on the input; "" if there is none
+    when: str  # the guard on the clocks; "" if there is none
+    sets: str  # the clocks that are started or renamed, as text
 
 
 class Graph(Struct, frozen=True):

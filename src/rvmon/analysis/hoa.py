@@ -7,14 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
 
-from rvmon.analysis.graph import (
-    ANY,
-    Cube,
-    graph_of,
-    inputs_of,
-    letters_of,
-    proposition_texts,
-)
+from rvmon.analysis.graph import ANY, Cube, graph_of, inputs_of, letters_of, proposition_texts
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.logic.automaton import FAILED, PASSED, Automaton

@@ -35,14 +35,10 @@ Letter = tuple[tuple[int, bool], ...]
 
 
 class Aim(Struct, frozen=True):
-    """The goal of a search.
+    """The goal of a search."""
 
-    Attributes:
-        well: indices of the attempts that must pass.
-        failed: indices of the attempts that must fail; the others are unconstrained.
-    """
-
-    well: frozenset[int]
+    well: frozenset[int]  # indices of the attempts that must pass
+    # indices of the attempts that must fail; the others are unconstrained
     failed: frozenset[int] = frozenset()
 
 

@@ -221,19 +221,13 @@ Valuation = Mapping[str, Value | Silence]
 
 
 class Choices(Struct, frozen=True):
-    """The samples to choose from at every instant.
+    """The samples to choose from at every instant."""
 
-    Attributes:
-        names: the signals and events that are read.
-        valuations: pairwise distinguished by some formula, those nearest the defaults first.
-        remembered: the signals of which updates matter, not only values.
-        complete: whether no combination was left out.
-    """
-
-    names: tuple[str, ...]
+    names: tuple[str, ...]  # the signals and events that are read
+    # pairwise distinguished by some formula, those nearest the defaults first
     valuations: tuple[Valuation, ...]
-    remembered: frozenset[str]
-    complete: bool
+    remembered: frozenset[str]  # the signals of which updates matter, not only values
+    complete: bool  # whether no combination was left out
 
 
 def choices_of(

@@ -36,17 +36,12 @@ NEVER = (1 << 63) - 1
 
 
 class Played(Struct, frozen=True):
-    """A short run, judged.
+    """A short run, judged."""
 
-    Attributes:
-        example: the run, if it ends here.
-        situation: a key that is equal for runs with the same future, as far as the search looks.
-        cut: the next instant after its end at which time alone may decide something, ticks.
-    """
-
-    example: Example
+    example: Example  # the run, if it ends here
+    # a key that is equal for runs with the same future, as far as the search looks
     situation: bytes
-    cut: int
+    cut: int  # the next instant after its end at which time alone may decide something, ticks
 
 
 class Player:
@@ -104,23 +99,14 @@ def difference_of(first: str, second: str) -> Goal:
 
 
 class _Node(Struct, frozen=True):
-    """A run to be judged.
+    """A run to be judged."""
 
-    Attributes:
-        samples: the samples so far.
-        end: the end of the run, ticks.
-        held: the place of the current values in `_Search.held`.
-        stir: the number of occurrences and of values other than false; quieter runs go first.
-        at_cut: whether it waits at its end, after the last sample.
-        waits: the number of waits since the last sample.
-    """
-
-    samples: tuple[Sample, ...]
-    end: int
-    held: int
-    stir: int
-    at_cut: bool = False
-    waits: int = 0
+    samples: tuple[Sample, ...]  # the samples so far
+    end: int  # the end of the run, ticks
+    held: int  # the place of the current values in `_Search.held`
+    stir: int  # the number of occurrences and of values other than false; quieter runs go first
+    at_cut: bool = False  # whether it waits at its end, after the last sample
+    waits: int = 0  # the number of waits since the last sample
 
     @property
     def effort(self) -> int:
@@ -317,16 +303,11 @@ _OPEN, _MET = "open", "met"
 
 
 class Analysis(Struct, frozen=True):
-    """The result of an analysis.
+    """The result of an analysis."""
 
-    Attributes:
-        findings: as diagnostics.
-        examination: the same as data, with counts of undecided questions.
-        timelines: for the first conflicts, the shortest run that triggers their requirements.
-    """
-
-    findings: tuple[Diagnostic, ...]
-    examination: Examination
+    findings: tuple[Diagnostic, ...]  # as diagnostics
+    examination: Examination  # the same as data, with counts of undecided questions
+    # for the first conflicts, the shortest run that triggers their requirements
     timelines: tuple[tuple[Conflict, Example], ...]
 
 

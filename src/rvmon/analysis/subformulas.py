@@ -36,38 +36,25 @@ if TYPE_CHECKING:
 
 
 class PartTruth(Struct, frozen=True):
-    """The truth of one subformula over a stretch of time.
+    """The truth of one subformula over a stretch of time."""
 
-    Attributes:
-        depth: its nesting depth; 0 for the trigger and the consequent.
-        text: as in the specification.
-        part: `trigger` or `required`.
-        true: closed intervals of ticks at which it is true.
-        false: the positions at which it is false; elsewhere it is unknown.
-    """
-
-    depth: int
-    text: str
-    part: str
-    true: tuple[tuple[int, int], ...]
+    depth: int  # its nesting depth; 0 for the trigger and the consequent
+    text: str  # as in the specification
+    part: str  # `trigger` or `required`
+    true: tuple[tuple[int, int], ...]  # closed intervals of ticks at which it is true
+    # the positions at which it is false; elsewhere it is unknown
     false: tuple[tuple[int, int], ...]
 
 
 class Breakdown(Struct, frozen=True):
-    """The dissection of an attempt.
+    """The dissection of an attempt."""
 
-    Attributes:
-        attempt: its record.
-        start: first tick shown.
-        end: last tick shown.
-        late: the instant (ticks) of a response after the deadline; `None` if there was none.
-        part_truths: the trigger, then the consequent, each before its subformulas.
-    """
-
-    attempt: Attempt
-    start: int
-    end: int
+    attempt: Attempt  # its record
+    start: int  # first tick shown
+    end: int  # last tick shown
+    # the instant (ticks) of a response after the deadline; `None` if there was none
     late: int | None
+    # the trigger, then the consequent, each before its subformulas
     part_truths: tuple[PartTruth, ...]
 
 
@@ -119,33 +106,20 @@ def part_truths_of(
 
 
 class _Part(Struct, frozen=True):
-    """An operand of a trigger.
+    """An operand of a trigger."""
 
-    Attributes:
-        formula: itself.
-        text: as in the specification.
-        place: its place among all operands of the trigger.
-        reads: the signals that it reads.
-    """
-
-    formula: formulas.Formula
-    text: str
-    place: int
-    reads: frozenset[str]
+    formula: formulas.Formula  # itself
+    text: str  # as in the specification
+    place: int  # its place among all operands of the trigger
+    reads: frozenset[str]  # the signals that it reads
 
 
 class _Miss(Struct, frozen=True):
-    """The moment at which most parts of a conjunction were true.
+    """The moment at which most parts of a conjunction were true."""
 
-    Attributes:
-        there: the operands that were true.
-        missing: the others.
-        at: the first such instant, ticks; `None` if no operand was ever true.
-    """
-
-    there: tuple[_Part, ...]
-    missing: tuple[_Part, ...]
-    at: int | None
+    there: tuple[_Part, ...]  # the operands that were true
+    missing: tuple[_Part, ...]  # the others
+    at: int | None  # the first such instant, ticks; `None` if no operand was ever true
 
 
 def why_not_triggered(
@@ -161,11 +135,7 @@ def why_not_triggered(
 
 
 class TriggerParts:
-    """The parts of a trigger, by which it is said why it did not come; of any recording.
-
-    Attributes:
-        question: asks for the operands; for none of `for each`, which is not explained.
-    """
+    """The parts of a trigger, by which it is said why it did not come; of any recording."""
 
     def __init__(self, spec: CheckedSpec, requirement: Requirement) -> None:
         options = [
@@ -174,6 +144,7 @@ class TriggerParts:
         ]
         if requirement.for_each is not None:
             options = []
+        # asks for the operands; for none of `for each`, which is not explained
         self.question = Question(tuple(dict.fromkeys(chain(*options))))
         parts = {}
         operands = zip(self.question.formulas, self.question.texts, strict=True)
@@ -198,16 +169,12 @@ class TriggerParts:
 
 
 class Looking:
-    """The plans by which recordings are searched for subformulas, made once per specification.
-
-    Attributes:
-        plans: for `look_through`.
-    """
+    """The plans by which recordings are searched for subformulas, made once per specification."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self._spec = spec
         self._triggers: dict[str, TriggerParts] = {}
-        self.plans: Plans = {}
+        self.plans: Plans = {}  # for `look_through`
 
     def trigger(self, requirement: str) -> TriggerParts:
         """The parts of the trigger of a requirement, given by its id."""

@@ -11,14 +11,7 @@ from msgspec import Struct, field
 
 from rvmon.analysis.interval_sets import distinct, joined, within
 from rvmon.language.checked.classify import is_end
-from rvmon.language.checked.formula import (
-    Amount,
-    Binary,
-    Formula,
-    Unary,
-    UnaryOp,
-    WindowValue,
-)
+from rvmon.language.checked.formula import Amount, Binary, Formula, Unary, UnaryOp, WindowValue
 from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.specification import CheckedSpec, ForEach, Requirement, TimeModel
 from rvmon.language.print import format_formula
@@ -26,15 +19,7 @@ from rvmon.logic.formula import Core, Factory
 from rvmon.logic.normal_form import Lowering
 from rvmon.monitor.formula_truths import TruthsPlan, TruthsRun
 from rvmon.recordings.source import HeldRecording
-from rvmon.trace.sample import (
-    Outage,
-    Payload,
-    Sample,
-    Scalar,
-    Trace,
-    Value,
-    payloads_of,
-)
+from rvmon.trace.sample import Outage, Payload, Sample, Scalar, Trace, Value, payloads_of
 from rvmon.trace.schema import is_unknown
 from rvmon.verdicts.attempt import Attempt
 
@@ -55,16 +40,11 @@ class Truth(Struct, frozen=True):
 
 
 class Question(Struct, frozen=True, dict=True):
-    """Formulas to be evaluated, with their captured values.
+    """Formulas to be evaluated, with their captured values."""
 
-    Attributes:
-        formulas: may have future operators.
-        for_each: the `for each` clause, if they belong to an instance.
-        captured: the captured values of `let` and `for each`.
-    """
-
-    formulas: tuple[Formula, ...]
-    for_each: ForEach | None = None
+    formulas: tuple[Formula, ...]  # may have future operators
+    for_each: ForEach | None = None  # the `for each` clause, if they belong to an instance
+    # the captured values of `let` and `for each`
     captured: Mapping[str, Scalar] = field(default_factory=dict)
 
     @cached_property
@@ -88,20 +68,13 @@ class RecordedTruths(Struct, frozen=True):
     """The truths of formulas over a recording; after its end they are unknown.
 
     In clocked and sampled time, a truth value is extended from its position to the next.
-
-    Attributes:
-        names: the signals and events that had a source; `None`: all.
-        begin: the instant of the first sample, ticks; `None`: there is none.
-        end: the last instant, ticks.
-        positions: the positions of the recording.
-        valueless: the signals that never had a value.
     """
 
-    names: frozenset[str] | None
-    begin: int | None
-    end: int
-    positions: Positions
-    valueless: frozenset[str]
+    names: frozenset[str] | None  # the signals and events that had a source; `None`: all
+    begin: int | None  # the instant of the first sample, ticks; `None`: there is none
+    end: int  # the last instant, ticks
+    positions: Positions  # the positions of the recording
+    valueless: frozenset[str]  # the signals that never had a value
     _truths: Mapping[tuple[object, ...], Mapping[str, Truth]]
 
     def truths(self, question: Question) -> list[Truth]:
@@ -158,23 +131,20 @@ def look_through(
 
 
 class _Plan:
-    """The plan of formulas that are evaluated in one run.
-
-    Attributes:
-        cores: by text; `None` for the formula `end`, which is not known before the end.
-        order: the distinct core formulas.
-        plan: for the core; `None` if there are no formulas to evaluate.
-    """
+    """The plan of formulas that are evaluated in one run."""
 
     def __init__(
         self, spec: CheckedSpec, question: Question, formulas: Mapping[str, Formula]
     ) -> None:
         lowering = Lowering(Factory(), spec.period, False)
+        # by text; `None` for the formula `end`, which is not known before the end
         self.cores = {
             text: None if is_end(formula) else lowering.core(formula, True)
             for text, formula in formulas.items()
         }
+        # the distinct core formulas
         self.order = list(dict.fromkeys(core for core in self.cores.values() if core is not None))
+        # for the core; `None` if there are no formulas to evaluate
         self.plan = TruthsPlan(spec, self.order, question.captured) if self.order else None
 
 

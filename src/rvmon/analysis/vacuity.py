@@ -23,19 +23,12 @@ Regions = tuple[int, ...]
 
 
 class Subject(Struct, frozen=True, eq=False):
-    """A requirement to be analysed.
+    """A requirement to be analysed."""
 
-    Attributes:
-        requirement: as checked.
-        trigger: starts an attempt; `None` if it is the end of the trace.
-        automaton: the automaton of the requirement; `None` if it does not close.
-        names: the signals and events that it reads.
-    """
-
-    requirement: Requirement
-    trigger: State | None
-    automaton: Automaton | None
-    names: frozenset[str]
+    requirement: Requirement  # as checked
+    trigger: State | None  # starts an attempt; `None` if it is the end of the trace
+    automaton: Automaton | None  # the automaton of the requirement; `None` if it does not close
+    names: frozenset[str]  # the signals and events that it reads
 
     @property
     def id(self) -> str:
@@ -61,17 +54,11 @@ class Subject(Struct, frozen=True, eq=False):
 
 
 class Possible(Struct, frozen=True):
-    """The possible behaviour of a requirement; `False` is proved, `None` was not decided.
+    """The possible behaviour of a requirement; `False` is proved, `None` was not decided."""
 
-    Attributes:
-        trigger: whether an attempt can start.
-        fail: whether one can fail.
-        pass_: whether one can pass.
-    """
-
-    trigger: bool | None = None
-    fail: bool | None = None
-    pass_: bool | None = None
+    trigger: bool | None = None  # whether an attempt can start
+    fail: bool | None = None  # whether one can fail
+    pass_: bool | None = None  # whether one can pass
 
 
 def possible(
@@ -126,19 +113,14 @@ class _Reach:
     """The reachable rows of an automaton.
 
     The age of a clock just started is known exactly; of the others only the region.
-
-    Attributes:
-        rows: the reachable rows of undecided locations.
-        failed: whether an attempt can fail.
-        passed: whether one can pass.
     """
 
     def __init__(self, automaton: Automaton, gap: int | None) -> None:
         self.automaton = automaton
         self.gap = gap
-        self.rows: set[int] = set()
-        self.failed = False
-        self.passed = False
+        self.rows: set[int] = set()  # the reachable rows of undecided locations
+        self.failed = False  # whether an attempt can fail
+        self.passed = False  # whether one can pass
 
     def run(self, first: set[int], letters: set[int]) -> None:
         """Explore from the trigger, by the classes of letters possible there, and anywhere."""

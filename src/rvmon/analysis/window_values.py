@@ -19,13 +19,7 @@ from rvmon.language.checked.formula import (
     WindowValue,
     windows_in,
 )
-from rvmon.language.checked.specification import (
-    Capture,
-    CheckedSpec,
-    Mode,
-    Requirement,
-    TimeModel,
-)
+from rvmon.language.checked.specification import Capture, CheckedSpec, Mode, Requirement, TimeModel
 from rvmon.language.checked.window_measures import Dimension
 from rvmon.language.print import format_formula
 from rvmon.monitor.compiled_spec import compile_spec

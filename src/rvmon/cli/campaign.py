@@ -212,10 +212,7 @@ def _words(arguments: Namespace, *options: str) -> list[object]:
 def add_run_options(parser: Parser) -> None:
     """Declare how many tests are played, and where their results go."""
     parser.option(
-        "--tests N",
-        "number of tests of each random strategy (100)",
-        type=positive,
-        default=100,
+        "--tests N", "number of tests of each random strategy (100)", type=positive, default=100
     )
     parser.option("--suite DIR", "play the tests of this folder instead of generated ones")
     parser.option("--evidence FILE", "keep tests, verdicts and specifications in one archive")
@@ -254,9 +251,7 @@ def _add_closing_options(parser: Parser) -> None:
     """Declare when closing gives up, and where the suite goes."""
     parser.option("--tests N", "play at most N tests (400)", type=positive, default=400)
     parser.option(
-        "--seconds TIME",
-        f"begin no test after TIME ({TIME_FORMS}; default: any)",
-        type=span_s,
+        "--seconds TIME", f"begin no test after TIME ({TIME_FORMS}; default: any)", type=span_s
     )
     parser.option(
         "--margin N",
@@ -284,8 +279,7 @@ def _add_replay_options(parser: Parser) -> None:
 def _add_shrink_options(parser: Parser) -> None:
     """Declare by which failure a test is shrunk, and where it goes."""
     parser.option(
-        "--requirement ID",
-        "the requirement that has to fail (default: the first that does)",
+        "--requirement ID", "the requirement that has to fail (default: the first that does)"
     )
     _add_timeout(parser)
     parser.option("--out DIR", "write it into this folder, with a pytest test that replays it")
@@ -313,8 +307,7 @@ def _add_mutate_options(parser: Parser) -> None:
     parser.option("--list", "list the mutants without playing tests")
     parser.option("--strict", "exit with 1 unless all mutants are killed")
     parser.option(
-        "--out DIR",
-        "write mutation.html, mutation.json and mutation.txt into this folder",
+        "--out DIR", "write mutation.html, mutation.json and mutation.txt into this folder"
     )
 
 
@@ -325,9 +318,7 @@ def _add_seed_and_jobs(parser: Parser) -> None:
 
 def _add_timeout(parser: Parser) -> None:
     parser.option(
-        "--timeout TIME",
-        f"end a test that takes longer ({TIME_FORMS}; default: 600)",
-        type=span_s,
+        "--timeout TIME", f"end a test that takes longer ({TIME_FORMS}; default: 600)", type=span_s
     )
 
 

@@ -51,8 +51,7 @@ def add_run(subparsers: Subparsers) -> None:
         "cover DB` shows it",
     )
     parser.option(
-        "--out FILE",
-        "write the verdicts as a table, a row per attempt: .csv, .parquet, .sqlite",
+        "--out FILE", "write the verdicts as a table, a row per attempt: .csv, .parquet, .sqlite"
     )
     parser.option(
         "--resume",
@@ -65,8 +64,7 @@ def add_run(subparsers: Subparsers) -> None:
         type=shard,
     )
     parser.option(
-        "--known FILE",
-        "TOML file of accepted failures, each with a reason and an expiry date",
+        "--known FILE", "TOML file of accepted failures, each with a reason and an expiry date"
     )
     parser.option(
         "--mcap FILE",
@@ -118,8 +116,7 @@ def add_watch(subparsers: Subparsers) -> None:
     )
     declare(parser, *ONLY, "--const", "--time", "--map", "--binding")
     parser.option(
-        "--robot FIELD",
-        "the field that names the robot; each robot has its own monitors",
+        "--robot FIELD", "the field that names the robot; each robot has its own monitors"
     )
     parser.option(
         "--publish TOPIC",
@@ -203,18 +200,8 @@ def add_clip(subparsers: Subparsers) -> None:
         type=span,
         default=5 * TICKS_PER_SECOND,
     )
-    parser.option(
-        "--from TIME",
-        f"first instant ({TIME_FORMS})",
-        type=ticks,
-        dest="start",
-    )
-    parser.option(
-        "--to TIME",
-        f"last instant ({TIME_FORMS})",
-        type=ticks,
-        dest="stop",
-    )
+    parser.option("--from TIME", f"first instant ({TIME_FORMS})", type=ticks, dest="start")
+    parser.option("--to TIME", f"last instant ({TIME_FORMS})", type=ticks, dest="stop")
     parser.option("-o --out FILE", "the cut recording; a folder for a bag of ROS 2")
     parser.option(
         "--reproducer FILE",
@@ -261,8 +248,7 @@ def add_cover(subparsers: Subparsers) -> None:
         "a cross is shown as a grid",
     )
     parser.option(
-        "--tests",
-        "list the tests with their contributions, and a short order that covers as much",
+        "--tests", "list the tests with their contributions, and a short order that covers as much"
     )
     parser.option(
         "--compare OLD",

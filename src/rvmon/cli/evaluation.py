@@ -39,24 +39,17 @@ if TYPE_CHECKING:
 
 
 class Options(Struct, frozen=True):
-    """The options of judging.
+    """The options of judging."""
 
-    Attributes:
-        only: ids of the requirements, or `None` for all.
-        until: the instant in seconds to which recordings are judged; default their last sample.
-        robustness: whether to find the robustness of each attempt as well.
-        allow_missing: the names that recordings in columns may lack; `True`: all.
-        coverage: whether the whole coverage model is watched; default: coverpoints and crosses
-            alone.
-        explains: whether anybody is told why there is no attempt, and what came late.
-    """
-
-    only: tuple[str, ...] | None = None
+    only: tuple[str, ...] | None = None  # ids of the requirements, or `None` for all
+    # the instant in seconds to which recordings are judged; default their last sample
     until: float | None = None
-    robustness: bool = False
+    robustness: bool = False  # whether to find the robustness of each attempt as well
+    # the names that recordings in columns may lack; `True`: all
     allow_missing: bool | tuple[str, ...] = False
+    # whether the whole coverage model is watched; default: coverpoints and crosses alone
     coverage: bool = False
-    explains: bool = True
+    explains: bool = True  # whether anybody is told why there is no attempt, and what came late
 
 
 def spec_and_options(
@@ -83,16 +76,12 @@ def _shows_counts_alone(arguments: argparse.Namespace) -> bool:
 
 
 class RecordingCoverage:
-    """Finds coverage on one recording, beside judging it.
-
-    Attributes:
-        hits: what was hit of the coverage model, if all of it was asked for.
-    """
+    """Finds coverage on one recording, beside judging it."""
 
     def __init__(
         self, spec: Spec, options: Options, recording: FileRecording, end: int | None
     ) -> None:
-        self.hits: Hits = {}
+        self.hits: Hits = {}  # what was hit of the coverage model, if all of it was asked for
         self._spec = spec
         self._options = options
         self._end = TIME_LIMIT if end is None else end
@@ -130,27 +119,17 @@ class RecordingCoverage:
 
 
 class Judged(Struct, frozen=True):
-    """One recording with what is known of it.
+    """One recording with what is known of it."""
 
-    Attributes:
-        trace: its path.
-        report: the verdicts, or `None` if the recording broke off at an error.
-        before: for a broken recording, the attempts decided before the place of the error.
-        error: the fault of the recording.
-        missing: the names that requirements read and that it lacks.
-        hits: in the coverage model, where that was asked for.
-        seconds: its duration.
-        text: the report as JSON, if the process that judged was asked for it.
-    """
-
-    trace: str
-    report: Report | None
+    trace: str  # its path
+    report: Report | None  # the verdicts, or `None` if the recording broke off at an error
+    # for a broken recording, the attempts decided before the place of the error
     before: tuple[Attempt, ...] = ()
-    error: str = ""
-    missing: tuple[str, ...] = ()
-    hits: Hits = field(default_factory=dict)
-    seconds: float = 0.0
-    text: str = ""
+    error: str = ""  # the fault of the recording
+    missing: tuple[str, ...] = ()  # the names that requirements read and that it lacks
+    hits: Hits = field(default_factory=dict)  # in the coverage model, where that was asked for
+    seconds: float = 0.0  # its duration
+    text: str = ""  # the report as JSON, if the process that judged was asked for it
 
 
 def judge_all(

@@ -44,20 +44,10 @@ def looked_up(requirement: Requirement, failed: int) -> int:
 
 
 class FailureNotes:
-    """Notes on the failures of a recording as it is judged.
-
-    Attributes:
-        late: by requirement and number of the attempt, when what it awaited came after all, ticks;
-            `None`: it did not, or nothing was awaited. It lacks what cannot be known so.
-        values: the values at failures; they lack what cannot be known so.
-    """
+    """Notes on the failures of a recording as it is judged."""
 
     def __init__(
-        self,
-        spec: Spec,
-        recording: FileRecording,
-        only: Sequence[str] | None,
-        core: native.Monitor,
+        self, spec: Spec, recording: FileRecording, only: Sequence[str] | None, core: native.Monitor
     ) -> None:
         self._spec = spec
         self._core = core
@@ -66,8 +56,10 @@ class FailureNotes:
         self._records = 0
         self._failed: Counter[str] = Counter()
         self._arrivals = None if recording.outages else Arrivals(spec.checked, recording.names)
+        # by requirement and number of the attempt, when what it awaited came after all, ticks;
+        # `None`: it did not, or nothing was awaited. It lacks what cannot be known so
         self.late = {} if self._arrivals is None else self._arrivals.found
-        self.values = values_at(spec)
+        self.values = values_at(spec)  # the values at failures; they lack what cannot be known so
 
     def take(self, pieces: Sequence[Batch | Sample], until: int) -> None:
         """Take the next pieces that were judged, which tell all up to an instant (ticks)."""

@@ -28,78 +28,38 @@ def _megabytes(text: str) -> int:
     return number
 
 
-_SHARED: dict[str, dict[str, Any]] = {
-    "--only": {"metavar": "IDS", "help": "only these requirements: R1,R3"},
-    "--severity": {
-        "metavar": "LEVELS",
-        "help": "only requirements with one of these severities: high,medium",
-    },
-    "--tag": {
-        "metavar": "TAGS",
-        "action": "append",
-        "default": [],
-        "help": "only requirements with one of these tags: stop,arm; if given twice, with one "
-        "tag of each list",
-    },
-    "--const": {
-        "metavar": "NAME=VALUE",
-        "action": "append",
-        "default": [],
-        "help": "set a constant of the specification to another value",
-    },
-    "--until": {
-        "metavar": "TIME",
-        "type": instant_s,
-        "help": f"evaluate up to TIME ({TIME_FORMS}), whether or not the recording goes on that "
-        "long",
-    },
-    "--time": {
-        "metavar": "COLUMN[:UNIT]",
-        "help": "the column of time stamps, and their unit: s, ms, us, ns, iso (ISO 8601), or a "
-        "date format such as %%d.%%m.%%Y %%H:%%M:%%S; SEC+NANOSEC names two columns (default: t "
-        "in seconds, or t_ns)",
-    },
-    "--map": {
-        "metavar": "NAME=COLUMN",
-        "action": "append",
-        "default": [],
-        "help": "read the declared NAME from this column, or topic and field; repeatable",
-    },
-    "--nan": {
-        "choices": [reading.replace(" ", "-") for reading in READINGS_OF_NAN],
-        "help": "how to read NaN: as unknown (default), or as no update, which merges of topics "
-        "need",
-    },
-    "--binding": {
-        "metavar": "FILE",
-        "help": "TOML file that maps topics and fields of messages (bags, MCAP) to declared "
-        "names; `rvmon init DATA --for SPEC` proposes one",
-    },
-    "--clock": {
-        "choices": ("log", "header"),
-        "help": "time stamp of messages for which the binding names none: the time of recording "
-        "(log, default) or the header's stamp",
-    },
-    "--allow-missing": {
-        "metavar": "[=NAMES]",
-        "help": "accept recordings that have no column for these names (default: any); "
-        "requirements that read them are I, and the exit code is 1",
-    },
-    "--dask": {
-        "metavar": "ADDRESS",
-        "help": "distribute the work over the workers of this Dask scheduler, instead of --jobs",
-    },
-    "--format": {
-        "choices": ("text", "json"),
-        "default": "text",
-        "help": "text for people (default), or JSON",
-    },
-    "--max-memory": {
-        "dest": "most_megabytes",
-        "metavar": "MB",
-        "type": _megabytes,
-        "help": "memory limit of each process (default: none)",
-    },
+_ABOUT = {
+    "--only IDS": "only these requirements: R1,R3",
+    "--severity LEVELS": "only requirements with one of these severities: high,medium",
+    "--tag TAGS": "only requirements with one of these tags: stop,arm; if given twice, with one "
+    "tag of each list",
+    "--const NAME=VALUE": "set a constant of the specification to another value",
+    "--until TIME": f"evaluate up to TIME ({TIME_FORMS}), whether or not the recording goes on "
+    "that long",
+    "--time COLUMN[:UNIT]": "the column of time stamps, and their unit: s, ms, us, ns, iso "
+    "(ISO 8601), or a date format such as %%d.%%m.%%Y %%H:%%M:%%S; SEC+NANOSEC names two columns "
+    "(default: t in seconds, or t_ns)",
+    "--map NAME=COLUMN": "read the declared NAME from this column, or topic and field; repeatable",
+    "--nan": "how to read NaN: as unknown (default), or as no update, which merges of topics need",
+    "--binding FILE": "TOML file that maps topics and fields of messages (bags, MCAP) to declared "
+    "names; `rvmon init DATA --for SPEC` proposes one",
+    "--clock": "time stamp of messages for which the binding names none: the time of recording "
+    "(log, default) or the header's stamp",
+    "--allow-missing [=NAMES]": "accept recordings that have no column for these names (default: "
+    "any); requirements that read them are I, and the exit code is 1",
+    "--dask ADDRESS": "distribute the work over the workers of this Dask scheduler, instead of "
+    "--jobs",
+    "--format": "text for people (default), or JSON",
+    "--max-memory MB": "memory limit of each process (default: none)",
+}
+_WORDS = {words.partition(" ")[0]: words for words in _ABOUT}
+_MORE: dict[str, dict[str, Any]] = {
+    **{name: {"action": "append", "default": []} for name in ("--tag", "--const", "--map")},
+    "--until": {"type": instant_s},
+    "--nan": {"choices": [reading.replace(" ", "-") for reading in READINGS_OF_NAN]},
+    "--clock": {"choices": ("log", "header")},
+    "--format": {"choices": ("text", "json"), "default": "text"},
+    "--max-memory": {"dest": "most_megabytes", "type": _megabytes},
 }
 ONLY = ("--only", "--severity", "--tag")
 """Which requirements are meant."""
@@ -112,7 +72,7 @@ EVALUATED = ("--const", "--until", *READING, "--allow-missing")
 def declare(parser: Parser, *names: str) -> None:
     """Declare options that several commands take."""
     for name in names:
-        parser.add_argument(name, **_SHARED[name])
+        parser.option(words := _WORDS[name], _ABOUT[words], **_MORE.get(name, {}))
 
 
 def asked_ids(arguments: argparse.Namespace, spec: Spec) -> tuple[str, ...] | None:
@@ -146,11 +106,7 @@ def ids_of(listed: str | None, spec: Spec) -> tuple[str, ...] | None:
 def add_budget(parser: Parser) -> None:
     """Declare `--max-states`, `--max-seconds` and `--max-memory`."""
     parser.option("--max-states N", "stop the search after N states", type=positive)
-    parser.option(
-        "--max-seconds TIME",
-        f"stop the search after TIME ({TIME_FORMS})",
-        type=span_s,
-    )
+    parser.option("--max-seconds TIME", f"stop the search after TIME ({TIME_FORMS})", type=span_s)
     parser.option("--max-memory MB", "memory limit (default: 2048)", type=positive, default=2048)
 
 

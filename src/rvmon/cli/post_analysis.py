@@ -128,16 +128,11 @@ def post_analysis(
 
 
 class _Values:
-    """The values of the signals of the first failures.
-
-    Attributes:
-        names: the signals that are to be looked up.
-        until: up to this instant, ticks.
-    """
+    """The values of the signals of the first failures."""
 
     def __init__(self, spec: Spec, failures: Sequence[Attempt], notes: FailureNotes | None) -> None:
-        self.names: set[str] = set()
-        self.until = 0
+        self.names: set[str] = set()  # the signals that are to be looked up
+        self.until = 0  # up to this instant, ticks
         self._spec = spec
         self._reads: list[tuple[Attempt, Set[str]]] = []
         if not failures:
@@ -252,11 +247,7 @@ def _read_again(
 
 
 class _Late:
-    """When what the first failures awaited came after all.
-
-    Attributes:
-        questions: what is to be looked up.
-    """
+    """When what the first failures awaited came after all."""
 
     def __init__(self, spec: Spec, report: Report, notes: FailureNotes | None) -> None:
         self._known: Mapping[tuple[str, int], int | None] = {} if notes is None else notes.late
@@ -274,6 +265,7 @@ class _Late:
                 left = [one for one in attempts if (name, one.number) not in self._known]
                 self._failed[name] = attempts
                 self._waits[name] = waits_of(requirement, left)
+        # what is to be looked up
         self.questions = [one for waits in self._waits.values() for one in waits.values()]
 
     def arrived(self, seen: RecordedTruths | None) -> Mapping[str, Mapping[int, int]]:

@@ -38,14 +38,11 @@ class _Entry(msgspec.Struct, frozen=True):
 
 
 class Unfinished(journal.Journal, frozen=True):
-    """A run that goes on.
+    """A run that goes on."""
 
-    Attributes:
-        stamps: size and time of the files of recordings when the run began, by path.
-        known: the recordings that were judged before, by path.
-    """
-
+    # size and time of the files of recordings when the run began, by path
     stamps: dict[str, tuple[int, int] | None] = field(default_factory=dict)
+    # the recordings that were judged before, by path
     known: dict[str, Judged] = field(default_factory=dict)
 
     def judged(self, traces: Sequence[str], fresh: Iterable[Judged]) -> Iterator[Judged]:

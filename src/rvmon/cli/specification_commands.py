@@ -102,10 +102,7 @@ def add_explain(subparsers: Subparsers) -> None:
     add("ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)")
     declare(parser, "--const")
     parser.option(
-        "--runs N",
-        "number of short runs to try (default: 4000)",
-        type=positive,
-        default=4000,
+        "--runs N", "number of short runs to try (default: 4000)", type=positive, default=4000
     )
     declare(parser, "--max-memory")
 

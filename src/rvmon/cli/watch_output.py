@@ -48,9 +48,6 @@ class Output(logging.Handler):
 
     Args:
         failures_only: whether what passed is left out.
-
-    Attributes:
-        broken: the reason why verdicts cannot be written any more, such as a reader that has left.
     """
 
     def __init__(self, *, failures_only: bool) -> None:
@@ -58,6 +55,7 @@ class Output(logging.Handler):
         self._failures_only = failures_only
         self._log = logging.getLogger("rvmon.live.input")
         self._counts = Counter[str]()
+        # the reason why verdicts cannot be written any more, such as a reader that has left
         self.broken: OSError | None = None
 
     def __enter__(self) -> Output:

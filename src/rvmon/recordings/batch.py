@@ -28,18 +28,13 @@ class NotPlainError(Exception):
 
 
 class Cells(Struct, frozen=True, dict=True):
-    """The values of a signal or of a field.
+    """The values of a signal or of a field."""
 
-    Attributes:
-        values: float64[n], int64[n] or bool[n]; of labels int32[n], places in `labels`. NaN is
-            unknown.
-        says: uint8[n], `UNKNOWN`, `YES` or `NO_UPDATE`; `None`: there is a value in each row.
-        labels: the labels by place; `None`: these are no labels.
-    """
-
+    # float64[n], int64[n] or bool[n]; of labels int32[n], places in `labels`. NaN is unknown
     values: NDArray[Any]
+    # uint8[n], `UNKNOWN`, `YES` or `NO_UPDATE`; `None`: there is a value in each row
     says: NDArray[np.uint8] | None = None
-    labels: Sequence[str] | None = None
+    labels: Sequence[str] | None = None  # the labels by place; `None`: these are no labels
 
     @property
     def first_said(self) -> int | None:
@@ -103,14 +98,10 @@ class Cells(Struct, frozen=True, dict=True):
 
 
 class Occurrences(Struct, frozen=True):
-    """The occurrences of an event.
+    """The occurrences of an event."""
 
-    Attributes:
-        says: uint8[n].
-        fields: by name; a row with a value of one has a payload.
-    """
-
-    says: NDArray[np.uint8]
+    says: NDArray[np.uint8]  # uint8[n]
+    # by name; a row with a value of one has a payload
     fields: Mapping[str, Cells] = field(default_factory=dict)
 
     @property
@@ -154,23 +145,14 @@ _SAID = {NO: False, UNKNOWN: None, NO_UPDATE: _NOTHING}
 
 
 class Batch(Struct, frozen=True):
-    """Some rows of a recording.
+    """Some rows of a recording."""
 
-    Attributes:
-        times: int64[n] ticks; there may be several rows of one instant.
-        signals: by name.
-        events: by name.
-        first: number of the first row, or of its line.
-        lines: int64[n], of each row; `None`: they follow each other.
-        is_last: whether it is known that no row follows.
-    """
-
-    times: NDArray[np.int64]
-    signals: Mapping[str, Cells]
-    events: Mapping[str, Occurrences]
-    first: int = 0
-    lines: NDArray[np.int64] | None = None
-    is_last: bool = False
+    times: NDArray[np.int64]  # int64[n] ticks; there may be several rows of one instant
+    signals: Mapping[str, Cells]  # by name
+    events: Mapping[str, Occurrences]  # by name
+    first: int = 0  # number of the first row, or of its line
+    lines: NDArray[np.int64] | None = None  # int64[n], of each row; `None`: they follow each other
+    is_last: bool = False  # whether it is known that no row follows
 
     def number_of(self, row: int) -> int:
         """The number of a row, or of its line."""

@@ -25,20 +25,13 @@ from rvmon.trace.time import TICKS_PER_SECOND, TICKS_PER_UNIT, TIME_LIMIT
 
 
 class Piece(Struct, frozen=True):
-    """A stretch of a recording.
+    """A stretch of a recording."""
 
-    Attributes:
-        start: its first instant, ticks.
-        stop: its last one.
-        schema: the declared names, and how the recording names them.
-        ordered: whether nothing comes late, so that what lies behind it is not read.
-        held: the values that signals bring along from before its start, by name.
-    """
-
-    start: int
-    stop: int
-    schema: Schema
-    ordered: bool = True
+    start: int  # its first instant, ticks
+    stop: int  # its last one
+    schema: Schema  # the declared names, and how the recording names them
+    ordered: bool = True  # whether nothing comes late, so that what lies behind it is not read
+    # the values that signals bring along from before its start, by name
     held: Mapping[str, Value] = field(default_factory=dict)
 
     def holds(self, t: int) -> bool:

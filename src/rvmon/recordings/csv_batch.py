@@ -68,18 +68,14 @@ def csv_batches(
 
 
 class Found(Struct, frozen=True):
-    """The results of a call on a text: see `csv.h`; the arrays have room for more.
-
-    Attributes:
-        counts: the way it ended, rows, the start of the rest, the end of an odd row, lines, odd
-            cells, labels.
-    """
+    """The results of a call on a text: see `csv.h`; the arrays have room for more."""
 
     numbers: NDArray[np.int64]
     says: NDArray[np.uint8]
     lines: NDArray[np.int64]
     odd: NDArray[np.int64]
     labels: NDArray[np.int64]
+    # the way it ended, rows, the start of the rest, the end of an odd row, lines, odd cells, labels
     counts: tuple[int, ...]
 
 

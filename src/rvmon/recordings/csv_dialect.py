@@ -51,21 +51,13 @@ _PARTS |= {"us": 1_000, "usec": 1_000, "microseconds": 1_000, "ms": 1_000_000, "
 
 
 class Dialect(Struct, frozen=True):
-    """The dialect of a text.
+    """The dialect of a text."""
 
-    Attributes:
-        separator: of cells; empty: blanks.
-        above: lines above the header.
-        is_commented: whether the header is the last of those that are comments.
-        has_commas: whether numbers have a comma where plain ones have a point.
-        encoding: of the text.
-    """
-
-    separator: str = ","
-    above: int = 0
-    is_commented: bool = False
-    has_commas: bool = False
-    encoding: str = "utf-8-sig"
+    separator: str = ","  # of cells; empty: blanks
+    above: int = 0  # lines above the header
+    is_commented: bool = False  # whether the header is the last of those that are comments
+    has_commas: bool = False  # whether numbers have a comma where plain ones have a point
+    encoding: str = "utf-8-sig"  # of the text
 
 
 PLAIN = Dialect()
@@ -221,16 +213,12 @@ def _plain_lines(text: io.TextIOWrapper, dialect: Dialect, stamps: Stamps | None
 
 
 class _Lines:
-    """Lines, of which some are looked at before they are taken.
-
-    Attributes:
-        is_ended: whether the last one has its end that was taken by itself.
-    """
+    """Lines, of which some are looked at before they are taken."""
 
     def __init__(self, lines: Iterator[str]) -> None:
         self._lines = lines
         self._seen: deque[str] = deque()
-        self.is_ended = True
+        self.is_ended = True  # whether the last one has its end that was taken by itself
 
     def __iter__(self) -> Iterator[str]:
         return self

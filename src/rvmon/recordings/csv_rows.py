@@ -39,25 +39,15 @@ class Column(Struct, frozen=True):
 
 
 class Layout(Struct, frozen=True, dict=True):
-    """The columns of a header, and the way to read its rows.
+    """The columns of a header, and the way to read its rows."""
 
-    Attributes:
-        header: names of the columns.
-        time: index of the time column.
-        stamps: its kind of stamps.
-        signals: columns of signals.
-        events: columns of events and of their payload fields.
-        ignored: names of the columns that the spec does not declare.
-        gaps: values that stand for no update.
-    """
-
-    header: tuple[str, ...]
-    time: int
-    stamps: Stamps
-    signals: tuple[Column, ...]
-    events: tuple[Column, ...]
-    ignored: tuple[str, ...]
-    gaps: Gaps
+    header: tuple[str, ...]  # names of the columns
+    time: int  # index of the time column
+    stamps: Stamps  # its kind of stamps
+    signals: tuple[Column, ...]  # columns of signals
+    events: tuple[Column, ...]  # columns of events and of their payload fields
+    ignored: tuple[str, ...]  # names of the columns that the spec does not declare
+    gaps: Gaps  # values that stand for no update
 
     @cached_property
     def columns(self) -> tuple[Column, ...]:

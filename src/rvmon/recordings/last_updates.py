@@ -72,15 +72,12 @@ class ValuesAt:
         names: of the signals that may be asked for.
         ignoring: see `LastUpdates`.
         stale_after: by name from when on a value counts as unknown, ticks behind its update.
-
-    Attributes:
-        known: by instant and name.
     """
 
     def __init__(
         self, names: Set[str], ignoring: frozenset[str], stale_after: Mapping[str, int | None]
     ) -> None:
-        self.known: dict[tuple[int, str], Scalar] = {}
+        self.known: dict[tuple[int, str], Scalar] = {}  # by instant and name
         self._stale_after = stale_after
         self._updates = LastUpdates(names, ignoring)
         self._asked: dict[int, Set[str]] = {}

@@ -16,13 +16,7 @@ from stat import S_ISFIFO
 from typing import TYPE_CHECKING, BinaryIO, TypeVar
 
 from rvmon.errors import TraceError
-from rvmon.recordings import (
-    ARRAYS,
-    FORMATS,
-    MESSAGE_FORMS,
-    form_of_folder,
-    places,
-)
+from rvmon.recordings import ARRAYS, FORMATS, MESSAGE_FORMS, form_of_folder, places
 from rvmon.recordings.csv_dialect import bare_names, opened_as_csv
 from rvmon.recordings.csv_rows import Layout, read_layout, split_lines
 from rvmon.recordings.csv_text import CsvText
@@ -51,17 +45,7 @@ _UNITS = {"parquet": "row", JOINED: "joined row"}
 
 
 class FileRecording:
-    """A recording, read as a stream: memory does not grow with its length.
-
-    Attributes:
-        path: the file, `-` for standard input.
-        names: declared names that have a column; `None` for JSON lines, where any may come.
-        end: of messages the last instant of the recording, ticks; `None`: its last sample.
-        ignored: the names that are not declared, counted as they are read; not of messages, which
-            are recorded for more than one purpose.
-        can_be_read_again: whether it is no stream, which is gone when it was read.
-        rows: turns its rows into samples.
-    """
+    """A recording, read as a stream: memory does not grow with its length."""
 
     def __init__(self, path: str | Path, schema: Schema, *, ordered: bool = True) -> None:
         """Open the recording and read its header.
@@ -76,9 +60,11 @@ class FileRecording:
         Raises:
             TraceError: the file cannot be opened, its ending is unknown or its header wrong.
         """
-        self.path = str(path)
+        self.path = str(path)  # the file, `-` for standard input
         self._schema = schema
         self._ordered = ordered
+        # the names that are not declared, counted as they are read; not of messages, which are
+        # recorded for more than one purpose
         self.ignored: Counter[str] = Counter()
         self._format = format_of(self.path)
         brings_stamps = self.is_of_messages and self._format not in ARRAYS
@@ -87,15 +73,18 @@ class FileRecording:
         if self._format not in (*MESSAGE_FORMS, JOINED) and schema.binding != BY_NAME:
             message = "a binding or clock is of messages, which bags and MCAP files hold: use --map"
             raise TraceError(f"{self.path}: {message}")
+        # whether it is no stream, which is gone when it was read
         self.can_be_read_again = can_be_read_again(self.path)
         if not self.can_be_read_again and self._format in ("csv", "parquet"):
             message = "is a pipe: pipes hold JSON lines; keep other recordings in a file"
             raise TraceError(f"{self.path}: {message}")
         unit = "message" if self.is_of_messages else _UNITS.get(self._format, "line")
-        self.rows = Rows(schema, unit, ordered=ordered)
+        self.rows = Rows(schema, unit, ordered=ordered)  # turns its rows into samples
         self._open_file: BinaryIO | None = None
         self._stamps = schema.stamps or _SECONDS
+        # declared names that have a column; `None` for JSON lines, where any may come
         self.names: frozenset[str] | None = None
+        # of messages the last instant of the recording, ticks; `None`: its last sample
         self.end: int | None = None
         self._messages: MessageFile | None = None
         self._joined: Joined | None = None

@@ -27,21 +27,16 @@ if TYPE_CHECKING:
 
 
 class Source(Struct, frozen=True):
-    """A finished trace, and how it is to be taken.
+    """A finished trace, and how it is to be taken."""
 
-    Attributes:
-        recording: gives samples; one that has columns has `pieces` as well: see
-            `rvmon.recordings.recording.FileRecording`.
-        until: the end of the trace in ticks, if it is not its last sample.
-        is_cut: whether what comes after that end is left out.
-        shown: passes samples and batches on as they are read, with a progress bar.
-        taken: called with each sample or batch once it was judged, and the run, which goes on.
-    """
-
+    # gives samples; one that has columns has `pieces` as well: see
+    # `rvmon.recordings.recording.FileRecording`
     recording: Recording
-    until: int | None = None
-    is_cut: bool = False
+    until: int | None = None  # the end of the trace in ticks, if it is not its last sample
+    is_cut: bool = False  # whether what comes after that end is left out
+    # passes samples and batches on as they are read, with a progress bar
     shown: Callable[[Iterator[Any]], Iterator[Any]] = iter
+    # called with each sample or batch once it was judged, and the run, which goes on
     taken: Callable[[Any, native.Monitor], object] | None = None
 
     @property
@@ -109,17 +104,12 @@ class ReadingArguments(SchemaArguments, total=False):
 
 
 class Reading(Struct, frozen=True):
-    """The options of `Spec.evaluate` and its kin about a trace.
+    """The options of `Spec.evaluate` and its kin about a trace."""
 
-    Attributes:
-        schema: the declared names, and how the trace gives them.
-        sources: the signals and events that can arrive; `None`: those that the trace has.
-        allowed: the names that a trace in columns may lack though requirements read them; whether
-            all.
-    """
-
-    schema: Schema
+    schema: Schema  # the declared names, and how the trace gives them
+    # the signals and events that can arrive; `None`: those that the trace has
     sources: frozenset[str] | None = None
+    # the names that a trace in columns may lack though requirements read them; whether all
     allowed: bool | tuple[str, ...] = False
 
 
@@ -181,15 +171,10 @@ class PairRecording:
     """Pairs `(t, values)`, t in seconds, as a recording.
 
     Names that are absent are no update, `None` and NaN are unknown.
-
-    Attributes:
-        names: `None`: any may come.
-        end: `None`: it ends with its last item.
-        rows: turns its rows into samples.
     """
 
-    names: frozenset[str] | None = None
-    end: int | None = None
+    names: frozenset[str] | None = None  # `None`: any may come
+    end: int | None = None  # `None`: it ends with its last item
 
     def __init__(self, trace: Any, schema: Schema, *, ordered: bool = True) -> None:
         """Take what can be gone through.
@@ -205,7 +190,7 @@ class PairRecording:
                 "expected a path, columns by name (arrays, a table, a data frame) or (t, values) "
                 f"pairs, found {type(trace).__name__}"
             )
-        self.rows = Rows(schema, "item", ordered=ordered)
+        self.rows = Rows(schema, "item", ordered=ordered)  # turns its rows into samples
         self._trace = trace
         self._schema = schema
 

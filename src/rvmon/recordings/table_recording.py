@@ -27,21 +27,13 @@ if TYPE_CHECKING:
 class TableRecording:
     """A table in memory as a recording, row by row.
 
-    Attributes:
-        columns: by name, see `rvmon.recordings.tables.columns_by_name`.
-        layout: of the columns.
-        names: declared names that have a source.
-        end: `None`: it ends with its last row.
-        ignored: the columns that stand for nothing.
-        rows: turns its rows into samples.
-
     >>> from rvmon.trace.schema import Kind
     >>> table = TableRecording({"t": [0, 1], "v": [2, None]}, Schema({"v": Kind.REAL}, {}))
     >>> [sample.values for sample in table]
     [{'v': 2.0}, {}]
     """
 
-    end: int | None = None
+    end: int | None = None  # `None`: it ends with its last row
     path = "a table"
     outages: tuple[()] = ()
 
@@ -59,17 +51,17 @@ class TableRecording:
             TraceError: there is no such time column.
         """
         self._schema = schema
-        self.columns = columns
+        self.columns = columns  # by name, see `rvmon.recordings.tables.columns_by_name`
         header = list(columns)
         stamps = stamps_among(header, schema)
         given = columns[stamps.column]
         stamps = stamps_of_column(stamps, given)
         if is_of_durations(given):
             self.columns = {**columns, stamps.column: nanoseconds_of(given)}
-        self.layout: Layout = layout_of(header, stamps, schema)
-        self.names: frozenset[str] | None = self.layout.names
-        self.ignored = Counter(self.layout.ignored)
-        self.rows = Rows(schema, "row", ordered=ordered)
+        self.layout: Layout = layout_of(header, stamps, schema)  # of the columns
+        self.names: frozenset[str] | None = self.layout.names  # declared names that have a source
+        self.ignored = Counter(self.layout.ignored)  # the columns that stand for nothing
+        self.rows = Rows(schema, "row", ordered=ordered)  # turns its rows into samples
 
     def pieces(self) -> Iterator[Batch | Sample]:
         """The table in order: its rows as columns, if they hold what is declared, else samples.

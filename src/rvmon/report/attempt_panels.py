@@ -34,55 +34,34 @@ class JudgedRun(Struct, frozen=True):
 
 
 class RunPage(Struct, frozen=True):
-    """The content of a run's page.
+    """The content of a run's page."""
 
-    Attributes:
-        run: the run.
-        spec: its specification.
-        command: the command that replays it.
-        others: other runs by the same specification, to find nearest passing attempts in.
-        facts: more about the run, as pairs of name and value.
-        scene: the motion of the robot, if it is known.
-        back: address of the page that links here; "" if there is none.
-        back_to: the text of the link back.
-    """
-
-    run: JudgedRun
-    spec: CheckedSpec
-    command: str
+    run: JudgedRun  # the run
+    spec: CheckedSpec  # its specification
+    command: str  # the command that replays it
+    # other runs by the same specification, to find nearest passing attempts in
     others: Sequence[JudgedRun] = ()
-    facts: Sequence[tuple[str, Child]] = ()
-    scene: Scene | None = None
-    back: str = ""
-    back_to: str = "all tests"
+    facts: Sequence[tuple[str, Child]] = ()  # more about the run, as pairs of name and value
+    scene: Scene | None = None  # the motion of the robot, if it is known
+    back: str = ""  # address of the page that links here; "" if there is none
+    back_to: str = "all tests"  # the text of the link back
 
 
 class Panel(Struct, frozen=True):
-    """The part of a page about one attempt, or about a requirement without any.
+    """The part of a page about one attempt, or about a requirement without any."""
 
-    Attributes:
-        id: the id of its element on the page, and so its address after `#`.
-        requirement: the id of the requirement.
-        attempt: the attempt; `None` if the requirement has none.
-        verdict: of the attempt, or of the requirement.
-        view: the stretch of time that is shown.
-        tracks: of the signals and events that the requirement reads.
-        reference: the nearest passing attempt, for a failed one.
-        part_truths: the truths of its subformulas in the view; empty if the run is too long.
-        late: the instant of a response after the deadline, ticks; `None` if there was none.
-        miss: without an attempt, the parts that the trigger lacked when it came nearest.
-    """
-
-    id: str
-    requirement: str
-    attempt: Attempt | None
-    verdict: Verdict
-    view: View
-    tracks: tuple[Track, ...]
-    reference: ReferenceAttempt | None
+    id: str  # the id of its element on the page, and so its address after `#`
+    requirement: str  # the id of the requirement
+    attempt: Attempt | None  # the attempt; `None` if the requirement has none
+    verdict: Verdict  # of the attempt, or of the requirement
+    view: View  # the stretch of time that is shown
+    tracks: tuple[Track, ...]  # of the signals and events that the requirement reads
+    reference: ReferenceAttempt | None  # the nearest passing attempt, for a failed one
+    # the truths of its subformulas in the view; empty if the run is too long
     part_truths: tuple[PartTruth, ...] = ()
+    # the instant of a response after the deadline, ticks; `None` if there was none
     late: int | None = None
-    miss: str = ""
+    miss: str = ""  # without an attempt, the parts that the trigger lacked when it came nearest
 
     @property
     def instant(self) -> int:

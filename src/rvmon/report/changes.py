@@ -133,16 +133,13 @@ def changes_of(
 
 
 class RunChanges:
-    """Collects the changes of signals and events, piece by piece of a run.
-
-    Attributes:
-        by_name: the changes of each so far.
-    """
+    """Collects the changes of signals and events, piece by piece of a run."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self._signals = spec.signals
         self._ignoring = spec.ignoring
         stale = {name: signal.stale_after for name, signal in spec.signals.items()}
+        # the changes of each so far
         self.by_name = {name: Changes(stale.get(name)) for name in (*spec.signals, *spec.events)}
 
     def add(self, piece: Batch | Sample) -> None:

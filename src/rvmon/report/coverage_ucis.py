@@ -77,11 +77,7 @@ def _options(parent: ET.Element, group: Group) -> None:
     # UCIS has one goal for all bins of a point: with the greatest no hole counts as covered.
     goal = max(item.goal for item in group.items.values())
     ET.SubElement(
-        parent,
-        "options",
-        weight=str(group.weight),
-        at_least=str(goal),
-        comment=shown(group.title),
+        parent, "options", weight=str(group.weight), at_least=str(goal), comment=shown(group.title)
     )
 
 

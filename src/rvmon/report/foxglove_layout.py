@@ -103,10 +103,7 @@ def topic_of(kind: str, name: str) -> str:
 
 
 def foxglove_layout(
-    spec: CheckedSpec,
-    requirements: Iterable[str],
-    names: Collection[str],
-    scene: Scene | None,
+    spec: CheckedSpec, requirements: Iterable[str], names: Collection[str], scene: Scene | None
 ) -> dict[str, Any]:
     """The states of requirements above the numbers that they read above the log of attempts."""
     judged = list(requirements)

@@ -118,11 +118,7 @@ def _environment() -> Environment:
         finalize=_finished,
     )
     environment.filters.update(
-        code=with_code,
-        counted=counted,
-        data=data,
-        grouped="{:,}".format,
-        share=share_text,
+        code=with_code, counted=counted, data=data, grouped="{:,}".format, share=share_text
     )
     environment.globals.update(
         asset=asset, colours=verdict_colours, marks=MARKS, percent=percent_text, verdicts=[*Verdict]

@@ -95,14 +95,10 @@ def has_unknown(panel: Panel) -> bool:
 
 
 class SpecLines(NamedTuple):
-    """A requirement's lines of its file.
+    """A requirement's lines of its file."""
 
-    Attributes:
-        place: name of the file, and number of the first of the lines.
-        lines: per line its number, and its text before, within and after the blamed subformula.
-    """
-
-    place: str
+    place: str  # name of the file, and number of the first of the lines
+    # per line its number, and its text before, within and after the blamed subformula
     lines: Sequence[tuple[int, str, str, str]]
 
 

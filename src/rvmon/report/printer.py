@@ -50,9 +50,6 @@ class Printer:
         file: to print to; default standard output.
         width: columns of a line; default those of the terminal.
         has_colour: whether styles are shown; default: if the file is a terminal that shows them.
-
-    Attributes:
-        width: columns of a line.
     """
 
     def __init__(
@@ -64,7 +61,7 @@ class Printer:
     ) -> None:
         self._file = sys.stdout if file is None else file
         self._has_colour = wants_colour(self._file) if has_colour is None else has_colour
-        self.width = _terminal_width() if width is None else width
+        self.width = _terminal_width() if width is None else width  # columns of a line
         self._is_below_table = False
 
     def line(self, *pieces: Piece) -> None:

@@ -39,19 +39,12 @@ _GROUPS = {
 
 
 class Listed(Struct, frozen=True):
-    """A recording in the index.
+    """A recording in the index."""
 
-    Attributes:
-        name: its display name.
-        page: the address of its page; "" if it has none.
-        report: the verdicts; `None` if it could not be judged.
-        error: the reason why it could not be judged.
-    """
-
-    name: str
-    page: str
-    report: Report | None
-    error: str = ""
+    name: str  # its display name
+    page: str  # the address of its page; "" if it has none
+    report: Report | None  # the verdicts; `None` if it could not be judged
+    error: str = ""  # the reason why it could not be judged
 
 
 class _Row(NamedTuple):

@@ -24,27 +24,16 @@ Row = Mapping[str, str]
 
 
 class Traced(NamedTuple):
-    """The verdict on one requirement by one recording or test.
+    """The verdict on one requirement by one recording or test."""
 
-    Attributes:
-        robot: the robot of a campaign; else "".
-        requirement: its id; `illegal` for hits of illegal bins.
-        text: the text of the requirement.
-        source: the clause it comes from.
-        by: the recording, or robot and test; "" if nothing judges the requirement.
-        verdict: its letter; "" if there is none.
-        reason: the reason of the first failure, or the error of the recording or test.
-        planted_fault: the fault planted in the robot for this test; else "".
-    """
-
-    robot: str
-    requirement: str
-    text: str
-    source: str
-    by: str = ""
-    verdict: str = ""
-    reason: str = ""
-    planted_fault: str = ""
+    robot: str  # the robot of a campaign; else ""
+    requirement: str  # its id; `illegal` for hits of illegal bins
+    text: str  # the text of the requirement
+    source: str  # the clause it comes from
+    by: str = ""  # the recording, or robot and test; "" if nothing judges the requirement
+    verdict: str = ""  # its letter; "" if there is none
+    reason: str = ""  # the reason of the first failure, or the error of the recording or test
+    planted_fault: str = ""  # the fault planted in the robot for this test; else ""
 
 
 def rows_by_item(verdicts: bytes) -> dict[str, list[Row]]:
@@ -63,9 +52,7 @@ def rows_by_item(verdicts: bytes) -> dict[str, list[Row]]:
 
 
 def trace_matrix(
-    specs: Mapping[str, CheckedSpec],
-    items: Mapping[str, Sequence[Row]],
-    planted: Mapping[str, str],
+    specs: Mapping[str, CheckedSpec], items: Mapping[str, Sequence[Row]], planted: Mapping[str, str]
 ) -> list[Traced]:
     """The recordings and tests that show each requirement, in the order of the specification.
 

@@ -21,35 +21,22 @@ from rvmon.verdicts.attempt import Blame
 
 
 class Outline(Struct, frozen=True):
-    """The outline of a body: a convex polygon in the body's coordinates, metres.
+    """The outline of a body: a convex polygon in the body's coordinates, metres."""
 
-    Attributes:
-        body: the body it belongs to; one that is not among the scene's bodies never moves.
-        corners: one for a disc, two for a bar, more for a polygon.
-        radius: the radius of rounded corners.
-        role: its class in the page's style sheet.
-    """
-
-    body: str
-    corners: tuple[tuple[float, float], ...]
-    radius: float
-    role: str
+    body: str  # the body it belongs to; one that is not among the scene's bodies never moves
+    corners: tuple[tuple[float, float], ...]  # one for a disc, two for a bar, more for a polygon
+    radius: float  # the radius of rounded corners
+    role: str  # its class in the page's style sheet
 
 
 class Scene(Struct, frozen=True):
-    """The motion of bodies in a vertical plane; between frames they stand still.
+    """The motion of bodies in a vertical plane; between frames they stand still."""
 
-    Attributes:
-        bodies: in the order of each frame.
-        outlines: drawn in this order.
-        frames: `(ticks, (x, z, angle) of each body, flattened)`, metres and radians.
-        view: the shown part: left, bottom, right, top in metres.
-    """
-
-    bodies: tuple[str, ...]
-    outlines: tuple[Outline, ...]
+    bodies: tuple[str, ...]  # in the order of each frame
+    outlines: tuple[Outline, ...]  # drawn in this order
+    # `(ticks, (x, z, angle) of each body, flattened)`, metres and radians
     frames: tuple[tuple[int, tuple[float, ...]], ...]
-    view: tuple[float, float, float, float]
+    view: tuple[float, float, float, float]  # the shown part: left, bottom, right, top in metres
 
 
 def concerned_names(requirement: Requirement) -> tuple[str, ...]:
@@ -116,24 +103,16 @@ class Threshold(Struct, frozen=True):
 
 
 class Track(Struct, frozen=True):
-    """One signal or event over a run.
+    """One signal or event over a run."""
 
-    Attributes:
-        name: as declared.
-        kind: of drawing.
-        changes: `(ticks, value)` in order: a signal has the value from then on (`None`:
-            unknown); an event occurred then (`None`: perhaps).
-        unit: of a number.
-        thresholds: the constants that the requirement compares it with.
-        absent: whether it has no source, so that it is unknown throughout.
-    """
-
-    name: str
-    kind: TrackKind
+    name: str  # as declared
+    kind: TrackKind  # of drawing
+    # `(ticks, value)` in order: a signal has the value from then on (`None`: unknown); an event
+    # occurred then (`None`: perhaps)
     changes: Course
-    unit: str = ""
-    thresholds: tuple[Threshold, ...] = ()
-    absent: bool = False
+    unit: str = ""  # of a number
+    thresholds: tuple[Threshold, ...] = ()  # the constants that the requirement compares it with
+    absent: bool = False  # whether it has no source, so that it is unknown throughout
 
     def value_at(self, instant: int) -> Scalar:
         """A signal's value at an instant; `None` where it is unknown."""
@@ -167,19 +146,12 @@ Point = tuple[float, float]
 
 
 class Stretch(Struct, frozen=True):
-    """A stretch of a view over which a signal has one value.
+    """A stretch of a view over which a signal has one value."""
 
-    Attributes:
-        left: as a fraction of the view, 0 to 1.
-        right: likewise.
-        value: `None` where it is unknown.
-        busy: whether it replaces several stretches that are too short to be drawn.
-    """
-
-    left: float
-    right: float
-    value: Scalar
-    busy: bool = False
+    left: float  # as a fraction of the view, 0 to 1
+    right: float  # likewise
+    value: Scalar  # `None` where it is unknown
+    busy: bool = False  # whether it replaces several stretches that are too short to be drawn
 
 
 def stretches(track: Track, view: View, end: int) -> list[Stretch]:

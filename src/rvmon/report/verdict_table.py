@@ -27,24 +27,17 @@ class RunGroup(Struct, frozen=True):
 
 
 class VerdictTable(Struct, frozen=True):
-    """Requirements down, groups of runs across, each with its counts of P, F, NT and I.
+    """Requirements down, groups of runs across, each with its counts of P, F, NT and I."""
 
-    Attributes:
-        title: one line.
-        requirements: id → text, in the order of the rows.
-        groups: in the order of the columns.
-        checked: by requirement, the result of model checking, `None` if it cannot be expressed;
-            empty if nothing was checked.
-        notes: remarks below the table.
-        shows_intervals: whether each count comes with the confidence interval of its share;
-            meaningful only if runs are drawn at random.
-    """
-
-    title: str
-    requirements: Mapping[str, str]
-    groups: tuple[RunGroup, ...]
+    title: str  # one line
+    requirements: Mapping[str, str]  # id → text, in the order of the rows
+    groups: tuple[RunGroup, ...]  # in the order of the columns
+    # by requirement, the result of model checking, `None` if it cannot be expressed; empty if
+    # nothing was checked
     checked: Mapping[str, bool | None] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()  # remarks below the table
+    # whether each count comes with the confidence interval of its share; meaningful only if runs
+    # are drawn at random
     shows_intervals: bool = False
 
 
@@ -107,10 +100,7 @@ ABREAST = 14
 
 
 def print_table(
-    table: VerdictTable,
-    printer: Printer,
-    *,
-    further: Mapping[str, VerdictTable] | None = None,
+    table: VerdictTable, printer: Printer, *, further: Mapping[str, VerdictTable] | None = None
 ) -> None:
     """Print a table of verdicts, as many groups side by side as fit.
 

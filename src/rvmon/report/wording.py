@@ -160,21 +160,13 @@ def forecast_sentence(forecast: Verdict) -> str:
 
 
 class Mark(Struct, frozen=True):
-    """The look of one verdict.
+    """The look of one verdict."""
 
-    Attributes:
-        word: for sentences ("R2 failed").
-        sign: a shape that distinguishes it without colour.
-        terminal: a style of `rvmon.report.printer`, and of rich.
-        light: CSS colour on a light page.
-        dark: CSS colour on a dark page.
-    """
-
-    word: str
-    sign: str
-    terminal: str
-    light: str
-    dark: str
+    word: str  # for sentences ("R2 failed")
+    sign: str  # a shape that distinguishes it without colour
+    terminal: str  # a style of `rvmon.report.printer`, and of rich
+    light: str  # CSS colour on a light page
+    dark: str  # CSS colour on a dark page
 
 
 MARKS = {
@@ -217,11 +209,7 @@ def wrapped(sentence: str, width: int) -> str:
         return f"  {sentence}"
     whole = _WITHIN_VALUE.sub(_TOGETHER, sentence)
     lines = textwrap.fill(
-        whole,
-        width,
-        initial_indent="  ",
-        subsequent_indent="    ",
-        break_on_hyphens=False,
+        whole, width, initial_indent="  ", subsequent_indent="    ", break_on_hyphens=False
     )
     return lines.replace(_TOGETHER, " ")
 

@@ -39,14 +39,11 @@ Step = str | int | Named
 class Field(Struct, frozen=True):
     """A field of a message.
 
-    Attributes:
-        path: names of nested fields, and indices or names of array elements.
-
     >>> str(Field(("poses", 0, "position", "x"))), str(Field(("position", Named("elbow"))))
     ('poses[0].position.x', 'position[elbow]')
     """
 
-    path: tuple[Step, ...]
+    path: tuple[Step, ...]  # names of nested fields, and indices or names of array elements
 
     def __str__(self) -> str:
         steps = (f".{step}" if isinstance(step, str) else f"[{step}]" for step in self.path)
@@ -76,17 +73,11 @@ class Constant(Struct, frozen=True):
 
 
 class Applied(Struct, frozen=True):
-    """An operation on terms; `Elements` can only be its sole argument. Non-numbers are unknown.
+    """An operation on terms; `Elements` can only be its sole argument. Non-numbers are unknown."""
 
-    Attributes:
-        operation: computes the result.
-        args: the operands.
-        sign: its sign or name; "" for a conversion of units.
-    """
-
-    operation: Callable[..., Any]
-    args: tuple[Term, ...]
-    sign: str
+    operation: Callable[..., Any]  # computes the result
+    args: tuple[Term, ...]  # the operands
+    sign: str  # its sign or name; "" for a conversion of units
 
     def __str__(self) -> str:
         args = [str(arg).removesuffix("[]") for arg in self.args]
@@ -106,44 +97,31 @@ Term = Field | Elements | Constant | Applied
 
 
 class Bound(Struct, frozen=True):
-    """The source of a signal or event in recorded messages.
+    """The source of a signal or event in recorded messages."""
 
-    Attributes:
-        topic: the topic of the messages.
-        value: the value of a signal, or whether an event occurs; `None`: an event occurs with each
-            message.
-        fields: of an event, the terms of its payload by field.
-        labels: of a signal of labels, the label by recorded number or text; empty: the text itself.
-        clock: the stamp that counts; `None`: the one chosen for the whole recording.
-        on_change: whether a message with the same value as the previous one is no update.
-        type: the type of the messages; "": any.
-        unit: the unit of the recorded value; "": the declared one.
-    """
-
-    topic: str
+    topic: str  # the topic of the messages
+    # the value of a signal, or whether an event occurs; `None`: an event occurs with each message
     value: Term | None = None
+    # of an event, the terms of its payload by field
     fields: Mapping[str, Term] = field(default_factory=dict)
+    # of a signal of labels, the label by recorded number or text; empty: the text itself
     labels: Mapping[str, str] = field(default_factory=dict)
+    # the stamp that counts; `None`: the one chosen for the whole recording
     clock: Clock | None = None
+    # whether a message with the same value as the previous one is no update
     on_change: bool = False
-    type: str = ""
-    unit: str = ""
+    type: str = ""  # the type of the messages; "": any
+    unit: str = ""  # the unit of the recorded value; "": the declared one
 
 
 class Binding(Struct, frozen=True):
-    """The sources of declared names in recorded messages.
+    """The sources of declared names in recorded messages."""
 
-    Attributes:
-        bounds: by declared name, its source.
-        clock: the stamps that count.
-        definitions: by type, texts of message definitions, for recordings without them.
-        robot: the replacement of `*` in the names of topics; "": taken from the recording.
-    """
-
-    bounds: Mapping[str, Bound] = field(default_factory=dict)
-    clock: Clock = Clock.LOG
+    bounds: Mapping[str, Bound] = field(default_factory=dict)  # by declared name, its source
+    clock: Clock = Clock.LOG  # the stamps that count
+    # by type, texts of message definitions, for recordings without them
     definitions: Mapping[str, str] = field(default_factory=dict)
-    robot: str = ""
+    robot: str = ""  # the replacement of `*` in the names of topics; "": taken from the recording
 
 
 BY_NAME = Binding()
@@ -151,15 +129,10 @@ BY_NAME = Binding()
 
 
 class Gaps(Struct, frozen=True):
-    """Values that mean "no update".
+    """Values that mean "no update"."""
 
-    Attributes:
-        no_update: such a value; `None`: there is none.
-        nan: whether NaN means it.
-    """
-
-    no_update: bool | int | float | str | None = None
-    nan: bool = False
+    no_update: bool | int | float | str | None = None  # such a value; `None`: there is none
+    nan: bool = False  # whether NaN means it
 
     def __bool__(self) -> bool:
         return self.nan or self.no_update is not None
@@ -226,45 +199,30 @@ class Kind(StrEnum):
 
 
 class Stamps(Struct, frozen=True):
-    """The source of the stamps of a recording.
+    """The source of the stamps of a recording."""
 
-    Attributes:
-        column: the name of the column, or of the field in JSON lines.
-        unit: `s`, `ms`, `us`, `ns`, or `iso` for dates and times of ISO 8601.
-        is_stated: whether the user named the unit, so that it is not a default.
-        pattern: of dates that are not ISO 8601, for `datetime.strptime`.
-    """
-
-    column: str
-    unit: str
-    is_stated: bool = False
-    pattern: str = ""
+    column: str  # the name of the column, or of the field in JSON lines
+    unit: str  # `s`, `ms`, `us`, `ns`, or `iso` for dates and times of ISO 8601
+    is_stated: bool = False  # whether the user named the unit, so that it is not a default
+    pattern: str = ""  # of dates that are not ISO 8601, for `datetime.strptime`
 
 
 @dataclasses.dataclass(frozen=True, slots=True)
 class Schema:
-    """The declared names with their kinds, and how recordings provide them.
+    """The declared names with their kinds, and how recordings provide them."""
 
-    Attributes:
-        signals: kind by name.
-        events: by event, the kinds of its payload's fields.
-        ignoring: the signals for which NaN and null are no update.
-        stamps: the source of stamps; `None`: seconds in `t`, or nanoseconds in `t_ns`.
-        columns: by declared name (`event.field` for a field), the column, if it has another name.
-        gaps: values that mean "no update", for all names.
-        binding: the topics and fields of messages by name.
-        units: the unit of each declared name (`event.field` for a field) that has one.
-        layouts: a reader's plan by the last header as it is written: many recordings have the same.
-    """
-
-    signals: Mapping[str, Kind]
-    events: Mapping[str, Mapping[str, Kind]]
-    ignoring: frozenset[str] = frozenset()
+    signals: Mapping[str, Kind]  # kind by name
+    events: Mapping[str, Mapping[str, Kind]]  # by event, the kinds of its payload's fields
+    ignoring: frozenset[str] = frozenset()  # the signals for which NaN and null are no update
+    # the source of stamps; `None`: seconds in `t`, or nanoseconds in `t_ns`
     stamps: Stamps | None = None
+    # by declared name (`event.field` for a field), the column, if it has another name
     columns: Mapping[str, str] = dataclasses.field(default_factory=dict)
-    gaps: Gaps = NO_GAPS
-    binding: Binding = BY_NAME
+    gaps: Gaps = NO_GAPS  # values that mean "no update", for all names
+    binding: Binding = BY_NAME  # the topics and fields of messages by name
+    # the unit of each declared name (`event.field` for a field) that has one
     units: Mapping[str, str] = dataclasses.field(default_factory=dict)
+    # a reader's plan by the last header as it is written: many recordings have the same
     layouts: dict[bytes, Any] = dataclasses.field(
         default_factory=dict, init=False, repr=False, compare=False
     )

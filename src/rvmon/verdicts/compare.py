@@ -36,43 +36,27 @@ class Change(StrEnum):
 
 
 class Difference(Struct, frozen=True):
-    """A changed verdict of a requirement in a recording, or a change of the whole recording.
+    """A changed verdict of a requirement in a recording, or a change of the whole recording."""
 
-    Attributes:
-        change: the kind of change.
-        recording: its name in the newer file.
-        requirement: its id; "" if the change is about the recording.
-        before: the older verdict; `None` if the change is about the recording.
-        after: the newer verdict; likewise.
-        failures: the numbers of failed attempts before and now.
-        reason: the reason of the first failure, or the error of the recording.
-    """
-
-    change: Change
-    recording: str
-    requirement: str = ""
-    before: Verdict | None = None
-    after: Verdict | None = None
-    failures: tuple[int, int] = (0, 0)
-    reason: str = ""
+    change: Change  # the kind of change
+    recording: str  # its name in the newer file
+    requirement: str = ""  # its id; "" if the change is about the recording
+    before: Verdict | None = None  # the older verdict; `None` if the change is about the recording
+    after: Verdict | None = None  # the newer verdict; likewise
+    failures: tuple[int, int] = (0, 0)  # the numbers of failed attempts before and now
+    reason: str = ""  # the reason of the first failure, or the error of the recording
 
 
 class Comparison(Struct, frozen=True):
-    """The comparison of two files of verdicts.
+    """The comparison of two files of verdicts."""
 
-    Attributes:
-        differences: of recordings and requirements in both files; regressions first.
-        failing: by recording, the requirements that fail in both files.
-        only_before: recordings and requirements in the older file only, in words.
-        only_after: the requirements in the newer file only.
-        same: the number of equal verdicts.
-    """
-
+    # of recordings and requirements in both files; regressions first
     differences: Sequence[Difference]
+    # by recording, the requirements that fail in both files
     failing: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    only_before: Sequence[str] = ()
-    only_after: Sequence[str] = ()
-    same: int = 0
+    only_before: Sequence[str] = ()  # recordings and requirements in the older file only, in words
+    only_after: Sequence[str] = ()  # the requirements in the newer file only
+    same: int = 0  # the number of equal verdicts
 
 
 class _Run(Struct):

@@ -17,19 +17,13 @@ from rvmon.verdicts.report import Report
 
 
 class KnownFailure(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """A requirement that is accepted to fail.
+    """A requirement that is accepted to fail."""
 
-    Attributes:
-        requirement: its id.
-        reason: the reason for accepting the failure.
-        until: the last day on which it is accepted.
-        recording: pattern of the recordings, such as `monday/*.csv`, matched against the whole name
-            or its last segments; `*` stands for any characters.
-    """
-
-    requirement: str
-    reason: str
-    until: datetime.date
+    requirement: str  # its id
+    reason: str  # the reason for accepting the failure
+    until: datetime.date  # the last day on which it is accepted
+    # pattern of the recordings, such as `monday/*.csv`, matched against the whole name or its last
+    # segments; `*` stands for any characters
     recording: str = "*"
 
     def is_about(self, recording: str, requirement: str) -> bool:

@@ -9,21 +9,13 @@ from rvmon.trace.time import format_stamped
 
 
 class CoveredBin(Struct, frozen=True):
-    """A bin of a coverpoint, or a combination of a cross, on one run.
+    """A bin of a coverpoint, or a combination of a cross, on one run."""
 
-    Attributes:
-        name: of the bin or combination.
-        kind: goal, ignored or illegal.
-        goal: the hits it needs.
-        hits: the number of hits.
-        first: the instant of the first hit, ticks; `None` without one.
-    """
-
-    name: str
-    kind: BinKind
-    goal: int
-    hits: int
-    first: int | None = None
+    name: str  # of the bin or combination
+    kind: BinKind  # goal, ignored or illegal
+    goal: int  # the hits it needs
+    hits: int  # the number of hits
+    first: int | None = None  # the instant of the first hit, ticks; `None` without one
 
     @property
     def is_hole(self) -> bool:
@@ -40,19 +32,12 @@ class CoveredGroup(Struct, frozen=True):
 
 
 class IllegalHit(Struct, frozen=True):
-    """An illegal bin of a coverpoint, or an illegal combination of a cross, that was hit.
+    """An illegal bin of a coverpoint, or an illegal combination of a cross, that was hit."""
 
-    Attributes:
-        group: the coverpoint or cross.
-        item: the bin or combination.
-        count: the number of hits.
-        first: the instant of the first hit, ticks.
-    """
-
-    group: str
-    item: str
-    count: int
-    first: int
+    group: str  # the coverpoint or cross
+    item: str  # the bin or combination
+    count: int  # the number of hits
+    first: int  # the instant of the first hit, ticks
 
     def sentence(self, origin: int) -> str:
         """One sentence; `origin` is the instant shown as 0 s, ticks.

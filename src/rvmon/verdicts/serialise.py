@@ -124,44 +124,27 @@ def decode(text: str | bytes) -> tuple[ReportJson, list[Attempt]]:
 
 
 class VerdictRow(NamedTuple):
-    """An attempt; or a requirement that has none in a recording; or a recording without verdicts.
-
-    Attributes:
-        recording: its name.
-        requirement: its id; `None` where the recording has no verdicts.
-        attempt: its name, such as `R1#3`; `None` where there is none.
-        number: from 1 per requirement; attempts in doubt are numbered separately.
-        verdict: `P`, `F` or `I` of an attempt, `NT` or `I` of a requirement without one; `None`
-            where the recording has none.
-        decision: the way the attempt was settled, a value of `rvmon.verdicts.attempt.Decision`.
-        in_doubt: whether the trigger itself is uncertain.
-        triggered: instant, ns.
-        decided: instant, ns; `None` if undecided.
-        deadline: instant, ns; `None` if there is none.
-        triggered_s: seconds since the recording's origin.
-        decided_s: likewise.
-        robustness: in SI units; `None` if not measured.
-        captured: values captured by `let` and `for each`, as JSON; "" if there are none.
-        reason: one sentence.
-        error: the error of a recording without verdicts; else "".
-    """
+    """An attempt; a requirement that has none in a recording; or a recording without verdicts."""
 
     recording: str
-    requirement: str | None = None
-    attempt: str | None = None
-    number: int | None = None
+    requirement: str | None = None  # its id; `None` where the recording has no verdicts
+    attempt: str | None = None  # its name, such as `R1#3`; `None` where there is none
+    number: int | None = None  # from 1 per requirement; attempts in doubt are numbered separately
+    # `P`, `F` or `I` of an attempt, `NT` or `I` of a requirement without one; `None` where the
+    # recording has none
     verdict: str | None = None
+    # the way the attempt was settled, a value of `rvmon.verdicts.attempt.Decision`
     decision: str | None = None
-    in_doubt: bool = False
-    triggered: int | None = None
-    decided: int | None = None
-    deadline: int | None = None
-    triggered_s: float | None = None
-    decided_s: float | None = None
-    robustness: float | None = None
-    captured: str = ""
-    reason: str = ""
-    error: str = ""
+    in_doubt: bool = False  # whether the trigger itself is uncertain
+    triggered: int | None = None  # instant, ns
+    decided: int | None = None  # instant, ns; `None` if undecided
+    deadline: int | None = None  # instant, ns; `None` if there is none
+    triggered_s: float | None = None  # seconds since the recording's origin
+    decided_s: float | None = None  # likewise
+    robustness: float | None = None  # in SI units; `None` if not measured
+    captured: str = ""  # values captured by `let` and `for each`, as JSON; "" if there are none
+    reason: str = ""  # one sentence
+    error: str = ""  # the error of a recording without verdicts; else ""
 
 
 def broken_rows(recording: str, error: str, before: Iterable[Attempt]) -> Iterator[VerdictRow]:

@@ -151,12 +151,7 @@ def _checked(values: Iterable[Any]) -> VerdictRow:
     if not all(isinstance(text, str) for text in texts):
         raise ValueError("a name or a reason is no text")
     return VerdictRow(
-        recording,
-        requirement or None,
-        attempt or None,
-        verdict=verdict,
-        reason=reason,
-        error=error,
+        recording, requirement or None, attempt or None, verdict=verdict, reason=reason, error=error
     )
 
 

@@ -127,20 +127,15 @@ _GOALS = (RequirementItem, PropertyItem, CoverItem, CoverpointItem, CrossItem)
 
 
 class Names:
-    """The names of a file and of those that it imports.
-
-    Attributes:
-        declared: the declarations of names in formulas; payload fields as `event.field`.
-        goals: the places of requirements, properties and coverage goals.
-        types: of signals and of payload fields, as written.
-        owners: the item that declares a name, by the `id` of that.
-    """
+    """The names of a file and of those that it imports."""
 
     def __init__(self, files: Sequence[ParsedSpec]) -> None:
+        # the declarations of names in formulas; payload fields as `event.field`
         self.declared: dict[str, Ident] = {}
+        # the places of requirements, properties and coverage goals
         self.goals: dict[str, Ident] = {}
-        self.types: dict[str, TypeSyntax] = {}
-        self.owners: dict[int, Item] = {}
+        self.types: dict[str, TypeSyntax] = {}  # of signals and of payload fields, as written
+        self.owners: dict[int, Item] = {}  # the item that declares a name, by the `id` of that
         self._files = files
         for file in files:
             for item in file.items:

@@ -39,11 +39,7 @@ _ALONG: Mapping[str, Mapping[str, tuple[str, ...]]] = {
         "y": ("lateral", "sideways", "sway"),
         "z": ("vertical", "climb", "rate", "heave"),
     },
-    "m/s^2": {
-        "x": ("forward", "longitudinal"),
-        "y": ("lateral", "sideways"),
-        "z": ("vertical",),
-    },
+    "m/s^2": {"x": ("forward", "longitudinal"), "y": ("lateral", "sideways"), "z": ("vertical",)},
     "rad/s": {"x": ("roll",), "y": ("pitch",), "z": ("yaw", "turn")},
 }
 """The names of a quantity along, or about, an axis of a robot."""
@@ -61,29 +57,17 @@ _COMMANDING = re.compile(r"Ackermann|Trajectory|Setpoint|Command|Target|Goal|Jog
 
 
 class Candidate(Struct, frozen=True):
-    """A candidate to feed a declared name.
+    """A candidate to feed a declared name."""
 
-    Attributes:
-        topic: of the messages.
-        value: an expression; empty: each message is an occurrence.
-        kind: of the value; `None` of each message.
-        own: words of the value, and those of its meaning.
-        around: words of the topic, of its frames and of the type.
-        meaning: of the field, or of the computed result.
-        axis: along which it is measured; empty if along none.
-        comment_words: of a comment on it.
-        implied: words that people have for it along its axis, or of a joint.
-    """
-
-    topic: Topic
-    value: str
-    kind: Kind | None
-    own: tuple[str, ...]
-    around: tuple[str, ...]
-    meaning: Meaning
-    axis: str = ""
-    comment_words: tuple[str, ...] = ()
-    implied: tuple[str, ...] = ()
+    topic: Topic  # of the messages
+    value: str  # an expression; empty: each message is an occurrence
+    kind: Kind | None  # of the value; `None` of each message
+    own: tuple[str, ...]  # words of the value, and those of its meaning
+    around: tuple[str, ...]  # words of the topic, of its frames and of the type
+    meaning: Meaning  # of the field, or of the computed result
+    axis: str = ""  # along which it is measured; empty if along none
+    comment_words: tuple[str, ...] = ()  # of a comment on it
+    implied: tuple[str, ...] = ()  # words that people have for it along its axis, or of a joint
 
     @property
     def key(self) -> tuple[str, str]:
@@ -233,19 +217,12 @@ _FIRST = 3
 
 
 class Range(Struct):
-    """The range of the values seen.
+    """The range of the values seen."""
 
-    Attributes:
-        count: of messages that had it.
-        first: the first values, each once.
-        low: the least number; `None` if there was none.
-        high: the greatest.
-    """
-
-    count: int = 0
-    first: list[Any] = field(default_factory=list)
-    low: float | None = None
-    high: float | None = None
+    count: int = 0  # of messages that had it
+    first: list[Any] = field(default_factory=list)  # the first values, each once
+    low: float | None = None  # the least number; `None` if there was none
+    high: float | None = None  # the greatest
 
     def add(self, value: Any) -> None:
         """Take the value of a message."""

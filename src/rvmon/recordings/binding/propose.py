@@ -40,19 +40,13 @@ Ranges = Mapping[tuple[str, str], Range]
 
 
 class Proposal(Struct, frozen=True):
-    """The binding proposed for a specification and a recording.
+    """The binding proposed for a specification and a recording."""
 
-    Attributes:
-        text: of the binding, TOML.
-        unmatched: the names that are left open.
-        shared: the names that are fed by one and the same field, in groups.
-        unlabelled: the names whose numbers stand for labels that nobody named.
-    """
-
-    text: str
-    unmatched: tuple[str, ...]
+    text: str  # of the binding, TOML
+    unmatched: tuple[str, ...]  # the names that are left open
+    # the names that are fed by one and the same field, in groups
     shared: tuple[tuple[str, ...], ...]
-    unlabelled: tuple[str, ...]
+    unlabelled: tuple[str, ...]  # the names whose numbers stand for labels that nobody named
 
 
 def propose(spec: CheckedSpec, source: MessageFile) -> Proposal:

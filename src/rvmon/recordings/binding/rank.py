@@ -50,18 +50,11 @@ _MOVING = "nav_msgs/msg/Odometry"
 
 
 class Wanted(Struct, frozen=True):
-    """A declared name for which a source is sought.
+    """A declared name for which a source is sought."""
 
-    Attributes:
-        words: the words of the name.
-        type: its declared type; `None` for an event.
-        guess: a note on how a word was interpreted; "" if none was.
-        name: the name itself.
-    """
-
-    words: tuple[str, ...]
-    type: Type | None
-    guess: str = ""
+    words: tuple[str, ...]  # the words of the name
+    type: Type | None  # its declared type; `None` for an event
+    guess: str = ""  # a note on how a word was interpreted; "" if none was
     name: str = ""
 
     @property

@@ -16,28 +16,22 @@ from rvmon.trace.schema import Kind
 
 
 class Topic(Struct, frozen=True):
-    """A topic of a recording.
-
-    Attributes:
-        name: of it.
-        type: of its messages.
-        leaves: the kinds of the fields that are no messages themselves, by their path, where an
-            array is `name[]`; empty if nobody knows.
-        fault: why its messages cannot be read; empty if they can.
-        messages: the types of the fields that are messages themselves, by their path, as far as
-            the definition names them.
-        doubtful: the fields whose kind is not known: nothing was seen of them.
-        units: of the fields whose unit the recording says itself, by their path.
-        comments: of the definition on fields, by path.
-    """
+    """A topic of a recording."""
 
     name: str
-    type: str
+    type: str  # of its messages
+    # the kinds of the fields that are no messages themselves, by their path, where an array is
+    # `name[]`; empty if nobody knows
     leaves: Mapping[str, Kind]
-    fault: str = ""
+    fault: str = ""  # why its messages cannot be read; empty if they can
+    # the types of the fields that are messages themselves, by their path, as far as the definition
+    # names them
     messages: Mapping[str, str] = field(default_factory=dict)
+    # the fields whose kind is not known: nothing was seen of them
     doubtful: frozenset[str] = frozenset()
+    # of the fields whose unit the recording says itself, by their path
     units: Mapping[str, str] = field(default_factory=dict)
+    # of the definition on fields, by path
     comments: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -46,19 +40,12 @@ Message = tuple[str, int, Any]
 
 
 class Messages(ABC):
-    """An open recording.
+    """An open recording."""
 
-    Attributes:
-        topics: by name.
-        end: the tick of the last message of all; `None` if nobody knows.
-        count: of all messages; 0 if nobody knows.
-        outages: its outages, in order; `names` are of topics.
-    """
-
-    topics: Mapping[str, Topic]
-    end: int | None = None
-    count: int = 0
-    outages: Sequence[Outage] = ()
+    topics: Mapping[str, Topic]  # by name
+    end: int | None = None  # the tick of the last message of all; `None` if nobody knows
+    count: int = 0  # of all messages; 0 if nobody knows
+    outages: Sequence[Outage] = ()  # its outages, in order; `names` are of topics
 
     @abstractmethod
     def read(self, topics: Collection[str]) -> Iterator[Message]:

@@ -166,17 +166,13 @@ class FrameMessages(Messages):
 
 
 class _Lines:
-    """The lines of a text, with what was lost between those that are frames.
-
-    Attributes:
-        why: something was lost since the last frame; empty: nothing.
-    """
+    """The lines of a text, with what was lost between those that are frames."""
 
     def __init__(self, file: Any, patterns: tuple[re.Pattern[str], ...]) -> None:
         self._file = file
         self._others, self._lost, self._hidden = patterns
         self._line = ""
-        self.why = ""
+        self.why = ""  # something was lost since the last frame; empty: nothing
 
     def __iter__(self) -> _Lines:
         return self

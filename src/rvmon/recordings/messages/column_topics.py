@@ -18,16 +18,11 @@ Columns = Mapping[str, Any]
 
 
 class ColumnTopic(Struct, frozen=True):
-    """A topic and what is in it.
-
-    Attributes:
-        topic: its topic.
-        count: of its rows.
-        load: gives their stamps (int64, ticks), in any order, and their columns.
-    """
+    """A topic and what is in it."""
 
     topic: Topic
-    count: int
+    count: int  # of its rows
+    # gives their stamps (int64, ticks), in any order, and their columns
     load: Callable[[], tuple[Any, Columns]]
 
 

@@ -30,17 +30,7 @@ from msgspec.structs import replace
 from rvmon.errors import TraceError
 from rvmon.recordings.messages import Topic
 from rvmon.recordings.messages.comments import is_vector, spoken_unit, unit_in_comment
-from rvmon.trace.schema import (
-    TURNS,
-    Applied,
-    Bound,
-    Constant,
-    Elements,
-    Field,
-    Kind,
-    Schema,
-    Term,
-)
+from rvmon.trace.schema import TURNS, Applied, Bound, Constant, Elements, Field, Kind, Schema, Term
 from rvmon.units import PLAIN, Unit, parse_unit
 
 
@@ -55,21 +45,14 @@ class Sort(Enum):
 
 
 class Meaning(Struct, frozen=True):
-    """The known meaning of a field.
+    """The known meaning of a field."""
 
-    Attributes:
-        sort: of the field.
-        units: in one of which it is measured; empty if it is not, or nobody knows.
-        is_scaled: whether it is in another scale of the unit.
-        words: people's words for it.
-        is_prose: whether a comment says it, which may mean something else.
-    """
-
-    sort: Sort
+    sort: Sort  # of the field
+    # in one of which it is measured; empty if it is not, or nobody knows
     units: tuple[Unit, ...] = ()
-    is_scaled: bool = False
-    words: tuple[str, ...] = ()
-    is_prose: bool = False
+    is_scaled: bool = False  # whether it is in another scale of the unit
+    words: tuple[str, ...] = ()  # people's words for it
+    is_prose: bool = False  # whether a comment says it, which may mean something else
 
 
 UNKNOWN = Meaning(Sort.OPEN)
@@ -171,17 +154,11 @@ _TRUTHS = frozenset({"<", "<=", ">", ">=", "==", "!=", "and", "or", "xor", "not"
 
 
 class Measure(Struct, frozen=True):
-    """A unit of a value.
+    """A unit of a value."""
 
-    Attributes:
-        unit: of it, at least of the same kind.
-        is_exact: whether the scale is known as well.
-        is_prose: whether a comment says it.
-    """
-
-    unit: Unit
-    is_exact: bool = True
-    is_prose: bool = False
+    unit: Unit  # of it, at least of the same kind
+    is_exact: bool = True  # whether the scale is known as well
+    is_prose: bool = False  # whether a comment says it
 
 
 def measures_of(term: Term, topic: Topic) -> tuple[Measure, ...]:

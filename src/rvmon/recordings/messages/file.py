@@ -170,16 +170,12 @@ _FRAMES = ("header.frame_id", "child_frame_id")
 
 
 class Looked(Struct, frozen=True):
-    """The names in the first messages of a topic.
+    """The names in the first messages of a topic."""
 
-    Attributes:
-        frames: in their headers.
-        joints: by the path of an array of names those in it.
-        entries: the first value of each key, by its path: `status[motor].values[Load].value`.
-    """
-
-    frames: frozenset[str] = frozenset()
+    frames: frozenset[str] = frozenset()  # in their headers
+    # by the path of an array of names those in it
     joints: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    # the first value of each key, by its path: `status[motor].values[Load].value`
     entries: Mapping[str, str] = field(default_factory=dict)
 
 

@@ -24,25 +24,15 @@ _I32, _U32, _U16 = Struct("<i"), Struct("<I"), Struct("<H")
 
 
 class _Field(msgspec.Struct, frozen=True):
-    """A field of a table, or of a struct.
-
-    Attributes:
-        name: of it.
-        base: its type.
-        element: the type of its elements, if it has such.
-        index: of the table that it, or an element, is.
-        count: of the elements of an array in a struct.
-        offset: its place in a struct, or in the table of offsets.
-        default: of a number that is not sent.
-    """
+    """A field of a table, or of a struct."""
 
     name: str
-    base: int
-    element: int
-    index: int
-    count: int
-    offset: int
-    default: float
+    base: int  # its type
+    element: int  # the type of its elements, if it has such
+    index: int  # of the table that it, or an element, is
+    count: int  # of the elements of an array in a struct
+    offset: int  # its place in a struct, or in the table of offsets
+    default: float  # of a number that is not sent
 
 
 class _Type(msgspec.Struct, frozen=True):
@@ -54,11 +44,7 @@ class _Type(msgspec.Struct, frozen=True):
 
 
 class FlatBuffers:
-    """Decodes messages by a `.bfbs` (`flatc --binary --schema`), and the name of a table.
-
-    Attributes:
-        leaves: the kinds of the fields, by their path.
-    """
+    """Decodes messages by a `.bfbs` (`flatc --binary --schema`), and the name of a table."""
 
     def __init__(self, schema: bytes, name: str) -> None:
         packed = _Packed(schema)
@@ -66,6 +52,7 @@ class FlatBuffers:
         self._types = [packed.type_at(place) for place in packed.tables(root, 0)]
         found = (one for one in self._types if one.name == name)
         self._root = next(found, None) or packed.type_at(packed.follow(packed.slot(root, 12)))
+        # the kinds of the fields, by their path
         self.leaves: Mapping[str, Kind] = dict(self._leaves(self._root, "", ()))
 
     def _leaves(self, of: _Type, prefix: str, above: tuple[str, ...]) -> Iterator[tuple[str, Kind]]:

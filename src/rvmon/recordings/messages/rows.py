@@ -182,18 +182,12 @@ ENOUGH = 10
 
 
 class Differences(Struct):
-    """The delays between the headers of a topic's messages and their recording, in ticks.
+    """The delays between the headers of a topic's messages and their recording, in ticks."""
 
-    Attributes:
-        stamp: of a message; `None`: they have no header.
-        count: of messages with one.
-        first: the instant at which the first was recorded.
-        lots: the least difference of each `SOME` messages, in order.
-    """
-
-    stamp: Callable[[Any], int] | None
-    count: int = 0
-    first: int = 0
+    stamp: Callable[[Any], int] | None  # of a message; `None`: they have no header
+    count: int = 0  # of messages with one
+    first: int = 0  # the instant at which the first was recorded
+    # the least difference of each `SOME` messages, in order
     lots: list[int] = field(default_factory=list)
 
     def note(self, logged: int, content: Any) -> None:

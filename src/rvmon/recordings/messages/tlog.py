@@ -31,14 +31,7 @@ _FAR = 3 * 24 * 3600 * 1_000_000
 
 
 class TelemetryMessages(Messages):
-    """An open recording of telemetry, gone through once for the place of each packet.
-
-    Attributes:
-        topics: by name, one a message and sender; the name says the sender where several send it.
-        end: the last stamp.
-        count: of all packets.
-        outages: the stretches without a packet of a valid checksum.
-    """
+    """An open recording of telemetry, gone through once for the place of each packet."""
 
     def __init__(self, path: Path) -> None:
         with needed("telemetry of MAVLink", "pymavlink"):
@@ -46,17 +39,19 @@ class TelemetryMessages(Messages):
             from pymavlink.dialects.v20 import ardupilotmega
         self._dialect, self._first = ardupilotmega, first
         self._data = path.read_bytes()
-        self.outages: list[Outage] = []
+        self.outages: list[Outage] = []  # the stretches without a packet of a valid checksum
         self._times, self._places, self._senders = array("q"), array("q"), array("q")
         self._keys: dict[_Key, int] = {}
         self._lost: set[_Key] = set()
         self._index()
         if not self._times:
             raise TraceError("holds no packet of MAVLink: is it telemetry?")
-        self.count = len(self._times)
+        self.count = len(self._times)  # of all packets
+        # the last stamp
         self.end = max(max(self._times), max((outage.until for outage in self.outages), default=0))
         senders = Counter(self._called(key) for key in self._keys if key not in self._lost)
         self._names = ["" if key in self._lost else self._name(key, senders) for key in self._keys]
+        # by name, one a message and sender; the name says the sender where several send it
         self.topics = {
             name: self._topic(name, key)
             for name, key in zip(self._names, self._keys, strict=True)

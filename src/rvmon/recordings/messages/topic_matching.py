@@ -126,9 +126,7 @@ def dotted(column: str) -> str:
 
 
 def _place(
-    column: str,
-    columns: Mapping[str, tuple[str, Field | None]],
-    topics: Mapping[str, Topic],
+    column: str, columns: Mapping[str, tuple[str, Field | None]], topics: Mapping[str, Topic]
 ) -> tuple[str, Field | None] | None:
     """The topic and field that a person named; also an element of an array."""
     if column in columns:

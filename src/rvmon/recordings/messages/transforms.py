@@ -24,15 +24,10 @@ _Quaternion = tuple[float, float, float, float]
 
 
 class Transform(Struct, frozen=True):
-    """A turn, then a shift.
+    """A turn, then a shift."""
 
-    Attributes:
-        shift: x, y, z.
-        turn: a quaternion of length 1: x, y, z, w.
-    """
-
-    shift: _Vector = (0.0, 0.0, 0.0)
-    turn: _Quaternion = (0.0, 0.0, 0.0, 1.0)
+    shift: _Vector = (0.0, 0.0, 0.0)  # x, y, z
+    turn: _Quaternion = (0.0, 0.0, 0.0, 1.0)  # a quaternion of length 1: x, y, z, w
 
     def then(self, inner: Transform) -> Transform:
         """A transform within this one, seen from outside."""

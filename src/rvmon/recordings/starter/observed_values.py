@@ -32,23 +32,14 @@ EVENT_SHARE = 0.1
 
 
 class Shape(Struct, frozen=True):
-    """The shape of the values of one name, whatever their times.
+    """The shape of the values of one name, whatever their times."""
 
-    Attributes:
-        kind: of a signal; `None` for an event.
-        labels: the values of a label signal, in order of appearance.
-        fields: of an event with payload.
-        unit: of a number, as the messages say it; empty if they do not.
-        source: the topic; empty of columns.
-        is_part: whether it comes with other fields, in each message of its topic.
-    """
-
-    kind: Kind | None
-    labels: tuple[str, ...] = ()
-    fields: Mapping[str, Kind] = field(default_factory=dict)
-    unit: str = ""
-    source: str = ""
-    is_part: bool = False
+    kind: Kind | None  # of a signal; `None` for an event
+    labels: tuple[str, ...] = ()  # the values of a label signal, in order of appearance
+    fields: Mapping[str, Kind] = field(default_factory=dict)  # of an event with payload
+    unit: str = ""  # of a number, as the messages say it; empty if they do not
+    source: str = ""  # the topic; empty of columns
+    is_part: bool = False  # whether it comes with other fields, in each message of its topic
 
 
 class Shapes(Struct, frozen=True):
@@ -77,32 +68,20 @@ MOST = 160
 
 
 class Stretch(Struct, frozen=True):
-    """The updates in a stretch of time.
+    """The updates in a stretch of time."""
 
-    Attributes:
-        updates: their number; of an event its occurrences.
-        low: least number; `None` if there is none.
-        high: greatest number.
-    """
-
-    updates: int
-    low: float | None
-    high: float | None
+    updates: int  # their number; of an event its occurrences
+    low: float | None  # least number; `None` if there is none
+    high: float | None  # greatest number
 
 
 class Course:
-    """The stretches from the first instant on, all of one length, which doubles as time goes on.
-
-    Attributes:
-        start: the first instant, ticks.
-        length: of a stretch, ticks.
-        labels: the number that each label is drawn at.
-    """
+    """The stretches from the first instant on, all of one length, which doubles as time goes on."""
 
     def __init__(self) -> None:
-        self.start = 0
-        self.length = 1 << 16
-        self.labels: dict[str, int] = {}
+        self.start = 0  # the first instant, ticks
+        self.length = 1 << 16  # of a stretch, ticks
+        self.labels: dict[str, int] = {}  # the number that each label is drawn at
         self._updates = np.zeros(MOST, np.int64)
         self._lows = np.full(MOST, inf)
         self._highs = np.full(MOST, -inf)
@@ -158,37 +137,23 @@ Updates = tuple["NDArray[np.int64]", "NDArray[Any]", "NDArray[np.bool_]"]
 
 
 class Column(Struct):
-    """One name of a recording, followed over time.
+    """One name of a recording, followed over time."""
 
-    Attributes:
-        name: as in the recording.
-        shape: of its values; of a guessed event without a kind.
-        guessed_event: whether its truth values were taken for an event.
-        updates: the number of updates, or occurrences.
-        low: least number seen; `None` if it is no number.
-        high: greatest number seen.
-        rate: updates per second; 0 if there were too few.
-        longest_gap: between two updates, ticks.
-        longest_silence: the same, or from the last update to the end.
-        first: the instant of the first update, ticks; `None` if there was none.
-        gaps_in_value: whether it is unknown somewhere: at the first sample, or by a value.
-        instants: of an event its occurrences, of a truth value where it became true; ticks.
-        course: of its values over time.
-    """
-
-    name: str
-    shape: Shape
-    guessed_event: bool = False
-    updates: int = 0
-    low: float | None = None
-    high: float | None = None
-    rate: float = 0.0
-    longest_gap: int = 0
-    longest_silence: int = 0
-    first: int | None = None
+    name: str  # as in the recording
+    shape: Shape  # of its values; of a guessed event without a kind
+    guessed_event: bool = False  # whether its truth values were taken for an event
+    updates: int = 0  # the number of updates, or occurrences
+    low: float | None = None  # least number seen; `None` if it is no number
+    high: float | None = None  # greatest number seen
+    rate: float = 0.0  # updates per second; 0 if there were too few
+    longest_gap: int = 0  # between two updates, ticks
+    longest_silence: int = 0  # the same, or from the last update to the end
+    first: int | None = None  # the instant of the first update, ticks; `None` if there was none
+    # whether it is unknown somewhere: at the first sample, or by a value
     gaps_in_value: bool = False
+    # of an event its occurrences, of a truth value where it became true; ticks
     instants: list[int] = field(default_factory=list)
-    course: Course = field(default_factory=Course)
+    course: Course = field(default_factory=Course)  # of its values over time
     _last: int = 0
     _trues: int = 0
     _falses: int = 0
@@ -299,24 +264,13 @@ class Column(Struct):
 
 
 class Profile(Struct, frozen=True):
-    """A recording, looked over.
+    """A recording, looked over."""
 
-    Attributes:
-        path: of the recording.
-        columns: the declared ones, in order.
-        left_out: by name, why.
-        start: the first instant, ticks.
-        end: the last instant, ticks.
-        samples: their number.
-        lateness: the greatest step of its time backwards, ticks; 0 if it is in order.
-        outages: its outages, as far as it states them.
-    """
-
-    path: str
-    columns: tuple[Column, ...]
-    left_out: Mapping[str, str]
-    start: int
-    end: int
-    samples: int
-    lateness: int
-    outages: tuple[Outage, ...] = ()
+    path: str  # of the recording
+    columns: tuple[Column, ...]  # the declared ones, in order
+    left_out: Mapping[str, str]  # by name, why
+    start: int  # the first instant, ticks
+    end: int  # the last instant, ticks
+    samples: int  # their number
+    lateness: int  # the greatest step of its time backwards, ticks; 0 if it is in order
+    outages: tuple[Outage, ...] = ()  # its outages, as far as it states them
