@@ -6,10 +6,11 @@ has no meaning, or is too large, is a `ModelError` wherever it is found.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 from rvmon.diagnostics import Diagnostic, Label, Severity, Span, render_full
 from rvmon.errors import ModelError
+from rvmon.texts import did_you_mean
 
 RULES = {
     "TA001": "syntax",
@@ -65,6 +66,11 @@ def model_error(
 ) -> ModelError:
     """A single finding as an exception."""
     return refusal(finding(code, message, span, fix, others=others))
+
+
+def unknown(what: str, name: str, span: Span, known: Iterable[str]) -> ModelError:
+    """There is no such thing of a name; `known` are those that there are."""
+    return model_error("TA002", f"no {what} `{name}`", span, did_you_mean(name, known))
 
 
 def refusal(*findings: Diagnostic) -> ModelError:

@@ -86,21 +86,17 @@ def run_lines(network: Network, run: Run) -> Iterator[str]:
         changed = change_text(network, before, step.position)
         yield text + (f"   {changed}" if changed else "")
         before = step.position
-    match run.ending:
-        case Ending.REACHED:
-            pass
-        case Ending.DEADLOCK:
-            yield f"{'':>9}  no edge can be taken any more"
-        case Ending.TIME_LOCK:
-            yield f"{'':>9}  time stops here: no edge can be taken, and time may not pass"
-        case Ending.IDLE:
-            yield f"{'':>9}  it may stay here without end"
-        case Ending.LOOP | Ending.ZENO_LOOP:
-            yield f"{'':>9}  and round again" + (
-                ", though time does not pass on (a Zeno loop)"
-                if run.ending is Ending.ZENO_LOOP
-                else ""
-            )
+    if run.ending is not Ending.REACHED:
+        yield f"{'':>9}  {_ENDINGS[run.ending]}"
+
+
+_ENDINGS = {
+    Ending.DEADLOCK: "no edge can be taken any more",
+    Ending.TIME_LOCK: "time stops here: no edge can be taken, and time may not pass",
+    Ending.IDLE: "it may stay here without end",
+    Ending.LOOP: "and round again",
+    Ending.ZENO_LOOP: "and round again, though time does not pass on (a Zeno loop)",
+}
 
 
 def position_data(network: Network, position: Position) -> dict[str, Any]:

@@ -176,16 +176,9 @@ def _observe(
     elif holds and mtl.horizon(obligation.required) is None:
         holds, runs["failing"], remark = _in_the_end(original, spec, requirement, meter)
     return Observation(
-        requirement.id,
-        requirement.text,
-        holds,
-        runs["triggered"],
-        runs["passing"],
-        runs["failing"],
-        network,
-        meter.statistics(),
-        remark,
-    )
+        requirement.id, requirement.text, holds, **runs, network=network,
+        statistics=meter.statistics(), remark=remark,
+    )  # fmt: skip
 
 
 def _unbounded(network: Network) -> ex.Expression:

@@ -13,7 +13,14 @@ from itertools import pairwise
 from xml.sax.saxutils import escape
 
 from rvmon.models import network as nta
-from rvmon.models.network.expressions import TRUE, LocationKind, PathFormula, PathOp, Slot, Variable
+from rvmon.models.network.expressions import (
+    OUTERMOST,
+    TRUE,
+    LocationKind,
+    PathFormula,
+    Slot,
+    Variable,
+)
 from rvmon.models.network.fractions import number_of
 from rvmon.models.network.guards import has_paths
 from rvmon.models.uppaal_names import Names, Thing, function_lines, type_text, updates_text
@@ -25,7 +32,6 @@ _HEAD = """<?xml version="1.0" encoding="utf-8"?>
 'http://www.it.uu.se/research/group/darts/uppaal/flat-1_2.dtd'>
 <nta>
 """
-_OUTERMOST = list(PathOp)[:4]
 _GRID = (200, 150)
 """Distance of locations in a drawing, right and down."""
 
@@ -180,7 +186,7 @@ def _formula(names: Names, formula: nta.QueryFormula) -> str:
         case nta.LeadsToFormula(left, right, None) if not (has_paths(left) or has_paths(right)):
             return f"{names.expression(left)} --> {names.expression(right)}"
         case PathFormula(op, body, None, left) if (
-            left == TRUE and op in _OUTERMOST and not has_paths(body)
+            left == TRUE and op in OUTERMOST and not has_paths(body)
         ):
             return names.expression(formula)
         case nta.Extremes(ends, where, terms):

@@ -175,8 +175,7 @@ def _symbol(item: syntax.Named, scope: sc.Scope, parts: Parts, resolver: Resolve
         seen = sc.Scope(scope.parent, scope.prefix, dict(scope.symbols), dict(scope.places))
         seen.symbols[item.name] = symbol = sc.FunctionSymbol(item, seen)
         return symbol
-    kind = resolver.type(item.type, scope)
-    extents = (*resolver.extents(item.sizes, scope), *kind.extents)
+    kind, extents = resolver.typed(item, scope)
     if isinstance(item, syntax.TypeDefinition):
         return sc.TypeSymbol(replace(kind, extents=extents))
     if prod(map(len, extents)) > symbols.MAX_VALUES:

@@ -237,19 +237,12 @@ def _formula(written: syntax.Expression, resolver: Resolver, top: sc.Scope) -> n
             asked = nta.Extremes(
                 ends, condition, tuple(_term(term, resolver, top) for term in terms)
             )
-            _refuse_fraction(resolver)
+            nta.refuse_fraction(resolver.fraction)
             return asked
         case _:
             decided = _decided(written, resolver, top)
-            _refuse_fraction(resolver)
+            nta.refuse_fraction(resolver.fraction)
             return decided
-
-
-def _refuse_fraction(resolver: Resolver) -> None:
-    if resolver.fraction is not None:
-        fix = "ask for figures, which are simulated: Pr[<=T](<> p), E[<=T; n](max: e)"
-        message = "a number with a fraction: proofs work on integers only"
-        raise model_error("TA016", message, resolver.fraction, fix)
 
 
 def _number(written: syntax.Expression, resolver: Resolver, top: sc.Scope) -> Expression:

@@ -72,21 +72,20 @@ class Functions:
         values: list[ex.Expression] = []
         chosen: list[ex.Expression] = []
         for parameter, argument in zip(text.parameters, written.arguments, strict=True):
-            kind, extents = _type_of(parameter, symbol.scope, resolver)
-            if _is_bound(parameter, kind, extents):
-                thing = resolver.symbol(argument, scope)
-                _check_fit(thing, kind, extents, parameter, argument.span, self)
-                bound.append(_with_slots(thing, lambda slot: _without_choice(slot, chosen)))
-                continue
+            kind, extents = resolver.typed(parameter, symbol.scope)
+            is_bound = _is_bound(parameter, kind, extents)
             bound.append(None)
-            if not (extents or kind.fields):
+            if not (is_bound or extents or kind.fields):
                 value = number(argument, scope, resolver)
                 real = kind.base is ex.BaseType.DOUBLE
                 values.append(fitted(value, real, resolver.functions, argument.span))
                 continue
             thing = resolver.symbol(argument, scope)
             _check_fit(thing, kind, extents, parameter, argument.span, self)
-            values += [symbols.value_of(leaf, argument.span) for leaf in symbols.leaves(thing)]
+            if is_bound:
+                bound[-1] = _with_slots(thing, lambda slot: _without_choice(slot, chosen))
+            else:
+                values += [symbols.value_of(leaf, argument.span) for leaf in symbols.leaves(thing)]
         key = (id(text), id(symbol.scope), *bound)
         function = self.made.get(key)
         if function is None:
@@ -100,14 +99,6 @@ class Functions:
             finally:
                 self.open.discard(key)
         return ex.Invoke(function, (*values, *chosen), written.span)
-
-
-def _type_of(
-    parameter: syntax.Parameter, scope: sc.Scope, resolver: Resolver
-) -> tuple[sc.ResolvedType, symbols.Extents]:
-    kind = resolver.type(parameter.type, scope)
-    extents = (*resolver.extents(parameter.sizes, scope), *kind.extents)
-    return replace(kind, extents=()), extents
 
 
 def _is_bound(parameter: syntax.Parameter, kind: sc.ResolvedType, extents: symbols.Extents) -> bool:
@@ -190,7 +181,7 @@ def _make(
         if thing is not None:
             inner.symbols[parameter.name] = _with_slots(thing, chosen)
             continue
-        kind, extents = _type_of(parameter, scope, resolver)
+        kind, extents = resolver.typed(parameter, scope)
         kind, called = variable_type(kind), [f"{text.name}.{parameter.name}"]
         symbol = symbols.laid_out(kind, extents, called, None, functions)
         inner.symbols[parameter.name] = symbol

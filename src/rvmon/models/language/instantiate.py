@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice, product
 
-from rvmon.models import model_error
+from rvmon.models import model_error, unknown
 from rvmon.models import network as nta
 from rvmon.models.language import automaton_syntax, symbols, syntax
 from rvmon.models.language.automaton_syntax import Document
@@ -17,7 +17,6 @@ from rvmon.models.language.statements import is_price, updates_of
 from rvmon.models.network import scope as sc
 from rvmon.models.network.expressions import TRUE, BaseType, BinaryOp, Expression
 from rvmon.models.network.guards import guards_of, refuse_changes, split_guard
-from rvmon.texts import did_you_mean
 
 Family = automaton_syntax.Template | automaton_syntax.Instance
 """The things that a name in the system line may stand for."""
@@ -57,8 +56,7 @@ def processes_of(
     for name, priority in system:
         with findings.collect():
             if name.name not in families:
-                fix = did_you_mean(name.name, list(families))
-                raise model_error("TA002", f"no automaton `{name.name}`", name.span, fix)
+                raise unknown("automaton", name.name, name.span, families)
             processes += _instances(families[name.name], families, top, resolver, priority)
     return processes
 
@@ -116,9 +114,7 @@ def _bind(
         return family, scope
     target = families.get(family.template.name)
     if target is None:
-        fix = did_you_mean(family.template.name, list(families))
-        message = f"no template `{family.template.name}`"
-        raise model_error("TA002", message, family.template.span, fix)
+        raise unknown("template", family.template.name, family.template.span, families)
     symbols.check_count(target.name, target.parameters, family.arguments, family.span)
     bound: list[sc.Symbol] = []
     own = sc.Scope(top)  # a parameter's type may speak of the parameters before it
@@ -136,8 +132,7 @@ def _argument(
     resolver: Resolver,
 ) -> sc.Symbol:
     """The symbol of an argument; its type is read in the scope `own`, its expression in `scope`."""
-    kind = resolver.type(parameter.type, own)
-    extents = (*resolver.extents(parameter.sizes, own), *kind.extents)
+    kind, extents = resolver.typed(parameter, own)
     if not parameter.reference and kind.base in (BaseType.INT, BaseType.BOOL) and not extents:
         value = resolver.constant(written, scope)
         check_range(value, kind, written.span)
@@ -267,8 +262,7 @@ def _parts(
 
 def _location(name: syntax.Name, names: Mapping[str, int]) -> int:
     if name.name not in names:
-        fix = did_you_mean(name.name, list(names))
-        raise model_error("TA002", f"no location `{name.name}`", name.span, fix)
+        raise unknown("location", name.name, name.span, names)
     return names[name.name]
 
 
@@ -341,9 +335,7 @@ def _edge_text(
     text = f"{written.source.name} → {written.target.name}"
     if written.sync is not None:
         text += f" on {written.sync.span.text}"
-    chosen = [
-        f"{name} = {s.value}" for name, s in selected.items() if isinstance(s, sc.ConstantSymbol)
-    ]
+    chosen = [f"{name} = {symbol.value}" for name, symbol in selected.items()]
     return text + (f" with {', '.join(chosen)}" if chosen else "")
 
 

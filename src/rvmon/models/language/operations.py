@@ -18,23 +18,9 @@ from rvmon.models.network.fractions import FUNCTIONS, OPERATIONS, gives_fraction
 from rvmon.models.network.guards import is_discrete, is_fixed, is_linear
 from rvmon.models.network.scope import Symbol
 
-COMPARISONS = {
-    ex.BinaryOp.LT,
-    ex.BinaryOp.LE,
-    ex.BinaryOp.EQ,
-    ex.BinaryOp.NE,
-    ex.BinaryOp.GE,
-    ex.BinaryOp.GT,
-}
+COMPARISONS = {*[*ex.BinaryOp][3:9]}
 SAMENESS = {ex.BinaryOp.EQ, ex.BinaryOp.NE}
-MIRRORED = {
-    ex.BinaryOp.LT: ex.BinaryOp.GT,
-    ex.BinaryOp.LE: ex.BinaryOp.GE,
-    ex.BinaryOp.GE: ex.BinaryOp.LE,
-    ex.BinaryOp.GT: ex.BinaryOp.LT,
-    ex.BinaryOp.EQ: ex.BinaryOp.EQ,
-    ex.BinaryOp.NE: ex.BinaryOp.NE,
-}
+MIRRORED = {op: ex.BinaryOp(op.translate(str.maketrans("<>", "><"))) for op in COMPARISONS}
 _LOGICAL = {ex.BinaryOp.AND, ex.BinaryOp.OR, ex.BinaryOp.IMPLY}
 _PLACED = {ex.BinaryOp.DIV, ex.BinaryOp.MOD, ex.BinaryOp.SHIFT_LEFT, ex.BinaryOp.SHIFT_RIGHT}
 _TWO_BOUNDS: dict[ex.BinaryOp, tuple[ex.BinaryOp, ex.ClockOp, ex.ClockOp]] = {
@@ -118,13 +104,9 @@ def joined(
     return binary(op, left, right, span, calls)
 
 
-def truth(expression: ex.Expression) -> ex.Expression:
+def truth(it: ex.Expression) -> ex.Expression:
     """The expression, which counts as a truth value where it stands."""
-    return (
-        ex.Constant(int(bool(expression.value)))
-        if isinstance(expression, ex.Constant)
-        else expression
-    )
+    return ex.Constant(int(bool(it.value))) if isinstance(it, ex.Constant) else it
 
 
 def whole_compare(
@@ -149,12 +131,7 @@ _OF_CTL = {
     ("E", ex.PathOp.FINALLY): ex.PathOp.POSSIBLY,
     ("E", ex.PathOp.GLOBALLY): ex.PathOp.POTENTIALLY_ALWAYS,
 }
-_LINEAR = {
-    ex.PathOp.EVENTUALLY: (ex.PathOp.EVERY_RUN, ex.PathOp.FINALLY),
-    ex.PathOp.INVARIANTLY: (ex.PathOp.EVERY_RUN, ex.PathOp.GLOBALLY),
-    ex.PathOp.POSSIBLY: (ex.PathOp.SOME_RUN, ex.PathOp.FINALLY),
-    ex.PathOp.POTENTIALLY_ALWAYS: (ex.PathOp.SOME_RUN, ex.PathOp.GLOBALLY),
-}
+_LINEAR = {op: (ex.PathOp(runs), linear) for (runs, linear), op in _OF_CTL.items()}
 
 
 def assuming(

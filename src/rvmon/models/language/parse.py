@@ -19,17 +19,8 @@ from rvmon.models.language.syntax_builder import SyntaxBuilder
 from rvmon.models.language.unsupported import reason_at
 
 STARTS = (
-    "document",
-    "declarations",
-    "parameters",
-    "selections",
-    "conditions",
-    "leaving",
-    "sync",
-    "updates",
-    "instances",
-    "system",
-    "query",
+    *("document", "declarations", "parameters", "selections", "conditions", "leaving", "sync"),
+    *("updates", "instances", "system", "query"),
 )
 
 MAX_CHARACTERS = 2_000_000
@@ -43,10 +34,7 @@ def parse_document(source: Source) -> Document:
     'a'
     """
     parts = parse_part(source.text, "document", lambda start, end: Span(source, start, end))
-    name, title, unit, declarations, templates, instances, system, queries, signals = parts
-    return Document(
-        source, name, title, unit, declarations, templates, instances, system, queries, signals
-    )
+    return Document(source, *parts)
 
 
 def parse_query(text: str) -> QueryText:
@@ -144,21 +132,21 @@ def _words(terminals: set[str]) -> str:
     return " or ".join(words) if len(words) <= 8 else ""
 
 
+_WORDS = {
+    "NAME": "a name",
+    "STRING": 'a text in "quotes"',
+    "PATH": "`E<>`, `A[]`, `A<>`, `E[]`",
+    **dict.fromkeys(("NUMBER", "DECIMAL"), "a number"),
+    # Lark's names, of the parser's end and of the lexer's.
+    **dict.fromkeys(("$END", "<END-OF-FILE>"), "the end"),
+}
+
+
 def _word(terminal: str) -> str:
-    match terminal:
-        case "NAME":
-            return "a name"
-        case "NUMBER" | "DECIMAL":
-            return "a number"
-        case "STRING":
-            return 'a text in "quotes"'
-        case "PATH":
-            return "`E<>`, `A[]`, `A<>`, `E[]`"
-        case "$END" | "<END-OF-FILE>":  # Lark's names, of the parser's end and of the lexer's
-            return "the end"
-        case _:
-            pattern = _parser(whole=True).get_terminal(terminal).pattern
-            return f"`{pattern.value}`" if pattern.type == "str" else ""
+    if terminal in _WORDS:
+        return _WORDS[terminal]
+    pattern = _parser(whole=True).get_terminal(terminal).pattern
+    return f"`{pattern.value}`" if pattern.type == "str" else ""
 
 
 Place = Callable[[int, int], Span]

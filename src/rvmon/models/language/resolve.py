@@ -8,7 +8,7 @@ from typing import assert_never
 
 from rvmon.diagnostics import Span
 from rvmon.errors import ModelError
-from rvmon.models import model_error, refusal
+from rvmon.models import model_error, refusal, unknown
 from rvmon.models.language import operations, symbols, syntax
 from rvmon.models.language.diagonals import Diagonals, difference, terms_of
 from rvmon.models.language.unsupported import refuse_foreign, type_reason
@@ -150,6 +150,16 @@ class Resolver:
         """The indices of each dimension: those below a number, or a type's values."""
         return tuple(self._extent(size, scope) for size in sizes)
 
+    def typed(
+        self,
+        declared: syntax.Declaration | syntax.TypeDefinition | syntax.Parameter,
+        scope: sc.Scope,
+    ) -> tuple[sc.ResolvedType, symbols.Extents]:
+        """The type of what is declared, and its own dimensions with those of the type."""
+        kind = self.type(declared.type, scope)
+        extents = (*self.extents(declared.sizes, scope), *kind.extents)
+        return replace(kind, extents=()), extents
+
     def _extent(self, size: syntax.Size, scope: sc.Scope) -> range:
         if isinstance(size, syntax.TypeText):
             return symbols.values_of(self.type(size, scope), size.span)
@@ -184,8 +194,8 @@ class Resolver:
                 if reason := type_reason(written.name):
                     raise model_error("TA016", reason[0], written.span, reason[1])
                 types = [n for n in scope.names() if isinstance(scope.find(n), sc.TypeSymbol)]
-                fix = did_you_mean(written.name, [*types, "int", "bool", "clock", "chan"])
-                raise model_error("TA002", f"no type named `{written.name}`", written.span, fix)
+                known = [*types, "int", "bool", "clock", "chan"]
+                raise unknown("type named", written.name, written.span, known)
             return symbol.type
         if written.base is ex.BaseType.RECORD:
             fields = {}
@@ -222,8 +232,8 @@ class Resolver:
                 if symbol is None and scope.declares(name):
                     raise refusal()  # why its declaration has no meaning is reported there
                 if symbol is None:
-                    fix = did_you_mean(name, [*scope.names(), *(n for n, _ in self.automata)])
-                    raise model_error("TA002", f"no name `{name}`", span, fix)
+                    known = [*scope.names(), *(n for n, _ in self.automata)]
+                    raise unknown("name", name, span, known)
                 return symbol
             case syntax.Index(base, index, span):
                 position = self.expression(index, scope)
@@ -231,8 +241,7 @@ class Resolver:
                 return symbols.element_of(self.symbol(base, scope), position, span)
             case syntax.Member(base, name, span) if whole := self._record(base, scope):
                 if name not in (fields := dict(whole.fields)):
-                    fix = did_you_mean(name, list(fields))
-                    raise model_error("TA002", f"no field `{name}`", span, fix)
+                    raise unknown("field", name, span, fields)
                 return fields[name]
             case syntax.Member(base, name, span):
                 automaton = self._automaton(base, scope)
@@ -246,7 +255,7 @@ class Resolver:
                     raise _no_value(span)
                 refuse_foreign(name, span)
                 names = [n for n in scope.names() if isinstance(scope.find(n), sc.FunctionSymbol)]
-                raise model_error("TA002", f"no function `{name}`", span, did_you_mean(name, names))
+                raise unknown("function", name, span, names)
             case _:
                 fix = "name a variable, a clock or a channel"
                 raise model_error("TA004", "this is no name", written.span, fix)

@@ -144,9 +144,7 @@ class Bodies:
     def _declaration(self, item: syntax.Declaration, scope: sc.Scope) -> list[ex.Statement]:
         resolver = self.resolver
         symbols.claim(item.name, item.span, scope)
-        kind = resolver.type(item.type, scope)
-        extents = (*resolver.extents(item.sizes, scope), *kind.extents)
-        kind = replace(kind, extents=())
+        kind, extents = resolver.typed(item, scope)
         if kind.base in (ex.BaseType.CLOCK, ex.BaseType.CHANNEL):
             fix = "declare it outside the function"
             raise model_error("TA004", "a clock or channel in a function", item.span, fix)

@@ -163,8 +163,8 @@ def claim(name: str, span: Span, scope: sc.Scope) -> None:
     scope.places[name] = span
 
 
-class Calls(Protocol):
-    """Functions that can be called (`functions.Functions`)."""
+class Calls(Placer, Protocol):
+    """Functions that can be called, and room for what is local to them (`functions.Functions`)."""
 
     @property
     def locals(self) -> Sequence[ex.Variable]:
@@ -175,12 +175,6 @@ class Calls(Protocol):
         self, symbol: sc.FunctionSymbol, written: syntax.Call, scope: sc.Scope, resolver: Any
     ) -> ex.Expression:
         """The value of a call."""
-        ...
-
-    def place(
-        self, kind: sc.ResolvedType, extents: Extents, names: Sequence[str], value: Value
-    ) -> sc.Symbol:
-        """Make room for parameters or local variables."""
         ...
 
     def variable(self, slot: ex.Slot) -> ex.Variable:

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 from lark import Token, Tree, v_args
 from lark.tree import Meta
+from msgspec.structs import replace
 
 from rvmon.models import model_error
 from rvmon.models.language import automaton_syntax, syntax
@@ -206,17 +207,9 @@ class SyntaxBuilder(QueryBuilder):
 
     def type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
         *prefixes, base = items
-        return TypeText(
-            base.base,
-            self._span(meta),
-            base.low,
-            base.high,
-            base.name,
-            base.fields,
-            const="const" in prefixes,
-            broadcast="broadcast" in prefixes,
-            urgent="urgent" in prefixes,
-        )
+        marks = {word: word in prefixes for word in ("const", "broadcast", "urgent")}
+        made: TypeText = replace(base, span=self._span(meta), **marks)
+        return made
 
     def scalar_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
         # Which of its values is which makes no difference to any answer.

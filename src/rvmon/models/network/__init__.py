@@ -287,10 +287,7 @@ class Network:
 
 def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
     """Refuse to decide what depends on fractions, or on clocks that stop or run at other rates."""
-    fix = "ask for figures, which are simulated: Pr[<=T](<> p), E[<=T; n](max: e)"
-    if network.fraction is not None:
-        message = "a number with a fraction: proofs work on integers only"
-        raise model_error("TA016", message, network.fraction, fix)
+    refuse_fraction(network.fraction)
     if next(network.rates, None) is None:
         return
     guards = [
@@ -305,4 +302,14 @@ def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
             f"`{network.clocks[rate.clock].name}` stops or changes its rate and is compared "
             f"({len(found)} places): what such clocks can reach is not decidable"
         )
-        raise model_error("TA016", message, place.span, fix)
+        raise model_error("TA016", message, place.span, _SIMULATE)
+
+
+_SIMULATE = "ask for figures, which are simulated: Pr[<=T](<> p), E[<=T; n](max: e)"
+
+
+def refuse_fraction(place: Span | None) -> None:
+    """Refuse to decide anything of a number with a fraction, if there is one."""
+    if place is not None:
+        message = "a number with a fraction: proofs work on integers only"
+        raise model_error("TA016", message, place, _SIMULATE)

@@ -20,28 +20,17 @@ def finer(network: nta.Network, factor: int) -> nta.Network:
 
     Its queries are left out, since they would speak of the old unit.
     """
-    return replace(
-        network,
-        unit=None if network.unit is None else network.unit // factor,
-        automata=tuple(_automaton(automaton, factor) for automaton in network.automata),
-        queries=(),
-    )
 
+    def automaton(own: nta.Automaton) -> nta.Automaton:
+        places = [replace(p, invariant=_guard(p.invariant, factor)) for p in own.locations]
+        edges = [replace(e, guard=_guard(e.guard, factor), updates=updates(e)) for e in own.edges]
+        return replace(own, locations=tuple(places), edges=tuple(edges))
 
-def _automaton(automaton: nta.Automaton, factor: int) -> nta.Automaton:
-    return replace(
-        automaton,
-        locations=tuple(
-            replace(location, invariant=_guard(location.invariant, factor))
-            for location in automaton.locations
-        ),
-        edges=tuple(_edge(edge, factor) for edge in automaton.edges),
-    )
+    def updates(edge: nta.Edge) -> tuple[ex.Statement, ...]:
+        return tuple(_update(update, factor) for update in edge.updates)
 
-
-def _edge(edge: nta.Edge, factor: int) -> nta.Edge:
-    updates = tuple(_update(update, factor) for update in edge.updates)
-    return replace(edge, guard=_guard(edge.guard, factor), updates=updates)
+    unit = None if network.unit is None else network.unit // factor
+    return replace(network, unit=unit, automata=tuple(map(automaton, network.automata)), queries=())
 
 
 def _update(update: ex.Statement, factor: int) -> ex.Statement:
@@ -54,13 +43,8 @@ def _update(update: ex.Statement, factor: int) -> ex.Statement:
 
 
 def _guard(guard: nta.Guard, factor: int) -> nta.Guard:
-    return nta.Guard(
-        guard.data,
-        tuple(
-            ex.ClockCompare(clock.clock, clock.op, _times(clock.bound, factor))
-            for clock in guard.clocks
-        ),
-    )
+    finer = (replace(compare, bound=_times(compare.bound, factor)) for compare in guard.clocks)
+    return replace(guard, clocks=tuple(finer))
 
 
 def _times(number: ex.Expression, factor: int) -> ex.Expression:
@@ -131,11 +115,8 @@ class Watcher:
 
     def network(self, initial: int = 0) -> nta.Network:
         """The network with the watcher, in one of its locations at the start."""
-        network, own = (
-            self._network,
-            (ex.Variable(name, 0, 1, 0, is_bool=True) for name in self._slots),
-        )
-        ranks = network.priorities
+        network, ranks = self._network, self._network.priorities
+        own = (ex.Variable(name, 0, 1, 0, is_bool=True) for name in self._slots)
         automata = [
             replace(automaton, edges=tuple(map(self._noting, automaton.edges)))
             for automaton in network.automata

@@ -53,7 +53,7 @@ class BinaryOp(StrEnum):
 
 
 class PathOp(StrEnum):
-    """Quantifiers over the runs from a state, each with a temporal operator."""
+    """Quantifiers over the runs from a state, each with a temporal operator, beside its dual."""
 
     POSSIBLY = "E<>"
     INVARIANTLY = "A[]"
@@ -67,6 +67,10 @@ class PathOp(StrEnum):
     """Its dual on one run: not `left` until the body is false."""
     EVERY_RUN = "A"
     SOME_RUN = "E"
+
+
+OUTERMOST = tuple(PathOp)[:4]
+"""Those that UPPAAL has."""
 
 
 class BaseType(StrEnum):

@@ -11,24 +11,10 @@ from rvmon.models.network import Guard
 from rvmon.models.network import expressions as ex
 from rvmon.models.network.evaluate import chained
 
-_NEGATED_CLOCK = {
-    ex.ClockOp.LT: ex.ClockOp.GE,
-    ex.ClockOp.LE: ex.ClockOp.GT,
-    ex.ClockOp.GE: ex.ClockOp.LT,
-    ex.ClockOp.GT: ex.ClockOp.LE,
-}
-_NEGATED_PATH = {
-    ex.PathOp.POSSIBLY: ex.PathOp.INVARIANTLY,
-    ex.PathOp.INVARIANTLY: ex.PathOp.POSSIBLY,
-    ex.PathOp.EVENTUALLY: ex.PathOp.POTENTIALLY_ALWAYS,
-    ex.PathOp.POTENTIALLY_ALWAYS: ex.PathOp.EVENTUALLY,
-    ex.PathOp.SOME_NEXT: ex.PathOp.EVERY_NEXT,
-    ex.PathOp.EVERY_NEXT: ex.PathOp.SOME_NEXT,
-    ex.PathOp.FINALLY: ex.PathOp.GLOBALLY,
-    ex.PathOp.GLOBALLY: ex.PathOp.FINALLY,
-    ex.PathOp.EVERY_RUN: ex.PathOp.SOME_RUN,
-    ex.PathOp.SOME_RUN: ex.PathOp.EVERY_RUN,
-}
+_BELOW, _ABOVE = (ex.ClockOp.LT, ex.ClockOp.LE), (ex.ClockOp.GE, ex.ClockOp.GT)
+_NEGATED_CLOCK = dict(zip(_BELOW + _ABOVE, _ABOVE + _BELOW, strict=True))
+_DUALS = [*zip([*ex.PathOp][::2], [*ex.PathOp][1::2], strict=True)]
+_NEGATED_PATH = dict(_DUALS) | {other: one for one, other in _DUALS}
 
 
 def is_fixed(expression: ex.Expression) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -117,33 +117,27 @@ class Scope:
     places: dict[str, Span] = field(default_factory=dict)
     families: set[str] = field(default_factory=set)
 
-    def find(self, name: str) -> Symbol | None:
-        """The innermost meaning of a name."""
+    def _levels(self) -> Iterator[Scope]:
         scope: Scope | None = self
         while scope is not None:
-            if name in scope.symbols:
-                return scope.symbols[name]
+            yield scope
             scope = scope.parent
-        return None
+
+    def find(self, name: str) -> Symbol | None:
+        """The innermost meaning of a name."""
+        return next((s.symbols[name] for s in self._levels() if name in s.symbols), None)
 
     def declares(self, name: str) -> bool:
         """Whether a name is declared here or around, be it without a meaning."""
-        scope: Scope | None = self
-        while scope is not None:
-            if name in scope.places:
-                return True
-            scope = scope.parent
-        return False
+        return any(name in scope.places for scope in self._levels())
 
     def names_automaton(self, name: str) -> bool:
         """Whether a name without another meaning is that of an automaton."""
-        return name in self.families or (
-            self.parent is not None and self.parent.names_automaton(name)
-        )
+        return any(name in scope.families for scope in self._levels())
 
     def names(self) -> list[str]:
         """All names that can be seen from here."""
-        return [*self.symbols, *(self.parent.names() if self.parent else ())]
+        return [name for scope in self._levels() for name in scope.symbols]
 
     def inner(self, symbols: Mapping[str, Symbol]) -> Scope:
         """A level inside this one with some names of its own."""

@@ -128,7 +128,13 @@ class Meter:
 
     def look(self, visited: int, waiting: int) -> bool:
         """Look at the clock and the memory in a search that counts for itself; whether to go on."""
-        self._look(self.visited + visited, waiting)
+        budget, seconds = self._budget, self.seconds
+        if budget.seconds is not None and seconds > budget.seconds:
+            self.stopped = f"{budget.seconds:g} s went by"
+        elif budget.megabytes is not None and _is_full(budget.megabytes):
+            self.stopped = f"{budget.megabytes:,} MB of memory were in use"
+        elif self._watch is not None:
+            self._watch(Progress(self.visited + visited, waiting, seconds))
         return not self.stopped
 
     def goes_on(self, runs: int) -> bool:
@@ -147,15 +153,6 @@ class Meter:
     def stop_at_states(self) -> None:
         """Note that no more states may be visited, if nothing else stopped a search."""
         self.stop(f"{self._budget.states or 0:,} states were visited")
-
-    def _look(self, visited: int, waiting: int) -> None:
-        budget, seconds = self._budget, self.seconds
-        if budget.seconds is not None and seconds > budget.seconds:
-            self.stopped = f"{budget.seconds:g} s went by"
-        elif budget.megabytes is not None and _is_full(budget.megabytes):
-            self.stopped = f"{budget.megabytes:,} MB of memory were in use"
-        elif self._watch is not None:
-            self._watch(Progress(visited, waiting, seconds))
 
 
 def _is_full(limit: int) -> bool:

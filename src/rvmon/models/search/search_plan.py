@@ -316,11 +316,4 @@ class Sought:
     @property
     def is_levelled(self) -> bool:
         """Whether only states that can do the same stand for each other, not those that do more."""
-        return self.kind in (
-            Seek.DEADLOCK,
-            Seek.STAY,
-            Seek.STAY_AFTER,
-            Seek.NESTED,
-            Seek.START,
-            Seek.RUN,
-        )
+        return self.kind not in (Seek.GOAL, Seek.LATE, Seek.LATE_AFTER)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import chain
 
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.network import (
+    Asked,
     Chance,
     Extremes,
     LeadsToFormula,
@@ -80,14 +82,9 @@ def verify(
 
 def compares_in(formula: QueryFormula) -> Iterator[ex.ClockCompare]:
     """All comparisons of clocks in what a query asks."""
-    match formula:
-        case LeadsToFormula(left, right):
-            yield from guards.compares_of(left)
-            yield from guards.compares_of(right)
-        case Chance() | Mean() | Simulation() | Extremes():
-            pass
-        case _:
-            yield from guards.compares_of(formula)
+    if isinstance(formula, LeadsToFormula):
+        return chain(guards.compares_of(formula.left), guards.compares_of(formula.right))
+    return iter(()) if isinstance(formula, Asked) else guards.compares_of(formula)
 
 
 def _remark(run: Run | None) -> str:
@@ -117,14 +114,6 @@ class _Found:
     holds: bool | None = None
 
 
-_OUTERMOST = (
-    ex.PathOp.POSSIBLY,
-    ex.PathOp.INVARIANTLY,
-    ex.PathOp.EVENTUALLY,
-    ex.PathOp.POTENTIALLY_ALWAYS,
-)
-
-
 def _search(question: _Question, query: Query) -> _Found:
     match query.formula:
         case LeadsToFormula(left, right) if guards.is_linear(left) or guards.is_linear(right):
@@ -148,7 +137,7 @@ def _search(question: _Question, query: Query) -> _Found:
             return _at_start(question, ex.PathFormula(ex.PathOp.INVARIANTLY, implied))
         case ex.PathFormula(op, body, None, until) if (
             until != ex.TRUE
-            and op in _OUTERMOST
+            and op in ex.OUTERMOST
             and guards.is_plain(body)
             and guards.is_plain(until)
         ):
@@ -160,7 +149,7 @@ def _search(question: _Question, query: Query) -> _Found:
             return _Found(
                 shows, _accepted(question, guards.normal_form(linear, positive=shows), query.span)
             )
-        case ex.PathFormula(op, body, bound, until) if until == ex.TRUE and op in _OUTERMOST:
+        case ex.PathFormula(op, body, bound, until) if until == ex.TRUE and op in ex.OUTERMOST:
             if op in (ex.PathOp.POSSIBLY, ex.PathOp.POTENTIALLY_ALWAYS):
                 sought, shows = guards.normal_form(body), True
             else:
