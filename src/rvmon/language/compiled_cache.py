@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -51,28 +51,19 @@ def compile_cached(
         imported[str(file)] = text_of_file(file)
         return imported[str(file)]
 
-    if folder is None:
-        return _compiled(text, name, constants, directory, read)
-    about = name, text, sorted((constants or {}).items()), str(directory or "")
-    content = json.dumps([this_rvmon(), *about])
-    path = folder / f"spec-{hashlib.sha256(content.encode()).hexdigest()}.json"
-    compiled = _read(path, directory or Path())
-    if compiled is None:
-        compiled = _compiled(text, name, constants, directory, read)
-        keep(path, json.dumps([imported, to_plain(compiled)], separators=(",", ":")).encode())
-    return compiled
-
-
-def _compiled(
-    text: str,
-    name: str,
-    constants: Mapping[str, str] | None,
-    directory: Path | None,
-    read: Callable[[Path], str],
-) -> Compiled:
+    path = None
+    if folder is not None:
+        about = name, text, sorted((constants or {}).items()), str(directory or "")
+        content = json.dumps([this_rvmon(), *about])
+        path = folder / f"spec-{hashlib.sha256(content.encode()).hexdigest()}.json"
+        if (known := _read(path, directory or Path())) is not None:
+            return known
     from rvmon.language.compile import compile_text
 
-    return compile_text(text, name=name, constants=constants, directory=directory, read=read)
+    made = compile_text(text, name=name, constants=constants, directory=directory, read=read)
+    if path is not None:
+        keep(path, json.dumps([imported, to_plain(made)], separators=(",", ":")).encode())
+    return made
 
 
 def _read(path: Path, directory: Path) -> Compiled | None:

@@ -92,13 +92,9 @@ def alphabet_of(formula: Core) -> Alphabet:
         optimistic.append((low, digit[TruthValue.UNKNOWN_OPTIMISTIC] * stride, high))
         stride *= len(truths)
     return Alphabet(
-        propositions,
-        tuple(all_truths),
-        tuple(strides),
-        tuple(pessimistic),
-        tuple(optimistic),
+        propositions, tuple(all_truths), tuple(strides), tuple(pessimistic), tuple(optimistic),
         stride,
-    )
+    )  # fmt: skip
 
 
 def _digits(senses: set[Sense]) -> tuple[tuple[TruthValue, ...], dict[TruthValue, int]]:

@@ -159,19 +159,10 @@ class _Construction:
                 time_values.append(value(settled))
                 end_values.append(holds_at_end(settled, ages))
         return Automaton(
-            self.alphabet,
-            tuple(self.locations),
-            initial,
-            classes,
-            class_of,
-            bases,
-            strides,
-            edges,
-            tuple(target for target, _ in number),
-            tuple(sources for _, sources in number),
-            bytes(time_values),
-            bytes(end_values),
-        )
+            self.alphabet, tuple(self.locations), initial, classes, class_of, bases, strides, edges,
+            tuple(target for target, _ in number), tuple(sources for _, sources in number),
+            bytes(time_values), bytes(end_values),
+        )  # fmt: skip
 
 
 def _least_ages(

@@ -158,19 +158,13 @@ class _Draft:
         bases, strides, _ = layout_of(locations)
         source = self.source
         return Automaton(
-            source.alphabet,
-            locations,
-            self.initial,
-            len(columns),
-            _renamed(source.class_of, new_class),
-            bases,
-            strides,
-            edges,
+            source.alphabet, locations, self.initial, len(columns),
+            _renamed(source.class_of, new_class), bases, strides, edges,
             tuple(edge[0] for edge in number if edge is not None),
             tuple(edge[1] for edge in number if edge is not None),
             bytes(time_value for _, time_value, _ in rows),
             bytes(end_value for _, _, end_value in rows),
-        )
+        )  # fmt: skip
 
 
 def _renamed(class_of: LetterClasses, classes: Sequence[int]) -> LetterClasses:

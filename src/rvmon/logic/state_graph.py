@@ -219,14 +219,9 @@ def graph_of(roots: Iterable[sf.State]) -> Graph:
         elif isinstance(state.leaf, sf.Elapsed) or state.op is sf.StateOp.PASSED:
             stateful.append(place)
     return Graph(
-        nodes,
-        index,
-        operands,
-        tuple(tuple(places) for places in parents),
-        {name: tuple(places) for name, places in by_name.items()},
-        tuple(stateful),
-        remembers,
-    )
+        nodes, index, operands, tuple(tuple(places) for places in parents),
+        {name: tuple(places) for name, places in by_name.items()}, tuple(stateful), remembers,
+    )  # fmt: skip
 
 
 class Reach(Struct, frozen=True):

@@ -182,13 +182,11 @@ class Reader(Reading[Four]):
         """Conjunction: unborn where an operand is, and none is false or unknown."""
         return self._all([left, right])
 
-    def next(self, _: Four) -> Four:
-        """Unreachable: formulas here have no future operators."""
-        raise AssertionError("future operators were sorted out")
-
     def until(self, *_: object) -> Four:
         """Unreachable: formulas here have no future operators."""
         raise AssertionError("future operators were sorted out")
+
+    next = until
 
     def _all(self, args: Sequence[Four]) -> Four:
         factory = self.factory

@@ -243,17 +243,9 @@ class NoteExplainer:
         doubt = self._doubt(attempt.origin, words[4], leaves, outages)
         names = frozenset().union(*self._reads)
         return judged, Undecided(
-            self.compiled,
-            attempt.origin,
-            attempt.triggered,
-            worse,
-            better,
-            doubt,
-            unborn_of(names, known, doubt),
-            bool(flags & _SURE),
-            bool(flags & _HOLLOW),
-            bool(flags & _CUT),
-        )
+            self.compiled, attempt.origin, attempt.triggered, worse, better, doubt,
+            unborn_of(names, known, doubt), *(bool(flags & f) for f in (_SURE, _HOLLOW, _CUT)),
+        )  # fmt: skip
 
     def _networks(self, note: Note, at: int) -> tuple[Judged, Token, Token, int]:
         """The networks of an open attempt, the tokens of both runs, and the index after these."""

@@ -29,32 +29,20 @@ def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> Pl
     captures = bool(compiled.requirement.captures)
 
     def doubt_rule(other: CompiledRequirement | None) -> PlannedRule | None:
-        if other is None:
-            return None
-        return planned_rule(other, measured=measured)
+        return None if other is None else planned_rule(other, measured=measured)
 
     figured = compiled.measured_required if measured else None
     read = [] if figured is None else [core for _, core in network_of(figured, compiled.gap).leaves]
     return PlannedRule(
-        compiled.requirement,
-        obligation.trigger,
-        required,
-        alphabet,
-        automaton,
-        compiled.scatters(automaton),
-        again=obligation.again,
-        unborn=obligation.unborn,
-        determined=obligation.determined,
-        hidden=doubt_rule(compiled.hidden),
+        compiled.requirement, obligation.trigger, required, alphabet, automaton,
+        compiled.scatters(automaton), obligation.again, obligation.unborn, obligation.determined,
+        hidden=doubt_rule(compiled.hidden), doubted=doubt_rule(doubted),
         noted=() if measured else tuple(leaf for leaf, _ in compiled.leaves),
-        doubted=doubt_rule(doubted),
         running=obligation.running if captures else None,
-        blurs=_blurs(compiled) if captures else None,
-        blurs_anywhere=obligation.doubt is not None,
-        captures_known=obligation.captures_known,
+        blurs=_blurs(compiled) if captures else None, blurs_anywhere=obligation.doubt is not None,
+        captures_known=obligation.captures_known, measured=figured,
         asked=tuple(core.proposition for core in read if isinstance(core, Literal)),
-        measured=figured,
-    )
+    )  # fmt: skip
 
 
 def _traced(compiled: CompiledRequirement) -> PlannedRule:

@@ -122,16 +122,10 @@ def _record(followed: Followed, origin: int) -> Attempt | None:
         triggered = end
         instant = None if instant is None else end
     return Attempt(
-        requirement.id,
-        followed.number if start.sure is not None else followed.doubtful_number,
-        triggered,
-        instant,
-        verdict,
-        decision,
-        in_doubt=start.sure is None,
-        captured=dict(start.captured),
-        origin=origin,
-    )
+        requirement.id, followed.number if start.sure is not None else followed.doubtful_number,
+        triggered, instant, verdict, decision,
+        in_doubt=start.sure is None, captured=dict(start.captured), origin=origin,
+    )  # fmt: skip
 
 
 def _settle(requirement: Requirement, start: Start) -> tuple[Verdict, Decision]:

@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import TypeVar
+
 from msgspec.structs import replace
 
 from rvmon.diagnostics import Span
@@ -20,6 +24,9 @@ from rvmon.language.syntax import items
 from rvmon.language.syntax.expressions import Expression, Name, expressions_in
 from rvmon.trace.schema import Kind
 from rvmon.units import Unit, UnknownUnitError, parse_unit
+
+S = TypeVar("S")
+T = TypeVar("T")
 
 
 def check(spec: ResolvedSpec, findings: Findings) -> specification.CheckedSpec:
@@ -62,37 +69,20 @@ def check(spec: ResolvedSpec, findings: Findings) -> specification.CheckedSpec:
     for name, alone in spec.properties.items():
         if property_ := checked_property(checker, name, alone.formula):
             properties[name] = property_
-    covers = {
-        name: cover
-        for name, syntax in spec.covers.items()
-        if (cover := checked_cover(checker, syntax))
-    } | goals
-    coverpoints = {
-        name: point
-        for name, syntax in spec.coverpoints.items()
-        if (point := checked_coverpoint(checker, syntax))
-    }
-    written = spec.coverpoints
-    crosses = {
-        name: cross
-        for name, syntax in spec.crosses.items()
-        if (cross := checker.collected(checked_cross, checker, syntax, coverpoints, written))
-    }
+    covers = _right(partial(checked_cover, checker), spec.covers) | goals
+    points = _right(partial(checked_coverpoint, checker), spec.coverpoints)
+    about = points, spec.coverpoints
+    crosses = _right(lambda s: checker.collected(checked_cross, checker, s, *about), spec.crosses)
+    named = (spec.header.name.text, spec.header.title) if spec.header else ("spec", "")
     return specification.CheckedSpec(
-        spec.header.name.text if spec.header else "spec",
-        spec.header.title if spec.header else "",
-        table.time,
-        signals,
-        table.events,
-        requirements,
-        period,
-        delay,
-        spec.sources[0],
-        properties,
-        covers,
-        coverpoints,
-        crosses,
-    )
+        *named, table.time, signals, table.events, requirements, period, delay, spec.sources[0],
+        properties, covers, points, crosses,
+    )  # fmt: skip
+
+
+def _right(make: Callable[[S], T | None], written: Mapping[str, S]) -> dict[str, T]:
+    """By name, what could be made of what is written."""
+    return {name: made for name, syntax in written.items() if (made := make(syntax)) is not None}
 
 
 def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) -> Table:

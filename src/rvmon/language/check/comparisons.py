@@ -182,11 +182,7 @@ def _extreme(
 
 def alone(value: sc.TimeValue, span: Span) -> Diagnostic:
     """The finding for a value of time that is no side of a comparison."""
-    match value:
-        case sc.Age():
-            return rules.age_alone(span)
-        case sc.Now() | sc.Moment():
-            return rules.now_alone(span)
+    return (rules.age_alone if isinstance(value, sc.Age) else rules.now_alone)(span)
 
 
 def formula_of(value: sc.Value, span: Span) -> rv.Formula:
@@ -245,9 +241,8 @@ def _quantities(
     (first, first_span), (second, second_span) = left, right
     if not first.labels and not second.labels:
         return quantities.compare(op, left, right, span)
-    if op not in _EQUALITY:
-        raise Refusal(rules.label_use(first_span if first.labels else second_span))
-    if not (first.labels and second.labels) or first.node is None or second.node is None:
+    labelled = op in _EQUALITY and first.labels and second.labels
+    if not labelled or first.node is None or second.node is None:
         raise Refusal(rules.label_use(first_span if first.labels else second_span))
     return rv.Compare(op, first.node, second.node, span)
 
@@ -257,9 +252,10 @@ def moved(op: NumericOp, values: Sequence[sc.Value]) -> sc.Now | sc.Moment | Non
     match op, values:
         case NumericOp.SUB, [sc.Now(since=None), sc.Moment(name=name, later=None)]:
             return sc.Now(name)
-        case NumericOp.ADD, [sc.Moment(name=name, later=None), sc.Quantity() as later]:
-            return sc.Moment(name, later)
-        case NumericOp.ADD, [sc.Quantity() as later, sc.Moment(name=name, later=None)]:
+        case NumericOp.ADD, (
+            [sc.Moment(name=name, later=None), sc.Quantity() as later]
+            | [sc.Quantity() as later, sc.Moment(name=name, later=None)]
+        ):
             return sc.Moment(name, later)
     return None
 
@@ -272,9 +268,7 @@ def _now(now: sc.Now, op: rv.CompareOp, limit: sc.Value, place: Span, span: Span
     value, _ = _comparable(limit, place)
     if value.node is not None and any(rv.fields_in(value.node)):
         raise Refusal(rules.limit_of_event(place))
-    if _windows_of((value, place)):
-        raise Refusal(rules.now_alone(span))
-    if op in _EQUALITY:
+    if _windows_of((value, place)) or op in _EQUALITY:
         raise Refusal(rules.now_alone(span))
     # `now <= D` is the negation of `now > D`, and that is `now >= D + 1 tick`.
     strict = op in (rv.CompareOp.GT, rv.CompareOp.LE)

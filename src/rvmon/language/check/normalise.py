@@ -119,9 +119,7 @@ def scoped_trigger(
     """The trigger inside the scope; `start` alone is where the scope opens."""
     inside = _inside(opening, closing)
     match trigger:
-        case rv.BoundAtom(bound=rv.Bound.START) if opening is None:
-            return _and(trigger, inside)
-        case rv.BoundAtom(bound=rv.Bound.START):
+        case rv.BoundAtom(bound=rv.Bound.START) if opening is not None:
             return rv.Unary(rv.UnaryOp.RISE, inside, None, trigger.span)
         case rv.Constant(value=True):
             return inside

@@ -157,37 +157,12 @@ class FieldOf(Struct, frozen=True):
 
 
 _LONG_NAMES = {
-    "metre": "m",
-    "meter": "m",
-    "millimetre": "mm",
-    "millimeter": "mm",
-    "second": "s",
-    "sec": "s",
-    "millisecond": "ms",
-    "msec": "ms",
-    "minute": "min",
-    "hour": "h",
-    "hr": "h",
-    "gram": "g",
-    "kilogram": "kg",
-    "kilo": "kg",
-    "newton": "N",
-    "radian": "rad",
-    "degree": "deg",
-    "°": "deg",
-    "turn": "rev",
-    "celsiu": "degC",
-    "kelvin": "K",
-    "volt": "V",
-    "amp": "ampere",
-    "hertz": "Hz",
-    "percent": "%",
-    "mp": "m/s",
-    "kmh": "km/h",
-    "kph": "km/h",
-    "pixel": "px",
-    "byte": "B",
-}
+    "metre": "m", "meter": "m", "millimetre": "mm", "millimeter": "mm", "second": "s", "sec": "s",
+    "millisecond": "ms", "msec": "ms", "minute": "min", "hour": "h", "hr": "h", "gram": "g",
+    "kilogram": "kg", "kilo": "kg", "newton": "N", "radian": "rad", "degree": "deg", "°": "deg",
+    "turn": "rev", "celsiu": "degC", "kelvin": "K", "volt": "V", "amp": "ampere", "hertz": "Hz",
+    "percent": "%", "mp": "m/s", "kmh": "km/h", "kph": "km/h", "pixel": "px", "byte": "B",
+}  # fmt: skip
 """By what people write for a unit, in lower case and without a last `s`: its symbol."""
 
 

@@ -54,10 +54,8 @@ def windows_of(*formulas: rv.Formula) -> Iterator[rv.WindowValue]:
 
 def future_part(formula: rv.Formula) -> rv.Formula | None:
     """The first subformula that looks ahead."""
-    for part in subformulas(formula):
-        if isinstance(part, rv.Unary | rv.Binary) and part.op in FUTURE:
-            return part
-    return None
+    temporal = (part for part in subformulas(formula) if isinstance(part, rv.Unary | rv.Binary))
+    return next((part for part in temporal if part.op in FUTURE), None)
 
 
 def has_future(formula: rv.Formula) -> bool:
@@ -195,17 +193,10 @@ class _Facts(Reading[Both]):
         shared = {key: truth for key, truth in left[1].items() if right[1].get(key) is truth}
         return {**left[0], **right[0]}, shared
 
-    def next(self, _: Both) -> Both:
-        return {}, {}
-
-    def previous(self, _: Both) -> Both:
-        return {}, {}
-
     def until(self, *_: object) -> Both:
         return {}, {}
 
-    def since(self, *_: object) -> Both:
-        return {}, {}
+    next = previous = since = until
 
 
 def _both_facts(formula: rv.Formula) -> Both:

@@ -8,18 +8,8 @@ from itertools import pairwise
 from rvmon.language.checked.operators import PREFIXED, BinaryOp, UnaryOp
 
 ITEM_WORDS = (
-    "spec",
-    "time",
-    "import",
-    "signal",
-    "event",
-    "define",
-    "const",
-    "requirement",
-    "property",
-    "cover",
-    "coverpoint",
-    "cross",
+    *("spec", "time", "import", "signal", "event", "define", "const", "requirement", "property"),
+    *("cover", "coverpoint", "cross"),
 )
 """Words that start an item; besides, `max delay` does."""
 

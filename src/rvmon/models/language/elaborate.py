@@ -78,21 +78,11 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
         fix = "compare fewer differences of clocks"
         raise model_error("TA019", f"more than {MAX_EDGES:,} edges", None, fix)
     return nta.Network(
-        document.name,
-        document.title,
-        document.unit,
-        tuple(parts.clocks),
-        tuple(parts.variables),
-        tuple(parts.channels),
-        tuple(automata),
-        queries,
-        signals,
-        tuple(findings.found.values()),
-        names,
-        _priorities(parts, ranks),
-        has_split_edges=bool(diagonals.places) or parts.are_split,
-        fraction=resolver.fraction,
-    )
+        document.name, document.title, document.unit,
+        tuple(parts.clocks), tuple(parts.variables), tuple(parts.channels), tuple(automata),
+        queries, signals, tuple(findings.found.values()), names, _priorities(parts, ranks),
+        has_split_edges=bool(diagonals.places) or parts.are_split, fraction=resolver.fraction,
+    )  # fmt: skip
 
 
 def _known() -> sc.Scope:

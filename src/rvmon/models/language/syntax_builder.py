@@ -156,16 +156,10 @@ class SyntaxBuilder(QueryBuilder):
                 raise model_error("TA003", message, self._span(meta))
             parts[clause.data] = clause.children[0]
         return automaton_syntax.EdgeText(
-            self._name(source),
-            self._name(target),
-            self._span(meta),
-            parts.get("select", ()),
-            parts.get("when"),
-            parts.get("on"),
-            parts.get("do", ()),
-            parts.get("weight", 1.0),
-            str(parts.get("as", "")).strip('"'),
-        )
+            self._name(source), self._name(target), self._span(meta),
+            parts.get("select", ()), parts.get("when"), parts.get("on"), parts.get("do", ()),
+            parts.get("weight", 1.0), str(parts.get("as", "")).strip('"'),
+        )  # fmt: skip
 
     def weight(self, meta: Meta, items: Sequence[Token]) -> Tree[float]:
         weight = float(items[0])

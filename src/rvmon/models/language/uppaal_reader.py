@@ -187,17 +187,10 @@ def read_uppaal(source: Source) -> tuple[Document, list[Diagnostic]]:
     text = _text(root.first("declaration"))
     name, unit = _NAME.search(text), _UNIT.search(text)
     document = Document(
-        source,
-        name[1] if name else "model",
-        (name[2] or "") if name else "",
+        source, name[1] if name else "model", (name[2] or "") if name else "",
         int(unit[1]) * TICKS_PER_UNIT[unit[2]] if unit and unit[2] in TICKS_PER_UNIT else None,
-        (*declarations, *system[0]),
-        templates,
-        instances,
-        system[1],
-        queries,
-        open_ints=True,
-    )
+        (*declarations, *system[0]), templates, instances, system[1], queries, open_ints=True,
+    )  # fmt: skip
     return document, warnings
 
 

@@ -136,19 +136,11 @@ def _requirement(rng: Rng, profile: Profile, time: spec.TimeModel, name: str) ->
     instance = (for_each.name,) if for_each else ()
     instants = ("t0",) if captures and profile.amounts and (since or chance(rng, 50)) else ()
     shape = Shape(
-        step=time is not spec.TimeModel.HELD,
-        past=profile.past,
-        future=profile.future,
-        mixed=profile.mixed,
-        numbers=profile.numbers,
-        events=profile.events,
-        captured=(*instance, *(capture.name for capture in captures)),
-        wide=profile.wide > 0,
-        constants=profile.constants,
-        amounts=profile.amounts,
-        instants=instants,
-        form=profile.form,
-    )
+        step=time is not spec.TimeModel.HELD, past=profile.past, future=profile.future,
+        mixed=profile.mixed, numbers=profile.numbers, events=profile.events,
+        captured=(*instance, *(capture.name for capture in captures)), wide=profile.wide > 0,
+        constants=profile.constants, amounts=profile.amounts, instants=instants, form=profile.form,
+    )  # fmt: skip
     amounts = 0 if since else profile.amounts
     seen = replace(shape, future=False, captured=instance, amounts=amounts, instants=())
     trigger = _trigger(rng, seen, for_each)
@@ -162,15 +154,9 @@ def _requirement(rng: Rng, profile: Profile, time: spec.TimeModel, name: str) ->
     if profile.policies and chance(rng, 35):
         policy = pick(rng, tuple(spec.EndPolicy)[1:])
     return spec.Requirement(
-        name,
-        how,
-        trigger,
-        required,
-        at_end=policy,
-        pulse=is_pulse(trigger),
+        name, how, trigger, required, at_end=policy, pulse=is_pulse(trigger), for_each=for_each,
         captures=(*captures, *(spec.Capture(name, rv.NowValue()) for name in instants)),
-        for_each=for_each,
-    )
+    )  # fmt: skip
 
 
 def _law(rng: Rng, profile: Profile, time: spec.TimeModel, name: str) -> spec.Requirement:
