@@ -154,7 +154,8 @@ def _is_of_moment(part: formulas.Formula) -> bool:
         case formulas.ProbeAtom(probe=probe):
             return probe is not formulas.Probe.CHANGED
         case formulas.Compare(left=left, right=right):
-            return all(map(_is_held, formulas.numbers_in(left, right)))
+            held = formulas.Literal, formulas.SignalValue, formulas.FieldValue, formulas.Arithmetic
+            return all(isinstance(number, held) for number in formulas.numbers_in(left, right))
         case formulas.Unary(op=op) | formulas.Binary(op=op):
             return op.entry.tense is Tense.PRESENT
         case _:
@@ -174,9 +175,3 @@ def _is_momentary(part: formulas.Formula) -> bool:
             )
         case _:
             return False
-
-
-def _is_held(number: formulas.Numeric) -> bool:
-    return isinstance(
-        number, formulas.Literal | formulas.SignalValue | formulas.FieldValue | formulas.Arithmetic
-    )

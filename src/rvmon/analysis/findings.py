@@ -139,7 +139,8 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
         later = ", ".join(_later(conflict))
         when = f", {later}" if later else " at one instant"
         message = f"{named} cannot {both} hold once they are triggered{when}"
-        triggered = any(_has_trigger(spec.requirements[name]) for name in conflict.ids)
+        triggers = [spec.requirements[name].trigger for name in conflict.ids]
+        triggered = not all(isinstance(one, Constant | BoundAtom) for one in triggers)
         narrow = "narrow one of the triggers" if triggered else "change a bound of one of them"
         fix = f"{narrow}, or settle which one yields"
     return finding(CONFLICT, message, *_places(spec, *dict.fromkeys(conflict.ids)), fix=fix)
@@ -177,11 +178,6 @@ def _can_pass(requirement: Requirement) -> str:
             "for how long with `for`"
         )
     return "the consequent contradicts itself or the trigger, whose instant counts"
-
-
-def _has_trigger(requirement: Requirement) -> bool:
-    """Whether a requirement has a trigger other than always, `start` or `end`."""
-    return not isinstance(requirement.trigger, Constant | BoundAtom)
 
 
 def _later(conflict: Conflict) -> Iterator[str]:

@@ -15,8 +15,7 @@ from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
 from rvmon.logic.clock_regions import region_bounds, regions_between
 from rvmon.logic.state_formula import FALSE, TRUE, State
 
-_STARTED = -1
-"""The pseudo-region of a clock that was started at this position."""
+_STARTED = -1  # the pseudo-region of a clock that was started at this position
 
 Regions = tuple[int, ...]
 """For each clock of a location, the number of its cuts that its age has reached."""

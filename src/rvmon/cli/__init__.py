@@ -72,8 +72,7 @@ _BESIDE = {"format": "check", "init": "look"}
 _READER_LEFT = 128 + 13
 """As of a program that SIGPIPE ended: what was not read to its end is no success."""
 
-_MANY = 50_000
-"""Objects are so many before the first search for cycles: imports make none."""
+_MANY = 50_000  # objects are so many before the first search for cycles: imports make none
 
 
 def program() -> int:

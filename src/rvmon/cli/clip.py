@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 from rvmon import __version__
 from rvmon.cli import reading
-from rvmon.cli.evaluation import Judged, Options, judge
+from rvmon.cli.evaluation import Options, judge
 from rvmon.cli.options import constants_of, refuse_over
 from rvmon.cli.output import say, warn
 from rvmon.errors import RvmonError
@@ -49,7 +49,11 @@ def run_clip(arguments: argparse.Namespace) -> int:
     with TemporaryDirectory(prefix="rvmon-") as folder:
         place = out or str(Path(folder, name_of(data)))
         copied = clip(data, piece, place)
-        _show(data, out or case or "", copied, piece)
+        size = f"{copied.count} {'entry' if copied.count == 1 else 'entries'} of {data}"
+        span = f"{format_stamp(copied.first)} to {format_stamp(copied.last)}"
+        say(f"{out or case}: {size}, {span}")
+        if piece.held:
+            say(f"carried to its start: {', '.join(f'`{name}`' for name in piece.held)}")
         if attempt is None:
             return 0
         again = _report(spec, arguments, place, attempt.requirement)
@@ -104,18 +108,14 @@ def _write_case(arguments: argparse.Namespace, out: str, place: str, attempt: At
 
 def _report(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Report:
     """The report of a recording, even of one that breaks off."""
-    judged = _judged(spec, arguments, trace, name)
+    options = Options((name,), allow_missing=reading.allowed_names(arguments.allow_missing))
+    judged = judge(spec, trace, options, is_alone=True)
     if judged.report is not None:
         return judged.report
     if not judged.before:
         raise RvmonError(judged.error)
     warn(f"warning: {judged.error}; what was decided before that counts")
     return report_of([name], judged.before)
-
-
-def _judged(spec: Spec, arguments: argparse.Namespace, trace: str, name: str) -> Judged:
-    allowed = reading.allowed_names(arguments.allow_missing)
-    return judge(spec, trace, Options((name,), allow_missing=allowed), is_alone=True)
 
 
 def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -> Piece:
@@ -147,13 +147,6 @@ def _begin(spec: Spec, attempt: Attempt) -> int:
     if blame is None or spec.requirements[attempt.requirement].mode is Mode.UPON:
         return attempt.triggered
     return max(attempt.triggered, min(blame.at, default=blame.window[0]))
-
-
-def _show(data: str, out: str, copied: Copied, piece: Piece) -> None:
-    size = f"{copied.count} {'entry' if copied.count == 1 else 'entries'} of {data}"
-    say(f"{out}: {size}, {format_stamp(copied.first)} to {format_stamp(copied.last)}")
-    if piece.held:
-        say(f"carried to its start: {', '.join(f'`{name}`' for name in piece.held)}")
 
 
 def _same(spec: Spec, attempt: Attempt, report: Report, piece: Piece) -> Attempt | None:

@@ -28,16 +28,12 @@ def run_compare(arguments: argparse.Namespace) -> int:
             f"common, and {only[0]} is in one of them alone: nothing was compared"
         )
     if arguments.format == "json":
-        say_json(_json(comparison))
+        import msgspec
+
+        say_json(msgspec.json.encode(comparison).decode())
     else:
         _print(comparison, Printer(), None if arguments.all else LISTED)
     return int(any(difference.change.is_loss for difference in comparison.differences))
-
-
-def _json(comparison: Comparison) -> str:
-    import msgspec
-
-    return msgspec.json.encode(comparison).decode()
 
 
 def _print(comparison: Comparison, printer: Printer, most: int | None) -> None:

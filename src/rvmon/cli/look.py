@@ -17,11 +17,11 @@ from rvmon.texts import counted
 
 if TYPE_CHECKING:
     from rvmon.recordings.starter.observed_values import Profile
-    from rvmon.session import Spec
 
 
 def run_look(arguments: argparse.Namespace) -> int:
     """Look, show or write, and return the exit code."""
+    from rvmon.recordings.starter.profile import bound_profile, profile_of
     from rvmon.report.look_page import look_page, print_look
     from rvmon.report.printer import Printer
     from rvmon.session import load
@@ -32,7 +32,10 @@ def run_look(arguments: argparse.Namespace) -> int:
         loaded = load(arguments.spec, const=constants_of(arguments.const))
         spec = reading_spec(loaded, arguments)
     with busy(f"reading {arguments.data}"):
-        profile = _looked(arguments, spec)
+        if spec is None:
+            profile = profile_of(arguments.data, arguments.time)
+        else:
+            profile = bound_profile(arguments.data, spec.schema)
     requirements = () if spec is None else tuple(spec.requirements.values())
     if arguments.output is not None:
         write_file(arguments.output, look_page(profile, requirements))
@@ -47,15 +50,6 @@ def _refuse_output(arguments: argparse.Namespace) -> None:
     from rvmon.recordings.places import files_of
 
     refuse_over([arguments.output], [arguments.spec, *files_of(arguments.data)])
-
-
-def _looked(arguments: argparse.Namespace, spec: Spec | None) -> Profile:
-    """The recording, looked over; what a specification reads as it reads it."""
-    from rvmon.recordings.starter.profile import bound_profile, profile_of
-
-    if spec is None:
-        return profile_of(arguments.data, arguments.time)
-    return bound_profile(arguments.data, spec.schema)
 
 
 def run_init(arguments: argparse.Namespace) -> int:

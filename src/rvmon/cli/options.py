@@ -17,8 +17,7 @@ if TYPE_CHECKING:
     from rvmon.session import Spec
 
 
-_LEAST = 512
-"""With less, libraries in C end the process as they are loaded, each in its own words."""
+_LEAST = 512  # with less, libraries in C end the process as they are loaded, each in its own words
 
 
 def _megabytes(text: str) -> int:

@@ -30,8 +30,7 @@ if TYPE_CHECKING:
 MOST_HELD = 65_536
 """The most rows kept in memory; of a longer recording failures are noted as it is judged."""
 
-_AT_ONCE = 16_384
-"""Rows of a longer recording of which failures are noted together."""
+_AT_ONCE = 16_384  # rows of a longer recording of which failures are noted together
 
 
 class Remembered:

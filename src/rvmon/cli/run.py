@@ -61,7 +61,9 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
 
         before = begun(arguments, traces)
     must_trigger = ids_of(arguments.require_triggered or None, spec)
-    known = _known_failures(arguments, spec)
+    known = NONE_KNOWN
+    if arguments.known is not None:
+        known = KnownFailures(read_known(arguments.known, spec.requirements))
     judged = _judged(arguments, traces, spec, options, case)
     _show(arguments, spec, judged)
     reports = [result.report for result in judged if result.report is not None]
@@ -81,12 +83,6 @@ def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
             warn(f"{name} was triggered in no recording")
         failed |= bool(silent)
     return int(failed)
-
-
-def _known_failures(arguments: argparse.Namespace, spec: Spec) -> KnownFailures:
-    if arguments.known is None:
-        return NONE_KNOWN
-    return KnownFailures(read_known(arguments.known, spec.requirements))
 
 
 def _judged(

@@ -30,11 +30,8 @@ if TYPE_CHECKING:
     from rvmon.adapters.ros1 import Ros1Source
     from rvmon.adapters.ros2 import Ros2Source
 
-_TURN = 0.25
-"""Seconds between two looks at the specification."""
-
-_LAST_DOMAIN = 232
-"""The last domain of DDS that has ports."""
+_TURN = 0.25  # seconds between two looks at the specification
+_LAST_DOMAIN = 232  # the last domain of DDS that has ports
 
 
 def run_watch(arguments: argparse.Namespace) -> int:

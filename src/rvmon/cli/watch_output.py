@@ -37,10 +37,8 @@ _TOLD = 5
 _SHOWN_FAILURES = 5
 _SHOWN_ROBOTS = 8
 _MOST_OPEN = 100
-_FRAME = 5
-"""Lines of a robot's table in addition to its rows."""
-_FEW = 4
-"""Rows that a robot has at least, before another robot is shown."""
+_FRAME = 5  # lines of a robot's table in addition to its rows
+_FEW = 4  # rows that a robot has at least, before another robot is shown
 
 
 class Output(logging.Handler):
@@ -250,8 +248,7 @@ def _print_robot(status: Status, spec: Spec, rows: int, printer: Printer, *, is_
     _print_rest([status.verdicts[name] for name in names[rows:]], "requirements", printer)
 
 
-_KEEP = 1000
-"""The records of each verdict kept per requirement, as in a watch without a state."""
+_KEEP = 1000  # the records of each verdict kept per requirement, as in a watch without a state
 
 
 def refuse_others(arguments: argparse.Namespace) -> None:

@@ -25,11 +25,8 @@ from rvmon.trace.schema import Gaps, Kind
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-_EXACT = 1 << 53
-"""Floats up to here are the whole numbers that they stand for."""
-
-_WIDEST = 8
-"""Bytes of the widest numbers that are numbers of Python, too."""
+_EXACT = 1 << 53  # floats up to here are the whole numbers that they stand for
+_WIDEST = 8  # bytes of the widest numbers that are numbers of Python, too
 
 _TYPES = {Kind.BOOL: np.bool_, Kind.INT: np.int64, Kind.REAL: np.float64, Kind.LABEL: np.int32}
 

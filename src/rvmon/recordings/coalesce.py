@@ -126,14 +126,12 @@ REMARK = (
 )
 """The remark on a name whose unknown values alternate with others."""
 
-_LEAST = 3
-"""Stretches of unknown values; fewer are dropouts."""
+_LEAST = 3  # stretches of unknown values; fewer are dropouts
 
 _SCALARS = frozenset({bool, int, float, str})
 """The types whose values are all known but NaN, which differs from itself."""
 
-_LONGEST = 4
-"""Known values of a stretch, on average, at most."""
+_LONGEST = 4  # known values of a stretch, on average, at most
 
 
 class Alternation(Struct):

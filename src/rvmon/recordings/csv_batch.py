@@ -27,14 +27,12 @@ if TYPE_CHECKING:
 _ALL, _ROW = 0, 2
 """The ways a call ends: with the text, or at an odd row; else its room is used up."""
 
-_ODD = 4096
-"""Cells of a call that are read one by one."""
+_ODD = 4096  # cells of a call that are read one by one
 
 _LABELS = 2048
 """Labels of a call that are told apart, at first: where there are more, of a later call more."""
 
-_MOST_LABELS = 1 << 16
-"""From here on not."""
+_MOST_LABELS = 1 << 16  # from here on not
 
 
 def csv_batches(
@@ -90,7 +88,8 @@ class _Reader:
 
     def read(self, text: bytes, start: int = 0, *, is_ended: bool = False) -> Found:
         """Find rows in a text from a place on, as far as one call can."""
-        room = self._room_for(len(text) - start)
+        # If rows are as long as those before; for more, there is a second call.
+        room = int(1.1 * (len(text) - start) / self._row_bytes) + 16
         columns = 1 + len(self.layout.columns)
         numbers = np.empty((columns, room), np.int64)
         says = np.empty((columns, room), np.uint8)
@@ -146,10 +145,6 @@ class _Reader:
         text.start = at
         text.line += count
         return ended, end
-
-    def _room_for(self, size: int) -> int:
-        """Rows of so many bytes, if they are as those before; for more, there is a second call."""
-        return int(1.1 * size / self._row_bytes) + 16
 
     def _read_odd(
         self, text: str, place: int, row: int, numbers: NDArray[Any], says: NDArray[Any]

@@ -26,11 +26,8 @@ from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import DEFAULT_COLUMNS, UNITS, stamps_of
 from rvmon.units import UnknownUnitError, parse_unit
 
-_LOOKED_AT = 1 << 13
-"""Bytes that say how a text is written."""
-
-_MOST_ABOVE = 30
-"""Lines above a header, at most."""
+_LOOKED_AT = 1 << 13  # bytes that say how a text is written
+_MOST_ABOVE = 30  # lines above a header, at most
 
 _SOME, _TOGETHER = 10, 4096
 """Rows that have to agree; lines that are taken at once."""

@@ -20,8 +20,7 @@ from rvmon.trace.stamps import stamps_among, ticks_of_cell
 
 _KINDS = {Kind.BOOL: 0, Kind.INT: 1, Kind.REAL: 2, Kind.LABEL: 3}
 
-_STAMPS = {"iso": 4, "s": 14, "ms": 11, "us": 8, "ns": 5}
-"""By their unit, as `csv.h` numbers them."""
+_STAMPS = {"iso": 4, "s": 14, "ms": 11, "us": 8, "ns": 5}  # by their unit, as `csv.h` numbers them
 
 
 class Column(Struct, frozen=True):

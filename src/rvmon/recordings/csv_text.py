@@ -27,8 +27,7 @@ else:
 
 _Found = TypeVar("_Found")
 
-_MARK = b"\xef\xbb\xbf"
-"""The byte order mark of UTF-8, with which some editors begin a text."""
+_MARK = b"\xef\xbb\xbf"  # the byte order mark of UTF-8, with which some editors begin a text
 
 _SMALL = 1 << 15
 """Bytes that are read first: the room for a block comes from the system and goes back to it, which
@@ -181,8 +180,10 @@ def read_ahead(
                 is_over = stretch is None
                 if stretch is not None and stretch.endswith(b"\n"):
                     if pool is None:  # a small file has no such stretch
+                        from concurrent.futures import ThreadPoolExecutor
+
                         threads = min(MOST_THREADS, os.cpu_count() or 1)
-                        pool = _begun(threads)
+                        pool = ThreadPoolExecutor(threads, "rvmon-reads")
                     waiting.append((stretch, pool.submit(read, stretch)))
                 elif stretch is not None:
                     waiting.append((stretch, None))
@@ -199,9 +200,3 @@ def read_ahead(
                 one.cancel()
         if pool is not None:
             pool.shutdown()
-
-
-def _begun(threads: int) -> ThreadPoolExecutor:
-    from concurrent.futures import ThreadPoolExecutor
-
-    return ThreadPoolExecutor(threads, "rvmon-reads")

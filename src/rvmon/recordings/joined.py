@@ -20,8 +20,7 @@ from rvmon.trace.schema import BY_NAME, Schema
 if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
 
-_FEW = 64
-"""Fewer rows are joined one by one."""
+_FEW = 64  # fewer rows are joined one by one
 
 
 class File(Recording, Protocol):
@@ -52,17 +51,9 @@ class Joined:
     A name is that of a column, or `FILE.COLUMN`, with the file's name without what all of them
     begin with: `status.armed` is the column `armed` of `log_17_status_0.csv`. A name lasts as long
     as its own file says: nothing is carried into rows of others, and nothing is resampled.
-
-    Attributes:
-        names: declared names that have a file; `None`: any may come.
-        end: the last instant, ticks, if all of them say one.
-        unread: the columns that nothing is declared for.
-        ignored: the same, counted.
-        outages: the outages, in order.
-        count: 0: nobody has counted the rows.
     """
 
-    count = 0
+    count = 0  # nobody has counted the rows
 
     def __init__(self, files: Sequence[File], rows: Rows) -> None:
         self._files = files
@@ -76,10 +67,13 @@ class Joined:
                         f"`FILE.{name}` of the file that is meant, or leave the column out"
                     )
                 found[name] = file.path
+        # declared names that have a file; `None`: any may come
         is_known = all(file.names is not None for file in files)
         self.names: frozenset[str] | None = frozenset(found) if is_known else None
+        # the last instant, ticks, if all of them say one
         ends = [file.end for file in files if file.end is not None]
         self.end = max(ends) if len(ends) == len(files) else None
+        # the columns that nothing is declared for
         self.unread = [column for file in files for column in file.unread]
         self.ignored = sum((file.ignored for file in files), Counter[str]())
         self.outages = sorted(_outages_of(files), key=lambda outage: outage.since)
@@ -93,7 +87,7 @@ class Joined:
         while heads:
             # Up to here all files are read: rows of later instants may still come from the file
             # whose part ends first.
-            until = min(head.last for head in heads)
+            until = min(head.instant(-1) for head in heads)
             before = [own for head in heads if (own := head.take_before(until)) is not None]
             count = sum(len(batch.times) for batch in before)
             joined = outer_join(before, number) if count >= _FEW else None
@@ -135,12 +129,11 @@ class _Head:
             self._part = next(self._parts, None)
         self.is_there = self._part is not None
 
-    @property
-    def last(self) -> int:
-        """The last instant that is at hand, ticks."""
+    def instant(self, place: int) -> int:
+        """The first instant that is at hand (`place` 0), or the last one (-1), ticks."""
         part = self._part
         assert part is not None, "it is there"
-        return part.t if isinstance(part, Sample) else int(part.times[-1])
+        return part.t if isinstance(part, Sample) else int(part.times[place])
 
     def take_before(self, until: int) -> Batch | None:
         """The rows of a batch before an instant, if there are any."""
@@ -153,7 +146,7 @@ class _Head:
 
     def take_at(self, until: int) -> Iterator[Sample]:
         """The samples at an instant."""
-        while self.is_there and self._first == until:
+        while self.is_there and self.instant(0) == until:
             part = self._part
             if isinstance(part, Sample):
                 yield part
@@ -164,12 +157,6 @@ class _Head:
                 if count < len(part.times):
                     return
             self._read_on()
-
-    @property
-    def _first(self) -> int:
-        part = self._part
-        assert part is not None, "it is there"
-        return part.t if isinstance(part, Sample) else int(part.times[0])
 
 
 def topics_of(paths: Sequence[str]) -> list[tuple[str, str]]:

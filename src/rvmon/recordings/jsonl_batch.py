@@ -46,14 +46,11 @@ def jsonl_batches(
         try:
             batch = _batch(text.removeprefix(b"" if line else _MARK), schema, ignored)
         except NotPlainError:
-            yield _numbered(jsonl_samples(_lines(text), schema, ignored), line)
+            lines = bounded_lines(io.StringIO(text.decode(), newline=""))
+            yield _numbered(jsonl_samples(lines, schema, ignored), line)
         else:
             yield replace(batch, first=line + 1)
         line += text.count(b"\n")
-
-
-def _lines(text: bytes) -> Iterator[str]:
-    return bounded_lines(io.StringIO(text.decode(), newline=""))
 
 
 def _numbered(rows: Iterator[Row], before: int) -> Iterator[Row]:

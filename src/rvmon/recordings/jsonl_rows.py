@@ -37,8 +37,7 @@ _HALF_PAIR = re.compile(r"\\u[dD][89abAB]..(?!\\u[dD][c-fC-F])")
 
 
 _APART = re.compile(r'"\s+:')
-_APART_IN_BYTES = re.compile(rb'"\s+:')
-"""A quote that may end a name, with blanks before the colon."""
+_APART_IN_BYTES = re.compile(rb'"\s+:')  # a quote that may end a name, with blanks before the colon
 
 
 def jsonl_samples(

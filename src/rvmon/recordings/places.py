@@ -324,10 +324,7 @@ def _recordings_at(path: str, above: frozenset[str] = frozenset()) -> Iterator[s
         if (real := os.path.realpath(path)) not in above:
             for name in os.listdir(path):
                 yield from _recordings_at(str(Path(path, name)), above | {real})
-    elif endings_of(path.removesuffix(_unread(path)))[0] in FORMATS:
-        yield path
-
-
-def _unread(path: str) -> str:
-    ending = os.path.splitext(path)[1]
-    return ending if ending.lower() in _UNREAD else ""
+    else:
+        stem, ending = os.path.splitext(path)
+        if endings_of(stem if ending.lower() in _UNREAD else path)[0] in FORMATS:
+            yield path

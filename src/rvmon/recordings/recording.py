@@ -40,8 +40,7 @@ JOINED = "joined"
 """The format of several files that are one recording: `odom.csv + status.csv`."""
 
 
-_UNITS = {"parquet": "row", JOINED: "joined row"}
-"""What messages call a row; of text it is a line."""
+_UNITS = {"parquet": "row", JOINED: "joined row"}  # what messages call a row; of text it is a line
 
 
 class FileRecording:
@@ -51,8 +50,8 @@ class FileRecording:
         """Open the recording and read its header.
 
         Args:
-            path: a `.csv`, `.jsonl`, `.ndjson` or `.parquet` file, or `-`; text may be packed
-                (`.csv.gz`, `.jsonl.zst`), and any may be an address.
+            path: a file, or `-`; text may be packed (`.csv.gz`, `.jsonl.zst`), and any may be an
+                address.
             schema: the names that the spec declares, and how the recording gives them.
             ordered: whether a stamp before the one above it is an error. Under `max delay` rows are
                 put in order instead.

@@ -177,14 +177,7 @@ class PairRecording:
     end: int | None = None  # `None`: it ends with its last item
 
     def __init__(self, trace: Any, schema: Schema, *, ordered: bool = True) -> None:
-        """Take what can be gone through.
-
-        Args:
-            trace: an iterable.
-            schema: the declared names; of others values are left as they are.
-            ordered: whether a stamp before the one above it is an error. Under `max delay` rows are
-                put in order instead.
-        """
+        """Take what can be gone through; values of names that are not declared stay as they are."""
         if not isinstance(trace, Iterable):
             raise TraceError(
                 "expected a path, columns by name (arrays, a table, a data frame) or (t, values) "

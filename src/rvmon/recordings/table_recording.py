@@ -38,14 +38,7 @@ class TableRecording:
     outages: tuple[()] = ()
 
     def __init__(self, columns: Mapping[str, Any], schema: Schema, *, ordered: bool = True) -> None:
-        """Look at the names of columns.
-
-        Args:
-            columns: by name; undeclared ones are passed over, and so is a signal or event by the
-                name of the time column, as in files.
-            schema: the declared names, and how the table gives them.
-            ordered: whether a stamp before the one above it is an error. Under `max delay` rows are
-                put in order instead.
+        """Look at the names of columns: undeclared ones, and the one of time, are no signals.
 
         Raises:
             TraceError: there is no such time column.
@@ -96,14 +89,6 @@ class TableRecording:
         """The columns that stand for nothing."""
         return list(self.ignored)
 
-    def parts(self) -> Iterator[Batch | Sample]:
-        """As `pieces`."""
-        return self.pieces()
-
-    def doubts(self) -> list[Health]:
-        """The doubtful stamps."""
-        return self.stamp_doubts()
-
     def stamp_doubts(self) -> list[Health]:
         """Whether its first stamps look like milliseconds; of a table that was read."""
         stamps = self.layout.stamps
@@ -114,6 +99,8 @@ class TableRecording:
         column = self.columns[stamps.column]
         first = cells_of(stamps.column, getattr(column, "iloc", column)[:LOOKED_AT])
         return doubt_unit([_ticks(cell, stamps, row) for row, cell in enumerate(first)], stamps)
+
+    parts, doubts = pieces, stamp_doubts  # as one of several that are joined
 
 
 def stamps_of_column(stamps: Stamps, column: Any) -> Stamps:
@@ -165,8 +152,7 @@ def ticks_of_column(values: NDArray[Any], stamps: Stamps) -> NDArray[np.int64]:
     return ticks_in_range(ticks)
 
 
-_PIECE = 1 << 14
-"""Instants that are worked out together, near the processor."""
+_PIECE = 1 << 14  # instants that are worked out together, near the processor
 
 
 def _rounded(

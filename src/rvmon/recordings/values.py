@@ -87,8 +87,7 @@ _CLASSES = {Kind.BOOL: bool, Kind.INT: int, Kind.REAL: float, Kind.LABEL: str}
 
 _LARGEST = 1 << 63
 
-_EXACT = 1 << 53
-"""Floats up to here are the whole numbers that they stand for."""
+_EXACT = 1 << 53  # floats up to here are the whole numbers that they stand for
 
 
 def fits(value: Any, kind: Kind) -> bool:

@@ -181,7 +181,9 @@ class _Panels:
         self._truths: RecordedTruths | None = None
         if content.run.samples and report.end is not None:
             questions = list(self._questions(shown))
-            samples, names = content.run.samples, _sources(content)
+            declared, absent = {*content.spec.signals, *content.spec.events}, report.absent
+            names = frozenset(declared - absent)  # that have a source in the run
+            samples = content.run.samples
             self._truths = look_through(content.spec, questions, samples, report.end, names)
 
     def _questions(self, shown: Mapping[str, Sequence[Attempt]]) -> Iterator[Question]:
@@ -261,11 +263,6 @@ class _Panels:
         if name not in self._waits or self._truths is None:
             return self._content.run.report.late.get(name, {})
         return late_in(attempts, self._waits[name], self._truths)
-
-
-def _sources(content: RunPage) -> frozenset[str]:
-    """The signals and events that have a source in the run."""
-    return frozenset({*content.spec.signals, *content.spec.events} - content.run.report.absent)
 
 
 def panel_id(requirement: str, attempt: Attempt | None) -> str:

@@ -17,8 +17,7 @@ if TYPE_CHECKING:
 
     from rvmon.recordings.batch import Batch, Cells
 
-_DENSE = 8
-"""With more changes per place than this, only extremes are drawn."""
+_DENSE = 8  # with more changes per place than this, only extremes are drawn
 
 
 class Course(Sequence[tuple[int, Scalar]]):

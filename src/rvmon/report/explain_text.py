@@ -106,12 +106,9 @@ def _occurrence(value: Value) -> str:
     if value is None:
         return NOBODY_KNOWS
     if isinstance(value, Mapping) and value:
-        return OCCURS + " " + " ".join(f"{key}={_payload(v)}" for key, v in value.items())
+        texts = {key: str(v).lower() if isinstance(v, bool) else str(v) for key, v in value.items()}
+        return OCCURS + " " + " ".join(f"{key}={text}" for key, text in texts.items())
     return OCCURS + " "
-
-
-def _payload(value: Scalar) -> str:
-    return str(value).lower() if isinstance(value, bool) else str(value)
 
 
 def _fill(cell: str, width: int) -> str:

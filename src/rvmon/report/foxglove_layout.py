@@ -15,8 +15,7 @@ from rvmon.trace.time import TICKS_PER_SECOND
 SCENE = "/rvmon/scene"
 """Its topic."""
 
-_THIN = 0.006
-"""Metres: how thick the line about a polygon is at least."""
+_THIN = 0.006  # metres: how thick the line about a polygon is at least
 
 _LINE_STRIP, _LINE_LOOP = 0, 1
 
@@ -39,7 +38,9 @@ def scene_updates(scene: Scene) -> Iterator[tuple[int, dict[str, Any]]]:
         for outline in scene.outlines:
             pose = _pose(*poses.get(outline.body, (0.0, 0.0, 0.0)))
             kind, drawn = _drawn(outline)
-            drawings[kind].append({"pose": pose, "color": _colour(outline.role), **drawn})
+            rgba = (*_COLOURS.get(outline.role, (0.6, 0.6, 0.6)), 1.0)
+            colour = dict(zip("rgba", rgba, strict=True))
+            drawings[kind].append({"pose": pose, "color": colour, **drawn})
         entity = {
             "timestamp": seconds_and_rest(t),
             "frame_id": "world",
@@ -80,10 +81,6 @@ def _drawn(outline: Outline) -> tuple[str, Mapping[str, Any]]:
         "colors": [],
         "indices": [],
     }
-
-
-def _colour(role: str) -> dict[str, float]:
-    return dict(zip("rgba", (*_COLOURS.get(role, (0.6, 0.6, 0.6)), 1.0), strict=True))
 
 
 ATTEMPTS = "/rvmon/attempts"

@@ -10,7 +10,6 @@ from rvmon.report.wording import full_reason, without_attempts
 from rvmon.texts import shown
 from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict
-from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.known_failures import NONE_KNOWN, KnownFailures
 from rvmon.verdicts.report import Report
 
@@ -84,10 +83,12 @@ def _case(report: Report, name: str, verdict: Verdict, requirement: Requirement)
         why = without_attempts(verdict, report.misses.get(name, ""))
         ET.SubElement(case, "skipped", message=shown(f"{verdict}: {why}"))
         return case
-    reasons = [
-        shown(f"attempt {attempt.numbered}, {_when(attempt)}: {full_reason(attempt, report)}")
-        for attempt in report.of(name, verdict)
-    ] or ["a step was interrupted: what followed was not evaluated in full"]
+    reasons = []
+    for attempt in report.of(name, verdict):
+        at = attempt.decided
+        when = "undecided" if at is None else format_stamped(at, attempt.origin)
+        reasons.append(shown(f"attempt {attempt.numbered}, {when}: {full_reason(attempt, report)}"))
+    reasons = reasons or ["a step was interrupted: what followed was not evaluated in full"]
     kind = "failure" if verdict is Verdict.FAIL else "skipped"
     element = ET.SubElement(case, kind, message=f"{verdict.value}: {reasons[0]}")
     element.text = "\n".join(reasons)
@@ -99,9 +100,3 @@ def _accept(case: ET.Element, why: str) -> None:
     for failure in case.findall("failure"):
         failure.tag = "skipped"
         failure.set("message", shown(f"known: {why}; {failure.get('message')}"))
-
-
-def _when(attempt: Attempt) -> str:
-    if attempt.decided is None:
-        return "undecided"
-    return format_stamped(attempt.decided, attempt.origin)

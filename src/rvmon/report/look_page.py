@@ -18,12 +18,10 @@ from rvmon.trace.time import TICKS_PER_SECOND, format_stamp, format_stamped
 
 _BARS = "▁▂▃▄▅▆▇█"
 _WIDTH = 20
-_LONG = 3
-"""A distance of updates of more than this many usual ones is a gap."""
+_LONG = 3  # a distance of updates of more than this many usual ones is a gap
 
 _MOST_LABELS = 4
-_LONGEST = 16
-"""The most characters shown of a label."""
+_LONGEST = 16  # the most characters shown of a label
 
 _FEW = 3
 
@@ -153,8 +151,7 @@ def spark(column: Column, profile: Profile) -> str:
 _HEIGHT = 40
 _EDGE = 3
 
-_OPEN = 8
-"""The number of topics that are unfolded at first."""
+_OPEN = 8  # the number of topics that are unfolded at first
 
 
 def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
@@ -184,8 +181,7 @@ def look_page(profile: Profile, requirements: Sequence[Requirement]) -> str:
     )
 
 
-_LAST = 0.95
-"""The greatest place of a mark; a later one would have no room."""
+_LAST = 0.95  # the greatest place of a mark; a later one would have no room
 
 
 def _marks(start: int, end: int) -> list[tuple[str, str]]:

@@ -35,12 +35,10 @@ _CODES = {
     "bright_black": "90",
 }
 
-_USUAL_WIDTH = 80
-"""Columns where there is no terminal."""
+_USUAL_WIDTH = 80  # columns where there is no terminal
 
 _GAP = "   "
-_NARROWEST = 12
-"""The least columns of a column that is wrapped."""
+_NARROWEST = 12  # the least columns of a column that is wrapped
 
 
 class Printer:

@@ -22,16 +22,12 @@ from rvmon.verdicts.run_coverage import CoveredBin, CoveredGroup
 
 def together(several: Sequence[Sequence[CoveredGroup]]) -> list[CoveredGroup]:
     """The sum of the coverage of several runs by one specification, without first instants."""
-    return [
-        replace(
-            groups[0], bins=tuple(map(_sum, zip(*(group.bins for group in groups), strict=True)))
-        )
-        for groups in zip(*several, strict=True)
-    ]
-
-
-def _sum(bins: Sequence[CoveredBin]) -> CoveredBin:
-    return replace(bins[0], hits=sum(covered_bin.hits for covered_bin in bins), first=None)
+    summed = []
+    for groups in zip(*several, strict=True):
+        alike = zip(*(group.bins for group in groups), strict=True)
+        bins = (replace(own[0], hits=sum(one.hits for one in own), first=None) for own in alike)
+        summed.append(replace(groups[0], bins=tuple(bins)))
+    return summed
 
 
 def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:

@@ -56,7 +56,8 @@ def view_of(attempt: Attempt, report: Report, late: int | None = None) -> View:
     # label points to it instead.
     if late is not None and late - last <= last - first:
         last = max(last, late)
-    margin = max(round((last - first) * MARGIN), min(SMALLEST_MARGIN, _length(report) // 4), 2)
+    length = 0 if report.end is None else max(report.end - report.origin, 0)
+    margin = max(round((last - first) * MARGIN), min(SMALLEST_MARGIN, length // 4), 2)
     # A quarter of the margin beyond the run marks where it begins and ends.
     little = margin // 4
     start = max(first - margin, min(report.origin, first) - little)
@@ -105,7 +106,3 @@ def with_moments(sentence: str, view: View) -> str:
     'never since 25.683 s'
     """
     return _SECONDS.sub(lambda seconds: moment(ticks_of_text(seconds[1]), 0, view), sentence)
-
-
-def _length(report: Report) -> int:
-    return 0 if report.end is None else max(report.end - report.origin, 0)

@@ -59,8 +59,7 @@ _ATTEMPT = {
     "decided": "integer",
 }
 
-_Message = tuple[int, str, Mapping[str, Any]]
-"""Ticks, topic, content."""
+_Message = tuple[int, str, Mapping[str, Any]]  # ticks, topic, content
 
 
 def refuse_mcap(path: str) -> None:

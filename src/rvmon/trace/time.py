@@ -36,14 +36,9 @@ UNIT_WORDS = {"s": "seconds", "ms": "milliseconds", "us": "microseconds", "ns": 
 _DATES_FROM = 946_684_800 * TICKS_PER_SECOND
 """The year 2000: later stamps count from 1970, as no clock of a robot runs so long."""
 
-_COARSE = 2.0**23
-"""From this many seconds on, the spacing of floats exceeds a tick."""
-
-_FAR = 4e9
-"""A bound in seconds that is within `TIME_LIMIT`."""
-
-_FEW_DIGITS = 28
-"""The most digits that are read as an integer, the fast path."""
+_COARSE = 2.0**23  # from this many seconds on, the spacing of floats exceeds a tick
+_FAR = 4e9  # a bound in seconds that is within `TIME_LIMIT`
+_FEW_DIGITS = 28  # the most digits that are read as an integer, the fast path
 
 _SURE = 0.4999
 """If a fraction times 1e9 is this near to an integer, it rounds as the exact product does."""

@@ -160,8 +160,7 @@ def measured_attempt(attempt: Attempt, robustness: float | None) -> Attempt:
     return copy
 
 
-_SHOWN = 3
-"""The number of attempts in the `repr` of a sequence."""
+_SHOWN = 3  # the number of attempts in the `repr` of a sequence
 
 
 class LazyAttempts(Sequence[Attempt]):

@@ -212,8 +212,7 @@ def modifiers_of(candidate: Candidate) -> set[str]:
     return found | {word for word in candidate.own if word in MODIFIERS}
 
 
-_FIRST = 3
-"""Values that are shown."""
+_FIRST = 3  # values that are shown
 
 
 class Range(Struct):

@@ -116,8 +116,7 @@ _PATH = re.compile(r"`[^`]*`|(?<![\w.])[^\W\d]\w*(?:\.[^\W\d]\w*|\[[^\[\]`]*\])*
 
 _OF_ARRAYS: Mapping[str, Callable[..., Any]] = {"min": least, "max": greatest}
 
-_OF_ELEMENTS = {"any": True, "all": False}
-"""The comparison of an element that decides that of all."""
+_OF_ELEMENTS = {"any": True, "all": False}  # the comparison of an element that decides that of all
 
 _ROTATION = ("x", "y", "z", "w")
 

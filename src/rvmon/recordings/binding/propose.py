@@ -23,17 +23,13 @@ from rvmon.recordings.messages.file import Looked, MessageFile, names_in
 from rvmon.trace.schema import Kind
 from rvmon.units import base_unit, parse_unit, unit_table
 
-_MOST = 4
-"""Places that are shown for a name."""
+_MOST = 4  # places that are shown for a name
 
 _LARGE = {"rad": 360, "m": 9_000, "degC": 200, "V": 999, "A": 999, "m/s": 999, "": 100}
 """A whole number that is larger counts parts of a unit, where nobody says of which."""
 
-_WHOLE = 1.5
-"""No ratio of a whole is as large."""
-
-_TURN = 7
-"""No angle in radians, of what turns once, is as large."""
+_WHOLE = 1.5  # no ratio of a whole is as large
+_TURN = 7  # no angle in radians, of what turns once, is as large
 
 Found = list[tuple[float, Candidate]]
 Ranges = Mapping[tuple[str, str], Range]

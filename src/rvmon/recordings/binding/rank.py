@@ -43,8 +43,7 @@ _REQUESTS = frozenset(
 _EXTREMES = ("minimum", "maximum")
 """Limits; in comments they describe the range of a value, not the value itself."""
 
-_A_WORD = 0.05
-"""Scores of candidates with the same words found differ by less than this."""
+_A_WORD = 0.05  # scores of candidates with the same words found differ by less than this
 
 _MOVING = "nav_msgs/msg/Odometry"
 

@@ -53,8 +53,7 @@ PCAN); of lines that the library would take for frames, or cannot skip."""
 _LOST = {125: True, 126: False}
 """By the number of an object of BLF whether frames are lost from there on, or up to there."""
 
-_PDU_2 = 240
-"""From this format on the second byte of an identifier of J1939 is no address."""
+_PDU_2 = 240  # from this format on the second byte of an identifier of J1939 is no address
 
 
 class FrameMessages(Messages):

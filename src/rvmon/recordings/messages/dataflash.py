@@ -21,8 +21,7 @@ _TYPES = {"a": ("<i2", (32,)), **dict(zip("bBghHiIfnNZcCeELdMqQ", _CODES.split()
 
 _MAGIC = b"\xa3\x95"
 _HEAD = 3
-_PAGE = 528
-"""Bytes behind the last message of a log that is written in pages."""
+_PAGE = 528  # bytes behind the last message of a log that is written in pages
 
 _ERASED = 0xFF
 

@@ -18,8 +18,7 @@ from rvmon.trace.schema import Applied, Constant, Elements, Field, Kind, Named, 
 
 _STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]|\[([^\[\]\s](?:[^\[\]]*[^\[\]\s])?)\]")
 
-_SHOWN = 6
-"""Fields that a message lists."""
+_SHOWN = 6  # fields that a message lists
 
 _STAMPS = ("header.stamp", "stamp", "timestamp")
 _PARTS = (("sec", "nanosec"), ("sec", "nsec"), ("secs", "nsecs"), ("seconds", "nanos"))

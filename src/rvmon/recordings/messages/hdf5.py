@@ -39,8 +39,7 @@ class _Array(column_topics.LateColumn):
         self.dtype, self.unit = dtype, unit
 
 
-_Tree = dict[str, Any]
-"""Arrays, and trees of them, by name."""
+_Tree = dict[str, Any]  # arrays, and trees of them, by name
 
 
 def array_messages(path: Path, stamps: Stamps | None) -> column_topics.ColumnMessages:

@@ -28,8 +28,7 @@ _MAGIC = b"\x89MCAP0\r\n"
 _FOOTER = Struct("<BQQQI8s")
 """Opcode, length, where the summary and its offsets begin, their checksum, the magic."""
 
-_BEFORE_SUM = 25
-"""Bytes of the footer that the checksum is of, too."""
+_BEFORE_SUM = 25  # bytes of the footer that the checksum is of, too
 
 Decode = Callable[[bytes], Any]
 
@@ -222,8 +221,7 @@ def _object(decode: Decode, data: bytes) -> Mapping[str, Any]:
 
 _DESCRIBED = dict(zip(("boolean", "integer", "number", "string"), Kind, strict=True))
 
-_DEEPEST = 20
-"""Schemas nested more deeply are not followed."""
+_DEEPEST = 20  # schemas nested more deeply are not followed
 
 
 def _described_leaves(

@@ -20,11 +20,8 @@ from rvmon.trace.schema import Stamps
 
 _STAMPS = Stamps("its time", "s", is_stated=True)
 
-_IN_TIME = 1
-"""The mark of a master channel that counts seconds."""
-
-_FRAMES = "CAN_DataFrame"
-"""The channel of a group that holds frames as they were on the bus."""
+_IN_TIME = 1  # the mark of a master channel that counts seconds
+_FRAMES = "CAN_DataFrame"  # the channel of a group that holds frames as they were on the bus
 
 _LAST_STANDARD = 0x7FF
 _IDENTIFIER = 0x1FFFFFFF

@@ -277,8 +277,7 @@ def _comments(
             yield path, text
 
 
-_FILLER = "structure_needs_at_least_one_member"
-"""The field of messages that have none."""
+_FILLER = "structure_needs_at_least_one_member"  # the field of messages that have none
 
 _KINDS = {"bool": Kind.BOOL, "string": Kind.LABEL, "wstring": Kind.LABEL, "wchar": Kind.LABEL}
 

@@ -31,8 +31,7 @@ from rvmon.trace.schema import Kind, Schema, Stamps
 from rvmon.trace.stamps import stamps_of, ticks_of_cell
 from rvmon.trace.time import format_ticks
 
-_LOOKED_AT = 1000
-"""Rows that say of which kind the columns are."""
+_LOOKED_AT = 1000  # rows that say of which kind the columns are
 
 _WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _PATH = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*(\[\d{1,4}\])?")

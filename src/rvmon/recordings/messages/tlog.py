@@ -15,19 +15,15 @@ from rvmon.recordings.messages import Message, Messages, Topic
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
 
-_STAMP = 8
-"""Bytes before each packet: microseconds since 1970."""
+_STAMP = 8  # bytes before each packet: microseconds since 1970
 
 _MAGIC_1, _MAGIC_2 = 0xFE, 0xFD
 _IS_SIGNED = 1
 _Key = tuple[int, int, int, int]
 """A message, its system and component, and what its checksum says of its definition."""
 
-_OURS = -1
-"""Marks a message whose checksum agrees with its definition in the known dialect."""
-
-_FAR = 3 * 24 * 3600 * 1_000_000
-"""Microseconds: a stamp so far from the one before is none."""
+_OURS = -1  # marks a message whose checksum agrees with its definition in the known dialect
+_FAR = 3 * 24 * 3600 * 1_000_000  # microseconds: a stamp so far from the one before is none
 
 
 class TelemetryMessages(Messages):
@@ -50,7 +46,11 @@ class TelemetryMessages(Messages):
         # the last stamp
         self.end = max(max(self._times), max((outage.until for outage in self.outages), default=0))
         senders = Counter(self._called(key) for key in self._keys if key not in self._lost)
-        self._names = ["" if key in self._lost else self._name(key, senders) for key in self._keys]
+        self._names = []
+        for key in self._keys:
+            name = "" if key in self._lost else self._called(key)
+            sender = f"/sys{key[1]}_comp{key[2]}" if senders[name] > 1 else ""
+            self._names.append(name and f"{sender}/{name}")
         # by name, one a message and sender; the name says the sender where several send it
         self.topics = {
             name: self._topic(name, key)
@@ -145,10 +145,6 @@ class TelemetryMessages(Messages):
         number, *_, extra = key
         known = self._dialect.mavlink_map.get(number) if extra == _OURS else None
         return f"message_{number}" if known is None else str(known.msgname)
-
-    def _name(self, key: _Key, senders: Mapping[str, int]) -> str:
-        name = self._called(key)
-        return f"/{name}" if senders[name] == 1 else f"/sys{key[1]}_comp{key[2]}/{name}"
 
     def _topic(self, name: str, key: _Key) -> Topic:
         number, _, _, extra = key

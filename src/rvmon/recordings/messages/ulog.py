@@ -21,8 +21,7 @@ _PER_STAMP = 1_000
 _PER_DURATION = 1_000_000
 """Ticks in a microsecond, as stamps count, and in a millisecond, as the lengths of dropouts do."""
 
-_HEADER = 3
-"""Bytes before each message: its length and its type."""
+_HEADER = 3  # bytes before each message: its length and its type
 
 
 class _Watched:

@@ -27,8 +27,7 @@ FEWEST = 2
 _MOST_RANGES = 3
 _MOST_SOURCES = 2
 
-_OFTEN = 3
-"""An event that comes so many times as often as another does not answer it."""
+_OFTEN = 3  # an event that comes so many times as often as another does not answer it
 
 
 class Skeleton(Struct, frozen=True):
@@ -99,10 +98,11 @@ def _responses(columns: Sequence[Column]) -> Iterator[Skeleton]:
                 if wait:
                     found.append((not trigger.is_event, wait, trigger, response))
     for _, wait, trigger, response in sorted(found, key=lambda one: one[:2])[:1]:
-        limit = round_up(wait)
+        limit, name = round_up(wait), name_text(trigger.name)
+        upon = f"upon {name}" if trigger.is_event else f"upon rise({name})"
         yield Skeleton(
             f"After {trigger.name}, {response.name} comes in time",
-            (f"upon {_occurrence(trigger)}", f"then within {limit} {name_text(response.name)}"),
+            (upon, f"then within {limit} {name_text(response.name)}"),
             f"the longest wait in the recording was {wait / TICKS_PER_SECOND:.6g} s",
             (trigger.name, response.name),
         )
@@ -117,10 +117,6 @@ def _longest_wait(triggers: Sequence[int], responses: Sequence[int]) -> int | No
             return None
         longest = max(longest, responses[index] - t)
     return longest
-
-
-def _occurrence(column: Column) -> str:
-    return name_text(column.name) if column.is_event else f"rise({name_text(column.name)})"
 
 
 def _range(column: Column) -> Skeleton:
@@ -208,8 +204,7 @@ def round_up(ticks: int) -> str:
     return format_duration(rounded)
 
 
-_LISTED = 6
-"""Names that are listed with the reason why they are not declared."""
+_LISTED = 6  # names that are listed with the reason why they are not declared
 
 
 def starter_text(profile: Profile) -> str:
