@@ -21,16 +21,12 @@ from rvmon.texts import text_of_file
 
 
 class Compilation(Struct, frozen=True):
-    """The results of all passes over a text, right or wrong.
+    """The results of all passes over a text, right or wrong."""
 
-    Attributes:
-        files: the text and its imports, with the items that could be read.
-        checked: the items that could be checked; `None` if there were too many errors.
-        findings: errors and warnings, those of the text itself first, in order of place.
-    """
-
-    files: Sequence[ParsedSpec]
+    files: Sequence[ParsedSpec]  # the text and its imports, with the items that could be read
+    # the items that could be checked; `None` if there were too many errors
     checked: CheckedSpec | None
+    # errors and warnings, those of the text itself first, in order of place
     findings: tuple[Diagnostic, ...]
 
     @property

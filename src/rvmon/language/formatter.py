@@ -64,17 +64,11 @@ _CLAUSES = {
 
 
 class Block(Struct):
-    """An item ready for print.
-
-    Attributes:
-        pieces: of the item.
-        lines: as laid out by itself.
-        before: comments and blank lines between the item above and this one.
-    """
+    """An item ready for print."""
 
     pieces: list[Piece]
-    lines: list[str]
-    before: list[str]
+    lines: list[str]  # as laid out by itself
+    before: list[str]  # comments and blank lines between the item above and this one
 
 
 def format_text(text: str, *, name: str = "<string>") -> str:
@@ -204,23 +198,14 @@ _CLOSING = ("RPAR", "RSQB", "RBRACE")
 
 
 class Piece(Struct, frozen=True):
-    """A token in canonical spelling.
+    """A token in canonical spelling."""
 
-    Attributes:
-        kind: the terminal of the grammar.
-        text: as it is printed.
-        above: comments that stand on lines of their own before it.
-        behind: the comment that ends its line, or empty.
-        depth: the number of open brackets around it.
-        opens_window: whether it is a round bracket that opens an interval.
-    """
-
-    kind: str
-    text: str
-    above: tuple[str, ...] = ()
-    behind: str = ""
-    depth: int = 0
-    opens_window: bool = False
+    kind: str  # the terminal of the grammar
+    text: str  # as it is printed
+    above: tuple[str, ...] = ()  # comments that stand on lines of their own before it
+    behind: str = ""  # the comment that ends its line, or empty
+    depth: int = 0  # the number of open brackets around it
+    opens_window: bool = False  # whether it is a round bracket that opens an interval
 
 
 def pieces_of(text: str) -> tuple[list[Piece], str]:

@@ -29,33 +29,19 @@ Declared = items.SignalSyntax | items.EventSyntax | items.DefineItem | items.Con
 
 
 class ResolvedSpec(Struct, frozen=True):
-    """All items of a specification, each under its name.
+    """All items of a specification, each under its name."""
 
-    Attributes:
-        sources: the main file, then those it imports.
-        header: its `spec` line, if it has one.
-        time: its `time` line, if it has one.
-        delay: its `max delay` line, if it has one.
-        declared: signals, events, macros and constants by name, in order.
-        requirements: by id, in order.
-        properties: outside requirements, by id, in order.
-        covers: by id, in order.
-        coverpoints: by name, in order.
-        crosses: by name, in order.
-        doubtful: words of items that could not be read.
-    """
-
-    sources: tuple[Source, ...]
-    header: items.Header | None
-    time: items.TimeItem | None
-    delay: items.DelayItem | None
-    declared: Mapping[str, Declared]
-    requirements: Mapping[str, items.RequirementItem]
-    properties: Mapping[str, items.PropertyItem]
-    covers: Mapping[str, items.CoverItem]
-    coverpoints: Mapping[str, items.CoverpointItem]
-    crosses: Mapping[str, items.CrossItem]
-    doubtful: frozenset[str]
+    sources: tuple[Source, ...]  # the main file, then those it imports
+    header: items.Header | None  # its `spec` line, if it has one
+    time: items.TimeItem | None  # its `time` line, if it has one
+    delay: items.DelayItem | None  # its `max delay` line, if it has one
+    declared: Mapping[str, Declared]  # signals, events, macros and constants by name, in order
+    requirements: Mapping[str, items.RequirementItem]  # by id, in order
+    properties: Mapping[str, items.PropertyItem]  # outside requirements, by id, in order
+    covers: Mapping[str, items.CoverItem]  # by id, in order
+    coverpoints: Mapping[str, items.CoverpointItem]  # by name, in order
+    crosses: Mapping[str, items.CrossItem]  # by name, in order
+    doubtful: frozenset[str]  # words of items that could not be read
 
 
 _Stated = (

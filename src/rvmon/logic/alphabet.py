@@ -45,22 +45,16 @@ class Alphabet(Struct, frozen=True):
 
     A letter is the sum of one entry per proposition of `pessimistic` (or `optimistic`), taken at
     the proposition's value.
-
-    Attributes:
-        propositions: in the order of their digits.
-        truths: per proposition and digit, a representative of the truths that share the digit.
-        strides: per proposition, the weight of its digit.
-        pessimistic: per proposition, the summands for FALSE, UNKNOWN and TRUE in that run.
-        optimistic: the same for the optimistic run.
-        size: the number of letters.
     """
 
-    propositions: tuple[State, ...]
+    propositions: tuple[State, ...]  # in the order of their digits
+    # per proposition and digit, a representative of the truths that share the digit
     truths: tuple[tuple[TruthValue, ...], ...]
-    strides: tuple[int, ...]
+    strides: tuple[int, ...]  # per proposition, the weight of its digit
+    # per proposition, the summands for FALSE, UNKNOWN and TRUE in that run
     pessimistic: tuple[tuple[int, int, int], ...]
-    optimistic: tuple[tuple[int, int, int], ...]
-    size: int
+    optimistic: tuple[tuple[int, int, int], ...]  # the same for the optimistic run
+    size: int  # the number of letters
 
     def valuation(self, letter: int) -> dict[State, TruthValue]:
         """The truth of each proposition in a letter."""
@@ -162,17 +156,11 @@ MOST_TABLED = 1 << 16
 
 
 class Node(Struct, frozen=True, eq=False):
-    """A decision; equal ones are the same object.
+    """A decision; equal ones are the same object."""
 
-    Attributes:
-        level: the proposition decided on, by its place in the alphabet; −1 for a leaf.
-        children: per digit of that proposition.
-        edge: of a leaf.
-    """
-
-    level: int
-    children: tuple[Node, ...] = ()
-    edge: Edge | None = None
+    level: int  # the proposition decided on, by its place in the alphabet; −1 for a leaf
+    children: tuple[Node, ...] = ()  # per digit of that proposition
+    edge: Edge | None = None  # of a leaf
 
 
 Choice = tuple[int, frozenset[Atom], list[frozenset[Atom]]]

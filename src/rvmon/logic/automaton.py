@@ -27,14 +27,10 @@ Token = tuple[int, tuple[int, ...]]
 
 
 class Location(Struct, frozen=True):
-    """A location: the residual formula of the attempts there, for all ages of its clocks.
+    """A location: the residual formula of the attempts there, for all ages of its clocks."""
 
-    Attributes:
-        residual: its clocks are numbered 0, 1, … from the oldest.
-        cuts: per clock, the ages in ticks, ascending, at which it enters its next region.
-    """
-
-    residual: Residual
+    residual: Residual  # its clocks are numbered 0, 1, … from the oldest
+    # per clock, the ages in ticks, ascending, at which it enters its next region
     cuts: tuple[tuple[int, ...], ...]
 
 
@@ -82,34 +78,21 @@ class Automaton(Struct, frozen=True, eq=False):
     clock, the number of its cuts that its age has reached, times its stride. The edge taken from a
     row with a letter is `edges[row * classes + class_of[letter]]`. `FAILED` and `PASSED` are the
     first two locations.
-
-    Attributes:
-        alphabet: encodes the propositions of a position as a letter.
-        locations: with their residuals and cuts.
-        initial: the location before the position of the trigger.
-        classes: the number of classes of letters.
-        class_of: the class of each letter.
-        bases: per location, its first row.
-        strides: per location and clock.
-        edges: row and class to the number of an edge; −1 in unreachable rows.
-        targets: per edge, the location it leads to.
-        sources: per edge, for each clock of its target the clock it continues, or `NOW`.
-        time_values: per row, the truth value when time alone, without a letter, reaches it.
-        end_values: per row, whether the residual holds if the trace ends there.
     """
 
-    alphabet: Alphabet
-    locations: tuple[Location, ...]
-    initial: int
-    classes: int
-    class_of: LetterClasses
-    bases: tuple[int, ...]
-    strides: tuple[tuple[int, ...], ...]
-    edges: array[int]
-    targets: tuple[int, ...]
+    alphabet: Alphabet  # encodes the propositions of a position as a letter
+    locations: tuple[Location, ...]  # with their residuals and cuts
+    initial: int  # the location before the position of the trigger
+    classes: int  # the number of classes of letters
+    class_of: LetterClasses  # the class of each letter
+    bases: tuple[int, ...]  # per location, its first row
+    strides: tuple[tuple[int, ...], ...]  # per location and clock
+    edges: array[int]  # row and class to the number of an edge; −1 in unreachable rows
+    targets: tuple[int, ...]  # per edge, the location it leads to
+    # per edge, for each clock of its target the clock it continues, or `NOW`
     sources: tuple[tuple[int, ...], ...]
-    time_values: bytes
-    end_values: bytes
+    time_values: bytes  # per row, the truth value when time alone, without a letter, reaches it
+    end_values: bytes  # per row, whether the residual holds if the trace ends there
 
     @property
     def clocks(self) -> int:

@@ -15,21 +15,13 @@ from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Residual, TooManyClause
 
 
 class Budget(Struct, frozen=True):
-    """Limits beyond which the construction of an automaton is given up.
-
-    Attributes:
-        locations: locations.
-        clocks: clocks of one location.
-        rows: locations times their age regions.
-        clauses: clauses of one residual.
-        table: rows times classes of letters.
-    """
+    """Limits beyond which the construction of an automaton is given up."""
 
     locations: int = 60
-    clocks: int = 6
-    rows: int = 600
-    clauses: int = 60
-    table: int = 1 << 17
+    clocks: int = 6  # clocks of one location
+    rows: int = 600  # locations times their age regions
+    clauses: int = 60  # clauses of one residual
+    table: int = 1 << 17  # rows times classes of letters
 
 
 class DoesNotCloseError(Exception):

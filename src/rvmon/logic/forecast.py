@@ -51,12 +51,10 @@ class Forecaster:
     A continuation is an infinite word in which every proposition is known, and independent of the
     others; for bounded windows the ages of clocks are over-approximated. So a forecast is sound,
     and within the limits of the search it is complete for formulas without bounds.
-
-    Attributes:
-        duals: the factory of residuals over known propositions, and of their negations.
     """
 
     def __init__(self) -> None:
+        # the factory of residuals over known propositions, and of their negations
         self.duals = Duals()
         self._known: dict[tuple[Start, int | None], bool] = {}
         self._values: dict[tuple[Residual, Hashable, int | None], bool | None] = {}

@@ -23,9 +23,6 @@ class Four:
         stays_born: whether it is never unborn again once it was born.
         unborn: two-valued, TRUE where it is unborn; by default derived from `read`.
         parts: the operands of a conjunction; by default the formula itself.
-
-    Attributes:
-        negated: the formula of which this one is the negation, if it was made as one.
     """
 
     def __init__(
@@ -43,6 +40,7 @@ class Four:
         self.born_late = born_late
         self.stays_born = stays_born
         self.parts = tuple(parts) or (self,)
+        # the formula of which this one is the negation, if it was made as one
         self.negated: Four | None = None
         self._unborn = unborn
 

@@ -24,37 +24,30 @@ class UnmonitorableError(RvmonError):
 
 
 class Obligation(Struct, frozen=True):
-    """A requirement in core form.
+    """A requirement in core form."""
 
-    Attributes:
-        trigger: starts an attempt; `None` for `upon end`. Unborn counts as FALSE.
-        required: the formula an attempt must satisfy from its trigger on; of an episode, over all
-            its positions.
-        origins: the source of each part of `required`, for explanations.
-        running: of an episode, FALSE where it is over; with captured values, also where these are
-            no longer certain.
-        again: of an episode, FALSE where the consequent fails at once: after a failure the episode
-            resumes, as a new attempt, at the next position where this is not FALSE. `None` if it
-            never resumes, because a past operator stands above a future one.
-        unborn: of an episode, TRUE while some signal of its consequent had no value yet.
-        determined: TRUE once the trigger was TRUE or FALSE at some position; `None`: not asked.
-        hidden: the obligation of attempts in doubt, as an episode whose trigger is UNKNOWN wherever
-            a trigger may be hidden; `None` for episodes and `upon end`.
-        doubted: the same for an instance of `for each` that may not exist.
-        doubt: of an episode with captured values, UNKNOWN where another one may have begun.
-        captures_known: TRUE where the windows captured by `let` have known values.
-    """
-
-    trigger: State | None
+    trigger: State | None  # starts an attempt; `None` for `upon end`. Unborn counts as FALSE
+    # the formula an attempt must satisfy from its trigger on; of an episode, over all its positions
     required: mtl.Core
-    origins: Mapping[mtl.Core, Origin]
+    origins: Mapping[mtl.Core, Origin]  # the source of each part of `required`, for explanations
+    # of an episode, FALSE where it is over; with captured values, also where these are no longer
+    # certain
     running: State | None = None
+    # of an episode, FALSE where the consequent fails at once: after a failure the episode resumes,
+    # as a new attempt, at the next position where this is not FALSE. `None` if it never resumes,
+    # because a past operator stands above a future one
     again: State | None = None
+    # of an episode, TRUE while some signal of its consequent had no value yet
     unborn: State | None = None
+    # TRUE once the trigger was TRUE or FALSE at some position; `None`: not asked
     determined: State | None = None
+    # the obligation of attempts in doubt, as an episode whose trigger is UNKNOWN wherever a trigger
+    # may be hidden; `None` for episodes and `upon end`
     hidden: Obligation | None = None
-    doubted: Obligation | None = None
+    doubted: Obligation | None = None  # the same for an instance of `for each` that may not exist
+    # of an episode with captured values, UNKNOWN where another one may have begun
     doubt: State | None = None
+    # TRUE where the windows captured by `let` have known values
     captures_known: tuple[State, ...] = ()
 
 

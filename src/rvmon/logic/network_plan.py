@@ -32,71 +32,45 @@ class Window(Struct, frozen=True):
     """`G[a,b]` (`every`) or `F[a,b]` of a node, or `H` or `O` in the past.
 
     Offsets count units of `gap`: positions in clocked time, else ticks.
-
-    Attributes:
-        operand: its place.
-        low: offset from the current position to the start of the window; negative in the past.
-        high: offset to the end of the window, inclusive.
-        every: whether the operand must hold at all positions of the window, or at some.
-        over: ticks after which no new position can fall into the window; `None` in the past.
     """
 
-    operand: int
-    low: int
-    high: int
-    every: bool
+    operand: int  # its place
+    low: int  # offset from the current position to the start of the window; negative in the past
+    high: int  # offset to the end of the window, inclusive
+    every: bool  # whether the operand must hold at all positions of the window, or at some
+    # ticks after which no new position can fall into the window; `None` in the past
     over: int | None
 
 
 class Sweep(Struct, frozen=True):
-    """An unbounded `until` or `since`, or the dual of one.
+    """An unbounded `until` or `since`, or the dual of one."""
 
-    Attributes:
-        left: place of the left operand.
-        right: place of the right operand.
-        future: whether it is `until`, not `since`.
-        dual: whether operands and result are negated (`release`, or the dual of `since`).
-        kept: whether it counts as true at the end of the trace (an unbounded `R`).
-    """
-
-    left: int
-    right: int
-    future: bool
-    dual: bool
-    kept: bool
+    left: int  # place of the left operand
+    right: int  # place of the right operand
+    future: bool  # whether it is `until`, not `since`
+    dual: bool  # whether operands and result are negated (`release`, or the dual of `since`)
+    kept: bool  # whether it counts as true at the end of the trace (an unbounded `R`)
 
 
 class Shift(Struct, frozen=True):
-    """The value of a sweep at a fixed offset.
+    """The value of a sweep at a fixed offset."""
 
-    Attributes:
-        operand: place of a `Sweep`.
-        offset: in units of `gap`, as for `Window`; negative in the past.
-        opens: ticks until the window opens; at the end of a trace only an opened one counts.
-    """
-
-    operand: int
-    offset: int
-    opens: int
+    operand: int  # place of a `Sweep`
+    offset: int  # in units of `gap`, as for `Window`; negative in the past
+    opens: int  # ticks until the window opens; at the end of a trace only an opened one counts
 
 
 Node = Leaf | Junction | Window | Sweep | Shift
 
 
 class NetworkPlan(Struct, frozen=True):
-    """The static structure of a network.
+    """The static structure of a network."""
 
-    Attributes:
-        nodes: operands before operators, the root last.
-        places: the place of each formula.
-        leaves: places of the leaves, with their literal or constant.
-        looks_back: whether some node depends on positions before the start of the attempt.
-    """
-
-    nodes: tuple[Node, ...]
-    places: dict[mtl.Core, int]
+    nodes: tuple[Node, ...]  # operands before operators, the root last
+    places: dict[mtl.Core, int]  # the place of each formula
+    # places of the leaves, with their literal or constant
     leaves: tuple[tuple[int, mtl.Literal | mtl.Constant], ...]
-    looks_back: bool
+    looks_back: bool  # whether some node depends on positions before the start of the attempt
 
     def sweep_of(self, node: Shift) -> Sweep:
         """The sweep that a shift node reads."""

@@ -38,9 +38,6 @@ class Lowering:
         measured: see `rvmon.logic.three_valued.Reader`.
         sampled: whether only samples are positions.
         opened: whether lower bounds of `G` and `R` are taken as 0.
-
-    Attributes:
-        origins: the source of each core formula made so far.
     """
 
     def __init__(
@@ -60,7 +57,7 @@ class Lowering:
         self._may_lack_position = sampled
         self._measured = measured
         self._from_zero = opened
-        self.origins: dict[mtl.Core, Origin] = {}
+        self.origins: dict[mtl.Core, Origin] = {}  # the source of each core formula made so far
         self._made_up: dict[int, rv.Formula] = {}
 
     def state(self, formula: rv.Formula, positive: bool) -> State:

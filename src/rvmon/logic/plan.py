@@ -20,53 +20,41 @@ from rvmon.trace.sample import Scalar
 
 
 class PlannedRule(Struct, frozen=True, eq=False):
-    """One requirement, lowered and ready to be packed.
-
-    Attributes:
-        requirement: as checked.
-        trigger: starts an attempt; `None` if the end of the trace does.
-        required: the formula an attempt must satisfy.
-        alphabet: of `required`.
-        automaton: judges the attempts; `None` if a network does.
-        scatters: whether its open attempts may come to ever more states of the automaton.
-        again: of a `whenever`, not FALSE where an episode resumes after a failure; `None` if it
-            never resumes, or the requirement is no `whenever`.
-        unborn: of a level `whenever`, TRUE while a signal of its consequent had no value.
-        determined: TRUE once the trigger was TRUE or FALSE; `None` if that is not tracked.
-        hidden: judges the attempts in doubt of an `upon`; `None` if there are none. An attempt in
-            doubt starts where its trigger is UNKNOWN and none is open, and ends where it is FALSE.
-        noted: the leaves whose values a record shows; they are nodes of the graph.
-        doubted: the same as `hidden`, for an instance that may not exist.
-        running: of an episode with captured values, FALSE where it is over.
-        blurs: of attempts with captured values, UNKNOWN where another attempt, with other values,
-            may have begun; `None` if that cannot be.
-        blurs_anywhere: whether, in an instance with an unknown key, one may have begun anywhere.
-        asked: further state formulas whose values are needed.
-        captures_known: TRUE where the numbers captured from windows are known.
-        stepped: whether it must be judged by stepping attempts, not as a chain of windows.
-        traced: whether the path of attempts through the automaton is needed; implies `stepped`.
-        measured: `required` in the form that preserves robustness; `None` if that is not computed.
-    """
+    """One requirement, lowered and ready to be packed."""
 
     requirement: Requirement
-    trigger: State | None
-    required: Core
-    alphabet: Alphabet
-    automaton: Automaton | None
+    trigger: State | None  # starts an attempt; `None` if the end of the trace does
+    required: Core  # the formula an attempt must satisfy
+    alphabet: Alphabet  # of `required`
+    automaton: Automaton | None  # judges the attempts; `None` if a network does
+    # whether its open attempts may come to ever more states of the automaton
     scatters: bool = False
+    # of a `whenever`, not FALSE where an episode resumes after a failure; `None` if it never
+    # resumes, or the requirement is no `whenever`
     again: State | None = None
+    # of a level `whenever`, TRUE while a signal of its consequent had no value
     unborn: State | None = None
+    # TRUE once the trigger was TRUE or FALSE; `None` if that is not tracked
     determined: State | None = None
+    # judges the attempts in doubt of an `upon`; `None` if there are none. An attempt in doubt
+    # starts where its trigger is UNKNOWN and none is open, and ends where it is FALSE
     hidden: PlannedRule | None = None
+    # the leaves whose values a record shows; they are nodes of the graph
     noted: tuple[State, ...] = ()
-    doubted: PlannedRule | None = None
-    running: State | None = None
+    doubted: PlannedRule | None = None  # the same as `hidden`, for an instance that may not exist
+    running: State | None = None  # of an episode with captured values, FALSE where it is over
+    # of attempts with captured values, UNKNOWN where another attempt, with other values, may have
+    # begun; `None` if that cannot be
     blurs: State | None = None
+    # whether, in an instance with an unknown key, one may have begun anywhere
     blurs_anywhere: bool = False
-    asked: tuple[State, ...] = ()
-    captures_known: tuple[State, ...] = ()
+    asked: tuple[State, ...] = ()  # further state formulas whose values are needed
+    captures_known: tuple[State, ...] = ()  # TRUE where the numbers captured from windows are known
+    # whether it must be judged by stepping attempts, not as a chain of windows
     stepped: bool = False
+    # whether the path of attempts through the automaton is needed; implies `stepped`
     traced: bool = False
+    # `required` in the form that preserves robustness; `None` if that is not computed
     measured: Core | None = None
 
     @property
@@ -95,15 +83,11 @@ class PlannedRule(Struct, frozen=True, eq=False):
 
 
 class Uses(Struct, frozen=True, eq=False):
-    """The uses of a signal or event in addition to its present value.
+    """The uses of a signal or event in addition to its present value."""
 
-    Attributes:
-        history: whether the last two updates are read (`prev`, `delta`, `rate`, `changed`).
-        marked: whether the fact of an update is read (`updated`, `changed`).
-    """
-
+    # whether the last two updates are read (`prev`, `delta`, `rate`, `changed`)
     history: bool = False
-    marked: bool = False
+    marked: bool = False  # whether the fact of an update is read (`updated`, `changed`)
 
 
 class Watch(NamedTuple):
@@ -114,15 +98,11 @@ class Watch(NamedTuple):
 
 
 class WatchGroup(Struct, frozen=True):
-    """A coverpoint, or a cross of several; an item is a combination of one watch of each axis.
+    """A coverpoint, or a cross of several; an item is a combination of one watch of each axis."""
 
-    Attributes:
-        axes: ranges of watch numbers; items are numbered with the last axis fastest.
-        occasion: the watch at which the group is sampled; `None` for every change.
-    """
-
+    # ranges of watch numbers; items are numbered with the last axis fastest
     axes: tuple[range, ...]
-    occasion: int | None
+    occasion: int | None  # the watch at which the group is sampled; `None` for every change
 
     @property
     def looks_where(self) -> Iterable[int]:
@@ -131,36 +111,23 @@ class WatchGroup(Struct, frozen=True):
 
 
 class Plan(Struct, frozen=True, eq=False):
-    """Some requirements of a specification, for one run of the core.
+    """Some requirements of a specification, for one run of the core."""
 
-    Attributes:
-        spec: gives names, types and the time model.
-        rules: in the order of the file.
-        graph: their state formulas, shared.
-        gap: ticks between two positions; `None` if only samples are positions.
-        signals: all names of the specification; the index of a name is its number.
-        events: the same.
-        uses: by name, for the names that this plan reads, also to capture values.
-        units: one plan for each requirement with captured values.
-        asked: all rules, with those of the units, in the order of the file.
-        truths: formulas whose truth over the whole trace is kept.
-        watches: the bins of coverage, and the occasions at which they are sampled.
-        groups: the coverpoints and crosses over them.
-        constants: captured values that are known already; `None` is unknown.
-    """
-
-    spec: CheckedSpec
-    rules: tuple[PlannedRule, ...]
-    graph: Graph
-    gap: int | None
-    signals: tuple[str, ...]
-    events: tuple[str, ...]
-    uses: Mapping[str, Uses]
-    units: tuple[Plan, ...] = ()
+    spec: CheckedSpec  # gives names, types and the time model
+    rules: tuple[PlannedRule, ...]  # in the order of the file
+    graph: Graph  # their state formulas, shared
+    gap: int | None  # ticks between two positions; `None` if only samples are positions
+    signals: tuple[str, ...]  # all names of the specification; the index of a name is its number
+    events: tuple[str, ...]  # the same
+    uses: Mapping[str, Uses]  # by name, for the names that this plan reads, also to capture values
+    units: tuple[Plan, ...] = ()  # one plan for each requirement with captured values
+    # all rules, with those of the units, in the order of the file
     asked: tuple[PlannedRule, ...] = ()
-    truths: tuple[Core, ...] = ()
+    truths: tuple[Core, ...] = ()  # formulas whose truth over the whole trace is kept
+    # the bins of coverage, and the occasions at which they are sampled
     watches: tuple[Watch, ...] = ()
-    groups: tuple[WatchGroup, ...] = ()
+    groups: tuple[WatchGroup, ...] = ()  # the coverpoints and crosses over them
+    # captured values that are known already; `None` is unknown
     constants: Mapping[str, Scalar] = field(default_factory=dict)
 
     @property

@@ -71,12 +71,9 @@ class Elapsed(Struct, frozen=True):
 
 
 class Unborn(Struct, frozen=True):
-    """Some signal has had no known value yet; two-valued.
+    """Some signal has had no known value yet; two-valued."""
 
-    Attributes:
-        signals: names, and whether an update after the first known value is needed as well.
-    """
-
+    # names, and whether an update after the first known value is needed as well
     signals: tuple[tuple[str, bool], ...]
 
 
@@ -119,33 +116,21 @@ class StateOp(Enum):
 
 
 class State(Struct, frozen=True, eq=False):
-    """A state formula, interned by `Factory`: equal ones are the same object.
+    """A state formula, interned by `Factory`: equal ones are the same object."""
 
-    Attributes:
-        id: creation order; operands have smaller ids than the operators above them.
-        op: the operator.
-        args: its operands.
-        leaf: of a `LEAF`, the input that it reads.
-        low: of `SINCE`, the least distance in ticks.
-        high: of `SINCE`, the greatest distance; `None` if unbounded.
-        amount: of `AMOUNT`, the measured window, with or without a limit; its operands are `args`.
-            Without a limit the state is TRUE where the window's number is known.
-        compared: of `COMPARED`, the comparison.
-        passed: of `PASSED`, the instant and duration compared; `args` says whether it is known.
-        unborn: of a `LEAF` over signals, its truth value before their birth.
-        pulse: of `DOUBT`, whether the trigger is a pulse (starts an attempt wherever it is true).
-        every: of `DOUBT`, whether even a TRUE trigger counts as uncertain.
-    """
-
-    id: int
+    id: int  # creation order; operands have smaller ids than the operators above them
     op: StateOp
     args: tuple[State, ...] = ()
-    leaf: Leaf | None = None
-    low: int = 0
-    high: int | None = None
+    leaf: Leaf | None = None  # of a `LEAF`, the input that it reads
+    low: int = 0  # of `SINCE`, the least distance in ticks
+    high: int | None = None  # of `SINCE`, the greatest distance; `None` if unbounded
+    # of `AMOUNT`, the measured window, with or without a limit; its operands are `args`. Without a
+    # limit the state is TRUE where the window's number is known
     amount: rv.Amount | rv.WindowValue | None = None
-    compared: rv.Compare | None = None
+    compared: rv.Compare | None = None  # of `COMPARED`, the comparison
+    # of `PASSED`, the instant and duration compared; `args` says whether it is known
     passed: rv.Passed | None = None
-    unborn: int = UNKNOWN
+    unborn: int = UNKNOWN  # of a `LEAF` over signals, its truth value before their birth
+    # of `DOUBT`, whether the trigger is a pulse (starts an attempt wherever it is true)
     pulse: bool = False
-    every: bool = False
+    every: bool = False  # of `DOUBT`, whether even a TRUE trigger counts as uncertain

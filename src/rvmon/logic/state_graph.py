@@ -40,25 +40,17 @@ def captured_names(leaf: sf.Leaf) -> frozenset[str]:
 
 
 class Graph(Struct, frozen=True, eq=False):
-    """State formulas as a directed acyclic graph; a place is an index into `nodes`.
+    """State formulas as a directed acyclic graph; a place is an index into `nodes`."""
 
-    Attributes:
-        nodes: the state formulas, operands first.
-        index: the place of each state formula.
-        operands: per node, the places of its operands.
-        parents: per node, the places of the nodes of which it is an operand.
-        by_name: per signal and event, the places of the leaves that read it.
-        stateful: places of the nodes with memory, or that change by time alone.
-        remembers_captured: whether a node with memory depends on captured values.
-    """
-
-    nodes: tuple[sf.State, ...]
-    index: Mapping[sf.State, int]
-    operands: tuple[tuple[int, ...], ...]
+    nodes: tuple[sf.State, ...]  # the state formulas, operands first
+    index: Mapping[sf.State, int]  # the place of each state formula
+    operands: tuple[tuple[int, ...], ...]  # per node, the places of its operands
+    # per node, the places of the nodes of which it is an operand
     parents: tuple[tuple[int, ...], ...]
+    # per signal and event, the places of the leaves that read it
     by_name: Mapping[str, tuple[int, ...]]
-    stateful: tuple[int, ...]
-    remembers_captured: bool
+    stateful: tuple[int, ...]  # places of the nodes with memory, or that change by time alone
+    remembers_captured: bool  # whether a node with memory depends on captured values
 
 
 def begun_by(state: sf.State) -> str | None:
@@ -225,21 +217,15 @@ def graph_of(roots: Iterable[sf.State]) -> Graph:
 
 
 class Reach(Struct, frozen=True):
-    """The dependencies of the instances of a `for each` requirement; a key is an instance's value.
+    """What depends on the instances of a `for each` requirement; a key is an instance's value."""
 
-    Attributes:
-        own: the nodes that depend on the key, or that read the event of the `for each`.
-        fields: by event, the field that must equal the key for it to concern an instance.
-        others: the names whose updates concern all instances.
-        is_fresh: whether an instance can be forked from the memory of an instance without a key.
-        begins: whether an attempt starts only where the event of the `for each` occurs.
-    """
-
+    # the nodes that depend on the key, or that read the event of the `for each`
     own: frozenset[int]
+    # by event, the field that must equal the key for it to concern an instance
     fields: Mapping[str, rv.FieldValue]
-    others: frozenset[str]
-    is_fresh: bool
-    begins: bool
+    others: frozenset[str]  # the names whose updates concern all instances
+    is_fresh: bool  # whether an instance can be forked from the memory of an instance without a key
+    begins: bool  # whether an attempt starts only where the event of the `for each` occurs
 
 
 def reach_of(graph: Graph, each: ForEach, trigger: sf.State | None, *, looks_back: bool) -> Reach:

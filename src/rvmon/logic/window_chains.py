@@ -17,21 +17,15 @@ from rvmon.logic.network_plan import Junction, Leaf, NetworkPlan, Node, Shift, S
 
 
 class Chain(Struct, frozen=True):
-    """The chain of a network plan; places are indices of its nodes.
+    """The chain of a network plan; places are indices of its nodes."""
 
-    Attributes:
-        base: place of the operand of the innermost window: a leaf, or a junction of leaves.
-        windows: innermost first.
-        left: place of the leaf that releases the invariant; `None` if this is no invariant.
-        places: places of the windows.
-        excused: place of a leaf that is a disjunct of the invariant's body, `None` if there is
-            none. Where nothing is unknown it is true wherever `left` is.
-    """
-
-    base: int
-    windows: tuple[Window, ...]
+    base: int  # place of the operand of the innermost window: a leaf, or a junction of leaves
+    windows: tuple[Window, ...]  # innermost first
+    # place of the leaf that releases the invariant; `None` if this is no invariant
     left: int | None
-    places: tuple[int, ...]
+    places: tuple[int, ...]  # places of the windows
+    # place of a leaf that is a disjunct of the invariant's body, `None` if there is none. Where
+    # nothing is unknown it is true wherever `left` is
     excused: int | None
 
 

@@ -37,48 +37,31 @@ RESOLUTION = TICKS_PER_UNIT["ms"]
 
 @dataclass(frozen=True, slots=True)
 class Allowed:
-    """An action that the network would have allowed instead.
+    """An action that the network would have allowed instead."""
 
-    Attributes:
-        label: of an action; empty: nothing more until the end of the recording.
-        earliest: ticks since the start.
-        latest: ticks; `None` if it has no end.
-    """
-
-    label: str
-    earliest: int
-    latest: int | None
+    label: str  # of an action; empty: nothing more until the end of the recording
+    earliest: int  # ticks since the start
+    latest: int | None  # ticks; `None` if it has no end
 
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """The point at which a recording stops being a run of the network.
+    """The point at which a recording stops being a run of the network."""
 
-    Attributes:
-        at: ticks since the start.
-        label: the action that no run can do then; empty: the recording ends, but every run would
-            have done something before.
-        allowed: the actions possible after those before.
-    """
-
-    at: int
+    at: int  # ticks since the start
+    # the action that no run can do then; empty: the recording ends, but every run would have done
+    # something before
     label: str
-    allowed: tuple[Allowed, ...]
+    allowed: tuple[Allowed, ...]  # the actions possible after those before
 
 
 @dataclass(frozen=True, slots=True)
 class Conformance:
-    """The answer for one recording.
+    """The answer for one recording."""
 
-    Attributes:
-        explained: actions that some run of the network does at these instants.
-        divergence: the first that none does; `None` if the recording conforms.
-        undecided: the budget that ended the search; empty if it was done.
-    """
-
-    explained: int
-    divergence: Divergence | None
-    undecided: str = ""
+    explained: int  # actions that some run of the network does at these instants
+    divergence: Divergence | None  # the first that none does; `None` if the recording conforms
+    undecided: str = ""  # the budget that ended the search; empty if it was done
 
     @property
     def conforms(self) -> bool | None:
@@ -142,22 +125,15 @@ def conform(
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """A position in a recording: everything before it is explained by some run.
+    """A position in a recording: everything before it is explained by some run."""
 
-    Attributes:
-        t: the instant of what comes next, in ticks.
-        left: the actions of this instant that are left; none at the end.
-        explained: the number of actions before.
-        earliest, latest: the instant give or take the tolerance, in units.
-        next: of the place that comes behind the instant; `None` at the end.
-    """
-
-    t: int
-    left: tuple[str, ...]
-    explained: int
+    t: int  # the instant of what comes next, in ticks
+    left: tuple[str, ...]  # the actions of this instant that are left; none at the end
+    explained: int  # the number of actions before
+    # earliest, latest: the instant give or take the tolerance, in units
     earliest: int
     latest: int
-    next: int | None
+    next: int | None  # of the place that comes behind the instant; `None` at the end
 
 
 def _chain_of(actions: Sequence[Recorded], end: int, tolerance: int, most: int) -> list[_Place]:

@@ -53,18 +53,13 @@ class Phase(Enum):
 
 @dataclass(frozen=True, slots=True)
 class _Site:
-    """A location of the watcher.
-
-    Attributes:
-        location: of the monitor, if an attempt is followed.
-        clocks: for each of the monitor's clocks the one of the watcher that it is.
-        region: while time passes, for each the number of bounds that its age has passed.
-    """
+    """A location of the watcher."""
 
     phase: Phase
-    location: int = -1
+    location: int = -1  # of the monitor, if an attempt is followed
+    # for each of the monitor's clocks the one of the watcher that it is
     clocks: tuple[int, ...] = ()
-    region: Region = ()
+    region: Region = ()  # while time passes, for each the number of bounds that its age has passed
 
     @property
     def held(self) -> _Held:
@@ -92,15 +87,6 @@ class Observed:
         signals: the expression of each signal over locations and variables.
         labels: the labels of the network's actions, which are its events.
 
-    Attributes:
-        network: with the monitor.
-        triggered, passed, failed: true where an attempt is followed, and where it has ended like
-            this.
-        lost: true where no monitor of this kind can follow it.
-        is_open: true where an attempt is followed and not decided.
-        rests: true where it also stays so while time diverges.
-        reads_events: whether what is required speaks of events, which actions alone have.
-
     Raises:
         NotExpressibleError: it speaks of what the network does not have, or a window does not end
             at a whole number of units.
@@ -121,6 +107,7 @@ class Observed:
         required = [
             name for proposition in alphabet.propositions for name in events_of(proposition)
         ]
+        # whether what is required speaks of events, which actions alone have
         self.reads_events = bool(required)
         trigger = obligation.trigger
         bound = None if trigger is None or not isinstance(trigger.leaf, BoundAtom) else trigger.leaf
@@ -155,9 +142,14 @@ class Observed:
         for site in self._waiting:
             self._expand(site)
         self.network = self._watcher.network()
+        # triggered, passed, failed: true where an attempt is followed, and where it has ended like
+        # this
         self.triggered = self._where(lambda site: site.location >= 0)
+        # true where no monitor of this kind can follow it
         self.lost = self._where(lambda site: site.location == _LOST)
+        # true where an attempt is followed and not decided
         self.is_open = self._where(lambda site: site.location > PASSED, at_start=False)
+        # true where it also stays so while time diverges
         self.rests = self._where(self._is_resting, at_start=False)
         self.passed = self._where(lambda site: site.location == PASSED)
         self.failed = self._where(lambda site: site.location == FAILED)

@@ -28,15 +28,11 @@ _SIGNS = {ex.BinaryOp.AND: "&&", ex.BinaryOp.OR: "||"}
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """A clock, variable or channel, or an array of them, under its new name.
-
-    Attributes:
-        first: index of its first element in the network.
-        extents: the indices of each dimension in the network; in the text they start at 0.
-    """
+    """A clock, variable or channel, or an array of them, under its new name."""
 
     name: str
-    first: int
+    first: int  # index of its first element in the network
+    # the indices of each dimension in the network; in the text they start at 0
     extents: tuple[range, ...]
 
     @property
@@ -63,23 +59,17 @@ class Names:
 
     Args:
         network: the network to name; local names become global ones.
-
-    Attributes:
-        clocks: in order, arrays as one thing.
-        variables: likewise.
-        channels: likewise.
-        locals: of functions, likewise.
-        functions: the functions named so far, callees first.
-        automata: a name for each.
     """
 
     def __init__(self, network: Network) -> None:
         self._taken: set[str] = set(_RESERVED)
         self.network = network
+        # in order, arrays as one thing; locals are those of functions
         self.clocks = self._things([clock.name for clock in network.clocks])
-        self.variables = self._things([variable.name for variable in network.variables])
+        self.variables = self._things([variable.name for variable in network.variables])  # likewise
         self.channels = self._things([channel.name for channel in network.channels])
         self.locals = self._things([variable.name for variable in network.locals])
+        # the functions named so far, callees first
         self.functions: dict[int, tuple[str, ex.Function]] = {}
         self.automata = [self._fresh(automaton.name) for automaton in network.automata]
 

@@ -110,17 +110,11 @@ def explained(
 
 
 class MachineRuns(Struct, frozen=True):
-    """The two runs of an automaton for one attempt, as `rvmon.monitor.explanation.Judged`.
+    """The two runs of an automaton for one attempt, as `rvmon.monitor.explanation.Judged`."""
 
-    Attributes:
-        residuals: the residual of each location.
-        position: the last position at which the runs were stepped.
-        gap: ticks between two positions; `None` if only samples are positions.
-    """
-
-    residuals: Sequence[Residual]
-    position: int
-    gap: int | None
+    residuals: Sequence[Residual]  # the residual of each location
+    position: int  # the last position at which the runs were stepped
+    gap: int | None  # ticks between two positions; `None` if only samples are positions
 
     def required(self, attempt: Undecided, now: int, *, optimistic: bool) -> str | None:
         """See `Judged`."""

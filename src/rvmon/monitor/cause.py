@@ -23,21 +23,15 @@ AT_DECISION = -2
 
 
 class Cause(Struct, frozen=True):
-    """The cause of a decision.
+    """The cause of a decision."""
 
-    Attributes:
-        node: the obligation, or the literal if none lies above it.
-        start: the instantiation of the obligation: for a network its instant in ticks; for an
-            automaton the number of the clock started then, `NO_CLOCK` for the trigger, or
-            `AT_DECISION`.
-        over: whether the decision is that its window closed.
-        literal: the proposition that decided it, if a single one did.
-    """
-
+    # the obligation, or the literal if none lies above it
     node: formula.Literal | formula.Until | formula.Release
+    # the instantiation of the obligation: for a network its instant in ticks; for an automaton the
+    # number of the clock started then, `NO_CLOCK` for the trigger, or `AT_DECISION`
     start: int
-    over: bool
-    literal: formula.Literal | None
+    over: bool  # whether the decision is that its window closed
+    literal: formula.Literal | None  # the proposition that decided it, if a single one did
 
 
 class CauseFinder:
@@ -193,26 +187,19 @@ class LastWith(Struct, frozen=True):
 
 
 class TruthValues(NamedTuple):
-    """The truth values of a requirement's propositions at a position, with their history.
+    """The truth values of a requirement's propositions at a position, with their history."""
 
-    Attributes:
-        origin: the first instant of the run, ticks.
-        gap: ticks between two positions; `None` if only samples are positions.
-        begun: for an instance of `for each`, its first position; `None`: all positions count.
-        truths: of the propositions.
-        words: of them, as the core noted them: of each since when it has this truth, and when it
-            was last another than FALSE, and than TRUE; `NEVER` if it was not.
-        places: by proposition the place of its truth, and of its words.
-        at_trigger: by text of a leaf, its truth value at the trigger.
-    """
-
-    origin: int
-    gap: int | None
+    origin: int  # the first instant of the run, ticks
+    gap: int | None  # ticks between two positions; `None` if only samples are positions
+    # for an instance of `for each`, its first position; `None`: all positions count
     begun: int | None
-    truths: Sequence[int]
+    truths: Sequence[int]  # of the propositions
+    # of them, as the core noted them: of each since when it has this truth, and when it was last
+    # another than FALSE, and than TRUE; `NEVER` if it was not
     words: Sequence[int]
+    # by proposition the place of its truth, and of its words
     places: Mapping[State, tuple[int, int]]
-    at_trigger: Mapping[str, int]
+    at_trigger: Mapping[str, int]  # by text of a leaf, its truth value at the trigger
 
     def since(self, proposition: State) -> int:
         """The position since which a proposition has had its truth value."""

@@ -22,17 +22,12 @@ if TYPE_CHECKING:
 
 
 class CompiledSpec:
-    """A compiled specification, from which any number of monitors can be built.
-
-    Attributes:
-        checked: as checked.
-        is_kept: whether packed plans are cached in the user's cache folder.
-        forms: derived objects made so far, such as packed plans, by the options they depend on.
-    """
+    """A compiled specification, from which any number of monitors can be built."""
 
     def __init__(self, checked: CheckedSpec, *, is_kept: bool = False) -> None:
         self.checked = checked
-        self.is_kept = is_kept
+        self.is_kept = is_kept  # whether packed plans are cached in the user's cache folder
+        # derived objects made so far, such as packed plans, by the options they depend on
         self.forms: dict[object, object] = {}
 
     @cached_property

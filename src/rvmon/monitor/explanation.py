@@ -22,37 +22,25 @@ from rvmon.verdicts.attempt import Blame, Decision
 
 
 class Outage(Struct, frozen=True, eq=False):
-    """A stretch over which a signal or event was unknown; the next value ends it.
-
-    Attributes:
-        name: of the signal or event.
-        why: the reason; `MISSING` if there was no value yet, `ABSENT` if there is no source.
-        since: its first instant, ticks; meaningless for `MISSING` and `ABSENT`.
-        until: the instant at which it was known again, ticks; `None` if it still is unknown.
-        bound: for `stale after D`, D in ticks.
-    """
+    """A stretch over which a signal or event was unknown; the next value ends it."""
 
     name: str
+    # the reason; `MISSING` if there was no value yet, `ABSENT` if there is no source
     why: HealthKind
-    since: int = 0
+    since: int = 0  # its first instant, ticks; meaningless for `MISSING` and `ABSENT`
+    # the instant at which it was known again, ticks; `None` if it still is unknown
     until: int | None = None
-    bound: int = 0
+    bound: int = 0  # for `stale after D`, D in ticks
 
 
 class Doubt(Struct, frozen=True):
-    """Why the pessimistic and the optimistic run of an attempt diverged: what was unknown.
+    """Why the pessimistic and the optimistic run of an attempt diverged: what was unknown."""
 
-    Attributes:
-        origin: the first instant of the run, ticks.
-        position: the instant of their divergence, ticks.
-        outages: of the signals and events involved; their ends may become known later.
-        texts: of propositions that were unknown although all their inputs were known.
-    """
-
-    origin: int
-    position: int
+    origin: int  # the first instant of the run, ticks
+    position: int  # the instant of their divergence, ticks
+    # of the signals and events involved; their ends may become known later
     outages: tuple[Outage, ...]
-    texts: tuple[str, ...]
+    texts: tuple[str, ...]  # of propositions that were unknown although all their inputs were known
 
     def __str__(self) -> str:
         """One or several clauses.
@@ -121,31 +109,20 @@ def truths_shown(texts: tuple[str, ...], seen: tuple[int, ...]) -> Mapping[str, 
 
 
 class Undecided(Struct, frozen=True):
-    """The state of an undecided attempt.
+    """The state of an undecided attempt."""
 
-    Attributes:
-        compiled: the requirement, or what judges its attempts in doubt.
-        origin: the first instant of the run, ticks.
-        triggered: the instant of its trigger, ticks.
-        worse: state of the pessimistic run, which reads UNKNOWN as the worse value.
-        better: state of the optimistic run.
-        doubt: the instant and reason of their divergence, or why the trigger itself is in doubt.
-        unborn: names that it reads and that had no value so far.
-        sure: whether its trigger was TRUE, so that it is not in doubt.
-        cannot_pass: whether it cannot pass, as its episode ended before all its signals were born.
-        cut: whether its captured values are no longer certain.
-    """
-
-    compiled: CompiledRequirement
-    origin: int
-    triggered: int
-    worse: Token
-    better: Token
+    compiled: CompiledRequirement  # the requirement, or what judges its attempts in doubt
+    origin: int  # the first instant of the run, ticks
+    triggered: int  # the instant of its trigger, ticks
+    worse: Token  # state of the pessimistic run, which reads UNKNOWN as the worse value
+    better: Token  # state of the optimistic run
+    # the instant and reason of their divergence, or why the trigger itself is in doubt
     doubt: Doubt | None
-    unborn: tuple[Outage, ...]
-    sure: bool
+    unborn: tuple[Outage, ...]  # names that it reads and that had no value so far
+    sure: bool  # whether its trigger was TRUE, so that it is not in doubt
+    # whether it cannot pass, as its episode ended before all its signals were born
     cannot_pass: bool
-    cut: bool
+    cut: bool  # whether its captured values are no longer certain
 
 
 Alone = tuple[int, bool] | None

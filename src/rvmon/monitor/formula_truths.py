@@ -25,16 +25,12 @@ if TYPE_CHECKING:
 
 
 class Known(Struct, frozen=True):
-    """The positions at which a formula is decided.
+    """The positions at which a formula is decided."""
 
-    Attributes:
-        true: int64[n, 2], ranges of positions (first, last), ascending. Positions count ticks, in
-            clocked time ticks divided by the period, in sampled time samples.
-        false: the same for FALSE.
-    """
-
+    # int64[n, 2], ranges of positions (first, last), ascending. Positions count ticks, in clocked
+    # time ticks divided by the period, in sampled time samples
     true: NDArray[np.int64]
-    false: NDArray[np.int64]
+    false: NDArray[np.int64]  # the same for FALSE
 
 
 class TruthsPlan:

@@ -34,21 +34,17 @@ class Intake:
     Args:
         delay: `max delay`, how far behind the newest sample another may come, ticks.
         events: the names that are events.
-
-    Attributes:
-        floor: samples before this instant are refused; all before it has been released.
-        conflicts: signals that got two values at one instant.
-        newest: the latest instant of a sample; `None` before the first.
-        crowded: the number of samples judged early because too many were held, and the instant of
-            the first of them; `None` if there were none.
     """
 
     def __init__(self, delay: int, events: Container[str]) -> None:
         self.delay = delay
         self.events = events
+        # samples before this instant are refused; all before it has been released
         self.floor = -TIME_LIMIT
-        self.conflicts = Conflicts()
-        self.newest: int | None = None
+        self.conflicts = Conflicts()  # signals that got two values at one instant
+        self.newest: int | None = None  # the latest instant of a sample; `None` before the first
+        # the number of samples judged early because too many were held, and the instant of the
+        # first of them; `None` if there were none
         self.crowded: tuple[int, int] | None = None
         # A heap of (instant, is sample, order of arrival, item): turns precede samples.
         self._held: list[tuple[int, bool, int, Mapping[str, Value] | Turn]] = []

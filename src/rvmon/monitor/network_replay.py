@@ -17,12 +17,9 @@ _IN_WORD = 32
 
 
 class Letters(msgspec.Struct, frozen=True):
-    """The recorded truth values of propositions, position by position.
+    """The recorded truth values of propositions, position by position."""
 
-    Attributes:
-        pieces: int64 words: a position, then its packed truth values, two bits each, and so on.
-    """
-
+    # int64 words: a position, then its packed truth values, two bits each, and so on
     pieces: tuple[bytes, ...]
 
     def read(self, count: int) -> Iterator[tuple[int, tuple[int, ...]]]:

@@ -49,17 +49,12 @@ _WHY = (
 
 
 class Note(NamedTuple):
-    """A note of the core about an attempt; the layout of its words is described in `write_notes.c`.
+    """A note of the core about an attempt; its words are described in `write_notes.c`."""
 
-    Attributes:
-        words: the int64 words of the note.
-        state: the words on leaves and propositions at the decision; empty if there are none.
-        letters: the letters a network was evaluated on; `None` for an automaton.
-    """
-
-    words: tuple[int, ...]
+    words: tuple[int, ...]  # the int64 words of the note
+    # the words on leaves and propositions at the decision; empty if there are none
     state: tuple[int, ...]
-    letters: Letters | None
+    letters: Letters | None  # the letters a network was evaluated on; `None` for an automaton
 
     @property
     def kind(self) -> int:

@@ -32,19 +32,12 @@ _APART = 50
 
 
 class _Atom(Struct, frozen=True):
-    """A required proposition, with the phrases for it in sentences.
+    """A required proposition, with the phrases for it in sentences."""
 
-    Attributes:
-        quoted: its text.
-        positive: whether it is required to be true, not false.
-        is_event: whether it is an event, which occurs rather than being true.
-        lasting: whether the required value can last longer than single instants.
-    """
-
-    quoted: str
-    positive: bool
-    is_event: bool
-    lasting: bool
+    quoted: str  # its text
+    positive: bool  # whether it is required to be true, not false
+    is_event: bool  # whether it is an event, which occurs rather than being true
+    lasting: bool  # whether the required value can last longer than single instants
 
     def truth(self, right: bool) -> str:
         """The required truth value (`right`), or the other one."""

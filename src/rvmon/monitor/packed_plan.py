@@ -88,30 +88,23 @@ the letters but for their last piece, and that piece; see `module_notes.h`."""
 
 
 class PlannedCore(Struct, frozen=True):
-    """A packed plan; makes monitors.
+    """A packed plan; makes monitors."""
 
-    Attributes:
-        packed: the plan as bytes, with the names of its numbers.
-        captured: decodes captured values.
-        numbers: by name, its number: signals first, then events.
-        words: per signal, event and field: of a label type the number of each label, of an event
-            that of each field, else `None`.
-        kinds: per signal, event and field, the kind of its values; meaningless for events.
-        limits: of an event, whether only one payload of it can be judged at one instant; of a
-            signal, whether that it is unknown is no update.
-        single_payloads: the events of which only one payload can be judged at one instant.
-        readers: by signal and event, the ids of the requirements that read it.
-        compiled: the specification, to explain attempts; `None` for a plan without requirements.
-    """
-
-    packed: Packed
+    packed: Packed  # the plan as bytes, with the names of its numbers
     captured: CapturedValues
-    numbers: dict[str, int]
+    numbers: dict[str, int]  # by name, its number: signals first, then events
+    # per signal, event and field: of a label type the number of each label, of an event that of
+    # each field, else `None`
     words: tuple[Mapping[str, int] | None, ...]
-    kinds: bytes
+    kinds: bytes  # per signal, event and field, the kind of its values; meaningless for events
+    # of an event, whether only one payload of it can be judged at one instant; of a signal, whether
+    # that it is unknown is no update
     limits: bytes
+    # the events of which only one payload can be judged at one instant
     single_payloads: frozenset[str]
+    # by signal and event, the ids of the requirements that read it
     readers: Mapping[str, tuple[str, ...]]
+    # the specification, to explain attempts; `None` for a plan without requirements
     compiled: CompiledSpec | None
 
     @property

@@ -21,17 +21,11 @@ from rvmon.verdicts.attempt import Attempt, Decision, measured_attempt
 
 @dataclass(frozen=True, slots=True)
 class Robustness(Bounds):
-    """Bounds on the robustness of a formula, in SI base units.
+    """Bounds on the robustness of a formula, in SI base units."""
 
-    Attributes:
-        low: lower bound over all values of unknown input and all continuations of the trace.
-        high: upper bound, likewise.
-        kept: lower bound if every opened unbounded `R` (`always`) holds after the end.
-    """
-
-    low: float
-    high: float
-    kept: float
+    low: float  # lower bound over all values of unknown input and all continuations of the trace
+    high: float  # upper bound, likewise
+    kept: float  # lower bound if every opened unbounded `R` (`always`) holds after the end
 
     def of(self, attempt: Attempt) -> float | None:
         """The robustness of a decided attempt, or the bound nearer to the other verdict.
@@ -56,21 +50,14 @@ class Robustness(Bounds):
 
 @dataclass(frozen=True, slots=True)
 class Measured(Figure):
-    """The robustness of one attempt, or at one position.
-
-    Attributes:
-        requirement: its id.
-        number: the number of the attempt; `None` for the robustness at a position, of a stream.
-        t: the instant of the trigger, or of the position, ticks.
-        robustness: the bounds.
-        in_doubt: whether the attempt is in doubt.
-    """
+    """The robustness of one attempt, or at one position."""
 
     requirement: str
+    # the number of the attempt; `None` for the robustness at a position, of a stream
     number: int | None
-    t: int
+    t: int  # the instant of the trigger, or of the position, ticks
     robustness: Robustness = field()
-    in_doubt: bool = False
+    in_doubt: bool = False  # whether the attempt is in doubt
 
 
 FIGURES = Measured, Robustness
@@ -116,17 +103,12 @@ Key = tuple[str, int]
 
 
 class Margins(Struct, frozen=True):
-    """The robustness of all attempts of a run.
+    """The robustness of all attempts of a run."""
 
-    Attributes:
-        attempts: by requirement and number of the attempt.
-        doubtful: the same for attempts in doubt that have a record.
-        streams: by requirement, its robustness at the instants of samples. Requirements with `let`
-            or `for each` have none: it would depend on the attempt.
-    """
-
-    attempts: Mapping[Key, Robustness]
-    doubtful: Mapping[Key, Robustness]
+    attempts: Mapping[Key, Robustness]  # by requirement and number of the attempt
+    doubtful: Mapping[Key, Robustness]  # the same for attempts in doubt that have a record
+    # by requirement, its robustness at the instants of samples. Requirements with `let` or `for
+    # each` have none: it would depend on the attempt
     streams: Mapping[str, Sequence[tuple[int, Robustness]]]
 
     def of(self, attempt: Attempt) -> Attempt:

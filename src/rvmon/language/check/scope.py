@@ -21,25 +21,16 @@ from rvmon.units import PLAIN, Unit, unit_table
 
 
 class Quantity(Struct, frozen=True):
-    """A number or label with its unit.
+    """A number or label with its unit."""
 
-    Attributes:
-        node: the expression that yields it at run time; `None` if it is a constant.
-        constant: the exact value in `unit` if it is a constant.
-        unit: of the value.
-        integral: whether all values are whole numbers by type.
-        labels: the labels it may take, if it is one.
-        truth: whether it is a bool, for which 0 and 1 stand.
-        lone: the window that it is, if it is no expression of one.
-    """
-
+    # the expression that yields it at run time; `None` if it is a constant
     node: rv.Numeric | None = None
-    constant: Fraction | None = None
-    unit: Unit = PLAIN
-    integral: bool = False
-    labels: tuple[str, ...] = ()
-    truth: bool = False
-    lone: Lone | None = None
+    constant: Fraction | None = None  # the exact value in `unit` if it is a constant
+    unit: Unit = PLAIN  # of the value
+    integral: bool = False  # whether all values are whole numbers by type
+    labels: tuple[str, ...] = ()  # the labels it may take, if it is one
+    truth: bool = False  # whether it is a bool, for which 0 and 1 stand
+    lone: Lone | None = None  # the window that it is, if it is no expression of one
 
 
 class Age(Struct, frozen=True):
@@ -70,18 +61,12 @@ class Moment(Struct, frozen=True):
 
 
 class Lone(Struct, frozen=True):
-    """A number that is just a window; with a limit it has a comparison of its own.
+    """A number that is just a window; with a limit it has a comparison of its own."""
 
-    Attributes:
-        of: the window; of a share, its duration.
-        added: its x, if it is of numbers.
-        share: whether it is divided by D.
-        begun: the condition that the trigger has come, if only members since then count.
-    """
-
-    of: rv.WindowValue
-    added: Quantity | None = None
-    share: bool = False
+    of: rv.WindowValue  # the window; of a share, its duration
+    added: Quantity | None = None  # its x, if it is of numbers
+    share: bool = False  # whether it is divided by D
+    # the condition that the trigger has come, if only members since then count
     begun: rv.Formula | None = None
 
 
@@ -121,17 +106,12 @@ class AtTrigger(Struct, frozen=True):
 
 
 class Scope(Struct, frozen=True):
-    """The names that hold inside a macro or requirement, besides those of the file.
+    """The names that hold inside a macro or requirement, besides those of the file."""
 
-    Attributes:
-        names: by name, its meaning.
-        trigger: in what is required, what is captured with it.
-        at_once: whether it is required at the trigger, and not at some later instant.
-    """
-
+    # by name, its meaning
     names: Mapping[str, Closure | Quantity | Moment] = field(default_factory=dict)
-    trigger: AtTrigger | None = None
-    at_once: bool = False
+    trigger: AtTrigger | None = None  # in what is required, what is captured with it
+    at_once: bool = False  # whether it is required at the trigger, and not at some later instant
 
     def later(self) -> Scope:
         """The same below an operator of time."""
@@ -167,24 +147,17 @@ _LONG_NAMES = {
 
 
 class Table(Struct, frozen=True):
-    """The declarations of a file, by name.
-
-    Attributes:
-        time: the time model.
-        signals: checked, by name.
-        events: checked, by name.
-        units: of real signals, and of payload fields as `event.field`.
-        declared: everything by name, macros and constants too.
-        recursive: macros and constants that are defined by themselves.
-        doubtful: words that an item with a syntax error may have declared.
-    """
+    """The declarations of a file, by name."""
 
     time: TimeModel
-    signals: Mapping[str, Signal] = field(default_factory=dict)
-    events: Mapping[str, Event] = field(default_factory=dict)
+    signals: Mapping[str, Signal] = field(default_factory=dict)  # checked, by name
+    events: Mapping[str, Event] = field(default_factory=dict)  # checked, by name
+    # of real signals, and of payload fields as `event.field`
     units: Mapping[str, Unit] = field(default_factory=dict)
+    # everything by name, macros and constants too
     declared: Mapping[str, Declared] = field(default_factory=dict)
-    recursive: frozenset[str] = frozenset()
+    recursive: frozenset[str] = frozenset()  # macros and constants that are defined by themselves
+    # words that an item with a syntax error may have declared
     doubtful: frozenset[str] = frozenset()
 
     def field(self, name: str) -> FieldOf | None:

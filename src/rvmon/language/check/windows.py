@@ -34,21 +34,13 @@ MOST_LAST = 1_000_000
 
 
 class _Window(Struct, frozen=True):
-    """The window of a call: its members and its extent.
-
-    Attributes:
-        of: the expression.
-        scope: of that.
-        ticks: D; `None`: no such window.
-        most: the number of updates; `None`: any number.
-        since: whether only members since the trigger count.
-    """
+    """The window of a call: its members and its extent."""
 
     of: Expression
     scope: Scope
-    ticks: int | None = None
-    most: int | None = None
-    since: bool = False
+    ticks: int | None = None  # D; `None`: no such window
+    most: int | None = None  # the number of updates; `None`: any number
+    since: bool = False  # whether only members since the trigger count
 
     @property
     def span(self) -> Span:

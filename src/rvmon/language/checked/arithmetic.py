@@ -113,25 +113,16 @@ class Exactness(StrEnum):
 
 
 class Operation(Struct, frozen=True):
-    """The entry of an operation: arity, units, evaluation, documentation.
+    """The entry of an operation: arity, units, evaluation, documentation."""
 
-    Attributes:
-        least: the least number of arguments.
-        most: the greatest; `None`: any number, folded from the left.
-        unit: of the result.
-        apply: yields the result, of exact fractions too; an error of arithmetic is unknown.
-        whole: whether the result of whole numbers is one.
-        doc: its value in a few words.
-        exactness: of the result, of reals.
-    """
-
-    least: int
-    most: int | None
-    unit: UnitRule
+    least: int  # the least number of arguments
+    most: int | None  # the greatest; `None`: any number, folded from the left
+    unit: UnitRule  # of the result
+    # yields the result, of exact fractions too; an error of arithmetic is unknown
     apply: Callable[..., float]
-    whole: bool
-    doc: str
-    exactness: Exactness = Exactness.ROUNDED
+    whole: bool  # whether the result of whole numbers is one
+    doc: str  # its value in a few words
+    exactness: Exactness = Exactness.ROUNDED  # of the result, of reals
 
 
 def _exact(

@@ -84,24 +84,17 @@ class WindowValue(Struct, frozen=True):
 
     A member is a position at which φ is true, with the number x there; where φ is not born there is
     none. Where x reads fields of one event each occurrence is a member that `chosen` holds of.
-
-    Attributes:
-        measured: the measure of the members.
-        operand: φ, of the present and past.
-        window: D, ticks; `None`: since the first instant.
-        value: x; `None`: positions or ticks are counted.
-        most: the greatest number of members, the last ones; `None`: all of the window.
-        counted: with `most`, whether a member counts; of numbers, a comparison of x with itself.
-        chosen: comparisons of fields that are asked of each occurrence.
     """
 
-    measured: Measured
-    operand: Formula
-    window: int | None
-    value: Numeric | None = None
+    measured: Measured  # the measure of the members
+    operand: Formula  # φ, of the present and past
+    window: int | None  # D, ticks; `None`: since the first instant
+    value: Numeric | None = None  # x; `None`: positions or ticks are counted
+    # the greatest number of members, the last ones; `None`: all of the window
     most: int | None = None
+    # with `most`, whether a member counts; of numbers, a comparison of x with itself
     counted: Formula | None = None
-    chosen: tuple[Compare, ...] = ()
+    chosen: tuple[Compare, ...] = ()  # comparisons of fields that are asked of each occurrence
 
     @property
     def operands(self) -> tuple[Formula, ...]:
@@ -152,10 +145,6 @@ def fields_in(*numbers: Numeric) -> Iterator[FieldValue]:
 class CompareOp(StrEnum):
     """Comparisons of numbers; labels know only `==` and `!=`.
 
-    Attributes:
-        holds: compares two numbers, or arrays of them.
-        said: an English verb for it.
-
     >>> CompareOp.LE.holds(2, 3), CompareOp.LE.mirrored, CompareOp.LE.denied
     (True, <CompareOp.GE: '>='>, <CompareOp.GT: '>'>)
     """
@@ -167,8 +156,8 @@ class CompareOp(StrEnum):
     GE = ">=", operator.ge, "is at least"
     GT = ">", operator.gt, "is above"
 
-    holds: Callable[[Any, Any], Any]
-    said: str
+    holds: Callable[[Any, Any], Any]  # compares two numbers, or arrays of them
+    said: str  # an English verb for it
 
     def __new__(
         cls, sign: str, holds: Callable[[Any, Any], Any] = operator.eq, said: str = ""
@@ -275,22 +264,15 @@ class Binary(Struct, frozen=True):
 
 
 class Amount(Struct, frozen=True):
-    """`count(φ, D) >= n`, `sum(x, D) > c` and their kin: a window compared with a limit, exactly.
-
-    Attributes:
-        of: the window.
-        limit: n or c, in the unit of what is measured: of a duration ticks, of an integral that of
-            x times seconds, of a variance the square of that of x.
-        strict: whether it is `> c`.
-        span: of the whole.
-        known: a comparison of c with itself, if it may change.
-    """
+    """`count(φ, D) >= n`, `sum(x, D) > c` and their kin: a window compared exactly with a limit."""
 
     of: WindowValue
+    # n or c, in the unit of what is measured: of a duration ticks, of an integral that of x times
+    # seconds, of a variance the square of that of x
     limit: Numeric
-    strict: bool = False
+    strict: bool = False  # whether it is `> c`
     span: Span | None = None
-    known: Compare | None = None
+    known: Compare | None = None  # a comparison of c with itself, if it may change
 
     @property
     def operands(self) -> tuple[Formula, ...]:
@@ -320,19 +302,12 @@ class Amount(Struct, frozen=True):
 
 
 class Passed(Struct, frozen=True):
-    """`now - t0 >= x`: at least so long has passed since an instant that was captured.
+    """`now - t0 >= x`: at least so long has passed since an instant that was captured."""
 
-    Attributes:
-        since: the name of that instant; `None`: since the first.
-        after: x, seconds, rounded to whole ticks; halves to even ones.
-        strict: whether it is `> x`.
-        known: a comparison with itself of what it reads: where that is known.
-    """
-
-    since: str | None
-    after: Numeric
-    strict: bool
-    known: Compare
+    since: str | None  # the name of that instant; `None`: since the first
+    after: Numeric  # x, seconds, rounded to whole ticks; halves to even ones
+    strict: bool  # whether it is `> x`
+    known: Compare  # a comparison with itself of what it reads: where that is known
     span: Span | None = None
 
     @property

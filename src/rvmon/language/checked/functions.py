@@ -27,24 +27,16 @@ class Argument(Enum):
 
 
 class Function(Struct, frozen=True):
-    """A function.
-
-    Attributes:
-        name: of it.
-        means: the formula of a call; `None`: an age, which stands in comparisons only, or the last
-            updates, which stand in windows only.
-        arguments: of a call.
-        doc: its value in a few words.
-        more: whether further arguments like the last may follow.
-        optional: the number of last arguments that may be left out.
-    """
+    """A function."""
 
     name: str
+    # the formula of a call; `None`: an age, which stands in comparisons only, or the last updates,
+    # which stand in windows only
     means: UnaryOp | Probe | UpdateFunction | NumericOp | Measured | None
-    arguments: tuple[Argument, ...]
-    doc: str
-    more: bool = False
-    optional: int = 0
+    arguments: tuple[Argument, ...]  # of a call
+    doc: str  # its value in a few words
+    more: bool = False  # whether further arguments like the last may follow
+    optional: int = 0  # the number of last arguments that may be left out
 
 
 _OF_UPDATES = (

@@ -81,39 +81,24 @@ PREFIXED, CALLED = 6, 7
 
 
 class Operator(Struct, frozen=True):
-    """The entry of an operator.
-
-    Attributes:
-        sign: of it.
-        word: as it is printed.
-        tense: of it.
-        window: the interval that it takes.
-        level: its precedence, from 0.
-        meaning: in a `Reading`, of that, its operands and the interval.
-        said: an English clause for it; `{left}` and `{right}` (`{it}`) are its operands,
-            `{no_left}` and so on what they are if they do not hold; `{some}` and `{all}` name
-            its interval. Empty: `analysis/plain_english.py` says it in a way of its own.
-        denied: its negation; empty: "not so" before `said`.
-        doc: its value in a few words.
-        dual: the sign of the operator that is `not φ` of the negations of its operands.
-        chained: whether it is associative and written in chains without brackets.
-        pulse: whether it is true at single instants only.
-        also: other ways to write it, besides its word and sign.
-    """
+    """The entry of an operator."""
 
     sign: str
-    word: str
+    word: str  # as it is printed
     tense: Tense
-    window: Window
-    level: int
-    meaning: Callable[..., Any]
+    window: Window  # the interval that it takes
+    level: int  # its precedence, from 0
+    meaning: Callable[..., Any]  # in a `Reading`, of that, its operands and the interval
+    # an English clause for it; `{left}` and `{right}` (`{it}`) are its operands, `{no_left}` and so
+    # on what they are if they do not hold; `{some}` and `{all}` name its interval. Empty:
+    # `analysis/plain_english.py` says it in a way of its own
     said: str
-    denied: str
-    doc: str
-    dual: str = ""
-    chained: bool = False
-    pulse: bool = False
-    also: tuple[str, ...] = ()
+    denied: str  # its negation; empty: "not so" before `said`
+    doc: str  # its value in a few words
+    dual: str = ""  # the sign of the operator that is `not φ` of the negations of its operands
+    chained: bool = False  # whether it is associative and written in chains without brackets
+    pulse: bool = False  # whether it is true at single instants only
+    also: tuple[str, ...] = ()  # other ways to write it, besides its word and sign
 
     @property
     def called(self) -> bool:

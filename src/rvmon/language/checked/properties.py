@@ -42,21 +42,13 @@ class StateBinary(Struct, frozen=True):
 
 
 class PathUnary(Struct, frozen=True):
-    """On all (`universal`) or some paths: next, eventually, always.
+    """On all (`universal`) or some paths: next, eventually, always."""
 
-    Attributes:
-        universal: whether the quantifier is `A`.
-        op: `NEXT`, `EVENTUALLY` or `ALWAYS`.
-        operand: the formula that holds there.
-        interval: of durations; `None` exactly for `NEXT`.
-        span: its place in the text.
-    """
-
-    universal: bool
-    op: UnaryOp
-    operand: StateFormula
-    interval: Interval | None = None
-    span: Span | None = None
+    universal: bool  # whether the quantifier is `A`
+    op: UnaryOp  # `NEXT`, `EVENTUALLY` or `ALWAYS`
+    operand: StateFormula  # the formula that holds there
+    interval: Interval | None = None  # of durations; `None` exactly for `NEXT`
+    span: Span | None = None  # its place in the text
 
 
 class PathBinary(Struct, frozen=True):
@@ -94,18 +86,12 @@ class Property(Struct, frozen=True):
 
 
 class Cover(Struct, frozen=True):
-    """`cover ID = formula`: some run should show the formula at some instant.
+    """`cover ID = formula`: some run should show the formula at some instant."""
 
-    Attributes:
-        id: of the goal.
-        formula: true at the start of a run that shows the goal: `eventually` what is written.
-        span: of the item.
-        ctl: the property that is shown, for model checking; `None` for `cover ID = …`.
-    """
-
-    id: str
-    formula: Formula
+    id: str  # of the goal
+    formula: Formula  # true at the start of a run that shows the goal: `eventually` what is written
     span: Span | None = None
+    # the property that is shown, for model checking; `None` for `cover ID = …`
     ctl: Property | None = None
 
 
@@ -127,45 +113,27 @@ class Bin(Struct, frozen=True):
 
 
 class Coverpoint(Struct, frozen=True):
-    """`coverpoint NAME = expression {bins}`.
-
-    Attributes:
-        name: of the coverpoint.
-        bins: in order; they may overlap and need not be exhaustive.
-        upon: the formula at which bins are sampled; `None`: every position.
-        goal: hits that each bin needs.
-        weight: in the total, relative to other coverpoints and crosses; 0: for nothing.
-        span: of the item.
-    """
+    """`coverpoint NAME = expression {bins}`."""
 
     name: str
-    bins: tuple[Bin, ...]
-    upon: Formula | None = None
-    goal: int = 1
-    weight: int = 1
+    bins: tuple[Bin, ...]  # in order; they may overlap and need not be exhaustive
+    upon: Formula | None = None  # the formula at which bins are sampled; `None`: every position
+    goal: int = 1  # hits that each bin needs
+    weight: int = 1  # in the total, relative to other coverpoints and crosses; 0: for nothing
     span: Span | None = None
 
 
 class Cross(Struct, frozen=True):
-    """`cross NAME = points`: the bins of several coverpoints at the same instant.
-
-    Attributes:
-        name: of the cross.
-        points: names of its coverpoints.
-        ignored: combinations (one bin name per point) that count for nothing.
-        illegal: combinations that are an error.
-        upon: the formula at which it is sampled: its own, else that of its coverpoints; `None`:
-            every position.
-        goal: hits that each combination needs.
-        weight: as of a coverpoint.
-        span: of the item.
-    """
+    """`cross NAME = points`: the bins of several coverpoints at the same instant."""
 
     name: str
-    points: tuple[str, ...]
+    points: tuple[str, ...]  # names of its coverpoints
+    # combinations (one bin name per point) that count for nothing
     ignored: frozenset[tuple[str, ...]] = frozenset()
-    illegal: frozenset[tuple[str, ...]] = frozenset()
+    illegal: frozenset[tuple[str, ...]] = frozenset()  # combinations that are an error
+    # the formula at which it is sampled: its own, else that of its coverpoints; `None`: every
+    # position
     upon: Formula | None = None
-    goal: int = 1
-    weight: int = 1
+    goal: int = 1  # hits that each combination needs
+    weight: int = 1  # as of a coverpoint
     span: Span | None = None

@@ -28,15 +28,6 @@ class Dimension(Enum):
 class Measured(StrEnum):
     """The measures of a formula, or of a number, over the last D.
 
-    Attributes:
-        of: the kind of its members.
-        dimension: of its result.
-        doc: its value in a few words.
-        unknown: its value where a member of the window is unknown.
-        each: bytes that a member, or a stretch of equal ones, takes at most.
-        fixed: bytes besides.
-        steady: whether it takes no more without D, however long the run.
-
     >>> Measured.SUM.dimension.value, Measured("integral").of.value
     ('its unit', 'signals')
     """
@@ -96,13 +87,13 @@ class Measured(StrEnum):
         ),
     )
 
-    of: Members
+    of: Members  # the kind of its members
     dimension: Dimension
-    doc: str
-    unknown: str
-    each: int
-    fixed: int
-    steady: bool
+    doc: str  # its value in a few words
+    unknown: str  # its value where a member of the window is unknown
+    each: int  # bytes that a member, or a stretch of equal ones, takes at most
+    fixed: int  # bytes besides
+    steady: bool  # whether it takes no more without D, however long the run
 
     def __new__(
         cls,

@@ -46,20 +46,14 @@ def short(text: str, most: int = 60) -> str:
 
 
 class Breach(Struct, frozen=True):
-    """One way to break a rule; called with the place of it, it makes the finding.
-
-    Attributes:
-        rule: the rule.
-        message: one sentence: what is wrong; `{}` is the text of the place, shortened, `{1}` and
-            so on what else is given.
-        fix: a way to fix it, or empty; filled in like the message.
-        other: a note at a second place.
-    """
+    """One way to break a rule; called with the place of it, it makes the finding."""
 
     rule: Rule
+    # one sentence: what is wrong; `{}` is the text of the place, shortened, `{1}` and so on what
+    # else is given
     message: str
-    fix: str = ""
-    other: str = ""
+    fix: str = ""  # a way to fix it, or empty; filled in like the message
+    other: str = ""  # a note at a second place
 
     def __call__(self, *given: object) -> Diagnostic:
         """The finding at the first place that is given."""
@@ -79,15 +73,11 @@ class Enough(Exception):  # noqa: N818 - never leaves this package
 
 
 class Findings(Struct):
-    """Findings in the order in which they were made, none twice.
+    """Findings in the order in which they were made, none twice."""
 
-    Attributes:
-        diagnostics: at most so many errors, and as many warnings.
-        more: whether there were more.
-    """
-
+    # at most so many errors, and as many warnings
     diagnostics: list[Diagnostic] = field(default_factory=list)
-    more: bool = False
+    more: bool = False  # whether there were more
     _seen: set[tuple[object, ...]] = field(default_factory=set)
     _counts: Counter[Severity] = field(default_factory=Counter)
 

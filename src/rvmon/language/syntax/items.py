@@ -186,18 +186,12 @@ class PropertyClause(Struct, frozen=True):
 
 
 class ScopeClause(Struct, frozen=True):
-    """`scope before (φ)`, `after (φ)`, `between (φ) and (ψ)`, `after (φ) until (ψ)`.
+    """`scope before (φ)`, `after (φ)`, `between (φ) and (ψ)`, `after (φ) until (ψ)`."""
 
-    Attributes:
-        opening: the formula that opens the scope; `None`: it is open from the start.
-        closing: the formula that closes the scope; `None`: nothing does.
-        must_close: whether nothing is required unless the scope is closed.
-        span: of the clause.
-    """
-
+    # the formula that opens the scope; `None`: it is open from the start
     opening: Expression | None
-    closing: Expression | None
-    must_close: bool
+    closing: Expression | None  # the formula that closes the scope; `None`: nothing does
+    must_close: bool  # whether nothing is required unless the scope is closed
     span: Span
 
 

@@ -58,13 +58,10 @@ class Builder:
     Args:
         source: the file.
         offset: the start in it of the text given to the parser.
-
-    Attributes:
-        findings: on the syntax of the item.
     """
 
     def __init__(self, source: Source, offset: int) -> None:
-        self.findings: list[Diagnostic] = []
+        self.findings: list[Diagnostic] = []  # on the syntax of the item
         self._source = source
         self._offset = offset
 

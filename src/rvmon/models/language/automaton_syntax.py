@@ -36,11 +36,7 @@ class Selection(Struct, frozen=True):
 
 
 class EdgeText(Struct, frozen=True):
-    """An edge of a template; `label` names the action for people and recordings.
-
-    Attributes:
-        shares: of a branch: its weight, and that of all branches together with it.
-    """
+    """An edge of a template; `label` names the action for people and recordings."""
 
     source: syntax.Name
     target: syntax.Name
@@ -51,6 +47,7 @@ class EdgeText(Struct, frozen=True):
     updates: tuple[syntax.UpdateText | syntax.Call, ...] = ()
     weight: float = 1.0
     label: str = ""
+    # of a branch: its weight, and that of all branches together with it
     shares: tuple[syntax.Expression, tuple[syntax.Expression, ...]] | None = None
 
 
@@ -95,23 +92,17 @@ class SignalText(Struct, frozen=True):
 
 
 class Document(Struct, frozen=True):
-    """A whole model as written.
-
-    Attributes:
-        unit: ticks of one unit of the model's time; `None` if it says nothing.
-        system: the automata and templates that run, each with its priority; `None`: all that are
-            there.
-        open_ints: whether `int` without a range is allowed, as UPPAAL's 16 bits.
-    """
+    """A whole model as written."""
 
     source: Source
     name: str
     title: str
-    unit: int | None
+    unit: int | None  # ticks of one unit of the model's time; `None` if it says nothing
     declarations: tuple[syntax.Declared, ...]
     templates: tuple[Template, ...]
     instances: tuple[Instance, ...]
+    # the automata and templates that run, each with its priority; `None`: all that are there
     system: tuple[tuple[syntax.Name, int], ...] | None
     queries: tuple[QueryText, ...]
     signals: tuple[SignalText, ...] = ()
-    open_ints: bool = False
+    open_ints: bool = False  # whether `int` without a range is allowed, as UPPAAL's 16 bits

@@ -39,19 +39,15 @@ Read = TypeVar("Read")
 
 @dataclass(slots=True)
 class Parts:
-    """The parts of a network made so far from the declarations of a model.
-
-    Attributes:
-        levels: the priorities of channels, if any are declared; `None` is all others.
-        are_split: whether some edge as written is several, of which clocks decide.
-    """
+    """The parts of a network made so far from the declarations of a model."""
 
     clocks: list[Clock] = field(default_factory=list)
     variables: list[Variable] = field(default_factory=list)
     channels: list[Channel] = field(default_factory=list)
     channel_spans: list[Span] = field(default_factory=list)
+    # the priorities of channels, if any are declared; `None` is all others
     levels: dict[int | None, int] = field(default_factory=dict)
-    are_split: bool = False
+    are_split: bool = False  # whether some edge as written is several, of which clocks decide
 
 
 @dataclass(slots=True)

@@ -41,15 +41,12 @@ class Diagonal:
 
 @dataclass(slots=True)
 class Diagonals:
-    """The diagonal constraints of a model, and the variables that they are.
+    """The diagonal constraints of a model, and the variables that they are."""
 
-    Attributes:
-        clocks, variables: of the model, as far as they are declared.
-        places: the index of each one's variable, and where it was first written.
-    """
-
+    # clocks, variables: of the model, as far as they are declared
     clocks: Sequence[Clock]
     variables: list[ex.Variable]
+    # the index of each one's variable, and where it was first written
     places: dict[Diagonal, tuple[int, Span]] = field(default_factory=dict)
 
     def compare(

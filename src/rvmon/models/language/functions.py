@@ -27,19 +27,14 @@ _CHOSEN = ex.InLocation(-1, -1)
 
 @dataclass(slots=True)
 class Functions:
-    """The functions called so far, and the memory slots that they use.
+    """The functions called so far, and the memory slots that they use."""
 
-    Attributes:
-        variables: of the network, as far as they are declared.
-        locals: the first has slot −1.
-        made: by what was written, the scope it was written in, and what it refers to.
-        open: the functions being made.
-    """
-
+    # of the network, as far as they are declared
     variables: list[ex.Variable] = field(default_factory=list)
-    locals: list[ex.Variable] = field(default_factory=list)
+    locals: list[ex.Variable] = field(default_factory=list)  # the first has slot −1
+    # by what was written, the scope it was written in, and what it refers to
     made: dict[tuple[object, ...], ex.Function] = field(default_factory=dict)
-    open: set[tuple[object, ...]] = field(default_factory=set)
+    open: set[tuple[object, ...]] = field(default_factory=set)  # the functions being made
 
     def place(
         self,

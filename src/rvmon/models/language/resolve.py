@@ -25,23 +25,16 @@ MAX_UNROLLED = 100_000
 
 @dataclass(slots=True)
 class Resolver:
-    """Resolves expressions, with what they may refer to besides the names of their scope.
+    """Resolves expressions, with what they may refer to besides the names of their scope."""
 
-    Attributes:
-        functions: the functions that can be called.
-        automata: by name and arguments; only queries can see them.
-        open_ints: whether `int` without a range is allowed.
-        diagonals: replaces differences of clocks; `None` where they may not be compared.
-        unrolled: conditions that quantifiers stood for so far.
-        fraction: the place of a number with a fraction, if one was met.
-    """
-
-    functions: symbols.Calls
+    functions: symbols.Calls  # the functions that can be called
+    # by name and arguments; only queries can see them
     automata: Mapping[sc.AutomatonKey, sc.AutomatonSymbol] = field(default_factory=dict)
-    open_ints: bool = False
+    open_ints: bool = False  # whether `int` without a range is allowed
+    # replaces differences of clocks; `None` where they may not be compared
     diagonals: Diagonals | None = None
-    unrolled: int = 0
-    fraction: Span | None = None
+    unrolled: int = 0  # conditions that quantifiers stood for so far
+    fraction: Span | None = None  # the place of a number with a fraction, if one was met
 
     def expression(self, written: syntax.Expression, scope: sc.Scope) -> ex.Expression:
         """The expression over the network."""

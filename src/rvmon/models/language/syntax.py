@@ -194,21 +194,16 @@ Expression = (
 
 
 class TypeText(Struct, frozen=True):
-    """A type as written.
-
-    Attributes:
-        low, high: the range of an int; `None` if it has none.
-        name: of the typedef, for `NAMED`.
-        fields: of a record.
-        const, broadcast, urgent: the prefixes.
-    """
+    """A type as written."""
 
     base: BaseType
     span: Span
+    # low, high: the range of an int; `None` if it has none
     low: Expression | None = None
     high: Expression | None = None
-    name: str = ""
+    name: str = ""  # of the typedef, for `NAMED`
     fields: tuple[Declaration, ...] = ()
+    # const, broadcast, urgent: the prefixes
     const: bool = False
     broadcast: bool = False
     urgent: bool = False

@@ -40,13 +40,7 @@ MAX_DEPTH = 20
 
 @dataclass(slots=True)
 class Element:
-    """An element with its texts joined, and where each piece of them stands.
-
-    Attributes:
-        pieces: of the text, as they were read.
-        offsets: of the pieces in `text`.
-        places: of the same pieces in the file.
-    """
+    """An element with its texts joined, and where each piece of them stands."""
 
     name: str
     attributes: Mapping[str, str]
@@ -54,9 +48,9 @@ class Element:
     start: int
     children: list[Element] = field(default_factory=list)
     text: str = ""
-    pieces: list[str] = field(default_factory=list)
-    offsets: list[int] = field(default_factory=list)
-    places: list[int] = field(default_factory=list)
+    pieces: list[str] = field(default_factory=list)  # of the text, as they were read
+    offsets: list[int] = field(default_factory=list)  # of the pieces in `text`
+    places: list[int] = field(default_factory=list)  # of the same pieces in the file
 
     def all(self, name: str) -> Iterator[Element]:
         """The children of a name."""

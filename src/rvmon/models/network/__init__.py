@@ -60,44 +60,33 @@ class Rate:
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """A location; its invariant bounds clocks from above only.
-
-    Attributes:
-        rates: of clocks, while the automaton is there; others run at 1.
-        leaving: the rate, per unit of time, at which a random run leaves it if it may stay for
-            ever, as a fraction; `None`: as `statistics` says.
-    """
+    """A location; its invariant bounds clocks from above only."""
 
     name: str
     kind: ex.LocationKind
     invariant: Guard
     span: Span | None = field(default=None, compare=False)
-    rates: tuple[Rate, ...] = ()
+    rates: tuple[Rate, ...] = ()  # of clocks, while the automaton is there; others run at 1
+    # the rate, per unit of time, at which a random run leaves it if it may stay for ever, as a
+    # fraction; `None`: as `statistics` says
     leaving: tuple[ex.Expression, ex.Expression] | None = None
 
 
 @dataclass(frozen=True, slots=True)
 class Edge:
-    """An edge between two locations of one automaton.
-
-    Attributes:
-        updates: in the order in which they happen.
-        weight: share of the runs that take it where they can, in (0, 1].
-        label: the action's name in recordings; empty: the channel's name, if it has one.
-        text: the edge for people.
-        watches: whether a watcher takes it along with each move of the others that its guard, which
-            reads what the move made of locations and variables, allows.
-    """
+    """An edge between two locations of one automaton."""
 
     source: int
     target: int
     guard: Guard
     sync: Sync | None
-    updates: tuple[ex.Statement, ...]
-    weight: float
-    label: str
-    text: str
+    updates: tuple[ex.Statement, ...]  # in the order in which they happen
+    weight: float  # share of the runs that take it where they can, in (0, 1]
+    label: str  # the action's name in recordings; empty: the channel's name, if it has one
+    text: str  # the edge for people
     span: Span | None = field(default=None, compare=False)
+    # whether a watcher takes it along with each move of the others that its guard, which reads what
+    # the move made of locations and variables, allows
     watches: bool = False
 
 
@@ -121,16 +110,12 @@ class Automaton:
 
 @dataclass(frozen=True, slots=True)
 class Priorities:
-    """Which steps keep back which others, where both can be taken: those of lower rank.
+    """Which steps keep back which others, where both can be taken: those of lower rank."""
 
-    Attributes:
-        automata: a number for each; of the automata that take part the highest counts.
-        internal: the number of steps without a channel.
-        channels: a number for each; all these are multiples of what is above those of automata.
-    """
-
+    # a number for each; of the automata that take part the highest counts
     automata: tuple[int, ...]
-    internal: int
+    internal: int  # the number of steps without a channel
+    # a number for each; all these are multiples of what is above those of automata
     channels: tuple[int, ...]
 
     def rank(self, channel: int | None, automata: Iterable[int]) -> int:
@@ -150,17 +135,13 @@ class LeadsToFormula:
 
 @dataclass(frozen=True, slots=True)
 class Chance:
-    """The share of random runs that meet a condition, or keep it (`A[]`), within a horizon.
-
-    Attributes:
-        runs: the number simulated; `None`: as many as the default, or a test takes.
-        sign, level: a test: whether the share is `>=` or `<=` that; `None`: an estimate.
-    """
+    """The share of random runs that meet a condition, or keep it (`A[]`), within a horizon."""
 
     op: ex.PathOp
     body: ex.Expression
     horizon: int
-    runs: int | None
+    runs: int | None  # the number simulated; `None`: as many as the default, or a test takes
+    # sign, level: a test: whether the share is `>=` or `<=` that; `None`: an estimate
     sign: ex.BinaryOp | None
     level: float
 
@@ -195,15 +176,10 @@ class Simulation:
 
 @dataclass(frozen=True, slots=True)
 class Extremes:
-    """The largest, or least, values of some terms over all reachable states.
+    """The largest, or least, values of some terms over all reachable states."""
 
-    Attributes:
-        ends: `True` for the largest values, `False` for the least.
-        where: only states in which this holds count.
-    """
-
-    ends: tuple[bool, ...]
-    where: ex.Expression
+    ends: tuple[bool, ...]  # `True` for the largest values, `False` for the least
+    where: ex.Expression  # only states in which this holds count
     terms: tuple[Term, ...]
 
 
@@ -234,38 +210,30 @@ class Signal:
 
 @dataclass(frozen=True, slots=True)
 class Network:
-    """Automata that run in parallel.
-
-    Attributes:
-        unit: ticks of one unit of time; `None` if the model names none.
-        signals: the names for specifications, with their expressions over locations and variables.
-        warnings: about it.
-        names: the names that queries may use.
-        priorities: of steps; `None` if all are equal.
-        has_split_edges: whether some edges were taken apart, for differences of clocks or clocks
-            under `or`.
-        fraction: the place of a number with a fraction, of which nothing is proved, if it has one.
-        original: the network of which this one says more: its runs are shown without the automata,
-            clocks and variables that stand behind those of that; `None`: it is none such.
-        is_watched: whether the last automaton watches the others: it takes part in each of their
-            moves, or the move is not possible.
-    """
+    """Automata that run in parallel."""
 
     name: str
     title: str
-    unit: int | None
+    unit: int | None  # ticks of one unit of time; `None` if the model names none
     clocks: tuple[Clock, ...]
     variables: tuple[ex.Variable, ...]
     channels: tuple[Channel, ...]
     automata: tuple[Automaton, ...]
     queries: tuple[Query, ...]
+    # the names for specifications, with their expressions over locations and variables
     signals: tuple[Signal, ...]
-    warnings: tuple[Diagnostic, ...] = field(compare=False)
-    names: Names = field(compare=False, repr=False)
-    priorities: Priorities | None = None
+    warnings: tuple[Diagnostic, ...] = field(compare=False)  # about it
+    names: Names = field(compare=False, repr=False)  # the names that queries may use
+    priorities: Priorities | None = None  # of steps; `None` if all are equal
+    # whether some edges were taken apart, for differences of clocks or clocks under `or`
     has_split_edges: bool = field(default=False, compare=False)
+    # the place of a number with a fraction, of which nothing is proved, if it has one
     fraction: Span | None = field(default=None, compare=False)
+    # the network of which this one says more: its runs are shown without the automata, clocks and
+    # variables that stand behind those of that; `None`: it is none such
     original: Network | None = None
+    # whether the last automaton watches the others: it takes part in each of their moves, or the
+    # move is not possible
     is_watched: bool = False
 
     @property

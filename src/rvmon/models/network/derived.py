@@ -61,16 +61,12 @@ def names_of(network: nta.Network, edge: nta.Edge) -> tuple[str, ...]:
 
 
 class Watcher:
-    """A watcher in the making, and the network with it.
-
-    Attributes:
-        clock: the number of the first of its clocks.
-    """
+    """A watcher in the making, and the network with it."""
 
     def __init__(self, network: nta.Network, names: Iterable[str], clocks: Sequence[str]) -> None:
         self._network = network
         self._clocks = tuple(map(nta.Clock, clocks))
-        self.clock = len(network.clocks)
+        self.clock = len(network.clocks)  # the number of the first of its clocks
         first = len(network.variables)
         self._slots = {name: ex.Slot(first + k) for k, name in enumerate(dict.fromkeys(names))}
         self._unnoted: tuple[ex.Statement, ...] = tuple(_set(s, 0) for s in self._slots.values())

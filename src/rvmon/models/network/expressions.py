@@ -106,18 +106,12 @@ FALSE = Constant(0)
 
 @dataclass(frozen=True, slots=True)
 class Slot:
-    """A variable or channel, or an element of an array of them.
+    """A variable or channel, or an element of an array of them."""
 
-    Attributes:
-        first: index of the array's first element.
-        extents: the indices of each dimension of the array, the outermost first; empty for a
-            single one.
-        indices: one for each dimension; each must lie in its extent.
-    """
-
-    first: int
+    first: int  # index of the array's first element
+    # the indices of each dimension of the array, the outermost first; empty for a single one
     extents: tuple[range, ...] = ()
-    indices: tuple[Expression, ...] = ()
+    indices: tuple[Expression, ...] = ()  # one for each dimension; each must lie in its extent
     span: Span | None = field(default=None, compare=False)
 
     @property
@@ -210,17 +204,12 @@ class Deadlock:
 
 @dataclass(frozen=True, slots=True)
 class PathFormula:
-    """A path operator.
-
-    Attributes:
-        bound: in units of time; `None` if there is none.
-        left: the formula that holds until the body does, for `E<>`, `A<>` and `F`; their negations
-            keep it.
-    """
+    """A path operator."""
 
     op: PathOp
     body: Expression
-    bound: int | None = None
+    bound: int | None = None  # in units of time; `None` if there is none
+    # the formula that holds until the body does, for `E<>`, `A<>` and `F`; their negations keep it
     left: Expression = TRUE
 
 
@@ -327,23 +316,15 @@ MOST_ROUNDS = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Function:
-    """A function with all that it refers to resolved.
+    """A function with all that it refers to resolved."""
 
-    Attributes:
-        name: for people.
-        parameters: the slots of the parameters that are passed by value, with their ranges.
-        result: the slot for its value, with its range.
-        body: ends with `Return` or `Missing` on every way.
-        room: slots below 0 that it and what it calls may use.
-        changes: whether it sets a variable that is not its own, or a clock.
-    """
-
-    name: str
+    name: str  # for people
+    # the slots of the parameters that are passed by value, with their ranges
     parameters: tuple[tuple[int, Variable], ...]
-    result: tuple[int, Variable]
-    body: tuple[Statement, ...]
-    room: int
-    changes: bool
+    result: tuple[int, Variable]  # the slot for its value, with its range
+    body: tuple[Statement, ...]  # ends with `Return` or `Missing` on every way
+    room: int  # slots below 0 that it and what it calls may use
+    changes: bool  # whether it sets a variable that is not its own, or a clock
 
 
 def statements_in(statements: Sequence[Statement]) -> Iterator[Statement]:

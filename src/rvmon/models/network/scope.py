@@ -15,18 +15,13 @@ ConstantValue = int | tuple["ConstantValue", ...]
 
 @dataclass(frozen=True, slots=True)
 class ResolvedType:
-    """A type with its constants evaluated; an int always has a range.
-
-    Attributes:
-        extents: the indices of each dimension, if it is that of an array.
-        fields: of a record, in their order.
-    """
+    """A type with its constants evaluated; an int always has a range."""
 
     base: BaseType
     low: int = 0
     high: int = 1
-    extents: tuple[range, ...] = ()
-    fields: tuple[tuple[str, ResolvedType], ...] = ()
+    extents: tuple[range, ...] = ()  # the indices of each dimension, if it is that of an array
+    fields: tuple[tuple[str, ResolvedType], ...] = ()  # of a record, in their order
     const: bool = False
     broadcast: bool = False
     urgent: bool = False
@@ -39,27 +34,18 @@ class ResolvedType:
 
 @dataclass(frozen=True, slots=True)
 class ConstantSymbol:
-    """A constant, a parameter's value, or a bound variable of a quantifier or `select`.
-
-    Attributes:
-        extents: the indices of each dimension, if it is an array.
-        is_real: whether the value is the bits of a number with a fraction.
-    """
+    """A constant, a parameter's value, or a bound variable of a quantifier or `select`."""
 
     value: ConstantValue
-    extents: tuple[range, ...] = ()
-    is_real: bool = False
+    extents: tuple[range, ...] = ()  # the indices of each dimension, if it is an array
+    is_real: bool = False  # whether the value is the bits of a number with a fraction
 
 
 @dataclass(frozen=True, slots=True)
 class PlacedSymbol:
-    """A variable, clock or channel, or an array of them while the slot lacks indices.
+    """A variable, clock or channel, or an array of them while the slot lacks indices."""
 
-    Attributes:
-        kind: `CLOCK`, `CHANNEL`, or `INT` for all variables.
-    """
-
-    kind: BaseType
+    kind: BaseType  # `CLOCK`, `CHANNEL`, or `INT` for all variables
     slot: Slot
 
     @property
@@ -103,19 +89,13 @@ Symbol = ConstantSymbol | ChosenSymbol | PlacedSymbol | TypeSymbol | RecordSymbo
 
 @dataclass(slots=True)
 class Scope:
-    """Names of one level, and those of the levels around it.
-
-    Attributes:
-        prefix: put before the names of what is declared here, such as `Train(1).`.
-        places: the declaration of each name.
-        families: names of automata, templates and instances.
-    """
+    """Names of one level, and those of the levels around it."""
 
     parent: Scope | None = None
-    prefix: str = ""
+    prefix: str = ""  # put before the names of what is declared here, such as `Train(1).`
     symbols: dict[str, Symbol] = field(default_factory=dict)
-    places: dict[str, Span] = field(default_factory=dict)
-    families: set[str] = field(default_factory=set)
+    places: dict[str, Span] = field(default_factory=dict)  # the declaration of each name
+    families: set[str] = field(default_factory=set)  # names of automata, templates and instances
 
     def _levels(self) -> Iterator[Scope]:
         scope: Scope | None = self

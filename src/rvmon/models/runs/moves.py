@@ -28,27 +28,17 @@ AtomMaker = Callable[[evaluate.Locations, evaluate.Values], tuple[Atom, ...]]
 
 @dataclass(frozen=True, slots=True)
 class ReadyEdge:
-    """An edge of one automaton, ready to be tried.
-
-    Attributes:
-        automaton: its index.
-        number: of the edge in the automaton.
-        edge: the edge itself.
-        data: its guard on the variables; `None` if there is none.
-        atoms: its clock bounds.
-        channel: gives the index of the channel; `None` without synchronisation.
-        channels: all channels that it may be; one unless the variables choose.
-        updates: runs them; `None` if there are none.
-    """
+    """An edge of one automaton, ready to be tried."""
 
     automaton: int
-    number: int
+    number: int  # of the edge in the automaton
     edge: Edge
-    data: evaluate.Evaluator | None
-    atoms: AtomMaker
+    data: evaluate.Evaluator | None  # its guard on the variables; `None` if there is none
+    atoms: AtomMaker  # its clock bounds
+    # gives the index of the channel; `None` without synchronisation
     channel: evaluate.Evaluator | None
-    channels: range
-    updates: evaluate.Runner | None
+    channels: range  # all channels that it may be; one unless the variables choose
+    updates: evaluate.Runner | None  # runs them; `None` if there are none
 
     @property
     def sends(self) -> bool:
@@ -58,18 +48,13 @@ class ReadyEdge:
 
 @dataclass(slots=True, eq=False)  # not frozen, as there are many
 class State:
-    """Locations and values of the variables; one object for each combination.
-
-    Attributes:
-        delays: whether time may pass here.
-        invariant: `(clock, bound)`: upper bounds; clocks count from 1.
-        moves: the steps from here; `None` until `Space.moves` was asked.
-    """
+    """Locations and values of the variables; one object for each combination."""
 
     locations: tuple[int, ...]
     values: tuple[int, ...]
-    delays: bool
-    invariant: tuple[tuple[int, float], ...]
+    delays: bool  # whether time may pass here
+    invariant: tuple[tuple[int, float], ...]  # `(clock, bound)`: upper bounds; clocks count from 1
+    # the steps from here; `None` until `Space.moves` was asked
     moves: list[Move] | None = field(default=None, repr=False)
 
     @property
@@ -80,24 +65,17 @@ class State:
 
 @dataclass(slots=True, eq=False)
 class Move:
-    """A step between two states.
+    """A step between two states."""
 
-    Attributes:
-        edges: the edges that take part, the sender first.
-        guard: clock bounds that must hold before.
-        left_out: the bounds of each receiver that takes no part, which must not hold together.
-        resets: clocks that are set and their values; clocks count from 1.
-        target: the state behind.
-        rank: its priority; those of higher rank come first.
-        failure: the fault of its updates; raised only if the step can be taken.
-    """
-
-    edges: tuple[ReadyEdge, ...]
-    guard: tuple[Atom, ...]
+    edges: tuple[ReadyEdge, ...]  # the edges that take part, the sender first
+    guard: tuple[Atom, ...]  # clock bounds that must hold before
+    # the bounds of each receiver that takes no part, which must not hold together
     left_out: tuple[tuple[Atom, ...], ...]
+    # clocks that are set and their values; clocks count from 1
     resets: tuple[tuple[int, float], ...]
-    target: State
-    rank: int = 0
+    target: State  # the state behind
+    rank: int = 0  # its priority; those of higher rank come first
+    # the fault of its updates; raised only if the step can be taken
     failure: ModelError | None = None
 
 

@@ -25,19 +25,12 @@ from rvmon.models.runs.moves import Move, State
 
 @dataclass(frozen=True, slots=True)
 class TimedStep:
-    """A step as far as its time matters.
+    """A step as far as its time matters."""
 
-    Attributes:
-        waits: whether time may pass before it.
-        leave: bounds that hold at its instant, before it.
-        resets: clocks that it sets, and their values.
-        enter: bounds that hold at its instant, after it.
-    """
-
-    waits: bool
-    leave: tuple[runs.Atom, ...]
-    resets: tuple[tuple[int, float], ...]
-    enter: tuple[runs.Atom, ...]
+    waits: bool  # whether time may pass before it
+    leave: tuple[runs.Atom, ...]  # bounds that hold at its instant, before it
+    resets: tuple[tuple[int, float], ...]  # clocks that it sets, and their values
+    enter: tuple[runs.Atom, ...]  # bounds that hold at its instant, after it
 
 
 def timing_of(
@@ -128,16 +121,10 @@ Piece = tuple[runs.Atom, ...]
 
 @dataclass(frozen=True, slots=True)
 class PathStep:
-    """One instant of a path.
+    """One instant of a path."""
 
-    Attributes:
-        timed: the constraints on its time.
-        move: the move; `None` if the instant matters for the query only.
-        state: the state after it.
-    """
-
-    timed: TimedStep
-    move: Move | None
+    timed: TimedStep  # the constraints on its time
+    move: Move | None  # the move; `None` if the instant matters for the query only
     state: State
 
 

@@ -24,19 +24,13 @@ MOST_SETS = 28
 
 @dataclass(frozen=True, slots=True)
 class WayState:
-    """A state of the automaton.
+    """A state of the automaton."""
 
-    Attributes:
-        label: conditions and bounds of clocks that hold together while it lasts.
-        starts: whether runs start in it.
-        sets: the sets of acceptance that it belongs to, as bits.
-        arcs: the states that can be next.
-    """
-
+    # conditions and bounds of clocks that hold together while it lasts
     label: tuple[ex.Expression, ...]
-    starts: bool
-    sets: int
-    arcs: tuple[int, ...]
+    starts: bool  # whether runs start in it
+    sets: int  # the sets of acceptance that it belongs to, as bits
+    arcs: tuple[int, ...]  # the states that can be next
 
 
 @dataclass(frozen=True, slots=True)

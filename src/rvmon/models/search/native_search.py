@@ -61,17 +61,12 @@ _ENDINGS = (
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """The result of a search.
+    """The result of a search."""
 
-    Attributes:
-        run: a run to the goal; `None` if there is none or the search was stopped.
-        improper: whether a run that stays inside was left out because time stops on it.
-        spans: if the goal was not found, and there is a watcher: by location of the watcher that
-            was reached, the infimum and supremum of the last clock there; `inf`: unbounded.
-    """
-
-    run: Run | None
-    improper: bool
+    run: Run | None  # a run to the goal; `None` if there is none or the search was stopped
+    improper: bool  # whether a run that stays inside was left out because time stops on it
+    # if the goal was not found, and there is a watcher: by location of the watcher that was
+    # reached, the infimum and supremum of the last clock there; `inf`: unbounded
     spans: Mapping[int, tuple[float, float]]
 
 

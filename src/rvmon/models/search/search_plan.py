@@ -26,13 +26,7 @@ _PLAIN, _AND, _OR, _NOT, _UNTIL, _STAY, _NEXT = range(7)
 
 
 class Plan:
-    """A plan and what its numbers stand for.
-
-    Attributes:
-        edges: of the plan: automaton and number there.
-        goal, inside: the alternatives of those.
-        numbers, costs: the plan itself and the cost of each edge, as bytes.
-    """
+    """A plan and what its numbers stand for."""
 
     def __init__(self, network: Network, sought: Sought) -> None:
         self._network = network
@@ -41,7 +35,7 @@ class Plan:
         self._limits: list[int] = []
         self._tree: list[int] = []
         self._pieces: list[int] = []
-        self.edges: list[tuple[int, int]] = []
+        self.edges: list[tuple[int, int]] = []  # of the plan: automaton and number there
         timer = len(network.clocks)
         due: tuple[ex.ClockCompare, ...] = ()
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
@@ -52,6 +46,7 @@ class Plan:
         ]
         # What a query compares clocks with, by automaton and location, or with None everywhere.
         self._asked: dict[int | None, dict[int, list[ex.ClockCompare]]] = {}
+        # goal, inside: the alternatives of those
         self.goal = guards.alternatives_of(sought.goal, due)
         self.inside = guards.alternatives_of(sought.inside, due)
         states = () if sought.ways is None else sought.ways.states
@@ -92,6 +87,7 @@ class Plan:
         head = [MAGIC, sought.kind, choose, timer, sought.has_timer, sought.is_levelled]
         sets = 0 if sought.ways is None else sought.ways.sets
         head += [int(late or 0), sets, len(network.locals), network.is_watched]
+        # numbers, costs: the plan itself and the cost of each edge, as bytes
         self.numbers = _packed(head, sections)
         weights = (network.automata[a].edges[number].weight for a, number in self.edges)
         self.costs = array("d", (-log(weight) for weight in weights)).tobytes()
@@ -277,30 +273,20 @@ class Seek(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Sought:
-    """The question to a search in a network.
-
-    Attributes:
-        kind: of search.
-        goal: normalised; the states to reach, or from which runs are watched, or the condition on
-            states without a deadlock.
-        inside: normalised; the states in which runs stay, or the condition on states with a
-            deadlock.
-        ways: the automaton of an LTL formula that has to accept the run.
-        progress: whether time has to diverge on the run, in addition to `ways`.
-        nested: normalised; the states to reach, or the condition on the start, if it has path
-            quantifiers.
-        choose: among several runs.
-        bound: units of time, if there is one.
-    """
+    """The question to a search in a network."""
 
     kind: Seek
+    # normalised; the states to reach, or from which runs are watched, or the condition on states
+    # without a deadlock
     goal: ex.Expression | None = None
+    # normalised; the states in which runs stay, or the condition on states with a deadlock
     inside: ex.Expression | None = None
+    # normalised; the states to reach, or the condition on the start, if it has path quantifiers
     nested: ex.Expression | None = None
-    ways: Ways | None = None
-    progress: bool = False
-    choose: Policy = Policy.SHORTEST
-    bound: int | None = None
+    ways: Ways | None = None  # the automaton of an LTL formula that has to accept the run
+    progress: bool = False  # whether time has to diverge on the run, in addition to `ways`
+    choose: Policy = Policy.SHORTEST  # among several runs
+    bound: int | None = None  # units of time, if there is one
 
     @property
     def has_timer(self) -> bool:

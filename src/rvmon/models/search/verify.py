@@ -99,19 +99,13 @@ def _remark(run: Run | None) -> str:
 
 @dataclass(frozen=True, slots=True)
 class _Found:
-    """The result of the searches for a query.
+    """The result of the searches for a query."""
 
-    Attributes:
-        shows: whether a run would show that the query holds (`E<>`), or that it does not (`A[]`).
-        run: that run; `None` if there is none.
-        chosen: the policy that chose it, if there was a choice.
-        holds: whether it holds, where no single run shows it.
-    """
-
+    # whether a run would show that the query holds (`E<>`), or that it does not (`A[]`)
     shows: bool
-    run: Run | None
-    chosen: Policy | None = None
-    holds: bool | None = None
+    run: Run | None  # that run; `None` if there is none
+    chosen: Policy | None = None  # the policy that chose it, if there was a choice
+    holds: bool | None = None  # whether it holds, where no single run shows it
 
 
 def _search(question: _Question, query: Query) -> _Found:

@@ -91,12 +91,6 @@ class Network:
             letters, the positions in between decide nothing: its value is that at the first letter.
         limit: the stamp.
         before: a stamp; whatever was known by then gets the stamp `PAST`.
-
-    Attributes:
-        plan: the nodes.
-        positions: the positions of the word.
-        limit: the stamp.
-        start: the first position with a letter.
     """
 
     def __init__(
@@ -112,7 +106,7 @@ class Network:
         self.limit = limit
         step = gap or 1
         cells = [(t // step, letter) for t, letter in noted if 2 * t < limit]
-        self.start = cells[0][0] if cells else pw.FAR
+        self.start = cells[0][0] if cells else pw.FAR  # the first position with a letter
         stamps = [position for position, _ in cells]
         if cells and first // step < self.start:
             # The core drops letters that decide nothing before the first noted one.

@@ -291,22 +291,15 @@ class Positions:
     Args:
         gap: ticks between two positions; `None` if only samples are positions.
         stamps: the positions that have a letter, ascending.
-
-    Attributes:
-        stamps: in sampled time, all positions; else empty.
-        gap: ticks between two integers; 1 in sampled time.
-        slope: the increase of the stamp from one integer to the next.
-        sparse: whether there are integers between positions (sampled time).
-        first: the first position; `FAR` if there is none.
-        last: the last position; `FAR` if they continue without end.
     """
 
     def __init__(self, gap: int | None, stamps: Sequence[int]) -> None:
-        self.gap = gap or 1
-        self.slope = 2 * self.gap
-        self.sparse = not gap
-        self.first = stamps[0] if stamps else FAR
-        self.stamps = stamps if self.sparse else ()
+        self.gap = gap or 1  # ticks between two integers; 1 in sampled time
+        self.slope = 2 * self.gap  # the increase of the stamp from one integer to the next
+        self.sparse = not gap  # whether there are integers between positions (sampled time)
+        self.first = stamps[0] if stamps else FAR  # the first position; `FAR` if there is none
+        self.stamps = stamps if self.sparse else ()  # in sampled time, all positions; else empty
+        # the last position; `FAR` if they continue without end
         self.last = stamps[-1] if self.sparse and stamps else -FAR if self.sparse else FAR
 
     def ended(self, last: int) -> Positions:

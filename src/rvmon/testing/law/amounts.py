@@ -47,17 +47,11 @@ State = Callable[[Formula, int], Truth]
 
 @dataclass(frozen=True, slots=True)
 class Member:
-    """A member of a window.
+    """A member of a window."""
 
-    Attributes:
-        value: its number; `None` if unknown.
-        sure: whether it surely is a member.
-        size: the number of positions, or ticks, that it stands for.
-    """
-
-    value: int | float | None
-    sure: bool
-    size: int
+    value: int | float | None  # its number; `None` if unknown
+    sure: bool  # whether it surely is a member
+    size: int  # the number of positions, or ticks, that it stands for
 
 
 @dataclass(frozen=True, slots=True)

@@ -55,25 +55,16 @@ def is_pulse(formula: rv.Formula, *, negated: bool = False) -> bool:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Start:
-    """The beginning of an attempt.
+    """The beginning of an attempt."""
 
-    Attributes:
-        view: the requirement, or the instance of it, on the trace.
-        position: the position of the trigger; for an attempt in doubt, the first possible one.
-        positions: the positions at which the consequent is required; of a `whenever`, those of its
-            episode.
-        captured: values of `let` and `for each`.
-        blurred: the position from which on the values of its `let` are unknown.
-        stop: the first position after its episode; `None` if it is not over.
-        sure: the first of its positions at which the trigger is TRUE; `None` if it is in doubt.
-    """
-
-    view: View
-    position: int
+    view: View  # the requirement, or the instance of it, on the trace
+    position: int  # the position of the trigger; for an attempt in doubt, the first possible one
+    # the positions at which the consequent is required; of a `whenever`, those of its episode
     positions: Sequence[int]
-    captured: Mapping[str, Scalar]
-    blurred: int | None
-    stop: int | None = None
+    captured: Mapping[str, Scalar]  # values of `let` and `for each`
+    blurred: int | None  # the position from which on the values of its `let` are unknown
+    stop: int | None = None  # the first position after its episode; `None` if it is not over
+    # the first of its positions at which the trigger is TRUE; `None` if it is in doubt
     sure: int | None = None
 
     @property

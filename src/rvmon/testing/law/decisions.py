@@ -25,20 +25,16 @@ from rvmon.testing.law.word import Truth, Word
 
 @dataclass(slots=True, eq=False)
 class Followed:
-    """An attempt, and the first instant at which a prefix of the trace decides it.
+    """An attempt, and the first instant at which a prefix of the trace decides it."""
 
-    Attributes:
-        start: the beginning of the attempt.
-        decided: instant (ticks) and truth; `None` if no prefix decides it.
-        number: its number among the attempts whose trigger was TRUE, in the order of the first
-            instants at which it was; 0 for an attempt in doubt.
-        doubtful_number: its number among the attempts whose trigger was not TRUE at their start, in
-            the order of starts; 0 for the others.
-    """
-
-    start: Start
+    start: Start  # the beginning of the attempt
+    # instant (ticks) and truth; `None` if no prefix decides it
     decided: tuple[int, Truth] | None = None
+    # its number among the attempts whose trigger was TRUE, in the order of the first instants at
+    # which it was; 0 for an attempt in doubt
     number: int = 0
+    # its number among the attempts whose trigger was not TRUE at their start, in the order of
+    # starts; 0 for the others
     doubtful_number: int = 0
 
 

@@ -54,14 +54,10 @@ def most(values: Iterable[Range]) -> Range:
 
 @dataclass(frozen=True, slots=True)
 class Margin:
-    """The robustness of a formula at a position.
+    """The robustness of a formula at a position."""
 
-    Attributes:
-        state: its truth, UNBORN included.
-        ranges: its range if UNBORN is read as FALSE, as UNKNOWN, and as TRUE.
-    """
-
-    state: Truth
+    state: Truth  # its truth, UNBORN included
+    # its range if UNBORN is read as FALSE, as UNKNOWN, and as TRUE
     ranges: tuple[Range, Range, Range]
 
 

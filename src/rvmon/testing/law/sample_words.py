@@ -155,38 +155,23 @@ _UNKNOWN_EVENT = law.EventState(law.Truth.UNKNOWN, (law.Occurrence(law.Truth.UNK
 
 @dataclass(frozen=True, slots=True)
 class _Entry:
-    """An update of a name.
-
-    Attributes:
-        t: its instant.
-        value: the new value; `None` for lost updates.
-        since: the instant from which on it counts; for lost updates the first of the outage.
-        lost: whether it stands for all updates lost in an outage.
-    """
+    """An update of a name."""
 
     t: int
-    value: Value
-    since: int
-    lost: bool = False
+    value: Value  # the new value; `None` for lost updates
+    since: int  # the instant from which on it counts; for lost updates the first of the outage
+    lost: bool = False  # whether it stands for all updates lost in an outage
 
 
 @dataclass(frozen=True, slots=True)
 class _History:
-    """The history of a name up to a position.
+    """The history of a name up to a position."""
 
-    Attributes:
-        entries: its updates, in order.
-        outages: its outages that have begun.
-        before: the previous position; updates after it belong to this one.
-        instant: the instant of this position.
-        has_source: whether the name can be updated at all.
-    """
-
-    entries: Sequence[_Entry]
-    outages: Sequence[law.Outage]
-    before: int | None
-    instant: int
-    has_source: bool
+    entries: Sequence[_Entry]  # its updates, in order
+    outages: Sequence[law.Outage]  # its outages that have begun
+    before: int | None  # the previous position; updates after it belong to this one
+    instant: int  # the instant of this position
+    has_source: bool  # whether the name can be updated at all
 
     def by(self, before: int | None, instant: int) -> _History:
         """The part of the history up to an earlier position."""
