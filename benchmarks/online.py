@@ -9,23 +9,10 @@ and R2U2, of which FOLDER holds a clone. A ratio counts only where verdicts agre
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
-from pathlib import Path
+from functools import partial
 
 from benchmarks.program import program
-from benchmarks.results import ONLINE, show
-
-
-def main(
-    *,
-    quick: bool = False,
-    only: Sequence[str] = ONLINE,
-    r2u2: Path | None = None,
-    out: Path | None = None,
-) -> None:
-    """Some sections; `--quick` takes a few minutes."""
-    show("online", quick=quick, only=only, r2u2=r2u2, out=out)
-
+from benchmarks.results import ONLINE, main
 
 if __name__ == "__main__":
-    sys.exit(program(__doc__, main))
+    sys.exit(program(__doc__, partial(main, only=ONLINE, out=None)))

@@ -1,9 +1,12 @@
-"""The command line of a benchmark: its commands are functions, their parameters the options."""
+"""The command line of a benchmark: its commands are functions, their parameters the options.
+
+And its tables, of Markdown, which terminals and documents show alike.
+"""
 
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from inspect import Parameter, signature
 from types import NoneType
 from typing import Any, TypeVar, get_args, get_origin
@@ -64,3 +67,16 @@ def in_turn(contenders: Sequence[T], repeats: int) -> Iterator[tuple[int, T]]:
     for number in range(repeats):
         first = number % max(len(contenders), 1)
         yield from ((number, one) for one in (*contenders[first:], *contenders[:first]))
+
+
+def table(head: Sequence[str], rows: Iterable[Iterable[object]]) -> Iterator[str]:
+    r"""The lines of a table, each as its row comes.
+
+    >>> [*table(["a", "b"], [["1|2", 2.5]])]
+    ['| a | b |', '|---|---|', '| 1\\|2 | 2.5 |']
+    """
+    yield f"| {' | '.join(head)} |"
+    yield "|---" * len(head) + "|"
+    for row in rows:
+        cells = (str(cell).replace("|", r"\|") for cell in row)
+        yield f"| {' | '.join(cells)} |"

@@ -16,12 +16,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from benchmarks.program import program
-from benchmarks.results import RECORDINGS, show
+from benchmarks.results import RECORDINGS
+from benchmarks.results import main as measured
 
 
 def main(*, quick: bool = False, only: Sequence[str] = RECORDINGS, out: Path | None = None) -> None:
     """Files and columns; `--quick` takes a few minutes."""
-    show("recordings", quick=quick, only=only, r2u2=None, out=out)
+    measured(quick=quick, only=only, out=out)
 
 
 if __name__ == "__main__":

@@ -23,11 +23,10 @@ from typing import Any
 
 import jinja2
 import msgspec
-from benchmarks.output import table
 from benchmarks.peers import differences
 from benchmarks.peers.client import Peer
 from benchmarks.peers.environment import Environment, prepare
-from benchmarks.program import program
+from benchmarks.program import program, table
 from benchmarks.timing import cliffs, files
 from benchmarks.timing.agreement import Agreement, by_peer, compare, margins_alike, peers_in
 from benchmarks.timing.r2u2 import R2u2
@@ -292,25 +291,6 @@ def _agreed(compared: Sequence[Agreement]) -> Iterator[Sequence[str]]:
         yield label, form, str(len(names)), str(len(failing)), *sums
 
 
-def show(
-    name: str,
-    *,
-    quick: bool,
-    only: Sequence[str],
-    r2u2: Path | None = None,
-    out: Path | None = None,
-) -> None:
-    """Measure, and write the page, or print it."""
-    shown = ["FOLDER" if Path(one) == r2u2 else one for one in sys.argv[1:]]
-    command = " ".join([f"python -m benchmarks.{name}", *shown])
-    text = page({"command": command, **run(QUICK if quick else Size(), only, r2u2)})
-    if out is None:
-        print(text)
-    else:
-        out.write_text(text, encoding="utf-8")
-        say(f"wrote {out}")
-
-
 def main(
     *,
     quick: bool = False,
@@ -318,8 +298,16 @@ def main(
     r2u2: Path | None = None,
     out: Path | None = OUT,
 ) -> None:
-    """Some sections, or all; `--quick` takes a few minutes."""
-    show("results", quick=quick, only=only, r2u2=r2u2, out=out)
+    """Measure some sections, or all, and write the page, or print it."""
+    name, *words = sys.argv
+    shown = ["FOLDER" if Path(one) == r2u2 else one for one in words]
+    command = " ".join([f"python -m benchmarks.{Path(name).stem}", *shown])
+    text = page({"command": command, **run(QUICK if quick else Size(), only, r2u2)})
+    if out is None:
+        print(text)
+    else:
+        out.write_text(text, encoding="utf-8")
+        say(f"wrote {out}")
 
 
 if __name__ == "__main__":

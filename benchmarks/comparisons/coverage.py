@@ -119,7 +119,7 @@ def by_monitor(case: Case, coverage: SpecCoverage) -> Counted:
 
 
 def judge_hits(found: Campaign, seed: int, numbers: range) -> None:
-    """What coverpoints and crosses are hit, on the traces of some specifications."""
+    """What coverpoints and crosses are hit against the definition."""
     coverage: SpecCoverage | None = None
 
     def drawn(place: object) -> Iterator[Case]:

@@ -30,7 +30,7 @@ EACH = 5
 
 
 def judge_doors(found: Campaign, seed: int, numbers: range) -> None:
-    """The reports have to be those of the first door, byte by byte; none may refuse."""
+    """A recording as CSV, JSON lines, Parquet, arrays, frames …: one report, byte by byte."""
     with tempfile.TemporaryDirectory() as name:
         for number in numbers:
             for place, spec, content in _contents(f"{seed}/{number}"):
@@ -72,7 +72,7 @@ class Lossy:
 
 
 def judge_lost(found: Campaign, seed: int, own: Lossy, numbers: range) -> None:
-    """In each run what is lost changes a letter that a requirement reads."""
+    """Doors that lose samples: no filling of what was lost may turn a green verdict."""
     logging.disable(logging.ERROR)
     for door in own.doors.split(",") if own.doors else DOORS:
         with tempfile.TemporaryDirectory() as folder:
@@ -86,7 +86,7 @@ def judge_lost(found: Campaign, seed: int, own: Lossy, numbers: range) -> None:
 
 
 def judge_damage(found: Campaign, seed: int, numbers: range) -> None:
-    """Each input that is damaged is read, or refused; nothing else comes out."""
+    """Damaged specifications, bindings, models, recordings, snapshots are read or refused."""
     os.environ["RVMON_CACHE"] = "off"
     for number in numbers:
         rng = random.Random(f"{seed}/{number}")
@@ -106,22 +106,7 @@ def _kept(name: str) -> list[bytes]:
 
 
 COMPARISONS = {
-    "damage": Comparison(
-        "damaged specifications, bindings, models, recordings, snapshots are read or refused",
-        judge_damage,
-        "inputs",
-        part=500,
-    ),
-    "doors": Comparison(
-        "a recording as CSV, JSON lines, Parquet, arrays, frames …: one report, byte by byte",
-        judge_doors,
-        f"specifications of up to {EACH} recordings",
-    ),
-    "lost": Comparison(
-        "doors that lose samples: no filling of what was lost may turn a green verdict",
-        judge_lost,
-        "runs through each door",
-        (Lossy(),),
-        500,
-    ),
+    "damage": Comparison(judge_damage, "inputs", part=500),
+    "doors": Comparison(judge_doors, f"specifications of up to {EACH} recordings"),
+    "lost": Comparison(judge_lost, "runs through each door", Lossy(), part=500),
 }

@@ -16,32 +16,15 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from tests.tools.build import scaled
+from tests.tools.build import p, requirement, scaled, spec_over, start
 from tests.tools.common_fragment import EVER, to_core
 from tests.tools.differential import Campaign
 from tests.tools.drive import drive
 from tests.tools.forms import FORMS, Compiler, Maker
 from tests.tools.random_specs import random_mtl
 
-from rvmon.language.checked.formula import (
-    Binary,
-    BinaryOp,
-    Bound,
-    BoundAtom,
-    Formula,
-    Interval,
-    SignalAtom,
-    Unary,
-    UnaryOp,
-)
-from rvmon.language.checked.specification import (
-    CheckedSpec,
-    Mode,
-    Requirement,
-    Signal,
-    TimeModel,
-    Type,
-)
+from rvmon.language.checked import formula as formulas
+from rvmon.language.checked.specification import TimeModel
 from rvmon.language.print import format_formula
 from rvmon.testing.generate import BOOLS
 from rvmon.testing.generate.trace import Case
@@ -56,7 +39,6 @@ Decided = tuple[Instants, Instants]
 """Of a formula, by position, the instants at which it is known to be true, and to be false."""
 
 NEVER = np.iinfo(np.int64).max
-TRIGGER = SignalAtom("p")
 LENGTHS = (1, 7, 40)
 """What the windows of a few ticks are multiplied by."""
 
@@ -87,31 +69,31 @@ class Decisions:
         self._row_at = np.searchsorted(stamps, self.times, "right") - 1
         self._samples = case.samples
 
-    def of(self, formula: Formula) -> Decided:
+    def of(self, formula: formulas.Formula) -> Decided:
         """Of a formula in the operators of `to_core`."""
         match formula:
-            case SignalAtom(name=name):
+            case formulas.SignalAtom(name=name):
                 told = np.array([one.values[name] for one in self._samples], bool)[self._row_at]
                 return np.where(told, self.times, NEVER), np.where(told, NEVER, self.times)
-            case Unary(op=UnaryOp.NOT, operand=operand):
+            case formulas.Unary(op=formulas.UnaryOp.NOT, operand=operand):
                 true, false = self.of(operand)
                 return false, true
-            case Unary(op=UnaryOp.ALWAYS, operand=operand, interval=interval):
+            case formulas.Unary(op=formulas.UnaryOp.ALWAYS, operand=operand, interval=interval):
                 true, false = self.of(operand)
                 failed, kept = self._until(None, (false, true), interval or EVER)
                 return kept, failed
-            case Unary(op=UnaryOp.EVENTUALLY, operand=operand, interval=interval):
+            case formulas.Unary(op=formulas.UnaryOp.EVENTUALLY, operand=operand, interval=interval):
                 return self._until(None, self.of(operand), interval or EVER)
-            case Binary(op=op, left=left, right=right, interval=interval):
+            case formulas.Binary(op=op, left=left, right=right, interval=interval):
                 one, other = self.of(left), self.of(right)
-                if op is BinaryOp.UNTIL:
+                if op is formulas.BinaryOp.UNTIL:
                     return self._until(one, other, interval or EVER)
                 joins = [np.maximum, np.minimum]
-                first, second = joins if op is BinaryOp.AND else joins[::-1]
+                first, second = joins if op is formulas.BinaryOp.AND else joins[::-1]
                 return first(one[0], other[0]), second(one[1], other[1])
         raise AssertionError(f"no such formula is drawn: {formula}")
 
-    def _until(self, left: Decided | None, right: Decided, window: Interval) -> Decided:
+    def _until(self, left: Decided | None, right: Decided, window: formulas.Interval) -> Decided:
         """Of `left U right`; without `left`, of `F right`.
 
         It is true when at some place of the window `right` is, and `left` at all before it; and
@@ -153,13 +135,13 @@ class Decisions:
 
 def by_law(case: Case) -> Told:
     """What the law says of a case."""
-    (requirement,) = case.spec.requirements.values()
+    (asked,) = case.spec.requirements.values()
     decisions = Decisions(case)
-    true, false = decisions.of(to_core(requirement.consequent))
+    true, false = decisions.of(to_core(asked.consequent))
     told: dict[int, tuple[int, int | None, Verdict | None]] = {}
     before = False
     for sample in case.samples:
-        starts = sample.t == 0 if requirement.trigger != TRIGGER else bool(sample.values["p"])
+        starts = sample.t == 0 if asked.trigger == start else bool(sample.values["p"])
         if starts and not before:
             place = int(np.searchsorted(decisions.times, sample.t))
             ends = [(int(true[place]), Verdict.PASS), (int(false[place]), Verdict.FAIL)]
@@ -185,11 +167,10 @@ def _case(seed: int, number: int, samples: int) -> Case:
     """A random case of one requirement and so many samples."""
     rng = random.Random(f"{seed}/{number}")
     formula = scaled(random_mtl(rng, rng.randint(2, 4)), rng.choice(LENGTHS))
-    trigger = rng.choice((TRIGGER, TRIGGER, BoundAtom(Bound.START)))
+    trigger = rng.choice((p, p, start))
     model = (TimeModel.HELD, TimeModel.SAMPLED)[number % 2]
-    requirement = Requirement("R", Mode.UPON, trigger, formula)
-    signals = {name: Signal(name, Type(Kind.BOOL)) for name in BOOLS}
-    spec = CheckedSpec("long", "", model, signals, {}, {"R": requirement})
+    kinds = dict.fromkeys(BOOLS, Kind.BOOL)
+    spec = spec_over(kinds, requirement(formula, upon=trigger), model)
     return Case(spec, tuple(_samples(rng, samples)))
 
 
@@ -204,6 +185,7 @@ def _samples(rng: random.Random, count: int) -> Iterator[Sample]:
 
 
 def judge_long(found: Campaign, seed: int, own: Long, numbers: range) -> None:
+    """The core against the law on arrays, on traces too long for the oracle."""
     for number in numbers:
         case = _case(seed, number, own.samples)
         wanted = by_law(case)

@@ -42,7 +42,7 @@ def _network(seed: int, number: int) -> Network:
 
 
 def judge_queries(found: Campaign, seed: int, numbers: range) -> None:
-    """The truth of the queries of networks; runs that are shown are checked as concrete runs."""
+    """Queries on random networks against a walk through all regions."""
     for number in numbers:
         network, policy = _network(seed, number), tuple(Policy)[number % 3]
         steps: Steps = {}
@@ -66,6 +66,7 @@ def judge_queries(found: Campaign, seed: int, numbers: range) -> None:
 
 
 def judge_logics(found: Campaign, seed: int, numbers: range) -> None:
+    """CTL and LTL on random networks against fixpoints and a tableau on all regions."""
     for number in numbers:
         network, random = _network(seed, number), Random(number)
         states = [f"({query.text.partition(' ')[2]})" for query in network.queries[:4]]
@@ -104,14 +105,8 @@ def _agrees(network: Network, text: str, found: Campaign) -> bool:
 
 
 COMPARISONS = {
-    "networks": Comparison(
-        "queries on random networks against a walk through all regions", judge_queries, "networks"
-    ),
-    "logics": Comparison(
-        "CTL and LTL on random networks against fixpoints and a tableau on all regions",
-        judge_logics,
-        "networks",
-    ),
+    "networks": Comparison(judge_queries, "networks"),
+    "logics": Comparison(judge_logics, "networks"),
 }
 
 

@@ -10,8 +10,9 @@ from typing import Any
 
 import numpy as np
 from benchmarks.comparisons.comparison import Comparison
-from benchmarks.comparisons.coverage import judge_hits
+from benchmarks.comparisons.coverage import EACH, judge_hits
 from benchmarks.comparisons.long_traces import Long, judge_long
+from tests.tools.build import requirement, spec_over
 from tests.tools.common_fragment import unrolled
 from tests.tools.compare import Key
 from tests.tools.differential import Campaign, campaign, case_of, cases_of
@@ -25,15 +26,7 @@ from tests.tools.random_specs import random_ltl, random_mtl
 from tests.tools.sound import is_spoken_of, narrowed, overturned
 
 from rvmon.errors import RvmonError
-from rvmon.language.checked.formula import Bound, BoundAtom, Formula
-from rvmon.language.checked.specification import (
-    CheckedSpec,
-    Mode,
-    Requirement,
-    Signal,
-    TimeModel,
-    Type,
-)
+from rvmon.language.checked.specification import TimeModel
 from rvmon.language.print import format_formula
 from rvmon.monitor.robustness import Robustness, RobustnessMonitor
 from rvmon.session import Spec
@@ -83,7 +76,7 @@ def judge_verdicts(
     traces: TraceProfile,
     numbers: range,
 ) -> None:
-    """Verdicts, instants and records."""
+    """The core against the oracle: verdicts, instants, records, in all time models."""
     own_found = campaign(
         own.makers(),
         [f"{seed}/{number}" for number in numbers],
@@ -149,7 +142,7 @@ def _figures_differ(ours: Callable[[Case], Figures], case: Case) -> list[str]:
 def judge_robustness(
     found: Campaign, seed: int, profile: Profile, traces: TraceProfile, numbers: range
 ) -> None:
-    """Robustness of each attempt; the first disagreement of a part is shrunk."""
+    """Robustness, by samples and by arrays, against its oracle."""
 
     def ways(_: int, case: Case) -> Iterator[tuple[str, Callable[[Case], list[str]]]]:
         for name, ours in {"samples": by_samples, "arrays": by_arrays}.items():
@@ -173,7 +166,7 @@ class Fillings:
 def judge_fillings(
     found: Campaign, seed: int, own: Fillings, profile: Profile, numbers: range
 ) -> None:
-    """Whether a filling turns a run's P or NT to F, or its F to anything else."""
+    """Green never hides a failure: what was lost is filled in, and no verdict may turn."""
     for number in numbers:
         alone = own.stretches and number % 2 == 1
         traces = TraceProfile(unknowns=not alone, outages=100 if own.stretches else 0)
@@ -202,7 +195,7 @@ class Forecasts:
 
 
 def judge_forecasts(found: Campaign, seed: int, own: Forecasts, numbers: range) -> None:
-    """After every position of random words, the verdict or the forecast."""
+    """Verdicts and forecasts of open attempts against a tableau."""
     for number in numbers:
         rng = random.Random(f"{seed}/{number}")
         formula = (random_mtl if own.timed else random_ltl)(rng, rng.randint(1, 4))
@@ -211,7 +204,9 @@ def judge_forecasts(found: Campaign, seed: int, own: Forecasts, numbers: range) 
             found.counts[f"passed over: more than {TABLEAU_MOST} temporal operators"] += 1
             continue
         found.counts["formulas"] += 1
-        spec = _spec(formula, TimeModel.HELD if own.timed else TimeModel.SAMPLED)
+        time = TimeModel.HELD if own.timed else TimeModel.SAMPLED
+        kinds = dict.fromkeys(BOOLS, Kind.BOOL)
+        spec = Spec(spec_over(kinds, requirement(formula), time))
         for _ in range(own.words):
             word = _word(rng)
             for length, (decided, ours) in enumerate(_said(spec, word), 1):
@@ -231,12 +226,6 @@ def judge_forecasts(found: Campaign, seed: int, own: Forecasts, numbers: range) 
 _SIGNS = {True: "P", False: "F", None: "either"}
 
 
-def _spec(formula: Formula, time_model: TimeModel) -> Spec:
-    signals = {name: Signal(name, Type(Kind.BOOL)) for name in BOOLS}
-    requirement = Requirement("R", Mode.UPON, BoundAtom(Bound.START), formula)
-    return Spec(CheckedSpec("ltl", "", time_model, signals, {}, {"R": requirement}))
-
-
 def _said(spec: Spec, word: Sequence[Letter]) -> Iterator[tuple[bool, bool | None]]:
     """After every position whether the attempt is decided, and its verdict or forecast."""
     monitor = spec.monitor()
@@ -253,41 +242,17 @@ def _word(rng: Rng) -> list[Letter]:
     return [frozenset(name for name in BOOLS if chance(rng, 50)) for _ in range(length)]
 
 
+_SPECS = "specifications"
+
 COMPARISONS = {
     "verdicts": Comparison(
-        "the core against the oracle: verdicts, instants, records, in all time models",
-        judge_verdicts,
-        "specifications",
-        (Verdicts(), Profile(many=8), TraceProfile(long=8)),
+        judge_verdicts, _SPECS, Verdicts(), Profile(many=8), TraceProfile(long=8)
     ),
     "robustness": Comparison(
-        "robustness, by samples and by arrays, against its oracle",
-        judge_robustness,
-        "specifications of 8 traces",
-        (Profile(many=8), TraceProfile()),
+        judge_robustness, f"{_SPECS} of 8 traces", Profile(many=8), TraceProfile()
     ),
-    "coverage": Comparison(
-        "what coverpoints and crosses are hit against the definition",
-        judge_hits,
-        "specifications of 10 traces",
-    ),
-    "long": Comparison(
-        "the core against the law on arrays, on traces too long for the oracle",
-        judge_long,
-        "traces",
-        (Long(),),
-        1,
-    ),
-    "forecasts": Comparison(
-        "verdicts and forecasts of open attempts against a tableau",
-        judge_forecasts,
-        "formulas",
-        (Forecasts(),),
-    ),
-    "fillings": Comparison(
-        "green never hides a failure: what was lost is filled in, and no verdict may turn",
-        judge_fillings,
-        "runs",
-        (Fillings(), Profile(requirements=1)),
-    ),
+    "coverage": Comparison(judge_hits, f"{_SPECS} of {EACH} traces"),
+    "long": Comparison(judge_long, "traces", Long(), part=1),
+    "forecasts": Comparison(judge_forecasts, "formulas", Forecasts()),
+    "fillings": Comparison(judge_fillings, "runs", Fillings(), Profile(requirements=1)),
 }

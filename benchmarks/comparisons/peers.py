@@ -11,24 +11,13 @@ from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import prepare
 from benchmarks.peers.ways import WAYS, Question, Way, answers, ask_oracle
-from tests.tools.build import with_operands
+from tests.tools.build import requirement, spec_over, with_operands
 from tests.tools.common_fragment import UntranslatableError
 from tests.tools.differential import Campaign
 
 from rvmon.errors import RvmonError
-from rvmon.language.checked.formula import (
-    Bound,
-    BoundAtom,
-    Compare,
-    CompareOp,
-    Constant,
-    Formula,
-    Literal,
-    SignalAtom,
-    SignalValue,
-)
+from rvmon.language.checked import formula as formulas
 from rvmon.language.checked.names_read import names_read
-from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, Signal, Type
 from rvmon.language.print import format_formula
 from rvmon.session import Spec
 from rvmon.testing.generate import NUMBERS, chance, pick
@@ -36,7 +25,8 @@ from rvmon.testing.generate.formula import formula
 from rvmon.trace.sample import Sample, Trace
 from rvmon.trace.schema import Kind
 
-ORDERS = (CompareOp.LT, CompareOp.LE, CompareOp.GE, CompareOp.GT)
+ORDERS = tuple(map(formulas.CompareOp, ("<", "<=", ">=", ">")))
+PLAIN = formulas.SignalAtom | formulas.Constant | formulas.BoundAtom
 Values = Sequence[float | None]
 Both = Callable[[Way, Peer, Question], tuple[Values, Values]]
 """What we and the peer say at every tick."""
@@ -50,7 +40,7 @@ class Asked:
 
 
 def judge_verdicts(found: Campaign, seed: int, own: Asked, numbers: range) -> None:
-    """The peer's verdict wherever it has one and ours is decided by the trace."""
+    """Reelay, rtamt, mstlo and SENTIL: verdicts at every tick (made from the package index)."""
 
     def both(way: Way, peer: Peer, one: Question) -> tuple[Values, Values]:
         return answers(one, ask_oracle), way.truths(peer, one)
@@ -59,7 +49,7 @@ def judge_verdicts(found: Campaign, seed: int, own: Asked, numbers: range) -> No
 
 
 def judge_robustness(found: Campaign, seed: int, own: Asked, numbers: range) -> None:
-    """Robustness, number for number, wherever ours is one: no window reaches beyond the end."""
+    """Rtamt and SENTIL: robustness at every tick."""
 
     def both(way: Way, peer: Peer, one: Question) -> tuple[Values, Values]:
         return _robustness(one), way.says(peer, one)
@@ -113,19 +103,18 @@ def random_question(rng: random.Random, way: Way, compared: int) -> Question:
     return Question(asked, columns, way.time)
 
 
-def _with_numbers(rng: random.Random, asked: Formula, compared: int) -> Formula:
+def _with_numbers(rng: random.Random, asked: formulas.Formula, compared: int) -> formulas.Formula:
     """Some of the propositions replaced by comparisons that no value meets exactly."""
-    if isinstance(asked, SignalAtom | Constant | BoundAtom) and chance(rng, compared):
-        bound = Literal(rng.randint(-1, 2) + 0.5)
-        return Compare(pick(rng, ORDERS), SignalValue(pick(rng, NUMBERS)), bound)
+    if isinstance(asked, PLAIN) and chance(rng, compared):
+        bound = formulas.Literal(rng.randint(-1, 2) + 0.5)
+        return formulas.Compare(pick(rng, ORDERS), formulas.SignalValue(pick(rng, NUMBERS)), bound)
     return with_operands(asked, lambda operand: _with_numbers(rng, operand, compared))
 
 
 def _robustness(question: Question) -> Values:
     """Ours at every tick; `None` where it depends on what comes after the trace, or is infinite."""
-    requirement = Requirement("R", Mode.UPON, BoundAtom(Bound.START), question.formula)
-    signals = {name: Signal(name, Type(Kind.REAL)) for name in question.columns}
-    spec = CheckedSpec("robustness", "", question.time, signals, {}, {"R": requirement})
+    kinds = dict.fromkeys(question.columns, Kind.REAL)
+    spec = spec_over(kinds, requirement(question.formula), question.time)
     rows = enumerate(zip(*question.columns.values(), strict=True))
     samples = [Sample(t, dict(zip(question.columns, row, strict=True))) for t, row in rows]
     trace = Trace(tuple(samples), frozenset(question.columns))
@@ -147,19 +136,10 @@ def _show(way: Way, question: Question, ours: Values, theirs: Values) -> str:
     return "\n".join(lines)
 
 
+_ASKED = "formulas for each way to ask"
+_NUMBERS = Asked("rtamt-discrete,rtamt-dense,sentil")
+
 COMPARISONS = {
-    "peers": Comparison(
-        "reelay, rtamt, mstlo and SENTIL: verdicts at every tick (made from the package index)",
-        judge_verdicts,
-        "formulas for each way to ask",
-        (Asked(",".join(WAYS)),),
-        250,
-    ),
-    "peers-robustness": Comparison(
-        "rtamt and SENTIL: robustness at every tick",
-        judge_robustness,
-        "formulas for each way to ask",
-        (Asked("rtamt-discrete,rtamt-dense,sentil"),),
-        250,
-    ),
+    "peers": Comparison(judge_verdicts, _ASKED, Asked(",".join(WAYS)), part=250),
+    "peers-robustness": Comparison(judge_robustness, _ASKED, _NUMBERS, part=250),
 }

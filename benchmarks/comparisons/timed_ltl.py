@@ -17,19 +17,12 @@ import networkx as nx
 from tests.tools.timed_regions import JOINED, Region, RegionGraph, TooManyRegionsError, truth_of
 
 from rvmon.models.network import Network
-from rvmon.models.network.expressions import (
-    BinaryOperation,
-    Expression,
-    PathFormula,
-    PathOp,
-    UnaryOp,
-    UnaryOperation,
-)
+from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import is_linear, parts_of
 from rvmon.models.runs import Run
 from rvmon.models.runs.exact_times import Rules, initial_configuration
 
-_Node = tuple[Region, frozenset[PathFormula]]
+_Node = tuple[Region, frozenset[ex.PathFormula]]
 
 
 class LinearTruth:
@@ -45,10 +38,12 @@ class LinearTruth:
         TooManyRegionsError: there are more.
     """
 
-    def __init__(self, network: Network, formula: Expression, progress: bool, limit: int) -> None:
+    def __init__(
+        self, network: Network, formula: ex.Expression, progress: bool, limit: int
+    ) -> None:
         self._regions = RegionGraph(network, [formula], 1 if progress else None, limit)
         self._formula, self._progress, self._limit = formula, progress, limit
-        temporal = [p for p in parts_of(formula) if isinstance(p, PathFormula)]
+        temporal = [p for p in parts_of(formula) if isinstance(p, ex.PathFormula)]
         plain = [p for p in parts_of(formula) if not is_linear(p)]
         self._plain = {id(part): truth_of(part) for part in plain}
         self._temporal = list(dict.fromkeys(temporal))
@@ -73,22 +68,22 @@ class LinearTruth:
                 return True
         return False
 
-    def _is_kept(self, promise: PathFormula, node: _Node) -> bool:
+    def _is_kept(self, promise: ex.PathFormula, node: _Node) -> bool:
         # Who denies `G p` promises that p will not hold.
-        final = promise.op is PathOp.FINALLY
+        final = promise.op is ex.PathOp.FINALLY
         waits = (promise in node[1]) == final
         return not waits or self._holds(promise.body, node) == final
 
-    def _holds(self, formula: Expression, node: _Node) -> bool:
+    def _holds(self, formula: ex.Expression, node: _Node) -> bool:
         region, held = node
         if not is_linear(formula):
             return self._plain[id(formula)](region.now)
         match formula:
-            case PathFormula():
+            case ex.PathFormula():
                 return formula in held
-            case UnaryOperation(UnaryOp.NOT, operand):
+            case ex.UnaryOperation(ex.UnaryOp.NOT, operand):
                 return not self._holds(operand, node)
-            case BinaryOperation(op, left, right):
+            case ex.BinaryOperation(op, left, right):
                 return JOINED[op](self._holds(left, node), self._holds(right, node))
             case _:
                 raise AssertionError(f"{formula} is none of LTL")
@@ -97,7 +92,7 @@ class LinearTruth:
         for formula in self._temporal:
             body, left = self._holds(formula.body, node), self._holds(formula.left, node)
             following = formula in after[1]
-            if formula.op is PathOp.FINALLY:
+            if formula.op is ex.PathOp.FINALLY:
                 expected = body or (left and following)
             else:
                 expected = body and (not left or following)
@@ -139,7 +134,7 @@ class LinearTruth:
             yield region, False
 
 
-def satisfied_by(network: Network, run: Run, formula: Expression) -> bool:
+def satisfied_by(network: Network, run: Run, formula: ex.Expression) -> bool:
     """Whether a run that ends in a loop, or at rest, satisfies a formula without clocks."""
     rules, letters, back = Rules(network), [initial_configuration(network)], 0
     for number, step in enumerate(run.steps):
@@ -151,19 +146,19 @@ def satisfied_by(network: Network, run: Run, formula: Expression) -> bool:
     last = len(letters) - 1
     following = [*range(1, last + 1), last if run.loop is None else back]
 
-    def where(part: Expression) -> list[bool]:
+    def where(part: ex.Expression) -> list[bool]:
         if not is_linear(part):
             return [*map(truth_of(part), letters)]
         match part:
-            case PathFormula(op, body, _, left):
-                final = op is PathOp.FINALLY
+            case ex.PathFormula(op, body, _, left):
+                final = op is ex.PathOp.FINALLY
                 now, until = [held == final for held in where(body)], where(left)
                 for _ in letters:
                     now = [held or (until[n] and now[following[n]]) for n, held in enumerate(now)]
                 return [held == final for held in now]
-            case UnaryOperation(UnaryOp.NOT, operand):
+            case ex.UnaryOperation(ex.UnaryOp.NOT, operand):
                 return [not held for held in where(operand)]
-            case BinaryOperation(op, one, other):
+            case ex.BinaryOperation(op, one, other):
                 pairs = zip(where(one), where(other), strict=True)
                 return [JOINED[op](*pair) for pair in pairs]
             case _:

@@ -10,11 +10,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.output import table
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import spelling
 from benchmarks.peers.environment import Environment, prepare
 from benchmarks.peers.ways import Cell, Question, answers, ask_oracle
+from benchmarks.program import table
 
 from rvmon import loads
 

@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 import msgspec
-from benchmarks.output import show
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.environment import Environment, prepare
+from benchmarks.program import table
 
 import rvmon
 from rvmon.adapters.json_objects import JsonObjects
@@ -135,4 +135,5 @@ def faults() -> None:
     for fault in told.fault:
         fed = ", ".join(f"{t:g}: {x:g}" for t, x in fault.samples)
         print(f"\n**{fault.title}** (fed {fed})\n")
-        show(["monitor", "says"], _answers(told, fault, environment))
+        for line in table(["monitor", "says"], _answers(told, fault, environment)):
+            print(line, flush=True)

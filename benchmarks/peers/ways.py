@@ -7,17 +7,10 @@ from dataclasses import dataclass
 
 from benchmarks.peers.client import Peer
 from benchmarks.peers.dialects import ALWAYS_ONE, spelling, translate
+from tests.tools.build import requirement, spec_over
 
 from rvmon.language.checked.formula import EventAtom, Formula
-from rvmon.language.checked.specification import (
-    CheckedSpec,
-    Event,
-    Mode,
-    Requirement,
-    Signal,
-    TimeModel,
-    Type,
-)
+from rvmon.language.checked.specification import CheckedSpec, TimeModel
 from rvmon.session import Spec
 from rvmon.testing.generate.numbers import Shape
 from rvmon.testing.oracle import evaluate
@@ -125,13 +118,12 @@ def ask_monitor(spec: CheckedSpec, samples: Sequence[Sample], end: int) -> Repor
 
 def answers(question: Question, judge: Judge) -> list[bool | None]:
     """Ours at every tick, an attempt for each: TRUE, FALSE, or `None` (the trace decides not)."""
-    signals = {
-        name: Signal(name, Type(Kind.REAL if float in map(type, column) else Kind.BOOL))
+    kinds: dict[str, Kind | None] = {
+        name: Kind.REAL if float in map(type, column) else Kind.BOOL
         for name, column in question.columns.items()
     }
-    requirement = Requirement("R", Mode.UPON, EventAtom("row"), question.formula, pulse=True)
-    events = {"row": Event("row")}
-    spec = CheckedSpec("question", "", question.time, signals, events, {"R": requirement})
+    asked = requirement(question.formula, upon=EventAtom("row"))
+    spec = spec_over(kinds | {"row": None}, asked, question.time)
     rows = zip(*question.columns.values(), strict=True)
     samples = [
         Sample(tick, {"row": True, **dict(zip(question.columns, row, strict=True))})

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from benchmarks.output import table
+from benchmarks.program import table
 from benchmarks.timing.workload import SECOND
 
 from rvmon import loads

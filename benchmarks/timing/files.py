@@ -14,11 +14,10 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
-from benchmarks.output import table
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import Environment
 from benchmarks.process import Cost, measured
-from benchmarks.program import in_turn
+from benchmarks.program import in_turn, table
 from benchmarks.timing.workload import Size, always_text, processed, specification
 
 _PEERS = Path(__file__).parents[1] / "peers"

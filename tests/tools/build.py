@@ -35,7 +35,15 @@ from rvmon.language.checked.formula import (
     UnaryOp,
 )
 from rvmon.language.checked.operators import Window
-from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement, TimeModel
+from rvmon.language.checked.specification import (
+    CheckedSpec,
+    Event,
+    Mode,
+    Requirement,
+    Signal,
+    TimeModel,
+    Type,
+)
 from rvmon.testing.generate import (
     BOOLS,
     CARRIER,
@@ -48,6 +56,7 @@ from rvmon.testing.generate import (
 )
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.trace.sample import Sample, Value
+from rvmon.trace.schema import Kind
 
 p, q, r = (SignalAtom(name) for name in BOOLS)
 e, f, g = EventAtom("e"), EventAtom("f"), EventAtom(CARRIER)
@@ -157,6 +166,15 @@ def spec_of(
         requirements={found.id: found for found in requirements},
         period=period,
     )
+
+
+def spec_over(
+    kinds: Mapping[str, Kind | None], requirement: Requirement, time: TimeModel
+) -> CheckedSpec:
+    """A specification of one requirement over these signals alone; a kind of `None`: an event."""
+    signals = {name: Signal(name, Type(kind)) for name, kind in kinds.items() if kind is not None}
+    events = {name: Event(name) for name, kind in kinds.items() if kind is None}
+    return CheckedSpec("test", "", time, signals, events, {requirement.id: requirement})
 
 
 def timeline(**rows: str) -> tuple[Sample, ...]:
