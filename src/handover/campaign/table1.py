@@ -89,16 +89,11 @@ SPREAD_FILE = "spread.json"
 
 
 class Spread(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Counts over campaigns of 100 tests for each random strategy.
+    """Counts over campaigns of 100 tests for each random strategy."""
 
-    Attributes:
-        first: seed of the first campaign.
-        last: seed of the last campaign.
-        ranges: the least and the greatest count by strategy, requirement and verdict.
-    """
-
-    first: int
-    last: int
+    first: int  # seed of the first campaign
+    last: int  # seed of the last campaign
+    # the least and the greatest count by strategy, requirement and verdict
     ranges: Mapping[str, Mapping[str, Mapping[str, tuple[int, int]]]]
 
 

@@ -24,21 +24,13 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Conditions:
-    """The seeded conditions of one run; the posture ranges are drawn as they are needed.
+    """The seeded conditions of one run; the posture ranges are drawn as they are needed."""
 
-    Attributes:
-        human_start_s: the instant at which the human's script starts.
-        connected: whether the human's signals reach the robot at all.
-        timeout_time_s: the parameter of the legacy robot.
-        poll_growth_s: the delay that each subscription adds to a poll.
-        start_pose: joint angles after the reset, rad.
-    """
-
-    human_start_s: float
-    connected: bool
-    timeout_time_s: int
-    poll_growth_s: float
-    start_pose: Joints
+    human_start_s: float  # the instant at which the human's script starts
+    connected: bool  # whether the human's signals reach the robot at all
+    timeout_time_s: int  # the parameter of the legacy robot
+    poll_growth_s: float  # the delay that each subscription adds to a poll
+    start_pose: Joints  # joint angles after the reset, rad
 
 
 def draw(seed: int, *, startup_loss: bool) -> Conditions:
@@ -79,30 +71,20 @@ AroundRobotStep = Callable[[], AbstractContextManager[object]]
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A simulated test, not judged yet.
+    """A simulated test, not judged yet."""
 
-    Attributes:
-        test: the played test.
-        robot: `"correct"` or `"legacy"`.
-        mutation: the change made to the robot, if any.
-        samples: `(t_ns, values)`, strictly increasing, only what changed or occurred; events are
-            `True`, a signal that is unknown is `None`; distances in m, speeds in m/s.
-        states: `(t_ns, state)` at each entry of a robot state, also from itself (a poll).
-        end_ns: the horizon.
-        stepped_s: simulated seconds for which the physics was stepped.
-        error: the exception of the robot's code as one text, if it crashed.
-        scene: over time, if asked for.
-    """
-
-    test: AbstractTest
-    robot: str
-    mutation: str | None
+    test: AbstractTest  # the played test
+    robot: str  # `"correct"` or `"legacy"`
+    mutation: str | None  # the change made to the robot, if any
+    # `(t_ns, values)`, strictly increasing, only what changed or occurred; events are `True`, a
+    # signal that is unknown is `None`; distances in m, speeds in m/s
     samples: tuple[tuple[int, SampleValues], ...]
+    # `(t_ns, state)` at each entry of a robot state, also from itself (a poll)
     states: tuple[tuple[int, str], ...]
-    end_ns: int
-    stepped_s: float
-    error: str | None
-    scene: Scene | None
+    end_ns: int  # the horizon
+    stepped_s: float  # simulated seconds for which the physics was stepped
+    error: str | None  # the exception of the robot's code as one text, if it crashed
+    scene: Scene | None  # over time, if asked for
 
     @property
     def simulated_s(self) -> float:
@@ -140,21 +122,13 @@ def run_test(test: AbstractTest, **options: Any) -> Run:
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """A test that is being played.
+    """A test that is being played."""
 
-    Attributes:
-        world: runs it, as far as it is asked to.
-        robot: `"correct"` or `"legacy"`.
-        mutation: the change made to the robot, if any.
-        process: the robot's.
-        states: `(t_ns, state)` at each entry of a robot state so far.
-    """
-
-    world: World
-    robot: str
-    mutation: str | None
-    process: Process
-    states: list[tuple[int, str]]
+    world: World  # runs it, as far as it is asked to
+    robot: str  # `"correct"` or `"legacy"`
+    mutation: str | None  # the change made to the robot, if any
+    process: Process  # the robot's
+    states: list[tuple[int, str]]  # `(t_ns, state)` at each entry of a robot state so far
 
 
 def begun(

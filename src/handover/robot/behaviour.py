@@ -7,55 +7,33 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Behaviour:
-    """Numbers and rules of one version of the robot.
+    """Numbers and rules of one version of the robot."""
 
-    Attributes:
-        reset_s: seconds from the start to the first poll.
-        poll_s: seconds between two reads of the human's signals.
-        poll_limit: polls after which the robot gives up.
-        shared_polls: whether both receiving states count the same polls.
-        resubscribes: whether each poll subscribes again and never takes it down.
-        activation: signals that activate the robot.
-        readiness: signals that say that the human is ready.
-        only_fresh: whether signals from before the state was entered are ignored.
-        minds_hand: whether it closes the gripper only where no hand is seen, and stops on its way
-            where a person is.
-        grip_pause_s: seconds from the command to close until the gripper counts as closed.
-        announce_pause_s: seconds between the messages about the closed gripper.
-        settle_s: seconds at the handover pose before the human is informed.
-        checks_grip: whether it looks whether the piece came along.
-        inform_pause_s: seconds before and after informing the human.
-        sense_delay_s: seconds in `sense` before the first poll of the sensors.
-        sense_poll_s: seconds between two reads of the sensors.
-        sense_limit_s: seconds in `sense` until it times out; `None`: the run's parameter
-            `timeout_time`, counted from the informing.
-        undefined_is_bad: whether a sensor without a reading counts as not ok, at once.
-        decide_s: seconds from sensing to the decision.
-        open_s: seconds from the command to open until the piece counts as released.
-        release_s: seconds after the release.
-    """
-
-    reset_s: float
-    poll_s: float
-    poll_limit: int
-    shared_polls: bool
-    resubscribes: bool
-    activation: frozenset[str]
-    readiness: frozenset[str]
-    only_fresh: bool
+    reset_s: float  # seconds from the start to the first poll
+    poll_s: float  # seconds between two reads of the human's signals
+    poll_limit: int  # polls after which the robot gives up
+    shared_polls: bool  # whether both receiving states count the same polls
+    resubscribes: bool  # whether each poll subscribes again and never takes it down
+    activation: frozenset[str]  # signals that activate the robot
+    readiness: frozenset[str]  # signals that say that the human is ready
+    only_fresh: bool  # whether signals from before the state was entered are ignored
+    # whether it closes the gripper only where no hand is seen, and stops on its way where a person
+    # is
     minds_hand: bool
-    grip_pause_s: float
-    announce_pause_s: float
-    settle_s: float
-    checks_grip: bool
-    inform_pause_s: float
-    sense_delay_s: float
-    sense_poll_s: float
+    grip_pause_s: float  # seconds from the command to close until the gripper counts as closed
+    announce_pause_s: float  # seconds between the messages about the closed gripper
+    settle_s: float  # seconds at the handover pose before the human is informed
+    checks_grip: bool  # whether it looks whether the piece came along
+    inform_pause_s: float  # seconds before and after informing the human
+    sense_delay_s: float  # seconds in `sense` before the first poll of the sensors
+    sense_poll_s: float  # seconds between two reads of the sensors
+    # seconds in `sense` until it times out; `None`: the run's parameter `timeout_time`, counted
+    # from the informing
     sense_limit_s: float | None
-    undefined_is_bad: bool
-    decide_s: float
-    open_s: float
-    release_s: float
+    undefined_is_bad: bool  # whether a sensor without a reading counts as not ok, at once
+    decide_s: float  # seconds from sensing to the decision
+    open_s: float  # seconds from the command to open until the piece counts as released
+    release_s: float  # seconds after the release
 
 
 CORRECT = Behaviour(

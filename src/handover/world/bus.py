@@ -45,15 +45,10 @@ Tap = Callable[[str, Value], None]
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """A message as a node receives it.
+    """A message as a node receives it."""
 
-    Attributes:
-        value: its content.
-        stamp: the instant of publication, seconds.
-    """
-
-    value: Value
-    stamp: float
+    value: Value  # its content
+    stamp: float  # the instant of publication, seconds
 
 
 class Bus:

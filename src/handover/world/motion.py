@@ -54,17 +54,11 @@ def joints_for(x: float, z: float) -> Joints | None:
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """A path in joint space, at rest at both ends.
+    """A path in joint space, at rest at both ends."""
 
-    Attributes:
-        start: joint angles, rad.
-        goal: joint angles, rad.
-        duration: seconds.
-    """
-
-    start: Joints
-    goal: Joints
-    duration: float
+    start: Joints  # joint angles, rad
+    goal: Joints  # joint angles, rad
+    duration: float  # seconds
 
 
 def min_jerk(share: float) -> float:

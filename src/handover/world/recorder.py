@@ -4,18 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from handover.world import measures
 from handover.world import parameters as p
 from handover.world.human import Human
-from handover.world.measures import (
-    beside_distance,
-    gaze_is_ok,
-    gripper_force,
-    gripper_opening,
-    location_is_ok,
-    person_distances,
-    tool_point,
-    tool_speed,
-)
 from handover.world.scene import Scene
 
 SampleValue = bool | float | None
@@ -102,34 +93,34 @@ class Truth:
         self._shown, self._peaks = (t_ns, peaks), _NO_FORCE
         hand, forearm, other_hand = peaks
         scene = self._scene
-        grip = gripper_force(scene)
-        to_hand, to_person = person_distances(scene)
+        grip = measures.gripper_force(scene)
+        to_hand, to_person = measures.person_distances(scene)
         return {
             "piece_height": round(scene.piece.position.y, 3),
             "gripper_holds": grip >= p.PRESSURE_MIN,
             "person_holds": self._human.holds(),
-            "gripper_opening": round(gripper_opening(scene), 3),
+            "gripper_opening": round(measures.gripper_opening(scene), 3),
             "hand_force": round(max(hand, other_hand)),
             "other_hand_force": round(other_hand),
             "forearm_force": round(forearm),
             "true_distance": round(to_hand, 3),
             "person_distance": round(to_person, 3),
             **self._beside(),
-            "true_gaze": gaze_is_ok(scene),
+            "true_gaze": measures.gaze_is_ok(scene),
             "true_pressure": self._human.shares_piece(),
-            "true_location": location_is_ok(scene),
-            "tool_speed": round(tool_speed(scene), 3),
+            "true_location": measures.location_is_ok(scene),
+            "tool_speed": round(measures.tool_speed(scene), 3),
         }
 
     def _beside(self) -> dict[str, SampleValue]:
         if self._scene.beside is None:
             return {}
-        distance = beside_distance(self._scene, *tool_point(self._scene))
+        distance = measures.beside_distance(self._scene, *measures.tool_point(self._scene))
         return {"beside_distance": round(distance, 3)}
 
     def places(self) -> dict[str, SampleValue]:
         """The position of the piece, and the grip's distance behind and above it: m, to 1 mm."""
-        piece, grip = self._scene.piece.position, tool_point(self._scene)
+        piece, grip = self._scene.piece.position, measures.tool_point(self._scene)
         return {
             "piece_x": round(piece.x, 3),
             "grip_behind": round(piece.x - grip[0], 3),

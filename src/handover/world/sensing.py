@@ -6,16 +6,10 @@ import random
 from collections import deque
 from dataclasses import dataclass
 
+from handover.world import measures
 from handover.world import parameters as p
 from handover.world.faults import SensorFaults
 from handover.world.human import Human
-from handover.world.measures import (
-    face_is_seen,
-    gaze_is_ok,
-    hand_is_seen,
-    hand_offset,
-    location_is_ok,
-)
 from handover.world.scene import Scene
 
 
@@ -72,7 +66,7 @@ class Sensors:
         """Metres between the mass centres of hand and gripper on each axis; `None`: unknown."""
         if self.is_dead("distance"):
             return None
-        x, z = hand_offset(self._scene)
+        x, z = measures.hand_offset(self._scene)
         return abs(x + self._noise()), abs(z + self._noise())
 
     def is_dead(self, sensor: str) -> bool:
@@ -81,13 +75,15 @@ class Sensors:
 
     def _read(self) -> Reading:
         head_moves, hand_moves = self._human.is_moving()
-        head_known = face_is_seen(self._scene) and not head_moves
-        hand_known = hand_is_seen(self._scene) and not hand_moves
+        head_known = measures.face_is_seen(self._scene) and not head_moves
+        hand_known = measures.hand_is_seen(self._scene) and not hand_moves
         force_known = hand_known and not self._human.hand_is_slack
         return Reading(
-            gaze=gaze_is_ok(self._scene, self._noise) if self._reads("gaze", head_known) else None,
+            gaze=measures.gaze_is_ok(self._scene, self._noise)
+            if self._reads("gaze", head_known)
+            else None,
             pressure=self._human.shares_piece() if self._reads("pressure", force_known) else None,
-            location=location_is_ok(self._scene, self._noise)
+            location=measures.location_is_ok(self._scene, self._noise)
             if self._reads("location", hand_known)
             else None,
         )

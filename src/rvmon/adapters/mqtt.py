@@ -24,21 +24,13 @@ _PATIENCE_S = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Address:
-    """The address of a broker, with the topics to read.
+    """The address of a broker, with the topics to read."""
 
-    Attributes:
-        host: of the broker.
-        port: of it.
-        user: name and password, or empty.
-        password: see there.
-        topics: a filter of MQTT; its first `+` is the name of the robot.
-    """
-
-    host: str
-    port: int
-    user: str
-    password: str
-    topics: str
+    host: str  # of the broker
+    port: int  # of it
+    user: str  # name and password, or empty
+    password: str  # see there
+    topics: str  # a filter of MQTT; its first `+` is the name of the robot
 
     @property
     def prefix(self) -> int:

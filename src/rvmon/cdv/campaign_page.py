@@ -28,15 +28,10 @@ beside the test without it."""
 
 @dataclass(frozen=True, slots=True)
 class Examples:
-    """Tests with a page.
+    """Tests with a page."""
 
-    Attributes:
-        jobs: without repetition, in the order of the plan.
-        by_cell: a test behind each count that is not zero.
-    """
-
-    jobs: tuple[Job, ...]
-    by_cell: dict[Cell, Job]
+    jobs: tuple[Job, ...]  # without repetition, in the order of the plan
+    by_cell: dict[Cell, Job]  # a test behind each count that is not zero
 
 
 def choose_examples(

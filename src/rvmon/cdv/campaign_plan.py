@@ -122,31 +122,21 @@ def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """The outcome of one test.
+    """The outcome of one test."""
 
-    Attributes:
-        verdicts: by requirement; empty if nothing was judged. Of a test that hung or was lost
-            nothing is known: it is inconclusive.
-        reasons: by requirement that failed, when and why it did first.
-        illegal: hits of items of coverage models that must not be hit, in words.
-        hits: of states, transitions, code, and of coverage models.
-        ending: `completed`; `crashed` if code raised an exception, in which case it is judged as
-            far as it went; `hung` if it was ended; `lost` if its process was.
-        error: the reason why it did not complete.
-        end_ns: up to which it was judged.
-        figures: of the run, reported by the system, to be added up.
-        seconds: wall time that it took.
-    """
-
+    # by requirement; empty if nothing was judged. Of a test that hung or was lost nothing is known:
+    # it is inconclusive
     verdicts: Mapping[str, Verdict]
-    reasons: Mapping[str, str]
-    illegal: tuple[str, ...]
-    hits: Hits
+    reasons: Mapping[str, str]  # by requirement that failed, when and why it did first
+    illegal: tuple[str, ...]  # hits of items of coverage models that must not be hit, in words
+    hits: Hits  # of states, transitions, code, and of coverage models
+    # `completed`; `crashed` if code raised an exception, in which case it is judged as far as it
+    # went; `hung` if it was ended; `lost` if its process was
     ending: Ending
-    error: str | None
-    end_ns: int
-    figures: Mapping[str, float]
-    seconds: float = field(compare=False)
+    error: str | None  # the reason why it did not complete
+    end_ns: int  # up to which it was judged
+    figures: Mapping[str, float]  # of the run, reported by the system, to be added up
+    seconds: float = field(compare=False)  # wall time that it took
 
     @property
     def simulated_s(self) -> float:
@@ -165,23 +155,14 @@ class Played:
 
 @dataclass(frozen=True, slots=True)
 class Results:
-    """The results of a campaign.
+    """The results of a campaign."""
 
-    Attributes:
-        plan: of the campaign.
-        played: in the order of the plan, whichever process was first.
-        seconds: wall time.
-        cut_short: why not all tests were played; empty if they were.
-        groups: measured besides those of the campaign.
-        unreachable: by group and item, why items cannot be hit; further ones than the campaign
-            names.
-    """
-
-    plan: Plan
-    played: tuple[Played, ...]
-    seconds: float
-    cut_short: str = ""
-    groups: Sequence[Group] = ()
+    plan: Plan  # of the campaign
+    played: tuple[Played, ...]  # in the order of the plan, whichever process was first
+    seconds: float  # wall time
+    cut_short: str = ""  # why not all tests were played; empty if they were
+    groups: Sequence[Group] = ()  # measured besides those of the campaign
+    # by group and item, why items cannot be hit; further ones than the campaign names
     unreachable: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
 

@@ -43,30 +43,21 @@ NOTHING = BlockCoverage(0, 0, ())
 
 @dataclass(frozen=True, slots=True)
 class StrategySummary:
-    """All tests of one strategy against one robot.
+    """All tests of one strategy against one robot."""
 
-    Attributes:
-        tests: the number played.
-        counts: of tests per verdict, by requirement.
-        statements: of the measured code, by block; empty if none is measured.
-        branches: by block; empty if they are not measured.
-        states: the number of tests that entered each; declared ones also if none did.
-        transitions: the number of tests that took each, likewise.
-        errors: by how tests ended that did not complete, why, by test.
-        figures: the sums of what the system reports of its runs.
-        simulated_s: simulated seconds.
-        shares: by requirement that is to hold in a share of runs, what the tests say of it.
-    """
-
-    tests: int
-    counts: Mapping[str, Counts]
+    tests: int  # the number played
+    counts: Mapping[str, Counts]  # of tests per verdict, by requirement
+    # of the measured code, by block; empty if none is measured
     statements: Mapping[str, BlockCoverage]
-    branches: Mapping[str, BlockCoverage]
+    branches: Mapping[str, BlockCoverage]  # by block; empty if they are not measured
+    # the number of tests that entered each; declared ones also if none did
     states: Mapping[str, int]
-    transitions: Mapping[Transition, int]
+    transitions: Mapping[Transition, int]  # the number of tests that took each, likewise
+    # by how tests ended that did not complete, why, by test
     errors: Mapping[Ending, Mapping[str, str]]
-    figures: Mapping[str, float]
-    simulated_s: float
+    figures: Mapping[str, float]  # the sums of what the system reports of its runs
+    simulated_s: float  # simulated seconds
+    # by requirement that is to hold in a share of runs, what the tests say of it
     shares: Mapping[str, Decision]
 
     @property
@@ -77,17 +68,11 @@ class StrategySummary:
 
 @dataclass(frozen=True, slots=True)
 class KnownAnswer:
-    """A directed test: it knows what is to come out.
+    """A directed test: it knows what is to come out."""
 
-    Attributes:
-        test: itself.
-        verdicts: of all requirements.
-        missed: the items that it aims at and did not reach, in words.
-    """
-
-    test: Test
-    verdicts: Mapping[str, Verdict]
-    missed: Sequence[str]
+    test: Test  # itself
+    verdicts: Mapping[str, Verdict]  # of all requirements
+    missed: Sequence[str]  # the items that it aims at and did not reach, in words
 
     @property
     def wrong(self) -> list[str]:
@@ -130,52 +115,31 @@ def missed(reaches: Mapping[str, Sequence[str]], hits: Hits) -> list[str]:
 
 @dataclass(frozen=True, slots=True)
 class RobotSummary:
-    """One robot under all strategies.
+    """One robot under all strategies."""
 
-    Attributes:
-        title: its name in tables.
-        spec: name of the requirements' file.
-        requirements: id → text; empty if nothing was judged.
-        strategies: without the tests on mutated robots.
-        controls: counts by strategy and requirement with the controls in the place of their tests,
-            of the strategies that have some.
-        known: directed tests with their answers, also those on mutated robots.
-    """
-
-    title: str
-    spec: str
-    requirements: Mapping[str, str]
-    strategies: Mapping[str, StrategySummary]
+    title: str  # its name in tables
+    spec: str  # name of the requirements' file
+    requirements: Mapping[str, str]  # id → text; empty if nothing was judged
+    strategies: Mapping[str, StrategySummary]  # without the tests on mutated robots
+    # counts by strategy and requirement with the controls in the place of their tests, of the
+    # strategies that have some
     controls: Mapping[str, Mapping[str, Counts]]
+    # directed tests with their answers, also those on mutated robots
     known: tuple[KnownAnswer, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class CampaignSummary:
-    """A whole campaign.
+    """A whole campaign."""
 
-    Attributes:
-        name: of the campaign.
-        seed: all tests follow from it.
-        robots: by name.
-        planned: the number of planned tests.
-        finished: the number of played ones.
-        cut_short: why fewer; empty if all were.
-        seconds: wall time.
-        simulated_s: simulated seconds, in all tests.
-        figures: the sums of what the systems report of all runs.
-        kind: the word for a block of the measured code.
-        control: the name of the variant that was played with each test.
-    """
-
-    name: str
-    seed: int
-    robots: Mapping[str, RobotSummary]
-    planned: int
-    finished: int
-    cut_short: str
-    seconds: float
-    simulated_s: float
-    figures: Mapping[str, float]
-    kind: str
-    control: str
+    name: str  # of the campaign
+    seed: int  # all tests follow from it
+    robots: Mapping[str, RobotSummary]  # by name
+    planned: int  # the number of planned tests
+    finished: int  # the number of played ones
+    cut_short: str  # why fewer; empty if all were
+    seconds: float  # wall time
+    simulated_s: float  # simulated seconds, in all tests
+    figures: Mapping[str, float]  # the sums of what the systems report of all runs
+    kind: str  # the word for a block of the measured code
+    control: str  # the name of the variant that was played with each test

@@ -27,19 +27,12 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class CoverageFigures:
-    """The coverage of one robot's tests.
+    """The coverage of one robot's tests."""
 
-    Attributes:
-        page: its address in the campaign's folder.
-        share: of the model, from 0 to 1.
-        holes: items that were not hit as often as they have to be.
-        illegal: hits of items that must not be hit.
-    """
-
-    page: str
-    share: float
-    holes: int
-    illegal: tuple[str, ...]
+    page: str  # its address in the campaign's folder
+    share: float  # of the model, from 0 to 1
+    holes: int  # items that were not hit as often as they have to be
+    illegal: tuple[str, ...]  # hits of items that must not be hit
 
 
 DATABASE = "coverage.db"

@@ -24,34 +24,23 @@ RobotRequirement = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class TestJudgement:
-    """One test, compared with what was expected of it.
-
-    Attributes:
-        played: the test.
-        wrong: the differences from the expectation, a sentence each.
-        known: failures that are, each with the reason for which it is accepted.
-    """
+    """One test, compared with what was expected of it."""
 
     __test__ = False
 
-    played: Played
-    wrong: tuple[str, ...]
-    known: tuple[str, ...]
+    played: Played  # the test
+    wrong: tuple[str, ...]  # the differences from the expectation, a sentence each
+    known: tuple[str, ...]  # failures that are, each with the reason for which it is accepted
 
 
 @dataclass(frozen=True, slots=True)
 class CampaignJudgement:
-    """A campaign, compared with what was expected of it.
+    """A campaign, compared with what was expected of it."""
 
-    Attributes:
-        tests: each by itself, in the order of the plan.
-        checks: by demand on all tests together, in words, the fault of it; "" if there is none.
-        cut_short: why not all tests were played; empty if they were.
-    """
-
-    tests: tuple[TestJudgement, ...]
+    tests: tuple[TestJudgement, ...]  # each by itself, in the order of the plan
+    # by demand on all tests together, in words, the fault of it; "" if there is none
     checks: Mapping[str, str] = field(default_factory=dict)
-    cut_short: str = ""
+    cut_short: str = ""  # why not all tests were played; empty if they were
 
     @property
     def wrong(self) -> list[str]:

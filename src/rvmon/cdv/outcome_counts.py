@@ -6,16 +6,9 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
+from rvmon.cdv import campaign_summary
 from rvmon.cdv.campaign import unreachable_items
 from rvmon.cdv.campaign_plan import Outcome, Played, Results
-from rvmon.cdv.campaign_summary import (
-    BlockCoverage,
-    CampaignSummary,
-    KnownAnswer,
-    RobotSummary,
-    StrategySummary,
-    missed,
-)
 from rvmon.cdv.code_coverage import (
     branches_name,
     measured_groups,
@@ -31,7 +24,7 @@ from rvmon.session import Spec
 from rvmon.verdicts import Verdict
 
 
-def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
+def summarise(results: Results, specs: Mapping[str, Spec]) -> campaign_summary.CampaignSummary:
     """Count verdicts, statements, branches, states and transitions.
 
     Args:
@@ -48,7 +41,7 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
         shares = _shares(specs.get(name))
         played = [played for played in results.played if played.job.robot == name]
         by_strategy = _by_strategy(played)
-        robots[name] = RobotSummary(
+        robots[name] = campaign_summary.RobotSummary(
             title=robot.title or name,
             spec=robot.spec_name or _shown(robot.spec),
             requirements=texts,
@@ -64,15 +57,17 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> CampaignSummary:
                 if any(played.control is not None for played in several)
             },
             known=tuple(
-                KnownAnswer(
-                    test, test_run.outcome.verdicts, missed(test.reaches, test_run.outcome.hits)
+                campaign_summary.KnownAnswer(
+                    test,
+                    test_run.outcome.verdicts,
+                    campaign_summary.missed(test.reaches, test_run.outcome.hits),
                 )
                 for test_run in played
                 if (test := test_run.job.test).expected or test.reaches
             ),
         )
     outcomes = [played.outcome for played in results.played]
-    return CampaignSummary(
+    return campaign_summary.CampaignSummary(
         name=campaign.name,
         seed=results.plan.seed,
         robots=robots,
@@ -116,7 +111,7 @@ def _strategy(
     groups: Mapping[str, Group],
     blocks: Sequence[str],
     shares: Mapping[str, RunShare],
-) -> StrategySummary:
+) -> campaign_summary.StrategySummary:
     outcomes = [test_run.outcome for test_run in played]
     statements = {block: _coverage(groups[statements_name(block)], outcomes) for block in blocks}
     branches = {
@@ -124,7 +119,7 @@ def _strategy(
         for block in blocks
         if branches_name(block) in groups
     }
-    return StrategySummary(
+    return campaign_summary.StrategySummary(
         tests=len(outcomes),
         counts=_counts(outcomes, requirements),
         statements=statements,
@@ -186,11 +181,11 @@ def _counted(group: Group, outcomes: Sequence[Outcome]) -> dict[str, int]:
     return {**dict.fromkeys(_sought(group), 0), **_tests_that_hit(group.name, outcomes)}
 
 
-def _coverage(group: Group, outcomes: Sequence[Outcome]) -> BlockCoverage:
+def _coverage(group: Group, outcomes: Sequence[Outcome]) -> campaign_summary.BlockCoverage:
     hit = _tests_that_hit(group.name, outcomes)
     sought = _sought(group)
     missing = tuple(item for item in sought if item not in hit)
-    return BlockCoverage(len(sought), len(sought) - len(missing), missing)
+    return campaign_summary.BlockCoverage(len(sought), len(sought) - len(missing), missing)
 
 
 def _sought(group: Group) -> list[str]:

@@ -68,25 +68,16 @@ def spooled(spool: Path, job: Job) -> Path:
 
 
 class Recorded(NamedTuple):
-    """A test that was played, with all that was asked for.
+    """A test that was played, with all that was asked for."""
 
-    Attributes:
-        run: the report of the system at its end.
-        report: the verdicts.
-        samples: instants, and what changed or occurred; where they were to be kept.
-        hits: of the measured items.
-        illegal: hits that must not be.
-        seconds: wall time that it took, with judging.
-        cpu_s: processor time of this process that playing it took.
-    """
-
-    run: Run
-    report: Report
+    run: Run  # the report of the system at its end
+    report: Report  # the verdicts
+    # instants, and what changed or occurred; where they were to be kept
     samples: Sequence[tuple[int, Values]]
-    hits: Hits
-    illegal: tuple[str, ...]
-    seconds: float
-    cpu_s: float
+    hits: Hits  # of the measured items
+    illegal: tuple[str, ...]  # hits that must not be
+    seconds: float  # wall time that it took, with judging
+    cpu_s: float  # processor time of this process that playing it took
 
 
 class Bench:

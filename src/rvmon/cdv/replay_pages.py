@@ -32,15 +32,10 @@ from rvmon.verdicts import Verdict
 
 @dataclass(frozen=True, slots=True)
 class Replay:
-    """A test that was played again.
+    """A test that was played again."""
 
-    Attributes:
-        test: the played test.
-        recorded: all that came of it but what it hit, which is not measured.
-    """
-
-    test: Test
-    recorded: Recorded
+    test: Test  # the played test
+    recorded: Recorded  # all that came of it but what it hit, which is not measured
 
     @property
     def judged(self) -> JudgedRun:
@@ -190,19 +185,12 @@ def write_pages(
 
 @dataclass(frozen=True, slots=True)
 class _Page:
-    """A page to be written.
+    """A page to be written."""
 
-    Attributes:
-        job: the test that it shows.
-        command: replays it.
-        others: tests that passed what it failed.
-        shrink: shrinks it; empty: there is no failure.
-    """
-
-    job: Job
-    command: str
-    others: tuple[Job, ...]
-    shrink: str
+    job: Job  # the test that it shows
+    command: str  # replays it
+    others: tuple[Job, ...]  # tests that passed what it failed
+    shrink: str  # shrinks it; empty: there is no failure
 
 
 def _page_of(played: Played, folder: Path, results: Results) -> _Page:

@@ -47,19 +47,13 @@ class _Heading(Struct, frozen=True):
 
 
 class Unfinished(journal.Journal, frozen=True):
-    """A campaign that goes on.
+    """A campaign that goes on."""
 
-    Attributes:
-        jobs: in the order of the plan.
-        known: the outcomes of jobs played before, by test and robot.
-        seconds: their duration.
-        shard: the part of the campaign; `None`: all.
-    """
-
-    jobs: Sequence[Job] = ()
+    jobs: Sequence[Job] = ()  # in the order of the plan
+    # the outcomes of jobs played before, by test and robot
     known: Mapping[tuple[str, str], Played] = field(default_factory=dict)
-    seconds: float = 0.0
-    shard: Shard | None = None
+    seconds: float = 0.0  # their duration
+    shard: Shard | None = None  # the part of the campaign; `None`: all
 
     def played(self, one: Played, seconds: float) -> None:
         """Write down a test, and the seconds that the campaign has taken by now."""

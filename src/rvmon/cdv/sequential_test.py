@@ -21,26 +21,16 @@ HALF_WIDTH = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """The decision of the tests of a strategy on a share of runs.
+    """The decision of the tests of a strategy on a share of runs."""
 
-    Attributes:
-        share: the share in question.
-        holds: whether it was accepted or rejected; `None`: there were too few tests.
-        tests: the number of triggered ones taken until then.
-        inconclusive: the number of these that were.
-        passed: the number of these that did.
-        missing: the least number of further tests, if all of them pass; 0 if it is decided.
-        indifference: shares between which nothing is promised; if the true one is outside of them,
-            it is rejected wrongly with a probability of at most `ALPHA`, and accepted wrongly with
-            one of at most `BETA`.
-    """
-
-    share: RunShare
-    holds: bool | None
-    tests: int
-    inconclusive: int
-    passed: int
-    missing: int
+    share: RunShare  # the share in question
+    holds: bool | None  # whether it was accepted or rejected; `None`: there were too few tests
+    tests: int  # the number of triggered ones taken until then
+    inconclusive: int  # the number of these that were
+    passed: int  # the number of these that did
+    missing: int  # the least number of further tests, if all of them pass; 0 if it is decided
+    # shares between which nothing is promised; if the true one is outside of them, it is rejected
+    # wrongly with a probability of at most `ALPHA`, and accepted wrongly with one of at most `BETA`
     indifference: tuple[float, float]
 
     def __str__(self) -> str:

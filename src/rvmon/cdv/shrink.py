@@ -38,17 +38,11 @@ _Test = TypeVar("_Test", bound=Test)
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """The failure of a run, which the run of a smaller test has to show as well.
+    """The failure of a run, which the run of a smaller test has to show as well."""
 
-    Attributes:
-        requirement: the failed requirement; empty: none, but the run does not complete.
-        ending: the way the run ends, where no requirement is named.
-        error: the kind of exception that the code raised, where it crashed.
-    """
-
-    requirement: str
-    ending: Ending = Ending.COMPLETED
-    error: str = ""
+    requirement: str  # the failed requirement; empty: none, but the run does not complete
+    ending: Ending = Ending.COMPLETED  # the way the run ends, where no requirement is named
+    error: str = ""  # the kind of exception that the code raised, where it crashed
 
     def is_of(self, outcome: Outcome) -> bool:
         """Whether a run fails in this way."""
@@ -64,23 +58,15 @@ class Failure:
 
 @dataclass(frozen=True, slots=True)
 class Shrunk(Generic[_Test]):
-    """A test that was shrunk.
+    """A test that was shrunk."""
 
-    Attributes:
-        test: the smallest one that was found.
-        outcome: of its run.
-        failure: in common with the original test.
-        tried: tests that were played.
-        seconds: wall time that it took.
-        is_minimal: whether no single removal and no single simplification of the test's own type
-            fails alike; `False` if it was interrupted, or took too many tests.
-    """
-
-    test: _Test
-    outcome: Outcome
-    failure: Failure
-    tried: int
-    seconds: float
+    test: _Test  # the smallest one that was found
+    outcome: Outcome  # of its run
+    failure: Failure  # in common with the original test
+    tried: int  # tests that were played
+    seconds: float  # wall time that it took
+    # whether no single removal and no single simplification of the test's own type fails alike;
+    # `False` if it was interrupted, or took too many tests
     is_minimal: bool
 
 

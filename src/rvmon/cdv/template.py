@@ -36,17 +36,11 @@ class Wait(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class TemplateStep(
     msgspec.Struct, Generic[Action], frozen=True, forbid_unknown_fields=True, omit_defaults=True
 ):
-    """One instant of a witness, seen from the automata that a test stands for.
+    """One instant of a witness, seen from the automata that a test stands for."""
 
-    Attributes:
-        does: the edge of these automata that is taken.
-        wait: since the step before, or since the start.
-        action: the action of the test; `None` if the instant only bounds others.
-    """
-
-    does: str
-    wait: Wait
-    action: Action | None = None
+    does: str  # the edge of these automata that is taken
+    wait: Wait  # since the step before, or since the start
+    action: Action | None = None  # the action of the test; `None` if the instant only bounds others
 
 
 class Limit(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -63,25 +57,15 @@ class Limit(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Template(
     msgspec.Struct, Generic[Action], frozen=True, forbid_unknown_fields=True, omit_defaults=True
 ):
-    """A witness of a query, projected on the automata that a test stands for.
+    """A witness of a query, projected on the automata that a test stands for."""
 
-    Attributes:
-        name: the query's id.
-        remark: the query in words.
-        query: its text.
-        policy: the choice of the witness among several.
-        unit_s: seconds in one unit of time.
-        steps: in order.
-        limits: beyond the waits of the steps.
-    """
-
-    name: str
-    remark: str
-    query: str
-    policy: PolicyName
-    unit_s: float
-    steps: tuple[TemplateStep[Action], ...]
-    limits: tuple[Limit, ...] = ()
+    name: str  # the query's id
+    remark: str  # the query in words
+    query: str  # its text
+    policy: PolicyName  # the choice of the witness among several
+    unit_s: float  # seconds in one unit of time
+    steps: tuple[TemplateStep[Action], ...]  # in order
+    limits: tuple[Limit, ...] = ()  # beyond the waits of the steps
 
 
 def load_template(path: str | Path, action: Any) -> Template[Any]:

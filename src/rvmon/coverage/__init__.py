@@ -41,40 +41,25 @@ class Subject(StrEnum):
 
 
 class Item(Struct, frozen=True):
-    """One coverage item: a bin, a combination of bins, a state, a line and so on.
+    """One coverage item: a bin, a combination of bins, a state, a line and so on."""
 
-    Attributes:
-        name: unique in its group.
-        kind: goal, ignored, or illegal (a hit is an error).
-        goal: the hits it needs.
-        text: a description: a condition, a line of code; "" if the name suffices.
-    """
-
-    name: str
-    kind: BinKind = BinKind.GOAL
-    goal: int = 1
-    text: str = ""
+    name: str  # unique in its group
+    kind: BinKind = BinKind.GOAL  # goal, ignored, or illegal (a hit is an error)
+    goal: int = 1  # the hits it needs
+    text: str = ""  # a description: a condition, a line of code; "" if the name suffices
 
 
 class Group(Struct, frozen=True):
-    """The items of one subject.
+    """The items of one subject."""
 
-    Attributes:
-        name: unique in its model.
-        subject: the kind of its items.
-        items: by name, in order.
-        weight: its weight in the total; with 0 it is shown, but not counted.
-        axes: of a cross, the bins of each of its coverpoints, by the coverpoint's name; its items
-            are named by `combination`.
-        title: a description, such as the text of a requirement.
-    """
-
-    name: str
-    subject: Subject
-    items: Mapping[str, Item]
-    weight: int = 1
+    name: str  # unique in its model
+    subject: Subject  # the kind of its items
+    items: Mapping[str, Item]  # by name, in order
+    weight: int = 1  # its weight in the total; with 0 it is shown, but not counted
+    # of a cross, the bins of each of its coverpoints, by the coverpoint's name; its items are named
+    # by `combination`
     axes: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    title: str = ""
+    title: str = ""  # a description, such as the text of a requirement
 
 
 class Model(Struct, frozen=True):
@@ -144,15 +129,10 @@ def without(model: Model, items: Collection[tuple[str, str]]) -> Model:
 
 
 class Hit(Struct, frozen=True):
-    """The hits of an item in one run, or in several.
+    """The hits of an item in one run, or in several."""
 
-    Attributes:
-        count: at least 1.
-        first: the instant of the first hit, ticks, if known.
-    """
-
-    count: int
-    first: int | None = None
+    count: int  # at least 1
+    first: int | None = None  # the instant of the first hit, ticks, if known
 
     def __reduce__(self) -> tuple[type[Hit], tuple[int, int | None]]:
         # Compact pickles: thousands of tests send a hundred hits each between processes.
@@ -164,15 +144,10 @@ Hits = Mapping[str, Mapping[str, Hit]]
 
 
 class Score(Struct, frozen=True):
-    """The coverage of a group.
+    """The coverage of a group."""
 
-    Attributes:
-        items: the number of items that are goals.
-        covered: the number of these that reached their goals.
-    """
-
-    items: int
-    covered: int
+    items: int  # the number of items that are goals
+    covered: int  # the number of these that reached their goals
 
 
 def merged(several: Iterable[Hits]) -> dict[str, dict[str, Hit]]:
@@ -329,17 +304,11 @@ class TestRecord(Struct, frozen=True):
 
 
 class Row(Struct, frozen=True, eq=False):
-    """The hits of a test, as parallel columns.
+    """The hits of a test, as parallel columns."""
 
-    Attributes:
-        items: int32[n], the items hit, as indices of `Coverage.items`, ascending.
-        counts: int64[n], the number of hits, at least 1.
-        firsts: int64[n], instants of the first hits in ticks, or `UNKNOWN`.
-    """
-
-    items: NDArray[np.int32]
-    counts: NDArray[np.int64]
-    firsts: NDArray[np.int64]
+    items: NDArray[np.int32]  # int32[n], the items hit, as indices of `Coverage.items`, ascending
+    counts: NDArray[np.int64]  # int64[n], the number of hits, at least 1
+    firsts: NDArray[np.int64]  # int64[n], instants of the first hits in ticks, or `UNKNOWN`
 
 
 UNKNOWN = -(1 << 63)
@@ -347,35 +316,23 @@ UNKNOWN = -(1 << 63)
 
 
 class Entry(Struct, frozen=True):
-    """A test with its hits.
+    """A test with its hits."""
 
-    Attributes:
-        digest: a hash that identifies the test by its content.
-        record: the test.
-        row: its hits.
-    """
-
-    digest: str
-    record: TestRecord
-    row: Row
+    digest: str  # a hash that identifies the test by its content
+    record: TestRecord  # the test
+    row: Row  # its hits
 
 
 class Coverage(Struct, frozen=True):
-    """The contents of a coverage database.
+    """The contents of a coverage database."""
 
-    Attributes:
-        model: the model.
-        items: names of group and item, in the order of the model.
-        entries: the tests, in the order of their campaigns.
-        reasons: by group and item, reasons why it is not covered.
-        unreachable: by group and item, reasons why it cannot be hit; it is then no goal, and a hit
-            contradicts the reason.
-    """
-
-    model: Model
-    items: Sequence[tuple[str, str]]
-    entries: Sequence[Entry]
+    model: Model  # the model
+    items: Sequence[tuple[str, str]]  # names of group and item, in the order of the model
+    entries: Sequence[Entry]  # the tests, in the order of their campaigns
+    # by group and item, reasons why it is not covered
     reasons: Mapping[tuple[str, str], Sequence[str]] = field(default_factory=dict)
+    # by group and item, reasons why it cannot be hit; it is then no goal, and a hit contradicts the
+    # reason
     unreachable: Mapping[tuple[str, str], Sequence[str]] = field(default_factory=dict)
 
     @property

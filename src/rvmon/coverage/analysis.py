@@ -20,89 +20,51 @@ if TYPE_CHECKING:
 
 
 class Goals(Struct, frozen=True, eq=False):
-    """The goals of all items, as arrays by item.
+    """The goals of all items, as arrays by item."""
 
-    Attributes:
-        goal: the hits it needs.
-        wanted: whether it is a reachable goal, so that it counts.
-        unreachable: whether it is a goal that cannot be hit.
-        illegal: whether a hit is an error.
-        group: the index of its group in the model.
-    """
-
-    goal: NDArray[np.int64]
-    wanted: NDArray[np.bool_]
-    unreachable: NDArray[np.bool_]
-    illegal: NDArray[np.bool_]
-    group: NDArray[np.int64]
+    goal: NDArray[np.int64]  # the hits it needs
+    wanted: NDArray[np.bool_]  # whether it is a reachable goal, so that it counts
+    unreachable: NDArray[np.bool_]  # whether it is a goal that cannot be hit
+    illegal: NDArray[np.bool_]  # whether a hit is an error
+    group: NDArray[np.int64]  # the index of its group in the model
 
 
 class Totals(Struct, frozen=True, eq=False):
-    """The hits of all items over all tests, as arrays by item.
+    """The hits of all items over all tests, as arrays by item."""
 
-    Attributes:
-        counts: the number of hits.
-        tests: the number of tests that hit it.
-        first: the first test that hit it; −1 if none.
-        instants: the instant of the first hit in that test, ticks, or `UNKNOWN`.
-    """
-
-    counts: NDArray[np.int64]
-    tests: NDArray[np.int64]
-    first: NDArray[np.int64]
-    instants: NDArray[np.int64]
+    counts: NDArray[np.int64]  # the number of hits
+    tests: NDArray[np.int64]  # the number of tests that hit it
+    first: NDArray[np.int64]  # the first test that hit it; −1 if none
+    instants: NDArray[np.int64]  # the instant of the first hit in that test, ticks, or `UNKNOWN`
 
 
 class Step(Struct, frozen=True):
-    """The contribution of a test after those before it.
+    """The contribution of a test after those before it."""
 
-    Attributes:
-        entry: the test.
-        added: the items that reached their goals with it.
-        share: the covered share of the model with it, from 0 to 1.
-    """
-
-    entry: int
-    added: Sequence[int]
-    share: float
+    entry: int  # the test
+    added: Sequence[int]  # the items that reached their goals with it
+    share: float  # the covered share of the model with it, from 0 to 1
 
 
 class VerdictChange(Struct, frozen=True):
-    """A changed verdict of a requirement on the same test.
+    """A changed verdict of a requirement on the same test."""
 
-    Attributes:
-        test: the name of the test.
-        requirement: the id of the requirement.
-        before: the earlier verdict; `None` if it was not judged.
-        after: the later verdict; likewise.
-    """
-
-    test: str
-    requirement: str
-    before: Verdict | None
-    after: Verdict | None
+    test: str  # the name of the test
+    requirement: str  # the id of the requirement
+    before: Verdict | None  # the earlier verdict; `None` if it was not judged
+    after: Verdict | None  # the later verdict; likewise
 
 
 class Comparison(Struct, frozen=True):
-    """The differences from an earlier campaign.
+    """The differences from an earlier campaign."""
 
-    Attributes:
-        before: the earlier covered share, from 0 to 1.
-        after: the covered share now.
-        gained: items newly covered, by group and name.
-        lost: items no longer covered.
-        illegal: illegal items newly hit.
-        dropped: earlier goals that are no longer in the model.
-        verdicts: the changed verdicts.
-    """
-
-    before: float
-    after: float
-    gained: Sequence[tuple[str, str]]
-    lost: Sequence[tuple[str, str]]
-    illegal: Sequence[tuple[str, str]]
-    dropped: Sequence[tuple[str, str]]
-    verdicts: Sequence[VerdictChange]
+    before: float  # the earlier covered share, from 0 to 1
+    after: float  # the covered share now
+    gained: Sequence[tuple[str, str]]  # items newly covered, by group and name
+    lost: Sequence[tuple[str, str]]  # items no longer covered
+    illegal: Sequence[tuple[str, str]]  # illegal items newly hit
+    dropped: Sequence[tuple[str, str]]  # earlier goals that are no longer in the model
+    verdicts: Sequence[VerdictChange]  # the changed verdicts
 
 
 _MOST = 1 << 62

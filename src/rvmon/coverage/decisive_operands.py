@@ -38,17 +38,11 @@ class _Change(Enum):
 
 
 class Variant(Struct, frozen=True):
-    """A requirement without one operand of `and`, `or` or `->`.
+    """A requirement without one operand of `and`, `or` or `->`."""
 
-    Attributes:
-        part: the operand as text; repeated ones are numbered.
-        requirement: the requirement without it.
-        by_failure: whether, if all values are known, the two differ only if the original fails.
-    """
-
-    part: str
-    requirement: Requirement
-    by_failure: bool
+    part: str  # the operand as text; repeated ones are numbered
+    requirement: Requirement  # the requirement without it
+    by_failure: bool  # whether, if all values are known, the two differ only if the original fails
 
 
 def variants_of(requirement: Requirement) -> list[Variant]:

@@ -106,19 +106,12 @@ _DECIDES = " decides"
 
 
 class Hole(Struct, frozen=True):
-    """An uncovered item in words.
+    """An uncovered item in words."""
 
-    Attributes:
-        what: the item.
-        why: the reason why it is not covered, as far as the hits of all tests show.
-        needs: the condition that would cover it.
-        nearest: the nearest test; "" if none came near.
-    """
-
-    what: str
-    why: str
-    needs: str
-    nearest: str = ""
+    what: str  # the item
+    why: str  # the reason why it is not covered, as far as the hits of all tests show
+    needs: str  # the condition that would cover it
+    nearest: str = ""  # the nearest test; "" if none came near
 
     def __str__(self) -> str:
         near = f" Nearest: {self.nearest}." if self.nearest else ""

@@ -21,15 +21,10 @@ MOST_COMPARED = 500
 
 
 class Smallest(Struct, frozen=True):
-    """A small set of tests.
+    """A small set of tests."""
 
-    Attributes:
-        places: the indices of the tests, ascending.
-        at_least: a lower bound; equal to the size of `places` if that is proved minimal.
-    """
-
-    places: tuple[int, ...]
-    at_least: int
+    places: tuple[int, ...]  # the indices of the tests, ascending
+    at_least: int  # a lower bound; equal to the size of `places` if that is proved minimal
 
 
 def smallest(

@@ -22,17 +22,11 @@ if TYPE_CHECKING:
 
 
 class Ended(NamedTuple):
-    """The end of a task's process that did not finish.
+    """The end of a task's process that did not finish."""
 
-    Attributes:
-        timed_out: whether it was stopped here, as the task took too long.
-        why: for people.
-        seconds: wall time that the task had taken.
-    """
-
-    timed_out: bool
-    why: str
-    seconds: float
+    timed_out: bool  # whether it was stopped here, as the task took too long
+    why: str  # for people
+    seconds: float  # wall time that the task had taken
 
 
 class Work(NamedTuple):

@@ -80,15 +80,10 @@ def add(path: Path, entry: bytes) -> None:
 
 
 class Journal(Struct, frozen=True):
-    """Work that goes on from where it was ended.
+    """Work that goes on from where it was ended."""
 
-    Attributes:
-        path: of the journal that is added to.
-        shards: journals of shards, from which something is known.
-    """
-
-    path: Path
-    shards: Sequence[Path] = ()
+    path: Path  # of the journal that is added to
+    shards: Sequence[Path] = ()  # journals of shards, from which something is known
 
     def keep(self, entry: object) -> None:
         """Write down what was done, as JSON: it stays, whatever ends this process.

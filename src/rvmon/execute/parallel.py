@@ -94,25 +94,16 @@ def execute(
 
 
 class _Worker(Struct, eq=False):
-    """A process that works, seen from here.
+    """A process that works, seen from here."""
 
-    Attributes:
-        process: itself.
-        connection: to it.
-        tasks: number and pickle of those that it has and did not answer, ascending.
-        given: tasks of its last chunk.
-        size: tasks of its next chunk.
-        since: the latest start of the first of these, on the monotonic clock.
-        is_ready: whether it has begun at all.
-    """
-
-    process: BaseProcess
-    connection: Connection
+    process: BaseProcess  # itself
+    connection: Connection  # to it
+    # number and pickle of those that it has and did not answer, ascending
     tasks: deque[tuple[int, bytes]] = field(default_factory=deque)
-    given: int = 0
-    size: int = 1
-    since: float = 0.0
-    is_ready: bool = False
+    given: int = 0  # tasks of its last chunk
+    size: int = 1  # tasks of its next chunk
+    since: float = 0.0  # the latest start of the first of these, on the monotonic clock
+    is_ready: bool = False  # whether it has begun at all
 
 
 class _Pool:

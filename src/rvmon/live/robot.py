@@ -59,21 +59,13 @@ class Judgement:
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """The options by which robots are monitored.
+    """The options by which robots are monitored."""
 
-    Attributes:
-        spec: the specification.
-        only: ids of the requirements; `None`: all.
-        sources: the names that can arrive; `None`: all.
-        settle: as for `Spec.monitor`.
-        keep: the most records kept per requirement and verdict; `None`: all.
-    """
-
-    spec: Spec
-    only: Sequence[str] | None
-    sources: Sequence[str] | None
-    settle: str
-    keep: int | None
+    spec: Spec  # the specification
+    only: Sequence[str] | None  # ids of the requirements; `None`: all
+    sources: Sequence[str] | None  # the names that can arrive; `None`: all
+    settle: str  # as for `Spec.monitor`
+    keep: int | None  # the most records kept per requirement and verdict; `None`: all
 
     @property
     def ids(self) -> tuple[str, ...]:

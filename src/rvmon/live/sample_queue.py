@@ -14,36 +14,22 @@ Values = Mapping[str, Any]
 
 @dataclass(slots=True)
 class Offered:
-    """A sample as it was offered.
+    """A sample as it was offered."""
 
-    Attributes:
-        robot: the name of its robot.
-        t: its instant, ns.
-        values: as for `Monitor.step_ns`.
-    """
-
-    robot: str
-    t: int
-    values: Values
+    robot: str  # the name of its robot
+    t: int  # its instant, ns
+    values: Values  # as for `Monitor.step_ns`
 
 
 @dataclass(slots=True)
 class Dropped:
-    """Consecutive samples of a robot that found the queue full.
+    """Consecutive samples of a robot that found the queue full."""
 
-    Attributes:
-        robot: the name of the robot.
-        first: the least of their instants, ns.
-        last: the greatest.
-        count: their number.
-        names: the names that they update.
-    """
-
-    robot: str
-    first: int
-    last: int
-    count: int = 0
-    names: set[str] = field(default_factory=set)
+    robot: str  # the name of the robot
+    first: int  # the least of their instants, ns
+    last: int  # the greatest
+    count: int = 0  # their number
+    names: set[str] = field(default_factory=set)  # the names that they update
 
     def add(self, sample: Offered) -> None:
         """Add a lost sample."""
@@ -62,23 +48,14 @@ class OutageReport(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Gap:
-    """A report on an outage of a robot; see `Monitor.lose_ns`, `found_ns` and `miss`.
+    """A report on an outage of a robot; see `Monitor.lose_ns`, `found_ns` and `miss`."""
 
-    Attributes:
-        robot: the name of the robot.
-        kind: of the report.
-        names: signals and events; `None`: all.
-        since: the first instant of the outage, ns; for `FOUND` its last instant.
-        until: the last instant, ns; `None`: not yet known.
-        why: a phrase for the input health.
-    """
-
-    robot: str
-    kind: OutageReport
-    names: Collection[str] | None
-    since: int = 0
-    until: int | None = None
-    why: str = ""
+    robot: str  # the name of the robot
+    kind: OutageReport  # of the report
+    names: Collection[str] | None  # signals and events; `None`: all
+    since: int = 0  # the first instant of the outage, ns; for `FOUND` its last instant
+    until: int | None = None  # the last instant, ns; `None`: not yet known
+    why: str = ""  # a phrase for the input health
 
 
 @dataclass(frozen=True, slots=True)

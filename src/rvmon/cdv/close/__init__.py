@@ -35,15 +35,10 @@ MARGIN = 2
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """The limits at which closing gives up.
+    """The limits at which closing gives up."""
 
-    Attributes:
-        tests: the most that are played.
-        seconds: after which no further ones are begun; `None`: any number.
-    """
-
-    tests: int = 400
-    seconds: float | None = None
+    tests: int = 400  # the most that are played
+    seconds: float | None = None  # after which no further ones are begun; `None`: any number
 
 
 Progress = Callable[[int, int], None]

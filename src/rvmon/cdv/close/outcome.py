@@ -16,89 +16,58 @@ from rvmon.texts import counted, percent_text, share_text
 
 @dataclass(frozen=True, slots=True)
 class Added:
-    """A test and what it was good for.
+    """A test and what it was good for."""
 
-    Attributes:
-        played: the test with its outcome.
-        origin: in words.
-        goals: those met with it for the first time.
-        met: the number of goals met with it and those before.
-    """
-
-    played: Played
-    origin: str
-    goals: Sequence[Goal]
-    met: int
+    played: Played  # the test with its outcome
+    origin: str  # in words
+    goals: Sequence[Goal]  # those met with it for the first time
+    met: int  # the number of goals met with it and those before
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Tests that were chosen in some way, and how many mutants they kill.
+    """Tests that were chosen in some way, and how many mutants they kill."""
 
-    Attributes:
-        times: each goal is shown by so many of them; `None`: by the margin, and they are chosen by
-            mutants as well; 0: they are all that were played.
-        tests: their number.
-        killed: of the mutants that choose.
-        held_out: of those that do not.
-    """
-
+    # each goal is shown by so many of them; `None`: by the margin, and they are chosen by mutants
+    # as well; 0: they are all that were played
     times: int | None
-    tests: int
-    killed: int
-    held_out: int
+    tests: int  # their number
+    killed: int  # of the mutants that choose
+    held_out: int  # of those that do not
 
 
 @dataclass(frozen=True, slots=True)
 class Trade:
-    """The cost of smaller choices of tests, in faults that they miss.
+    """The cost of smaller choices of tests, in faults that they miss."""
 
-    Attributes:
-        mutants: of the code, by which tests are chosen.
-        held_out: mutants that have no part in the choice.
-        choices: from the smallest on.
-    """
-
-    mutants: int
-    held_out: int
-    choices: Sequence[Choice]
+    mutants: int  # of the code, by which tests are chosen
+    held_out: int  # mutants that have no part in the choice
+    choices: Sequence[Choice]  # from the smallest on
 
 
 @dataclass(frozen=True, slots=True)
 class Closed:
-    """A campaign whose holes were looked for.
+    """A campaign whose holes were looked for."""
 
-    Attributes:
-        tests: the played tests, in order.
-        suite: of these the fewest known that meet as much with the margin that was asked for, and
-            one for all that went wrong.
-        choices: the names of those that meet as much, by how many show each goal, up to the margin.
-        fewest: no suite of that margin has fewer; its size if it is known to be the smallest.
-        goals: their number, without those that cannot be met.
-        share: of the coverage model that is covered, from 0 to 1, without what cannot be.
-        proved: goals that cannot be met, each with the query that the model answers so.
-        argued: unreachable by the campaign's own word, each with its reason.
-        open: the goals that no test met, in words.
-        wrong: goals that cannot be met, as it is declared, and that a test met, with its name.
-        groups: measured besides those of the campaign.
-        seconds: its duration.
-        ended: why it ended with open goals; empty if there is none.
-        trade: the faults that smaller choices miss, if mutants had a part in its choice.
-    """
-
-    tests: Sequence[Added]
+    tests: Sequence[Added]  # the played tests, in order
+    # of these the fewest known that meet as much with the margin that was asked for, and one for
+    # all that went wrong
     suite: Sequence[Played]
+    # the names of those that meet as much, by how many show each goal, up to the margin
     choices: Mapping[int, Sequence[str]]
-    fewest: int
-    goals: int
-    share: float
+    fewest: int  # no suite of that margin has fewer; its size if it is known to be the smallest
+    goals: int  # their number, without those that cannot be met
+    share: float  # of the coverage model that is covered, from 0 to 1, without what cannot be
+    # goals that cannot be met, each with the query that the model answers so
     proved: Mapping[Goal, str]
-    argued: Mapping[Goal, str]
-    open: Mapping[Goal, Hole]
+    argued: Mapping[Goal, str]  # unreachable by the campaign's own word, each with its reason
+    open: Mapping[Goal, Hole]  # the goals that no test met, in words
+    # goals that cannot be met, as it is declared, and that a test met, with its name
     wrong: Mapping[Goal, str]
-    groups: Sequence[Group]
-    seconds: float
-    ended: str
+    groups: Sequence[Group]  # measured besides those of the campaign
+    seconds: float  # its duration
+    ended: str  # why it ended with open goals; empty if there is none
+    # the faults that smaller choices miss, if mutants had a part in its choice
     trade: Trade | None = None
 
     @property

@@ -39,21 +39,13 @@ _SPECIFIC_FIRST = (Subject.CROSS, Subject.COVERPOINT, Subject.GOAL, Subject.REQU
 
 @dataclass(frozen=True, slots=True)
 class Proposal:
-    """A test to be played.
+    """A test to be played."""
 
-    Attributes:
-        test: itself.
-        origin: in words.
-        goal: its aim.
-        drawn: the choices that made it.
-        witness: the run of the model that it follows.
-    """
-
-    test: Test
-    origin: str
-    goal: Goal
-    drawn: Sequence[Draw] = ()
-    witness: Witness | None = None
+    test: Test  # itself
+    origin: str  # in words
+    goal: Goal  # its aim
+    drawn: Sequence[Draw] = ()  # the choices that made it
+    witness: Witness | None = None  # the run of the model that it follows
 
 
 class Proposer:

@@ -24,43 +24,27 @@ from rvmon.verdicts import Verdict
 
 @dataclass(frozen=True, slots=True)
 class Recorded:
-    """A test that was played.
+    """A test that was played."""
 
-    Attributes:
-        verdicts: by requirement.
-        run: the report of the system at its end.
-        samples: instants, and what changed or occurred.
-        lines: of each file of the code under test, the statements that ran; where it was measured.
-        cpu_s: processor time of this process that it took.
-        seconds: wall time that it took, with judging.
-    """
-
-    verdicts: Mapping[str, Verdict]
-    run: Run
-    samples: tuple[tuple[int, Values], ...]
+    verdicts: Mapping[str, Verdict]  # by requirement
+    run: Run  # the report of the system at its end
+    samples: tuple[tuple[int, Values], ...]  # instants, and what changed or occurred
+    # of each file of the code under test, the statements that ran; where it was measured
     lines: Mapping[str, frozenset[int]]
-    cpu_s: float
-    seconds: float
+    cpu_s: float  # processor time of this process that it took
+    seconds: float  # wall time that it took, with judging
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """The first difference of a run from that of the unchanged code.
+    """The first difference of a run from that of the unchanged code."""
 
-    Attributes:
-        test: the played test.
-        t_ns: the instant; of a difference at the end of the run, that.
-        name: the signal or event; `state`: of the robot; empty: the run's end itself.
-        was: its value; empty: none.
-        now: its value with the change; empty: none.
-        verdicts: requirements that are judged otherwise, none of them F: verdicts before and after.
-    """
-
-    test: str
-    t_ns: int
-    name: str
-    was: str
-    now: str
+    test: str  # the played test
+    t_ns: int  # the instant; of a difference at the end of the run, that
+    name: str  # the signal or event; `state`: of the robot; empty: the run's end itself
+    was: str  # its value; empty: none
+    now: str  # its value with the change; empty: none
+    # requirements that are judged otherwise, none of them F: verdicts before and after
     verdicts: tuple[tuple[str, str, str], ...] = ()
 
 

@@ -35,27 +35,17 @@ def third_of(identity: str) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Mutant:
-    """One change of one file.
+    """One change of one file."""
 
-    Attributes:
-        path: the file.
-        line: its line, from 1.
-        kind: of change: the name of an operator.
-        before: the changed code as it was.
-        after: as it is.
-        source: the whole file as it is.
-        function: the qualified name of the function, or the name of the constant, that is changed.
-        ordinal: its number among the changes of this kind to this function, from 1.
-    """
-
-    path: Path
-    line: int
-    kind: str
-    before: str
-    after: str
-    source: str
+    path: Path  # the file
+    line: int  # its line, from 1
+    kind: str  # of change: the name of an operator
+    before: str  # the changed code as it was
+    after: str  # as it is
+    source: str  # the whole file as it is
+    # the qualified name of the function, or the name of the constant, that is changed
     function: str = ""
-    ordinal: int = 0
+    ordinal: int = 0  # its number among the changes of this kind to this function, from 1
 
     @property
     def change(self) -> str:

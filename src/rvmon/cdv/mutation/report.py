@@ -39,25 +39,16 @@ class SuiteTried:
 
 @dataclass(frozen=True, slots=True)
 class MutationReport:
-    """Mutants of a robot's code under some suites.
+    """Mutants of a robot's code under some suites."""
 
-    Attributes:
-        campaign: its name.
-        robot: its name for people.
-        suites: by name.
-        equivalent: the identities of mutants that change no behaviour, each with the argument.
-        reading: the requirements that read a signal or event.
-        shows_held_out: whether single mutants of the third that is held out are shown.
-        seconds: wall time.
-    """
-
-    campaign: str
-    robot: str
-    suites: Mapping[str, SuiteTried]
+    campaign: str  # its name
+    robot: str  # its name for people
+    suites: Mapping[str, SuiteTried]  # by name
+    # the identities of mutants that change no behaviour, each with the argument
     equivalent: Mapping[str, str]
-    reading: Mapping[str, Sequence[str]]
-    shows_held_out: bool = False
-    seconds: float = field(default=0.0, compare=False)
+    reading: Mapping[str, Sequence[str]]  # the requirements that read a signal or event
+    shows_held_out: bool = False  # whether single mutants of the third that is held out are shown
+    seconds: float = field(default=0.0, compare=False)  # wall time
 
     def scores(self, suite: str) -> dict[str, Score]:
         """The score of each third, and of all."""

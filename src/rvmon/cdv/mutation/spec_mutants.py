@@ -22,25 +22,8 @@ from rvmon.cdv.mutation.baseline import Recorded
 from rvmon.cdv.mutation.python_mutants import third_of
 from rvmon.cdv.mutation.survivors import Score
 from rvmon.cdv.system import Checker
+from rvmon.language.checked import formula as formulas
 from rvmon.language.checked.classify import is_pulse
-from rvmon.language.checked.formula import (
-    Amount,
-    Binary,
-    BinaryOp,
-    BoundAtom,
-    Compare,
-    CompareOp,
-    EventAtom,
-    Formula,
-    Interval,
-    Literal,
-    Numeric,
-    ProbeAtom,
-    SignalAtom,
-    Unary,
-    UnaryOp,
-    WindowValue,
-)
 from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.language.print import format_duration, format_formula
 from rvmon.logic.formula import horizon
@@ -50,51 +33,51 @@ from rvmon.trace.time import TICKS_PER_UNIT
 from rvmon.verdicts import Verdict
 
 _CONNECTIVES = {
-    BinaryOp.AND: BinaryOp.OR,
-    BinaryOp.OR: BinaryOp.AND,
-    BinaryOp.IMPLIES: BinaryOp.AND,
+    formulas.BinaryOp.AND: formulas.BinaryOp.OR,
+    formulas.BinaryOp.OR: formulas.BinaryOp.AND,
+    formulas.BinaryOp.IMPLIES: formulas.BinaryOp.AND,
 }
 _TEMPORAL = {
-    UnaryOp.EVENTUALLY: UnaryOp.ALWAYS,
-    UnaryOp.ALWAYS: UnaryOp.EVENTUALLY,
-    UnaryOp.ONCE: UnaryOp.HISTORICALLY,
-    UnaryOp.HISTORICALLY: UnaryOp.ONCE,
+    formulas.UnaryOp.EVENTUALLY: formulas.UnaryOp.ALWAYS,
+    formulas.UnaryOp.ALWAYS: formulas.UnaryOp.EVENTUALLY,
+    formulas.UnaryOp.ONCE: formulas.UnaryOp.HISTORICALLY,
+    formulas.UnaryOp.HISTORICALLY: formulas.UnaryOp.ONCE,
 }
 _BOUNDARIES = {
-    CompareOp.LT: CompareOp.LE,
-    CompareOp.LE: CompareOp.LT,
-    CompareOp.GT: CompareOp.GE,
-    CompareOp.GE: CompareOp.GT,
-    CompareOp.EQ: CompareOp.NE,
-    CompareOp.NE: CompareOp.EQ,
+    formulas.CompareOp.LT: formulas.CompareOp.LE,
+    formulas.CompareOp.LE: formulas.CompareOp.LT,
+    formulas.CompareOp.GT: formulas.CompareOp.GE,
+    formulas.CompareOp.GE: formulas.CompareOp.GT,
+    formulas.CompareOp.EQ: formulas.CompareOp.NE,
+    formulas.CompareOp.NE: formulas.CompareOp.EQ,
 }
 
 
-_EQUALITIES = (CompareOp.EQ, CompareOp.NE)
+_EQUALITIES = (formulas.CompareOp.EQ, formulas.CompareOp.NE)
 
 
-def _own_changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
+def _own_changes(formula: formulas.Formula) -> Iterator[tuple[str, formulas.Formula]]:
     """The changes of a formula's own operator, in the order of `SPEC_OPERATORS`."""
     match formula:
-        case Binary(op=op, left=left, right=right):
+        case formulas.Binary(op=op, left=left, right=right):
             if op in _CONNECTIVES:
                 yield "connective", structs.replace(formula, op=_CONNECTIVES[op])
                 yield "dropped operand", left
                 yield "dropped operand", right
             yield from (("bound", other) for other in _bounds_moved(formula))
-        case Unary(op=UnaryOp.NOT, operand=operand):
+        case formulas.Unary(op=formulas.UnaryOp.NOT, operand=operand):
             yield "dropped not", operand
-        case Unary(op=op, interval=interval):
+        case formulas.Unary(op=op, interval=interval):
             if op in _TEMPORAL:
                 yield "temporal operator", structs.replace(formula, op=_TEMPORAL[op])
             yield from (("bound", other) for other in _bounds_moved(formula))
             if op in _TEMPORAL and interval is not None and interval.high is not None:
-                unbounded = structs.replace(formula, interval=Interval(interval.low))
+                unbounded = structs.replace(formula, interval=formulas.Interval(interval.low))
                 yield "no deadline", unbounded
-        case SignalAtom() | EventAtom() | ProbeAtom():
-            yield "negated", Unary(UnaryOp.NOT, formula)
-        case Compare(op=op, left=left, right=right):
-            is_label = isinstance(right, Literal) and isinstance(right.value, bool | str)
+        case formulas.SignalAtom() | formulas.EventAtom() | formulas.ProbeAtom():
+            yield "negated", formulas.Unary(formulas.UnaryOp.NOT, formula)
+        case formulas.Compare(op=op, left=left, right=right):
+            is_label = isinstance(right, formulas.Literal) and isinstance(right.value, bool | str)
             if not is_label or op in _EQUALITIES:
                 yield "comparison", structs.replace(formula, op=_BOUNDARIES[op])
             for moved in _moved(right):
@@ -103,20 +86,20 @@ def _own_changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
                 yield "threshold", structs.replace(formula, left=moved)
 
 
-def _moved(numeric: Numeric) -> Iterator[Numeric]:
+def _moved(numeric: formulas.Numeric) -> Iterator[formulas.Numeric]:
     match numeric:
-        case Literal(value=bool() | str()):
+        case formulas.Literal(value=bool() | str()):
             return
-        case Literal(value=int() as value):
+        case formulas.Literal(value=int() as value):
             yield replace(numeric, value=value + 1)
             yield replace(numeric, value=value - 1)
-        case Literal(value=float() as value):
+        case formulas.Literal(value=float() as value):
             step = abs(value) / 10 or 0.1
             yield replace(numeric, value=float(f"{value + step:.12g}"))
             yield replace(numeric, value=float(f"{value - step:.12g}"))
 
 
-def _bounds_moved(formula: Unary | Binary) -> Iterator[Formula]:
+def _bounds_moved(formula: formulas.Unary | formulas.Binary) -> Iterator[formulas.Formula]:
     """One unit more and less: of that in which the bound is a whole number."""
     if formula.interval is None:
         return
@@ -124,11 +107,11 @@ def _bounds_moved(formula: Unary | Binary) -> Iterator[Formula]:
     if high is not None:
         for other in (high + _unit(high), high - _unit(high)):
             if other >= low:
-                yield structs.replace(formula, interval=Interval(low, other))
+                yield structs.replace(formula, interval=formulas.Interval(low, other))
     if low:
         for other in (low + _unit(low), low - _unit(low)):
             if high is None or other <= high:
-                yield structs.replace(formula, interval=Interval(other, high))
+                yield structs.replace(formula, interval=formulas.Interval(other, high))
 
 
 def _unit(ticks: int) -> int:
@@ -149,7 +132,7 @@ SPEC_OPERATORS = (
 """In the order in which they are applied."""
 
 
-def changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
+def changes(formula: formulas.Formula) -> Iterator[tuple[str, formulas.Formula]]:
     """All changes of a formula: the operator's name, and the whole formula with it.
 
     >>> from rvmon.language.print import format_formula
@@ -159,13 +142,13 @@ def changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
     """
     yield from _own_changes(formula)
     match formula:
-        case Unary(operand=operand):
+        case formulas.Unary(operand=operand):
             for name, changed in changes(operand):
                 yield name, structs.replace(formula, operand=changed)
-        case Amount(of=WindowValue(value=None, operand=operand) as window):
+        case formulas.Amount(of=formulas.WindowValue(value=None, operand=operand) as window):
             for name, changed in changes(operand):
                 yield name, structs.replace(formula, of=structs.replace(window, operand=changed))
-        case Binary(left=left, right=right):
+        case formulas.Binary(left=left, right=right):
             for name, changed in changes(left):
                 yield name, structs.replace(formula, left=changed)
             for name, changed in changes(right):
@@ -174,19 +157,12 @@ def changes(formula: Formula) -> Iterator[tuple[str, Formula]]:
 
 @dataclass(frozen=True, slots=True)
 class SpecMutant:
-    """One change of one requirement.
+    """One change of one requirement."""
 
-    Attributes:
-        requirement: as it was.
-        kind: of change: the name of an operator.
-        ordinal: its number among the changes of this kind to this requirement, from 1.
-        changed: the requirement as it is.
-    """
-
-    requirement: Requirement
-    kind: str
-    ordinal: int
-    changed: Requirement
+    requirement: Requirement  # as it was
+    kind: str  # of change: the name of an operator
+    ordinal: int  # its number among the changes of this kind to this requirement, from 1
+    changed: Requirement  # the requirement as it is
 
     @property
     def identity(self) -> str:
@@ -216,21 +192,13 @@ class SpecMutant:
 
 @dataclass(frozen=True, slots=True)
 class SpecTried:
-    """A mutant of a requirement, judged on the recorded runs.
+    """A mutant of a requirement, judged on the recorded runs."""
 
-    Attributes:
-        mutant: the change.
-        test: the first whose recorded run is judged otherwise; empty: none is.
-        was: the verdict on that run by the requirement as it was.
-        now: by the mutant.
-        proved: whether the analysis proved it equivalent; only asked if no run differs.
-    """
-
-    mutant: SpecMutant
-    test: str = ""
-    was: Verdict | None = None
-    now: Verdict | None = None
-    proved: bool = False
+    mutant: SpecMutant  # the change
+    test: str = ""  # the first whose recorded run is judged otherwise; empty: none is
+    was: Verdict | None = None  # the verdict on that run by the requirement as it was
+    now: Verdict | None = None  # by the mutant
+    proved: bool = False  # whether the analysis proved it equivalent; only asked if no run differs
 
 
 def spec_scored(tried: Iterable[SpecTried]) -> Score:
@@ -267,7 +235,7 @@ def _of_requirement(requirement: Requirement) -> Iterator[SpecMutant]:
 
 
 def _changed(requirement: Requirement) -> Iterator[tuple[str, Requirement]]:
-    if not isinstance(requirement.trigger, BoundAtom):
+    if not isinstance(requirement.trigger, formulas.BoundAtom):
         for kind, trigger in changes(requirement.trigger):
             yield kind, replace(requirement, trigger=trigger, pulse=is_pulse(trigger))
     for kind, consequent in changes(requirement.consequent):

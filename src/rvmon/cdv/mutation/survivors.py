@@ -34,39 +34,25 @@ class How(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A test that kills a mutant.
+    """A test that kills a mutant."""
 
-    Attributes:
-        test: its name; empty: not known, as the process was ended.
-        how: it does.
-        what: the requirements that fail, or are judged otherwise than expected; else the error.
-    """
-
-    test: str
-    how: How
+    test: str  # its name; empty: not known, as the process was ended
+    how: How  # it does
+    # the requirements that fail, or are judged otherwise than expected; else the error
     what: tuple[str, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Tried:
-    """A mutant, and what a suite sees of it.
+    """A mutant, and what a suite sees of it."""
 
-    Attributes:
-        mutant: the change.
-        reaching: tests of the suite that run the changed line.
-        played: of them so many were played.
-        findings: its killers, in the order of the suite.
-        difference: the first in a run that no finding is about.
-        invalid: why it cannot be planted; empty if it can.
-        failing: the first test by which a requirement fails, and its run, if runs are kept.
-    """
-
-    mutant: Mutant
-    reaching: int
-    played: int = 0
-    findings: tuple[Finding, ...] = ()
-    difference: Difference | None = None
-    invalid: str = ""
+    mutant: Mutant  # the change
+    reaching: int  # tests of the suite that run the changed line
+    played: int = 0  # of them so many were played
+    findings: tuple[Finding, ...] = ()  # its killers, in the order of the suite
+    difference: Difference | None = None  # the first in a run that no finding is about
+    invalid: str = ""  # why it cannot be planted; empty if it can
+    # the first test by which a requirement fails, and its run, if runs are kept
     failing: tuple[str, Recorded] | None = field(default=None, compare=False)
 
     @property
@@ -82,21 +68,14 @@ class Tried:
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """Figures of some mutants.
+    """Figures of some mutants."""
 
-    Attributes:
-        mutants: all that can be planted.
-        equivalent: of them so many are declared to change no behaviour, and none of them is killed.
-        killed: by whatever.
-        by_requirement: killed by a requirement that fails.
-        unreached: the number in lines that no test runs.
-    """
-
-    mutants: int
+    mutants: int  # all that can be planted
+    # of them so many are declared to change no behaviour, and none of them is killed
     equivalent: int
-    killed: int
-    by_requirement: int
-    unreached: int
+    killed: int  # by whatever
+    by_requirement: int  # killed by a requirement that fails
+    unreached: int  # the number in lines that no test runs
 
     @property
     def rest(self) -> int:
