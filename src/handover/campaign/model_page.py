@@ -59,10 +59,7 @@ def model_sections(
 ) -> list[Markup]:
     """The section of a campaign's page; nothing if no run can be compared with the model.
 
-    Args:
-        tests: the played tests.
-        addresses: of its pages.
-        count: of the runs of each strategy the first so many are compared with the model.
+    Of the runs of each strategy the first `count` are compared with it.
     """
     strategies: dict[str, list[AbstractTest]] = {}
     for (robot, _), test in tests.items():

@@ -173,26 +173,9 @@ P_AT_LIMITS: Final = 0.2
 
 
 FREE: Final = (
-    "PERSON",
-    "LONGEST",
-    "P_SENSORS",
-    "DELAY_S",
-    "LOSS",
-    "P_SLIPPERY",
-    "GREASY",
-    "P_PLANNER",
-    "PLAN_FAILURE",
-    "P_HIDDEN",
-    "HIDDEN",
-    "P_RAISED",
-    "RAISED_M",
-    "P_EARLY",
-    "EARLY_S",
-    "P_IN_PLANE",
-    "P_BESIDE",
-    "BESIDE_M",
-    "P_FAR_HAND",
-    "P_AT_LIMITS",
+    *("PERSON", "LONGEST", "P_SENSORS", "DELAY_S", "LOSS", "P_SLIPPERY", "GREASY", "P_PLANNER"),
+    *("PLAN_FAILURE", "P_HIDDEN", "HIDDEN", "P_RAISED", "RAISED_M", "P_EARLY", "EARLY_S"),
+    *("P_IN_PLANE", "P_BESIDE", "BESIDE_M", "P_FAR_HAND", "P_AT_LIMITS"),
 )
 """The parameters without a source: counts of disturbed tests say nothing about frequencies."""
 

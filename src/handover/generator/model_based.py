@@ -87,12 +87,7 @@ def templates(policy: PolicyName = "likely") -> tuple[Template[Action], ...]:
 
 
 def save_templates(strategies: Collection[str], folder: Path) -> None:
-    """Write the templates of the model-based strategies.
-
-    Args:
-        strategies: names of any strategies.
-        folder: gets a folder for each strategy that has templates.
-    """
+    """Write the templates of those strategies that have some, each to a folder of its own."""
     for policy, strategy in _STRATEGIES.items():
         if strategy in strategies:
             own = folder / strategy

@@ -49,11 +49,7 @@ _AFTERWARDS: dict[str, tuple[Action, ...]] = {
 
 
 def out_of_turn(choose: Choose, seed: int) -> AbstractTest:
-    """A test with a random order of steps, postures and pauses.
-
-    Args:
-        choose: draws them.
-        seed: of all that the world draws, and of how long a pause is.
+    """A test with an order of steps, postures and pauses as they are chosen; the seed has the rest.
 
     >>> test = out_of_turn(lambda _name, options: options[0], seed=1)
     >>> [action.param for action in test.actions[:3]]

@@ -84,12 +84,7 @@ class MessageFeed:
             path = path.rpartition("/")[0]
 
     def take(self, topic: Topic, content: Any) -> None:
-        """Offer the sample of a message.
-
-        Args:
-            topic: the topic of the message.
-            content: an object with attributes, or a mapping.
-        """
+        """Offer the sample of a message, an object with attributes or a mapping."""
         if topic.name == CLOCK and self._clock is not None:
             self.set_time(content.clock.sec, content.clock.nanosec)
             return

@@ -164,13 +164,7 @@ class MqttSource:
             self._objects.lose("a message", error, None)
 
     def hear(self, topic: str, payload: bytes, *, is_old: bool = False) -> None:
-        """Offer what a message says.
-
-        Args:
-            topic: of it.
-            payload: of it.
-            is_old: whether the broker had kept it, from before this subscribed.
-        """
+        """Offer what a message says; the broker had kept an old one from before."""
         self._heard = self._objects.driver.now_ns
         if topic == _DROPPED:
             self._hear_of_drops(payload)

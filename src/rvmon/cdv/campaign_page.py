@@ -112,18 +112,7 @@ def campaign_page(
     coverage: Mapping[str, CoverageFigures],
     further: Sequence[Element | Markup] = (),
 ) -> str:
-    """Write the page.
-
-    Args:
-        summary: the campaign's figures.
-        tables: its verdicts, by robot.
-        presentation: of the figures.
-        command: runs the campaign again.
-        examples: addresses of pages, by the counts that they are examples of.
-        tests: addresses of pages, by robot and test.
-        coverage: by robot, what was covered.
-        further: sections of the campaign's own.
-    """
+    """Write the page; `examples`, `tests` and `coverage` have the addresses of others."""
     robots_of: dict[tuple[str, str], list[str]] = {}
     for robot in summary.robots.values():
         for requirement in robot.requirements.items():

@@ -42,11 +42,7 @@ def print_summary(
 ) -> None:
     """Print requirements, the tables of all robots, the coverage of their code, known answers.
 
-    Args:
-        summary: the campaign's figures.
-        tables: its verdicts, by robot.
-        printer: prints it.
-        foremost: requirements that are shown, and in short; default: all, with all that there is.
+    With `foremost`, those requirements alone are shown, and all else in short.
     """
     for name, text in next(iter(summary.robots.values())).requirements.items():
         if not foremost or name in foremost:
@@ -216,9 +212,7 @@ def dated_files(folder: Path) -> dict[Path, int]:
 def left_over(folder: Path, before: Mapping[Path, int]) -> str:
     """Say which files of an earlier campaign remain next to those of this one; empty if none does.
 
-    Args:
-        folder: of the campaign, which is written.
-        before: the result of an earlier `dated_files`.
+    `before` is what `dated_files` said before this one was written.
     """
     now = dated_files(folder)
     counts = Counter(

@@ -279,13 +279,7 @@ def lcov(code: Code, model: Model, hits: Hits) -> str:
 
 
 def cobertura(code: Code, model: Model, hits: Hits) -> str:
-    """The same as Cobertura's XML.
-
-    Args:
-        code: the measured code.
-        model: with its statements and branches; those without a goal are left out.
-        hits: of all tests.
-    """
+    """The same as `lcov` as Cobertura's XML."""
     files = _counts_by_path(code, model, hits)
     root = ET.Element("coverage", _rates([*files.values()], whole=True))
     root.set("version", rvmon.__version__)

@@ -73,13 +73,7 @@ def covered_share(campaign: Campaign, robot: str, played: Sequence[Played]) -> f
 
 
 def write_database(path: Path, robot: str, played: Sequence[Played], results: Results) -> None:
-    """Write the database of a robot's tests; one that is there is replaced.
-
-    Args:
-        path: of the file, whose folder is made.
-        robot: its name in the campaign.
-        played: of its tests those that count, in the order of the plan.
-        results: of the campaign.
+    """Write the database of those of a robot's tests that count; one that is there is replaced.
 
     Raises:
         RvmonError: the file cannot be written, or see `coverage_model`.
@@ -132,10 +126,7 @@ def write_coverage(
 ) -> dict[str, CoverageFigures]:
     """Write the database of each robot's tests, and a page beside it; the code for other tools.
 
-    Args:
-        folder: of the campaign.
-        results: its outcomes; a planted fault says nothing about the robot.
-        pages: addresses of pages of runs in the folder, by robot and test.
+    A planted fault says nothing about the robot. `pages` has the addresses of pages of runs.
 
     Raises:
         RvmonError: a file cannot be written.

@@ -274,12 +274,8 @@ def refuse_unknown(campaign: Campaign) -> None:
 def junit_xml(campaign: str, judgement: CampaignJudgement) -> str:
     """A test suite per robot and strategy, a test case per test; one suite for all together.
 
-    What is not as expected is a failure; a test that crashed, hung or was lost an error; one that
-    fails as expected is skipped, with the reason.
-
-    Args:
-        campaign: its name.
-        judgement: on its tests; that not all were played is an error.
+    What is not as expected is a failure; a test that crashed, hung or was lost, and that not all
+    were played, an error; one that fails as expected is skipped, with the reason.
     """
     root = ET.Element("testsuites", name=shown(campaign))
     groups: dict[str, list[TestJudgement]] = {}

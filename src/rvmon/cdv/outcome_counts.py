@@ -25,12 +25,7 @@ from rvmon.verdicts import Verdict
 
 
 def summarise(results: Results, specs: Mapping[str, Spec]) -> campaign_summary.CampaignSummary:
-    """Count verdicts, statements, branches, states and transitions.
-
-    Args:
-        results: of the played tests.
-        specs: by robot, what judged it; one that is missing was not judged.
-    """
+    """Count verdicts, statements, branches, states and transitions; without a spec no verdicts."""
     campaign = results.plan.campaign
     measured = model_of(measured_groups(campaign))
     blocks = [] if campaign.code is None else [block.name for block in campaign.code.blocks]

@@ -236,14 +236,7 @@ def outcomes(
     controls: bool = True,
     spool: Path | None = None,
 ) -> Generator[tuple[Outcome, Outcome | None], None, None]:
-    """Play tests, in this order; each outcome comes with that of its control.
-
-    Args:
-        campaign: of the tests.
-        tests: taken from as processes have time.
-        jobs: processes, or the address of a scheduler of Dask; default: one process per core.
-        controls: also play the controls of tests.
-        spool: as for `player`.
+    """Play tests, in this order; each outcome comes with that of its control. See `execute`.
 
     Raises:
         RvmonError: a system cannot be made, or no process be begun.

@@ -61,17 +61,7 @@ def replay_page(
     back: str = "",
     smallest: str = "",
 ) -> str:
-    """The page of one test.
-
-    Args:
-        replay: the test.
-        robot: its name.
-        spec: the specification that judged it.
-        command: replays it.
-        others: runs that a failed attempt can be compared with.
-        back: address of the campaign's page.
-        smallest: the command that finds the smallest test that fails alike.
-    """
+    """The page of one test, and of others that a failed attempt can be compared with."""
     facts: list[tuple[str, Child]] = [*_facts(replay, robot, spec)]
     if smallest:
         facts.append(("smallest test that fails alike", e("code", None, smallest)))
@@ -120,16 +110,7 @@ def write_pages(
 ) -> list[str]:
     """Write `report.html`, a page per example to `runs/`, and what was covered.
 
-    Args:
-        folder: of the campaign's files, with the tests in `tests/`.
-        summary: its figures.
-        tables: its verdicts, by robot.
-        results: its outcomes.
-        command: runs the campaign again.
-        examples: the tests that get a page.
-        jobs: processes that write pages; default: one per core.
-        progress: called with how many pages are written.
-        spool: has what was recorded of tests, which are not played again then.
+    What was recorded of tests in `spool` is not played again.
 
     Returns:
         The tests that came out otherwise when they were played again for their pages.

@@ -68,14 +68,7 @@ def unfinished(
     command: str,
     shard: Shard | None = None,
 ) -> Unfinished:
-    """A campaign in its folder, from where it was left.
-
-    Args:
-        folder: of the campaign.
-        plan: of the tests.
-        specs: by robot, what judges it; empty if nothing is judged.
-        command: the command line that runs it.
-        shard: the part to play; default: all, with the results of shards in the folder.
+    """A campaign in its folder, from where it was left: a shard, or all with what shards have done.
 
     Raises:
         RvmonError: what is unfinished there is another campaign.

@@ -113,12 +113,9 @@ def shrink(
 def failure_of(
     outcome: Outcome, requirement: str | None = None, known: Sequence[str] = ()
 ) -> Failure | None:
-    """The failure of a run; `None` if there is none.
+    """The failure of a run, or of a requirement in it; `None` if there is none.
 
-    Args:
-        outcome: of the run.
-        requirement: the one in question; default: as the run ended, or the first that fails in it.
-        known: requirements that are looked at before others.
+    By default it is how the run ended, or the first requirement that fails, the known ones first.
     """
     if requirement is None and outcome.ending is not Ending.COMPLETED:
         return Failure("", outcome.ending, _kind(outcome))

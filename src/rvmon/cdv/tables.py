@@ -147,10 +147,7 @@ def table_document(
 ) -> dict[str, object]:
     """The content of `table.json`; all of it but `seconds` follows from the seed.
 
-    Args:
-        summary: the figures.
-        control_key: the key of the counts with controls in the place of their tests.
-        more: further entries.
+    `control_key` is that of the counts with controls in the place of their tests.
     """
     robots = {
         name: _robot_document(robot, summary.kind, control_key)

@@ -92,12 +92,8 @@ def save_template(template: Template[Any], folder: str | Path) -> Path:
 def choose_times(template: Template[Any], rng: random.Random, patience: int) -> list[int]:
     """Instants of all steps in units since the start, the start first.
 
-    They are fixed in turn, each within what those before it leave open.
-
-    Args:
-        template: the template whose limits they keep.
-        rng: chooses.
-        patience: units of time by which a wait may exceed its least one.
+    They are fixed in turn, each within what those before it leave open; a wait may exceed its least
+    one by `patience` units.
 
     Raises:
         TestError: the limits contradict each other.
@@ -140,12 +136,7 @@ def templates_of(
 ) -> tuple[Template[Action], ...]:
     """The templates of a model's queries, from witnesses that the model checker chooses.
 
-    Args:
-        network: the model.
-        queries: ids of its queries that tests are to show.
-        automata: names of those that tests stand for, such as people and sensors.
-        actions: of a test, for their edges; those left out need no action.
-        policy: the choice of a witness among several.
+    Tests stand for `automata`, such as people and sensors; an edge without an action needs none.
 
     Raises:
         TestError: a query has no witness.

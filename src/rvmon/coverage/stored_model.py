@@ -117,13 +117,7 @@ def read_groups(database: sqlite3.Connection, path: str | Path | None) -> Stored
 def write_groups(
     database: sqlite3.Connection, path: str | Path | None, known: Stored, more: Stored
 ) -> None:
-    """Add groups and items.
-
-    Args:
-        database: within a transaction.
-        path: of the source of the groups, for errors.
-        known: the groups in the database.
-        more: the groups to be added.
+    """Add groups and items to those known, within a transaction; `path` is where they come from.
 
     Raises:
         CoverageError: a group or item contradicts a known one, or a number is invalid; nothing is

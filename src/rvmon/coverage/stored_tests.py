@@ -101,12 +101,7 @@ def write_entries(
 def read_entries(
     database: sqlite3.Connection, path: str | Path | None, ids: NDArray[np.int64]
 ) -> list[Entry]:
-    """The tests in the order of their campaigns.
-
-    Args:
-        database: of the tests.
-        path: of it, for errors.
-        ids: of the items, in the order of the model.
+    """The tests in the order of their campaigns; `ids`: of the items, in the order of the model.
 
     Raises:
         CoverageError: the contents are damaged.

@@ -64,11 +64,7 @@ def begin(path: Path, first: Iterable[bytes]) -> None:
 
 
 def add(path: Path, entry: bytes) -> None:
-    """Add an entry to a journal: behind this call it stays, also if the process is killed.
-
-    Args:
-        path: of the journal.
-        entry: one line, without its end.
+    """Add an entry, a line without its end: from now on it stays, also if the process is killed.
 
     Raises:
         OSError: it cannot be written.

@@ -29,16 +29,9 @@ def with_mutants(
 ) -> Closed:
     """Add to a suite the fewest tests that kill the mutants which it lets live.
 
-    A third of the mutants is held out: these choose nothing, so that what each choice of tests
-    sees of them says what it would see of faults that nobody has planted.
-
-    Args:
-        campaign: the closed campaign, with its code.
-        robot: of its robots the one that was tested.
-        closed: its outcome.
-        mutants: of its code; so many are drawn from all that are not known to be equivalent.
-        jobs: processes.
-        progress: called with the share of this that is done.
+    Of the mutants of the code that are not known to be equivalent, so many are drawn. A third is
+    held out: these choose nothing, so that what each choice of tests sees of them says what it
+    would see of faults that nobody has planted.
 
     Raises:
         RvmonError: the campaign measures no code, or none of the tests has a result.

@@ -106,14 +106,7 @@ class Mutator:
     def mutated(
         self, test: Test, others: Sequence[Test], rng: random.Random, drawn: list[Draw]
     ) -> Test | None:
-        """A test with up to three changes; `None` if none was found.
-
-        Args:
-            test: is changed.
-            others: lend values.
-            rng: draws.
-            drawn: gets the choices that made it.
-        """
+        """A test with up to three changes, some borrowed from others; `None` if none was found."""
         for _ in range(ATTEMPTS if self._fields else 0):
             choices: list[Draw] = []
             value = _built(test, self._type)
@@ -152,15 +145,9 @@ class Mutator:
         rng: random.Random,
         drawn: list[Draw],
     ) -> Any:
-        """A value with one change.
+        """A value of plain data with one change; `donor` stands at the same place of another test.
 
-        Args:
-            value: as plain data.
-            kind: its type.
-            donor: the value at the same place of another test.
-            path: the address of that place, the same for all elements of a sequence.
-            rng: draws.
-            drawn: gets the choices.
+        The address of that place, `path`, is the same for all elements of a sequence.
         """
         match kind:
             case inspect.StructType():

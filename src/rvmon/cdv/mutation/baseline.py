@@ -142,11 +142,7 @@ class Suite:
     left_out: Mapping[str, str]
 
     def reaching(self, mutant: Mutant) -> list[str]:
-        """The tests that run the changed statement; of a constant all, as nothing runs it.
-
-        Args:
-            mutant: of one of the files of the code.
-        """
+        """The tests that run the changed statement; of a constant all, as nothing runs it."""
         path = str(mutant.path)
         if mutant.function in self.code.constants.get(path, ()):
             return list(self.tests)
@@ -185,15 +181,7 @@ def record_suite(
     jobs: int,
     progress: Progress | None = None,
 ) -> Suite:
-    """Play tests on a robot as it is.
-
-    Args:
-        campaign: of the tests.
-        robot: its name.
-        tests: of the suite; those that are for another robot, or plant a fault of their own, are
-            passed over.
-        jobs: processes.
-        progress: called as each test is played.
+    """Play tests on a robot as it is, but those for another one, or with a fault of their own.
 
     Raises:
         RvmonError: the campaign measures no code, the robot has no requirements, or no test is

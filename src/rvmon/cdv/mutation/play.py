@@ -139,18 +139,12 @@ def play_mutants(
     keep: bool = False,
     progress: Progress | None = None,
 ) -> list[Tried]:
-    """Play the tests that run the changed line, on each mutant.
+    """Play tests that run the changed line, on each mutant: `every`, or until a requirement fails.
 
     A mutant that hangs, crashes, or takes too much memory harms no other: it has a process of its
     own, with limits, which is ended with it. What it writes to files is not held back.
 
-    Args:
-        suite: the tests as played on the unchanged code.
-        mutants: of that code.
-        jobs: processes.
-        every: play all these tests; else until a requirement fails.
-        keep: keep the first run in which a requirement fails.
-        progress: called as mutants are done.
+    With `keep`, the first run in which a requirement fails is kept.
 
     Returns:
         What became of each, in their order; it does not depend on `jobs`.

@@ -16,6 +16,9 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from typing import TypeVar
+
+_T = TypeVar("_T")
 
 _DEFINED = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
 _WAITS = (ast.Yield, ast.YieldFrom)
@@ -135,29 +138,20 @@ Change = tuple[str, "ast.expr | ast.stmt", str]
 """The operator, the node to replace, and the code to put there."""
 
 
-_COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = {
-    ast.Lt: ast.LtE,
-    ast.LtE: ast.Lt,
-    ast.Gt: ast.GtE,
-    ast.GtE: ast.Gt,
-    ast.Eq: ast.NotEq,
-    ast.NotEq: ast.Eq,
-    ast.Is: ast.IsNot,
-    ast.IsNot: ast.Is,
-    ast.In: ast.NotIn,
-    ast.NotIn: ast.In,
-}
-_ARITHMETIC: dict[type[ast.operator], type[ast.operator]] = {
-    ast.Add: ast.Sub,
-    ast.Sub: ast.Add,
-    ast.Mult: ast.Div,
-    ast.Div: ast.Mult,
-    ast.BitAnd: ast.BitOr,
-    ast.BitOr: ast.BitAnd,
-    ast.LShift: ast.RShift,
-    ast.RShift: ast.LShift,
-}
-_FUNCTIONS = {"min": "max", "max": "min", "any": "all", "all": "any"}
+def either_way(*pairs: tuple[_T, _T]) -> dict[_T, _T]:
+    """From each of a pair to the other."""
+    return {one: other for pair in pairs for one, other in (pair, pair[::-1])}
+
+
+_COMPARISONS: dict[type[ast.cmpop], type[ast.cmpop]] = either_way(
+    *((ast.Lt, ast.LtE), (ast.Gt, ast.GtE), (ast.Eq, ast.NotEq)),
+    *((ast.Is, ast.IsNot), (ast.In, ast.NotIn)),
+)
+_ARITHMETIC: dict[type[ast.operator], type[ast.operator]] = either_way(
+    *((ast.Add, ast.Sub), (ast.Mult, ast.Div)),
+    *((ast.BitAnd, ast.BitOr), (ast.LShift, ast.RShift)),
+)
+_FUNCTIONS = either_way(("min", "max"), ("any", "all"))
 
 
 def _bracketed(new: ast.expr) -> str:

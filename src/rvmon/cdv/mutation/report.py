@@ -210,10 +210,7 @@ SPEC_TITLE = (
 def print_mutation(report: MutationReport, printer: Printer, *, most: int | None = None) -> None:
     """Print scores, what killed, and the survivors of each suite as questions.
 
-    Args:
-        report: the report to show.
-        printer: prints it.
-        most: survivors of each kind that are listed; `None`: all, and each mutant that is killed.
+    Of survivors of each kind `most` are listed; `None`: all, and each mutant that is killed.
     """
     for title, head, rows in _score_tables(report):
         printer.line(f"Mutants of {title}")

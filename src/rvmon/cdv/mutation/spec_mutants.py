@@ -20,6 +20,7 @@ from rvmon.analysis.product import Aim, Together
 from rvmon.analysis.vacuity import Subject
 from rvmon.cdv.mutation.baseline import Recorded
 from rvmon.cdv.mutation.python_mutants import third_of
+from rvmon.cdv.mutation.python_operators import either_way
 from rvmon.cdv.mutation.survivors import Score
 from rvmon.cdv.system import Checker
 from rvmon.language.checked import formula as formulas
@@ -37,23 +38,16 @@ _CONNECTIVES = {
     formulas.BinaryOp.OR: formulas.BinaryOp.AND,
     formulas.BinaryOp.IMPLIES: formulas.BinaryOp.AND,
 }
-_TEMPORAL = {
-    formulas.UnaryOp.EVENTUALLY: formulas.UnaryOp.ALWAYS,
-    formulas.UnaryOp.ALWAYS: formulas.UnaryOp.EVENTUALLY,
-    formulas.UnaryOp.ONCE: formulas.UnaryOp.HISTORICALLY,
-    formulas.UnaryOp.HISTORICALLY: formulas.UnaryOp.ONCE,
-}
-_BOUNDARIES = {
-    formulas.CompareOp.LT: formulas.CompareOp.LE,
-    formulas.CompareOp.LE: formulas.CompareOp.LT,
-    formulas.CompareOp.GT: formulas.CompareOp.GE,
-    formulas.CompareOp.GE: formulas.CompareOp.GT,
-    formulas.CompareOp.EQ: formulas.CompareOp.NE,
-    formulas.CompareOp.NE: formulas.CompareOp.EQ,
-}
-
-
+_TEMPORAL = either_way(
+    (formulas.UnaryOp.EVENTUALLY, formulas.UnaryOp.ALWAYS),
+    (formulas.UnaryOp.ONCE, formulas.UnaryOp.HISTORICALLY),
+)
 _EQUALITIES = (formulas.CompareOp.EQ, formulas.CompareOp.NE)
+_BOUNDARIES = either_way(
+    (formulas.CompareOp.LT, formulas.CompareOp.LE),
+    (formulas.CompareOp.GT, formulas.CompareOp.GE),
+    _EQUALITIES,
+)
 
 
 def _own_changes(formula: formulas.Formula) -> Iterator[tuple[str, formulas.Formula]]:
@@ -136,7 +130,8 @@ def changes(formula: formulas.Formula) -> Iterator[tuple[str, formulas.Formula]]
     """All changes of a formula: the operator's name, and the whole formula with it.
 
     >>> from rvmon.language.print import format_formula
-    >>> within = Unary(UnaryOp.EVENTUALLY, EventAtom("released"), Interval(0, 3 * 10**9))
+    >>> gone = formulas.EventAtom("released")
+    >>> within = formulas.Unary(formulas.UnaryOp.EVENTUALLY, gone, formulas.Interval(0, 3 * 10**9))
     >>> [format_formula(changed) for name, changed in changes(within) if name == "bound"]
     ['within 4 s released', 'within 2 s released']
     """

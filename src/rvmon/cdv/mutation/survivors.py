@@ -93,12 +93,7 @@ def failing_runs(tried: Iterable[Tried]) -> dict[str, Recorded]:
 
 
 def scored(tried: Iterable[Tried], equivalent: Iterable[str] = ()) -> Score:
-    """Count.
-
-    Args:
-        tried: mutants.
-        equivalent: the identities of those that are declared to change no behaviour.
-    """
+    """Count mutants; those declared to change no behaviour are known by their identities."""
     counted = [trial for trial in tried if not trial.invalid]
     known = set(equivalent)
     return Score(
