@@ -21,8 +21,7 @@ if TYPE_CHECKING:
     from rvmon.analysis.truths import Positions
     from rvmon.recordings.batch import Batch
 
-Key = tuple[str, int]
-"""The requirement and number of an attempt."""
+Key = tuple[str, int]  # the requirement and number of an attempt
 
 _FEW = 256
 """Rows that are looked through at first, for each formula: mostly what was awaited comes soon."""

@@ -11,20 +11,14 @@ from msgspec import Struct
 from rvmon.analysis.product import Aim, Together
 from rvmon.analysis.vacuity import Subject
 
-MOST_OFFSETS = 12
-"""The most distances between the triggers of two requirements that are examined."""
-
-MOST_ALWAYS = 4
-"""The most `always` requirements that are added to a pair."""
+MOST_OFFSETS = 12  # the most distances between the triggers of two requirements that are examined
+MOST_ALWAYS = 4  # the most `always` requirements that are added to a pair
 
 LARGEST_GROUP = 6
 """The size of the groups tried first: if all of a group can hold, so can every subset."""
 
-LARGEST_SET = 5
-"""The size of the largest sets that are examined one by one."""
-
-MOST_SETS = 2000
-"""If there are more sets of one size above three, that size is skipped."""
+LARGEST_SET = 5  # the size of the largest sets that are examined one by one
+MOST_SETS = 2000  # if there are more sets of one size above three, that size is skipped
 
 
 class Member(Struct, frozen=True):
@@ -282,8 +276,7 @@ def _cuts(subject: Subject) -> set[int]:
     return set() if subject.automaton is None else subject.automaton.cuts
 
 
-MOST_OTHERS = 5
-"""The most requirements tried together as implying another."""
+MOST_OTHERS = 5  # the most requirements tried together as implying another
 
 
 def implications_among(
@@ -318,7 +311,8 @@ def implications_among(
             and other.names & implied.names
             and starts_with(together, other, implied)
         ]
-        by = _by_one(together, implied, others) or _by_several(together, implied, others, bad)
+        by_one = [other for other in others if _implies(together, [other], implied)][:1]
+        by = by_one or _by_several(together, implied, others, bad)
         if by:
             dropped.add(implied.id)
             implications.append(Implication(implied.id, tuple(subject.id for subject in by)))
@@ -338,15 +332,6 @@ def starts_with(together: Together, other: Subject, implied: Subject) -> bool:
         return False
     letters = together.letters([other, implied])
     return letters is not None and all(mine or not one for (_, mine), (_, one) in letters)
-
-
-def _by_one(
-    together: Together, implied: Subject, others: Sequence[Subject]
-) -> list[Subject] | None:
-    for other in others:
-        if _implies(together, [other], implied):
-            return [other]
-    return None
 
 
 def _by_several(

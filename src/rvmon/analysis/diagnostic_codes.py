@@ -36,7 +36,9 @@ def page_of(code: str) -> str:
     named = {rules[known].name: rules[known] for known in sorted(rules, reverse=True)}
     rule = rules.get(code.upper()) or named.get(code.lower())
     if rule is None:
-        raise UnknownNameError(_unknown(code, rules))
+        alike = "\n".join(f"  {one.code}  {one.name}" for one in _alike(code, rules))
+        end = "`rvmon explain codes` lists all"
+        raise UnknownNameError(f"error: no diagnostic `{code}`; alike are\n{alike}\n{end}")
     return every_page()[rule.code]
 
 
@@ -52,13 +54,6 @@ def every_page() -> Mapping[str, str]:
 def code_list() -> str:
     """All codes with their names, a line each."""
     return "".join(f"{rule.code}  {rule.name}\n" for rule in every_rule().values())
-
-
-def _unknown(code: str, rules: Mapping[str, Rule]) -> str:
-    shown = [f"  {rule.code}  {rule.name}" for rule in _alike(code, rules)]
-    return "\n".join(
-        (f"error: no diagnostic `{code}`; alike are", *shown, "`rvmon explain codes` lists all")
-    )
 
 
 def _alike(code: str, rules: Mapping[str, Rule]) -> list[Rule]:

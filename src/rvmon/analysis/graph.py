@@ -19,8 +19,7 @@ from rvmon.logic.state_formula import FALSE, TRUE, Shown, State
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.texts import quoted
 
-Cube = tuple[int, ...]
-"""A partial valuation: per proposition 1, 0 or `ANY`."""
+Cube = tuple[int, ...]  # a partial valuation: per proposition 1, 0 or `ANY`
 
 ANY = -1
 

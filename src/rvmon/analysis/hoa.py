@@ -18,11 +18,8 @@ from rvmon.version import __version__
 
 MOST_PROPOSITIONS = 12
 
-START = -1
-"""The state at the trigger, as long as it is none of the others."""
-
-Edges = Mapping[Cube, int]
-"""The target of each possible letter."""
+START = -1  # the state at the trigger, as long as it is none of the others
+Edges = Mapping[Cube, int]  # the target of each possible letter
 
 
 def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:

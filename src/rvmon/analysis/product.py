@@ -20,8 +20,7 @@ from rvmon.language.checked.specification import CheckedSpec, EndPolicy, TimeMod
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
 from rvmon.logic.clock_regions import region_bounds
 
-MOST_STATES = 4000
-"""The most states of a search; beyond it nothing is decided."""
+MOST_STATES = 4000  # the most states of a search; beyond it nothing is decided
 FOREVER = 1 << 63
 
 Spot = tuple[int, Regions, tuple[int, ...]]

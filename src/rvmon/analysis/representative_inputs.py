@@ -45,8 +45,7 @@ from rvmon.trace.time import TICKS_PER_SECOND
 
 Variable = SignalValue | FieldValue
 
-LARGEST = 1e15
-"""Roots of greater magnitude are dismissed as artefacts of rounding."""
+LARGEST = 1e15  # roots of greater magnitude are dismissed as artefacts of rounding
 
 
 def turning_values(

@@ -31,8 +31,7 @@ from rvmon.trace.sample import Sample, Value
 from rvmon.trace.time import TIME_LIMIT
 from rvmon.verdicts import Verdict
 
-NEVER = (1 << 63) - 1
-"""Later than any instant."""
+NEVER = (1 << 63) - 1  # later than any instant
 
 
 class Played(Struct, frozen=True):
@@ -296,8 +295,7 @@ def _windows(requirement: Requirement) -> Iterator[Compare]:
             yield comparison
 
 
-CONFLICT_RUNS = 400
-"""The most runs tried for the timeline of one conflict."""
+CONFLICT_RUNS = 400  # the most runs tried for the timeline of one conflict
 
 _OPEN, _MET = "open", "met"
 

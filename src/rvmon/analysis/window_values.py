@@ -32,8 +32,7 @@ if TYPE_CHECKING:
     from rvmon.trace.sample import Sample
     from rvmon.verdicts.attempt import Blame
 
-Asked = tuple[int, WindowValue]
-"""An instant in ticks, and the window to be evaluated there."""
+Asked = tuple[int, WindowValue]  # an instant in ticks, and the window to be evaluated there
 
 
 def windows_blamed(spec: CheckedSpec, requirement: Requirement, blame: Blame) -> list[WindowValue]:

@@ -30,8 +30,7 @@ from rvmon.cli.parser import (
 from rvmon.errors import UnknownNameError
 from rvmon.files import refuse_no_file
 
-INTERRUPTED = 130
-"""The exit code of a campaign that was interrupted."""
+INTERRUPTED = 130  # the exit code of a campaign that was interrupted
 
 
 def main(campaign: Campaign, arguments: Sequence[str] | None = None) -> int:

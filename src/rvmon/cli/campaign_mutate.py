@@ -31,8 +31,7 @@ from rvmon.errors import RvmonError, UnknownNameError
 from rvmon.files import output_folder, write_whole
 from rvmon.report.printer import Printer, text_of
 
-MOST_LISTED = 10
-"""Survivors of a kind that the terminal shows; files have all."""
+MOST_LISTED = 10  # survivors of a kind that the terminal shows; files have all
 
 
 def mutate(campaign: Campaign, robot: str, strategies: Sequence[str], arguments: Namespace) -> int:

@@ -23,9 +23,9 @@ from rvmon.cdv.play import INTERRUPTED, Bench, PlayerApart, execute, outcome_of
 from rvmon.cdv.replay_pages import Replay, play_again, replay_page, write_pages
 from rvmon.cdv.resume import unfinished
 from rvmon.cdv.sequential_test import Decision
-from rvmon.cdv.shrink import Shrunk, regression_test, removed, save_regression, shrink
+from rvmon.cdv.shrink import regression_test, removed, save_regression, shrink
 from rvmon.cdv.tables import RobotTables
-from rvmon.cdv.test import Test, TestError, to_json
+from rvmon.cdv.test import TestError, to_json
 from rvmon.cdv.test import load as load_test
 from rvmon.cli.campaign_evidence import begun, write_campaign
 from rvmon.cli.output import bar, busy, say_json, warn
@@ -201,8 +201,7 @@ def page_printer() -> Printer:
     return Printer(width=None if sys.stdout.isatty() else TEXT_WIDTH)
 
 
-SHOWN = 20
-"""Lines about what is wrong; `--junit` has all of them."""
+SHOWN = 20  # lines about what is wrong; `--junit` has all of them
 
 
 def is_as_expected(
@@ -266,8 +265,9 @@ def shrink_file(campaign: Campaign, arguments: Namespace) -> int:
     job, requirement = _job(campaign, arguments), arguments.requirement
     # A folder that cannot be written to is reported before anything is played.
     folder = output_folder(arguments.out) if arguments.out else None
-    with busy("shrinking"):
-        smallest = _smallest(campaign, job, requirement)
+    # A smaller test may hang, or be lost, and does no harm.
+    with busy("shrinking"), closing(PlayerApart(campaign, job.robot)) as player:
+        smallest = shrink(job.test, player.play(job.test), player.play, requirement)
     if smallest is None:
         why = f"{requirement} does not fail" if requirement else "no requirement fails"
         warn(f"{arguments.test}: {why}: there is nothing to shrink")
@@ -295,12 +295,6 @@ def _job(campaign: Campaign, arguments: Namespace) -> Job:
     if name not in campaign.robots:
         raise UnknownNameError(f"no robot `{name}`: there are {', '.join(campaign.robots)}")
     return Job(test, name)
-
-
-def _smallest(campaign: Campaign, job: Job, requirement: str | None) -> Shrunk[Test] | None:
-    """The smallest test; a smaller one may hang, or be lost, and does no harm."""
-    with closing(PlayerApart(campaign, job.robot)) as player:
-        return shrink(job.test, player.play(job.test), player.play, requirement)
 
 
 def _show(form: str, spec: Spec, played: Replay) -> None:

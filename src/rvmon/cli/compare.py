@@ -13,8 +13,7 @@ from rvmon.texts import counted
 from rvmon.verdicts.compare import Change, Comparison, Difference, compare
 from rvmon.verdicts.table_file import read_results
 
-LISTED = 20
-"""Differences of one kind that the text lists."""
+LISTED = 20  # differences of one kind that the text lists
 
 
 def run_compare(arguments: argparse.Namespace) -> int:

@@ -31,8 +31,7 @@ MOST_LATE = 1000
 MOST_LATE_IN_ALL = 10_000
 """The same of all requirements, of which each gets its share, and at least one."""
 
-MOST_VALUES = 3
-"""The most signals of a failed part whose values are shown; `rvmon why` shows all."""
+MOST_VALUES = 3  # the most signals of a failed part whose values are shown; `rvmon why` shows all
 
 
 def looked_up(requirement: Requirement, failed: int) -> int:

@@ -60,10 +60,8 @@ _MORE: dict[str, dict[str, Any]] = {
     "--format": {"choices": ("text", "json"), "default": "text"},
     "--max-memory": {"dest": "most_megabytes", "type": _megabytes},
 }
-ONLY = ("--only", "--severity", "--tag")
-"""Which requirements are meant."""
-READING = ("--time", "--map", "--nan", "--binding", "--clock")
-"""The options for reading recordings."""
+ONLY = ("--only", "--severity", "--tag")  # which requirements are meant
+READING = ("--time", "--map", "--nan", "--binding", "--clock")  # the options for reading recordings
 EVALUATED = ("--const", "--until", *READING, "--allow-missing")
 """The constants, how far and how recordings are evaluated, and what they may lack."""
 

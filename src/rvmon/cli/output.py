@@ -65,11 +65,8 @@ def warn(text: str) -> None:
 
 T = TypeVar("T")
 
-PATIENCE_S = 1.0
-"""Work shorter than this shows no bar."""
-
-SAMPLES_PER_LOOK = 4096
-"""Samples between two looks at the clock."""
+PATIENCE_S = 1.0  # work shorter than this shows no bar
+SAMPLES_PER_LOOK = 4096  # samples between two looks at the clock
 
 
 @contextmanager

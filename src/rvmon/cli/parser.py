@@ -15,8 +15,7 @@ from rvmon.execute import Shard
 from rvmon.texts import did_you_mean, shown
 from rvmon.trace.time import TICKS_PER_SECOND, TICKS_PER_UNIT, ticks_of_text
 
-Subparsers: TypeAlias = "argparse._SubParsersAction[Parser]"
-"""The commands that a program takes."""
+Subparsers: TypeAlias = "argparse._SubParsersAction[Parser]"  # the commands that a program takes
 
 _CHOICE = re.compile(r"invalid choice: '(.*)' \(choose from (.*)\)", re.DOTALL)
 

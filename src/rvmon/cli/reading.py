@@ -27,8 +27,7 @@ if TYPE_CHECKING:
 OPTIONAL_VALUES = ("--allow-missing", "--require-triggered")
 """Options whose value can be left out, and otherwise follows a `=`."""
 
-OPTIONAL_OF_COVER = ("--bins",)
-"""The options of `rvmon cover` whose value can be left out."""
+OPTIONAL_OF_COVER = ("--bins",)  # the options of `rvmon cover` whose value can be left out
 
 
 def with_values(words: Sequence[str]) -> list[str]:
@@ -184,8 +183,7 @@ def _most_telling(attempts: Sequence[Attempt]) -> Attempt:
     return attempts[0]
 
 
-ENDING = ".rvcase"
-"""The suffix of reproducers."""
+ENDING = ".rvcase"  # the suffix of reproducers
 
 
 def relax(parser: argparse.ArgumentParser, words: Sequence[str]) -> None:

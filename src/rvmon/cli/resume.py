@@ -83,7 +83,10 @@ def unfinished(
     has each recording. Recordings of shards may be elsewhere.
     """
     path = path_of(out)
-    heading = _heading(spec, options, reading)
+    # A checksum of all that verdicts depend on but the recordings; the binding's file may be
+    # another one since.
+    words = [*reading, pickle.dumps(spec.schema.binding).hex()]
+    heading = journal.checksum(to_plain(spec.checked), words, asdict(options)).encode()
     stamps = {trace: _stamp(trace) for trace in traces}
     known: dict[str, Judged] = {}
     with writing(path):
@@ -145,9 +148,3 @@ def _stamp(trace: str) -> tuple[int, int] | None:
     # A file may be given any time of change; that of its place on the disk is the system's.
     changed = max(max(one.st_mtime_ns, one.st_ctime_ns) for one in statuses)
     return sum(one.st_size for one in statuses), changed
-
-
-def _heading(spec: Spec, options: Options, reading: Sequence[str]) -> bytes:
-    """A checksum of all that verdicts depend on but the recordings."""
-    binding = pickle.dumps(spec.schema.binding).hex()  # its file may be another one since
-    return journal.checksum(to_plain(spec.checked), [*reading, binding], asdict(options)).encode()

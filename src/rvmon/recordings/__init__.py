@@ -37,8 +37,7 @@ FORMATS = {
 }
 """File name endings and the formats they stand for; standard input (`-`) is JSON lines."""
 
-DATABASES = (".dbc", ".kcd", ".sym", ".arxml")
-"""Endings of files that say what frames of CAN hold."""
+DATABASES = (".dbc", ".kcd", ".sym", ".arxml")  # endings of files that say what frames of CAN hold
 
 
 def databases_beside(path: str | os.PathLike[str]) -> list[str]:
@@ -50,8 +49,7 @@ def databases_beside(path: str | os.PathLike[str]) -> list[str]:
     return [os.path.join(folder, one) for one in sorted(found)]
 
 
-ARRAYS = frozenset({"hdf5", "mat"})
-"""The formats in which the stamps are an array among others."""
+ARRAYS = frozenset({"hdf5", "mat"})  # the formats in which the stamps are an array among others
 
 TOPICS = "topics.toml"
 """In a folder of tables that are one recording: says which file is which topic."""

@@ -119,8 +119,7 @@ class CsvText(Generic[_Found]):
 
 _Read = TypeVar("_Read")
 
-MOST_THREADS = 4
-"""The most reading threads; the consumer of their results is slower than these."""
+MOST_THREADS = 4  # the most reading threads; the consumer of their results is slower than these
 
 
 def stretches(first: bytes, file: BinaryIO) -> Iterator[bytes]:

@@ -20,11 +20,8 @@ from rvmon.trace.time import TIME_LIMIT
 
 Line = TypeVar("Line", str, bytes)
 
-MOST_NAMES = 1_000
-"""The most names that are counted apart."""
-
-MORE = "… and more"
-"""The entry that counts all other names."""
+MOST_NAMES = 1_000  # the most names that are counted apart
+MORE = "… and more"  # the entry that counts all other names
 
 TOO_DEEP = "it is nested too deeply"
 

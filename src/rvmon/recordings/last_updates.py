@@ -11,11 +11,8 @@ from rvmon.trace.sample import Sample, Scalar, Value
 if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
 
-FOREVER = (1 << 63) - 1
-"""Later than any tick."""
-
-Update = tuple[int, Scalar]
-"""An instant in ticks, and the value; `None`: unknown."""
+FOREVER = (1 << 63) - 1  # later than any tick
+Update = tuple[int, Scalar]  # an instant in ticks, and the value; `None`: unknown
 
 
 class LastUpdates:

@@ -24,8 +24,7 @@ from rvmon.trace.schema import Schema
 if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
 
-ROWS = 1 << 16
-"""Rows that are in memory at a time."""
+ROWS = 1 << 16  # rows that are in memory at a time
 
 
 def parquet_file(path: str | Path) -> Any:

@@ -16,8 +16,7 @@ from rvmon.recordings import FORMATS, form_of_folder
 from rvmon.recordings.values import first_line
 from rvmon.texts import cannot_read
 
-PACKED = (".gz", ".zst")
-"""Endings of text that is packed."""
+PACKED = (".gz", ".zst")  # endings of text that is packed
 
 JOINT = " + "
 """Between the paths, of files and of folders of files, that are one recording; also behind one."""
@@ -207,12 +206,10 @@ def _remote_errors(address: str) -> Iterator[None]:
         raise TraceError(f"{address}: cannot be read ({first_line(error)})") from None
 
 
-BLOCK = 1 << 20
-"""Bytes of a piece."""
+BLOCK = 1 << 20  # bytes of a piece
 
 
-LONGEST_LINE = 1 << 26
-"""Characters of a line; longer ones are refused."""
+LONGEST_LINE = 1 << 26  # characters of a line; longer ones are refused
 
 
 def bounded_lines(text: TextIO) -> Iterator[str]:

@@ -36,8 +36,7 @@ _Piece = TypeVar("_Piece")
 
 _SECONDS = stamps_of("t")
 
-JOINED = "joined"
-"""The format of several files that are one recording: `odom.csv + status.csv`."""
+JOINED = "joined"  # the format of several files that are one recording: `odom.csv + status.csv`
 
 
 _UNITS = {"parquet": "row", JOINED: "joined row"}  # what messages call a row; of text it is a line

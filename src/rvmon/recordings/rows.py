@@ -17,14 +17,9 @@ from rvmon.trace.time import TICKS_PER_SECOND, format_ticks
 if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
 
-LOOKED_AT = 1_000
-"""The number of stamps, from the first, that are examined."""
-
-FEWEST = 10
-"""The fewest stamps about which anything is reported."""
-
-LONG_STEP = 5
-"""Seconds of a median step from which on seconds may be milliseconds."""
+LOOKED_AT = 1_000  # the number of stamps, from the first, that are examined
+FEWEST = 10  # the fewest stamps about which anything is reported
+LONG_STEP = 5  # seconds of a median step from which on seconds may be milliseconds
 
 
 def median_step(times: Sequence[float]) -> float:
@@ -64,14 +59,12 @@ def doubt_unit(times: Sequence[int], stamps: Stamps) -> list[Health]:
     return [Health(HealthKind.UNIT, column, 1, times[0], remark=remark)]
 
 
-ROOM = 65_536
-"""The most rows that wait for late ones."""
+ROOM = 65_536  # the most rows that wait for late ones
 
 LEAP = 365 * 86_400 * TICKS_PER_SECOND
 """Ticks of a year, for which no recording is silent: one of the two stamps is of another clock."""
 
-Row = tuple[int, int, Mapping[str, Value]]
-"""Number, ticks, what it updates."""
+Row = tuple[int, int, Mapping[str, Value]]  # number, ticks, what it updates
 
 
 class Rows:

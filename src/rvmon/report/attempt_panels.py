@@ -71,11 +71,8 @@ class Panel(Struct, frozen=True):
         return self.attempt.triggered if self.attempt.decided is None else self.attempt.decided
 
 
-LOOKS = 60
-"""The number of instants, evenly spaced over the view, at which two runs are compared."""
-
-MOST = 100
-"""The most passing attempts that are compared."""
+LOOKS = 60  # the number of instants, evenly spaced over the view, at which two runs are compared
+MOST = 100  # the most passing attempts that are compared
 
 
 Candidate = tuple[JudgedRun, tuple[Track, ...]]

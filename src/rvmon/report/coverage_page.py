@@ -23,11 +23,8 @@ from rvmon.verdicts import Verdict
 WIDTH, HEIGHT = 1000, 100
 """The size of the drawing in SVG units; it is stretched to the width of the page."""
 
-COLOURS = 6
-"""The number of strategies with a colour of their own; the others share one."""
-
-DOTS = 300
-"""The most tests that are marked by dots with links; of more, only the line is drawn."""
+COLOURS = 6  # the number of strategies with a colour of their own; the others share one
+DOTS = 300  # the most tests that are marked by dots with links; of more, only the line is drawn
 
 
 def growth_chart(summary: Summary) -> ET.Element:
@@ -99,8 +96,7 @@ def _key(summary: Summary, numbers: dict[str, int]) -> ET.Element:
     return e("p", {"class": "soft keys"}, *parts)
 
 
-OPEN = 30
-"""The most lines of a list shown at once; the rest is folded."""
+OPEN = 30  # the most lines of a list shown at once; the rest is folded
 
 SHORT, LONG = 8, 40
 """The most items of a list that is always open, and of one that is open if it has a hole."""
@@ -108,11 +104,8 @@ SHORT, LONG = 8, 40
 PALE, STRONG = 12, 62
 """Percent of colour in the cells with the fewest and with the most hits."""
 
-MOST = 2_000
-"""The most tests listed completely; of more, only the notable ones are listed."""
-
-NAMED = 4
-"""The most items named that a test added; the rest is counted."""
+MOST = 2_000  # the most tests listed completely; of more, only the notable ones are listed
+NAMED = 4  # the most items named that a test added; the rest is counted
 
 
 def coverage_page(summary: Summary) -> str:

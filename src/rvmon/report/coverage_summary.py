@@ -22,8 +22,7 @@ from rvmon.texts import counted
 from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict
 
-LISTED = 5
-"""The most tests named of those that hit an item."""
+LISTED = 5  # the most tests named of those that hit an item
 
 
 class Summary(Answers):
@@ -286,7 +285,8 @@ _OF_TEST = (
 
 def coverage_data(summary: Summary) -> dict[str, Any]:
     """The whole summary as JSON values."""
-    coverage, records = summary.coverage, [entry.record for entry in summary.coverage.entries]
+    coverage, compared = summary.coverage, summary.comparison
+    records = [entry.record for entry in coverage.entries]
     return {
         "share": summary.share,
         "groups": [_group_data(summary, name) for name in coverage.model.groups],
@@ -310,7 +310,9 @@ def coverage_data(summary: Summary) -> dict[str, Any]:
             }
             for step in summary.ranking
         ],
-        "compared": _compared(summary),
+        "compared": None
+        if compared is None
+        else {"with": summary.earlier_name, **asdict(compared)},
     }
 
 
@@ -326,10 +328,7 @@ def _group_data(summary: Summary, name: str) -> dict[str, Any]:
         "axes": group.axes,
         "bins": [
             {
-                "name": item.name,
-                "text": item.text,
-                "kind": item.kind,
-                "goal": item.goal,
+                **{key: getattr(item, key) for key in ("name", "text", "kind", "goal")},
                 "hits": int(summary.totals.counts[place]),
                 "tests": int(summary.totals.tests[place]),
                 "first": _first_data(summary, place),
@@ -357,8 +356,3 @@ def _first_data(summary: Summary, place: int) -> dict[str, Any] | None:
 
 def _item_names(summary: Summary, places: Iterable[int]) -> list[tuple[str, str]]:
     return [summary.coverage.items[place] for place in places]
-
-
-def _compared(summary: Summary) -> dict[str, Any] | None:
-    comparison = summary.comparison
-    return None if comparison is None else {"with": summary.earlier_name, **asdict(comparison)}

@@ -16,8 +16,7 @@ from rvmon.texts import counted, percent_text, share_text
 from rvmon.verdicts import Verdict
 
 _FEW = 3
-SHOWN = 10
-"""The most entries of a list that are printed."""
+SHOWN = 10  # the most entries of a list that are printed
 
 BAR, WIDE = 20, 64
 """Columns of a bar, and the least width of a terminal with room for one."""

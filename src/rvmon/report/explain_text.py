@@ -22,8 +22,7 @@ from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt
 
 HIGH, LOW, NOBODY_KNOWS, OCCURS = "▇", "▁", "?", "●"
-NARROWEST = 9
-"""The least width of a column, in characters."""
+NARROWEST = 9  # the least width of a column, in characters
 
 
 def picture_of(example: Example, spec: CheckedSpec, read: Collection[str]) -> list[Line]:

@@ -12,8 +12,7 @@ from rvmon.report.tracks import Outline, Scene, thresholds
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 
-SCENE = "/rvmon/scene"
-"""Its topic."""
+SCENE = "/rvmon/scene"  # its topic
 
 _THIN = 0.006  # metres: how thick the line about a polygon is at least
 
@@ -83,8 +82,7 @@ def _drawn(outline: Outline) -> tuple[str, Mapping[str, Any]]:
     }
 
 
-ATTEMPTS = "/rvmon/attempts"
-"""The topic of attempts, for the panel of logs."""
+ATTEMPTS = "/rvmon/attempts"  # the topic of attempts, for the panel of logs
 
 _PLAIN = re.compile(r"[\w/-]+", re.ASCII)
 _NUMBERS = (Kind.INT, Kind.REAL)

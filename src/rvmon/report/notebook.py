@@ -21,8 +21,7 @@ from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.report import Report, report_of
 
-DRAWN = 200
-"""The most attempts drawn per requirement and verdict; the rest is counted."""
+DRAWN = 200  # the most attempts drawn per requirement and verdict; the rest is counted
 
 _DARK = re.compile(
     r"@media (?:screen and )?\(prefers-color-scheme: ?dark\) ?\{\s*:root ?\{(.*?)\}\s*\}", re.DOTALL

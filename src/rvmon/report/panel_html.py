@@ -20,8 +20,7 @@ from rvmon.trace.sample import Scalar
 from rvmon.verdicts.attempt import Blame
 from rvmon.verdicts.report import Report
 
-DEEPEST = 8
-"""The greatest depth of a subformula that is indented further."""
+DEEPEST = 8  # the greatest depth of a subformula that is indented further
 
 
 def parts_timeline(panel: Panel, report: Report) -> ET.Element:

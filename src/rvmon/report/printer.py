@@ -14,14 +14,9 @@ from typing import TextIO
 from rvmon.diagnostics import RESET, columns_of, wants_colour
 from rvmon.texts import shown, shown_line
 
-Piece = str | tuple[str, str]
-"""A text, or a text with its style: words of `_CODES`."""
-
-Line = list[Piece]
-"""The pieces of a line."""
-
-Cell = Piece | Line
-"""What stands in a table."""
+Piece = str | tuple[str, str]  # a text, or a text with its style: words of `_CODES`
+Line = list[Piece]  # the pieces of a line
+Cell = Piece | Line  # what stands in a table
 
 _Styled = list[tuple[str, str]]
 
@@ -164,8 +159,7 @@ class Printer:
         return f"\x1b[{';'.join(_CODES[word] for word in style.split())}m{shown(text)}{RESET}"
 
 
-TEXT_WIDTH = 100
-"""Columns of a text that is written to a file."""
+TEXT_WIDTH = 100  # columns of a text that is written to a file
 
 
 def text_of(show: Callable[[Printer], object]) -> str:

@@ -21,11 +21,8 @@ from rvmon.trace.time import TICKS_PER_SECOND, format_stamped
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.report import Report
 
-UNITS = 1000
-"""SVG units per metre; and integer steps per radian."""
-
-MILLISECOND = 1_000_000
-"""A millisecond in ticks."""
+UNITS = 1000  # SVG units per metre; and integer steps per radian
+MILLISECOND = 1_000_000  # a millisecond in ticks
 
 
 def scene_svg(scene: Scene, instant: int) -> ET.Element:
@@ -83,8 +80,7 @@ def _differences(values: list[int]) -> list[int]:
 
 WORST_FIRST = (Verdict.FAIL, Verdict.INCONCLUSIVE, Verdict.PASS, Verdict.NOT_TRIGGERED)
 
-MOST_DRAWN = 5_000
-"""The most attempts drawn per requirement and verdict in the overview."""
+MOST_DRAWN = 5_000  # the most attempts drawn per requirement and verdict in the overview
 
 
 def run_page(content: RunPage) -> str:
@@ -139,8 +135,7 @@ def run_page(content: RunPage) -> str:
     )
 
 
-Bar = tuple[str, Verdict]
-"""The CSS position of an attempt, and its verdict."""
+Bar = tuple[str, Verdict]  # the CSS position of an attempt, and its verdict
 
 
 def _rows(
@@ -187,8 +182,7 @@ def _bars(report: Report, name: str, view: View) -> Iterator[tuple[float, float,
         at += count
 
 
-READ_OUT = 2_000
-"""The most values of a track that the cursor can read out."""
+READ_OUT = 2_000  # the most values of a track that the cursor can read out
 
 
 def script_data(content: RunPage, panels: Sequence[Panel], view: View) -> dict[str, object]:

@@ -24,8 +24,7 @@ from rvmon.verdicts.report import Report
 
 _BROKEN = "cannot be evaluated"
 _KNOWN = "fail as is known"
-ASKED = "name, failed requirement, severity"
-"""The placeholder of the search field of the index."""
+ASKED = "name, failed requirement, severity"  # the placeholder of the search field of the index
 
 _GROUPS = {
     _BROKEN: _BROKEN,

@@ -17,7 +17,7 @@ from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt, LazyAttempts
 from rvmon.verdicts.report import Report
-from rvmon.verdicts.run_coverage import CoveredBin, CoveredGroup
+from rvmon.verdicts.run_coverage import CoveredGroup
 
 
 def together(several: Sequence[Sequence[CoveredGroup]]) -> list[CoveredGroup]:
@@ -41,34 +41,21 @@ def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:
     size: not covered: high (1 of 3)
     """
     for group in groups:
-        wanted = [covered_bin for covered_bin in group.bins if covered_bin.kind is BinKind.GOAL]
-        holes = [covered_bin for covered_bin in wanted if covered_bin.is_hole]
+        wanted = [one for one in group.bins if one.kind is BinKind.GOAL]
+        holes = [one for one in wanted if one.is_hole]
         hit = [
-            f"{_name(covered_bin)} {covered_bin.hits:,}"
-            for covered_bin in group.bins
-            if covered_bin.hits
+            f"{one.name}{'' if one.kind is BinKind.GOAL else f' ({one.kind})'} {one.hits:,}"
+            for one in group.bins
+            if one.hits
         ]
         covered = f"{group.name}: {len(wanted) - len(holes):,} of {len(wanted):,} covered"
         yield f"{covered}; hit: {wording.first_of(hit, wording.SHOWN)}" if hit else covered
         if holes:
-            missing = wording.first_of([*map(_missing, holes)], wording.SHOWN)
-            yield f"{group.name}: not covered: {missing}"
-
-
-def _name(covered_bin: CoveredBin) -> str:
-    return (
-        covered_bin.name
-        if covered_bin.kind is BinKind.GOAL
-        else f"{covered_bin.name} ({covered_bin.kind})"
-    )
-
-
-def _missing(covered_bin: CoveredBin) -> str:
-    return (
-        covered_bin.name
-        if covered_bin.goal == 1
-        else f"{covered_bin.name} ({covered_bin.hits:,} of {covered_bin.goal:,})"
-    )
+            found = (f"{one.name} ({one.hits:,} of {one.goal:,})" for one in holes)
+            names = [
+                name if one.goal > 1 else one.name for one, name in zip(holes, found, strict=True)
+            ]
+            yield f"{group.name}: not covered: {wording.first_of(names, wording.SHOWN)}"
 
 
 def print_reports(

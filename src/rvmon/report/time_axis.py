@@ -11,8 +11,7 @@ from rvmon.trace.time import TICKS_PER_SECOND, format_ticks, ticks_of_text
 from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.report import Report
 
-MARGIN = 0.2
-"""The margin on either side, relative to the attempt's length."""
+MARGIN = 0.2  # the margin on either side, relative to the attempt's length
 
 SMALLEST_MARGIN = TICKS_PER_SECOND
 """The least margin, for attempts that are decided at once; less if the run is short."""
@@ -21,8 +20,7 @@ STEPS = (1, 2, 5)
 
 _SECONDS = re.compile(r"\b(\d+\.\d+) s\b")
 
-SHOWN_DIGITS = 4
-"""Digits of an instant: its last one is 1/1000 to 1/10000 of the view."""
+SHOWN_DIGITS = 4  # digits of an instant: its last one is 1/1000 to 1/10000 of the view
 
 
 class View(Struct, frozen=True):

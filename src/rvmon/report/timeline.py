@@ -25,14 +25,9 @@ from rvmon.verdicts.attempt import Attempt
 WIDTH, HEIGHT = 1000, 100
 """The size of a number's drawing in SVG units; it is stretched to the width of the page."""
 
-SIGNS = {"<=": "≤", ">=": "≥", "==": "=", "!=": "≠"}
-"""Comparison signs for display."""
-
-EDGE = 0.12
-"""The margin above and below, relative to a number's range."""
-
-LABELLED = 0.25
-"""The share of the width, at the right, taken by the label of a threshold."""
+SIGNS = {"<=": "≤", ">=": "≥", "==": "=", "!=": "≠"}  # comparison signs for display
+EDGE = 0.12  # the margin above and below, relative to a number's range
+LABELLED = 0.25  # the share of the width, at the right, taken by the label of a threshold
 
 LOWEST_UNDER = 0.75
 """The lowest threshold, from the top of a track, that has room for its label below."""
@@ -183,8 +178,7 @@ def _unknown(left: float, width: float) -> ET.Element:
     return e("div", {"class": "unknown", "title": "unknown", "style": place_of(left, width)})
 
 
-LABEL = 0.44
-"""The share of the width that a label takes on a phone; overlapping ones get own rows."""
+LABEL = 0.44  # the share of the width that a label takes on a phone; overlapping ones get own rows
 
 
 class ReferenceAttempt(Struct, frozen=True):

@@ -16,11 +16,8 @@ from rvmon.verdicts import Verdict, fold
 from rvmon.verdicts.serialise import VerdictRow
 from rvmon.verdicts.table_file import csv_table
 
-LISTED = 100
-"""The most recordings or tests per verdict named on the page; the table has all."""
-
-Row = Mapping[str, str]
-"""A row of the verdicts, by column."""
+LISTED = 100  # the most recordings or tests per verdict named on the page; the table has all
+Row = Mapping[str, str]  # a row of the verdicts, by column
 
 
 class Traced(NamedTuple):

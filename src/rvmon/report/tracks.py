@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from enum import StrEnum
 from itertools import groupby, pairwise
+from operator import itemgetter
 
 from msgspec import Struct
 
@@ -138,11 +139,8 @@ def signal_texts(tracks: Iterable[Track], instant: int) -> dict[str, str]:
     return texts
 
 
-PLACES = 400
-"""Horizontal resolution of a track; denser changes are summarised per place."""
-
-Point = tuple[float, float]
-"""x and y as fractions of a track, y downwards."""
+PLACES = 400  # horizontal resolution of a track; denser changes are summarised per place
+Point = tuple[float, float]  # x and y as fractions of a track, y downwards
 
 
 class Stretch(Struct, frozen=True):
@@ -212,26 +210,9 @@ def _outlined(points: Sequence[Point]) -> list[Point]:
     for _, group in groupby(points, key=lambda point: int(point[0] * PLACES)):
         same_place = list(group)
         # The first and the last keep the joints with the neighbours.
-        extremes = (
-            same_place[0],
-            min(same_place, key=_height),
-            max(same_place, key=_height),
-            same_place[-1],
-        )
-        kept.extend(sorted(dict.fromkeys(extremes)))
+        extremes = [of(same_place, key=itemgetter(1)) for of in (min, max)]
+        kept.extend(sorted({same_place[0], *extremes, same_place[-1]}))
     return kept
-
-
-def _height(point: Point) -> float:
-    return point[1]
-
-
-_KINDS = {
-    Kind.BOOL: TrackKind.SWITCH,
-    Kind.INT: TrackKind.NUMBER,
-    Kind.REAL: TrackKind.NUMBER,
-    Kind.LABEL: TrackKind.LABEL,
-}
 
 
 def tracks_of(
@@ -250,10 +231,9 @@ def tracks_of(
 
 
 def _signal_track(signal: Signal, requirement: Requirement, changes: Changes) -> Track:
-    return Track(
-        signal.name,
-        _KINDS[signal.type.kind],
-        changes.ended(),
-        signal.type.unit,
+    kinds = {Kind.BOOL: TrackKind.SWITCH, Kind.LABEL: TrackKind.LABEL}
+    kind, limits = (
+        kinds.get(signal.type.kind, TrackKind.NUMBER),
         thresholds(requirement, signal.name),
     )
+    return Track(signal.name, kind, changes.ended(), signal.type.unit, limits)

@@ -14,8 +14,7 @@ from rvmon.report.wording import MARKS
 from rvmon.texts import shown_line
 from rvmon.verdicts import Verdict
 
-Counts = Mapping[Verdict, int]
-"""By verdict, the number of runs."""
+Counts = Mapping[Verdict, int]  # by verdict, the number of runs
 
 
 class RunGroup(Struct, frozen=True):
@@ -86,17 +85,10 @@ def plain(name: str) -> str:
     return f"'{text}" if text.startswith(_FORMULA) else text
 
 
-ZERO = "·"
-"""The sign for a count of 0, so that other counts stand out."""
-
-WIDTH = 4
-"""The least width of a column of counts, in characters."""
-
-WIDE = 7
-"""The same with intervals."""
-
-ABREAST = 14
-"""The characters per verdict that the groups side by side may take within 80 columns."""
+ZERO = "·"  # the sign for a count of 0, so that other counts stand out
+WIDTH = 4  # the least width of a column of counts, in characters
+WIDE = 7  # the same with intervals
+ABREAST = 14  # the characters per verdict that the groups side by side may take within 80 columns
 
 
 def print_table(
@@ -194,14 +186,8 @@ def _beside(texts: Iterable[str], widths: Sequence[int]) -> str:
 
 
 _SPECIAL = {
+    **{sign: f"\\{sign}" for sign in "&%$#_{}"},
     "\\": r"\textbackslash{}",
-    "&": r"\&",
-    "%": r"\%",
-    "$": r"\$",
-    "#": r"\#",
-    "_": r"\_",
-    "{": r"\{",
-    "}": r"\}",
     "~": r"\textasciitilde{}",
     "^": r"\textasciicircum{}",
     "<": r"\textless{}",

@@ -103,7 +103,12 @@ def write_verdicts(
     frames = [] if scene is None else [(t, SCENE, one) for t, one in scene_updates(scene)]
     values = _values(spec, recorded, names)
     messages = merge(states, _attempts(spec, report), values, frames, key=itemgetter(0))
-    schemas = {**_state_schemas(report), **(_value_schemas(spec, names) if recorded else {})}
+    # By topic the name of its schema, and the types of its fields.
+    schemas: dict[str, tuple[str, Mapping[str, str]]] = {ATTEMPTS: ("foxglove.Log", _ATTEMPT)}
+    for name in report.verdicts:
+        schemas[topic_of("requirements", name)] = "rvmon.Requirement", _STATE
+    if recorded:
+        schemas |= _value_schemas(spec, names)
     if scene is not None:
         schemas[SCENE] = "foxglove.SceneUpdate", {"deletions": "array", "entities": "array"}
     layout = foxglove_layout(spec, report.verdicts, names if recorded else (), scene)
@@ -111,14 +116,6 @@ def write_verdicts(
         with staged(path) as place:
             _write(place, schemas, messages)
         write_whole(layout_path(path), msgspec.json.format(msgspec.json.encode(layout)))
-
-
-def _state_schemas(report: Report) -> dict[str, tuple[str, Mapping[str, str]]]:
-    """By topic the name of its schema, and the types of its fields."""
-    schemas: dict[str, tuple[str, Mapping[str, str]]] = {ATTEMPTS: ("foxglove.Log", _ATTEMPT)}
-    for name in report.verdicts:
-        schemas[topic_of("requirements", name)] = "rvmon.Requirement", _STATE
-    return schemas
 
 
 def _value_schemas(

@@ -14,8 +14,7 @@ from rvmon.trace.time import format_instant
 from rvmon.verdicts.attempt import Attempt
 
 WIDTH = 80
-PLOT = 46
-"""Columns of the drawing; the formulas take the rest."""
+PLOT = 46  # columns of the drawing; the formulas take the rest
 
 TRUE, FALSE, UNKNOWN, RISES, FALLS, PULSE, DIP = "▇▁?╱╲●○"
 LEGEND = (

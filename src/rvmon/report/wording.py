@@ -106,8 +106,7 @@ def health_facts(entries: Sequence[Health], origin: int) -> Iterator[tuple[str, 
 SHOWN_PER_REQUIREMENT = 3
 """The most failed or undecided attempts shown in full; the rest is counted."""
 
-SHOWN = 12
-"""The most names listed for one fact; the rest is counted."""
+SHOWN = 12  # the most names listed for one fact; the rest is counted
 
 
 def first_of(names: Sequence[str], most: int) -> str:

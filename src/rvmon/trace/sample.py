@@ -59,11 +59,8 @@ class Health:
         return self.kind in _DOUBTS
 
 
-Scalar = bool | int | float | str | None
-"""A signal's value; `None` makes the signal unknown."""
-
-Payload = Mapping[str, Scalar]
-"""The fields of one occurrence of an event."""
+Scalar = bool | int | float | str | None  # a signal's value; `None` makes the signal unknown
+Payload = Mapping[str, Scalar]  # the fields of one occurrence of an event
 
 Value = Scalar | Payload | tuple[Payload, ...]
 """The value of a name in a sample: of a signal its value; of an event `True`, or its payloads."""

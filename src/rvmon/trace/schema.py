@@ -90,8 +90,7 @@ class Applied(Struct, frozen=True):
         return f"({f' {self.sign} '.join(args)})" if len(args) > 1 else f"{self.sign}{args[0]}"
 
 
-TURNS = ("yaw", "pitch", "roll")
-"""Functions of a quaternion: its rotations about z, y and x."""
+TURNS = ("yaw", "pitch", "roll")  # functions of a quaternion: its rotations about z, y and x
 
 Term = Field | Elements | Constant | Applied
 
@@ -162,8 +161,7 @@ def is_unknown(value: Any) -> bool:
     return value is None or (isinstance(value, float) and value != value)
 
 
-NO_GAPS = Gaps()
-"""Only an absent value means "no update"."""
+NO_GAPS = Gaps()  # only an absent value means "no update"
 
 
 def gaps_of(nan: str, no_update: Any) -> Gaps:

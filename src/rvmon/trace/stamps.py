@@ -26,8 +26,7 @@ from rvmon.trace.time import (
     whole_ticks,
 )
 
-UNITS = (*UNIT_WORDS, "iso")
-"""The units of stamps."""
+UNITS = (*UNIT_WORDS, "iso")  # the units of stamps
 
 _ISO = re.compile(
     r"(?P<date>\d{4}-?\d\d-?\d\d)"
@@ -189,8 +188,7 @@ def _other_unit(stamp: object, stamps: Stamps) -> str:
     return ""
 
 
-DEFAULT_COLUMNS = ("t", "t_ns")
-"""The columns of stamps where none was named."""
+DEFAULT_COLUMNS = ("t", "t_ns")  # the columns of stamps where none was named
 
 
 def stamps_among(names: Collection[str], schema: Schema) -> Stamps:

@@ -17,8 +17,7 @@ TICKS_PER_SECOND = 1_000_000_000
 TIME_LIMIT = 1 << 62
 """Times and durations lie strictly between −TIME_LIMIT and TIME_LIMIT; sums saturate there."""
 
-NEVER = 1 << 63
-"""Later than any instant."""
+NEVER = 1 << 63  # later than any instant
 
 TICKS_PER_UNIT = {
     "ns": 1,

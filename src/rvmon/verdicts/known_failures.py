@@ -86,8 +86,7 @@ class KnownFailures(Struct, frozen=True):
                 yield f"{what} is known to fail, and does not: take it out of the file"
 
 
-NONE_KNOWN = KnownFailures()
-"""No failure is accepted."""
+NONE_KNOWN = KnownFailures()  # no failure is accepted
 
 
 class _File(msgspec.Struct, forbid_unknown_fields=True):

@@ -17,8 +17,7 @@ from rvmon.verdicts import Verdict
 from rvmon.verdicts.report import Report
 from rvmon.verdicts.serialise import VerdictRow, arrow_table, broken_rows, column_types
 
-TABLE = "verdicts"
-"""The name of the table in a database; the table `about` has the metadata."""
+TABLE = "verdicts"  # the name of the table in a database; the table `about` has the metadata
 
 _SQL_TYPES = {str: "TEXT", int: "INTEGER", float: "REAL", bool: "INTEGER"}
 

@@ -95,8 +95,7 @@ class Text:
         return 1 + bisect_right(self._widths, ord(char))
 
 
-MOST_FIXES = 5
-"""The most findings at a place whose proposed fixes are tried."""
+MOST_FIXES = 5  # the most findings at a place whose proposed fixes are tried
 
 _SEVERITIES = {
     Severity.ERROR: lsp.DiagnosticSeverity.Error,
@@ -116,8 +115,7 @@ _KINDS = {
 }
 _HEAD = re.compile(r"(\w+)\s+(`[^`\n]+`|[^\W\d][\w.]*)")
 
-Key = tuple[str, int]
-"""A declaration, the same in all documents: its file, and where in that it is."""
+Key = tuple[str, int]  # a declaration, the same in all documents: its file, and where in that it is
 
 
 class Document:

@@ -120,8 +120,7 @@ def about_word(place: Span) -> tuple[Span, str] | None:
     return None
 
 
-Use = tuple[Span, Ident]
-"""A place of a name, and where what it stands for is declared."""
+Use = tuple[Span, Ident]  # a place of a name, and where what it stands for is declared
 
 _GOALS = (RequirementItem, PropertyItem, CoverItem, CoverpointItem, CrossItem)
 

@@ -38,8 +38,7 @@ class Protocol(LanguageServerProtocol):
         yield self.fm.features[lsp.TEXT_DOCUMENT_DID_CHANGE], (params,), None
 
 
-QUIET = 0.2
-"""Seconds without an edit after which findings are looked for."""
+QUIET = 0.2  # seconds without an edit after which findings are looked for
 
 _KINDS = {
     "name": lsp.CompletionItemKind.Variable,

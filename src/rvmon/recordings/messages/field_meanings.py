@@ -55,8 +55,7 @@ class Meaning(Struct, frozen=True):
     is_prose: bool = False  # whether a comment says it, which may mean something else
 
 
-UNKNOWN = Meaning(Sort.OPEN)
-"""The meaning of fields that stand in no table."""
+UNKNOWN = Meaning(Sort.OPEN)  # the meaning of fields that stand in no table
 
 _OF_OTHERS = Meaning(Sort.OPEN, is_scaled=True)
 """The meaning of a field whose unit, as the recording states it, is not known here."""

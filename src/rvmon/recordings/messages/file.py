@@ -159,8 +159,7 @@ class MessageFile:
             yield from message_rows(source, self._bounds, self._schema, skew, ordered=ordered)
 
 
-MOST = 50_000
-"""Messages that are looked at."""
+MOST = 50_000  # messages that are looked at
 
 _FIRST = 3
 _FIRST_OF_MANY = 300

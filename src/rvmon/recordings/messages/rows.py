@@ -168,17 +168,13 @@ AHEAD = 1_000_000
 """Ticks by which a header may be later than the log: as far as clocks that are set by a network
 differ."""
 
-APART = 100_000_000
-"""Ticks by which the least differences of two topics may differ."""
+APART = 100_000_000  # ticks by which the least differences of two topics may differ
 
 DRIFT = 20_000_000
 """Ticks by which the least difference may change from the first messages to the last."""
 
-SOME = 100
-"""Messages of which the least difference is taken at the beginning and at the end."""
-
-ENOUGH = 10
-"""Messages that say something about a clock."""
+SOME = 100  # messages of which the least difference is taken at the beginning and at the end
+ENOUGH = 10  # messages that say something about a clock
 
 
 class Differences(Struct):

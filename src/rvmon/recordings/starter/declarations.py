@@ -17,8 +17,7 @@ from rvmon.recordings.starter.observed_values import Shape, Shapes
 from rvmon.recordings.values import FALSE_WORDS, TRUE_WORDS
 from rvmon.trace.schema import Kind
 
-MOST_LABELS = 16
-"""A text column with more values than this is left out."""
+MOST_LABELS = 16  # a text column with more values than this is left out
 
 _NUMBER = re.compile(
     r"[+-]?(?:\d++\.?+\d*+|\.\d++)(?:e[+-]?\d++)?+|[+-]?(?:nan|inf(?:inity)?)", re.IGNORECASE

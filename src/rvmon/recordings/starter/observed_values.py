@@ -18,14 +18,9 @@ from rvmon.trace.time import TICKS_PER_SECOND
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-FEW = 5
-"""The fewest occurrences of which regularity can be told."""
-
-STEADY = 3
-"""The longest gap of a steady signal, in multiples of the mean gap."""
-
-MOST_INSTANTS = 10_000
-"""Occurrences that are kept of one name."""
+FEW = 5  # the fewest occurrences of which regularity can be told
+STEADY = 3  # the longest gap of a steady signal, in multiples of the mean gap
+MOST_INSTANTS = 10_000  # occurrences that are kept of one name
 
 EVENT_SHARE = 0.1
 """Truth values that are true in single samples only, and in at most this share, are events."""
@@ -63,8 +58,7 @@ def reasons_of(left_out: Mapping[str, str], most: int) -> Iterator[str]:
         yield f"{', '.join(names[:most])}{more}: {why}"
 
 
-MOST = 160
-"""Stretches of a course."""
+MOST = 160  # stretches of a course
 
 
 class Stretch(Struct, frozen=True):

@@ -43,8 +43,7 @@ if TYPE_CHECKING:
 RARE = 0.2
 """A JSON object under a key of fewer lines than this share is taken for the payload of an event."""
 
-AT_ONCE = 8192
-"""Rows, or samples, of which the columns are looked at together."""
+AT_ONCE = 8192  # rows, or samples, of which the columns are looked at together
 
 Recorded = tuple["NDArray[np.int64]", Mapping[str, Updates]]
 """The instants of some samples, and of each name its updates there."""
@@ -190,8 +189,7 @@ def _without_rare_objects(seen: Mapping[str, SeenValues], lines: int) -> dict[st
     return kept
 
 
-MOST_NAMED = 3
-"""Names that a message lists; the rest is counted."""
+MOST_NAMED = 3  # names that a message lists; the rest is counted
 
 
 def profile_of(path: str, time: str | None = None) -> Profile:

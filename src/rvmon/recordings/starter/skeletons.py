@@ -18,11 +18,8 @@ from rvmon.recordings.starter.observed_values import Column, Profile, reasons_of
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 
-MOST_CANDIDATES = 12
-"""Names that are tried as trigger and as response."""
-
-FEWEST = 2
-"""Requirements that are written at least."""
+MOST_CANDIDATES = 12  # names that are tried as trigger and as response
+FEWEST = 2  # requirements that are written at least
 
 _MOST_RANGES = 3
 _MOST_SOURCES = 2
@@ -121,8 +118,9 @@ def _longest_wait(triggers: Sequence[int], responses: Sequence[int]) -> int | No
 
 def _range(column: Column) -> Skeleton:
     name = name_text(column.name)
+    made, unit = int if column.shape.kind is Kind.INT else float, column.shape.unit
     low, high = (
-        format_numeric(_literal(outward(value or 0, up=up), column))
+        format_numeric(Literal(made(outward(value or 0, up=up)), unit))
         for value, up in ((column.low, False), (column.high, True))
     )
     bounds = f"{name} >= {low} and {name} <= {high}"
@@ -148,11 +146,6 @@ def outward(value: float, *, up: bool) -> float:
     rounded = exact.quantize(place, ROUND_CEILING if up else ROUND_FLOOR)
     made = float(rounded)
     return made if (made >= value if up else made <= value) else value
-
-
-def _literal(value: float, column: Column) -> Literal:
-    number = int(value) if column.shape.kind is Kind.INT else float(value)
-    return Literal(number, column.shape.unit)
 
 
 def _freshness(column: Column) -> Skeleton:
