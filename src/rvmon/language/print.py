@@ -218,9 +218,8 @@ def _binary(formula: rv.Binary) -> str:
 
 
 def _is_kin_of_until(formula: rv.Formula) -> bool:
-    return (
-        isinstance(formula, rv.Binary) and formula.op.entry.level == rv.BinaryOp.UNTIL.entry.level
-    )
+    level = rv.BinaryOp.UNTIL.entry.level
+    return isinstance(formula, rv.Binary) and formula.op.entry.level == level
 
 
 def _left(formula: rv.Formula, level: int) -> str:

@@ -115,14 +115,11 @@ def _constructed(
     """The reduced automaton of the last node, and the most ticks by which an age passed a bound."""
     ages: set[int] = set()
     try:
-        made = reduce(construct(cast("mtl.Next", nodes[-1]), alphabet, budget, ages), _itself)
+        whole = construct(cast("mtl.Next", nodes[-1]), alphabet, budget, ages)
+        made = reduce(whole, lambda residual: residual)
     except DoesNotCloseError:
         made = None
     return made, max((age % _STRIDE for age in ages), default=0)
-
-
-def _itself(residual: Residual) -> Residual:
-    return residual
 
 
 def _nodes(required: mtl.Core) -> list[mtl.Core]:

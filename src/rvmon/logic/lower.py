@@ -122,14 +122,10 @@ def lower(
         return Obligation(doubt, whole, lowering.origins, running)
 
     return Obligation(
-        trigger,
-        required,
-        lowering.origins,
-        determined=determined,
-        hidden=hidden(False),
+        trigger, required, lowering.origins, determined=determined, hidden=hidden(False),
         doubted=hidden(True) if requirement.for_each is not None else None,
         captures_known=captures_known,
-    )
+    )  # fmt: skip
 
 
 def _running(trigger: State, requirement: Requirement, factory: mtl.Factory) -> State:

@@ -6,12 +6,12 @@ Source: partition refinement after Moore 1956.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator
 from itertools import product
 
 from msgspec import Struct
 
-from rvmon.logic.alphabet import LetterClasses, LetterDiagram
+from rvmon.logic.alphabet import LetterDiagram
 from rvmon.logic.automaton import PASSED, Automaton, Location, end_clauses, layout_of
 from rvmon.logic.residual import Residual
 
@@ -156,21 +156,16 @@ class _Draft:
                 edges.append(-1 if edge is None else number.setdefault(edge, len(number)))
         locations = tuple(Location(draft.residual, draft.cuts) for draft in self.drafts)
         bases, strides, _ = layout_of(locations)
-        source = self.source
+        source, class_of = self.source, self.source.class_of
         return Automaton(
             source.alphabet, locations, self.initial, len(columns),
-            _renamed(source.class_of, new_class), bases, strides, edges,
+            class_of.renamed(new_class) if isinstance(class_of, LetterDiagram)
+            else array("H", map(new_class.__getitem__, class_of)), bases, strides, edges,
             tuple(edge[0] for edge in number if edge is not None),
             tuple(edge[1] for edge in number if edge is not None),
             bytes(time_value for _, time_value, _ in rows),
             bytes(end_value for _, _, end_value in rows),
         )  # fmt: skip
-
-
-def _renamed(class_of: LetterClasses, classes: Sequence[int]) -> LetterClasses:
-    if isinstance(class_of, LetterDiagram):
-        return class_of.renamed(classes)
-    return array("H", map(classes.__getitem__, class_of))
 
 
 def _vectors(cuts: tuple[tuple[int, ...], ...]) -> Iterator[Regions]:

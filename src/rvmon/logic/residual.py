@@ -150,8 +150,10 @@ def substitute(
     """
     found: set[Clause] = set()
     # Sets iterate in any order; whether an intermediate result exceeds the limit must not vary.
-    ordered = residual if limit is None else sorted(residual, key=_in_order)
-    for clause in ordered:
+    clauses = (
+        residual if limit is None else sorted(residual, key=lambda c: sorted(map(_by_number, c)))
+    )
+    for clause in clauses:
         made: Residual = frozenset([clause.difference(values)])
         for atom in clause if limit is None else sorted(clause, key=_by_number):
             if atom in values:
@@ -172,7 +174,3 @@ def decided(residual: Residual, true: Clause, false: Clause) -> Residual:
 
 def _by_number(atom: Atom) -> tuple[int, int]:
     return atom[0].id, atom[1]
-
-
-def _in_order(clause: Clause) -> list[tuple[int, int]]:
-    return sorted(map(_by_number, clause))

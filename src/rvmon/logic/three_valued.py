@@ -169,12 +169,9 @@ class Reader(Reading[Four]):
             return arg.negated
         negation = self.factory.negation
         made = Four(
-            self.factory,
-            lambda unborn: negation(arg.read(sf.TRUE - unborn)),
-            born_late=arg.born_late,
-            stays_born=arg.stays_born,
-            unborn=arg._unborn,
-        )
+            self.factory, lambda unborn: negation(arg.read(sf.TRUE - unborn)),
+            born_late=arg.born_late, stays_born=arg.stays_born, unborn=arg._unborn,
+        )  # fmt: skip
         made.negated = arg
         return made
 

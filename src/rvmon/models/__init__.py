@@ -13,29 +13,15 @@ from rvmon.errors import ModelError
 from rvmon.texts import did_you_mean
 
 RULES = {
-    "TA001": "syntax",
-    "TA002": "unknown-name",
-    "TA003": "double-name",
-    "TA004": "wrong-kind",
-    "TA005": "unbounded-int",
-    "TA006": "not-constant",
-    "TA007": "out-of-range",
-    "TA008": "diagonal-constraint",
-    "TA009": "clock-in-wrong-place",
-    "TA010": "channel-without-partner",
-    "TA011": "clock-guard-on-urgent-channel",
-    "TA013": "no-initial-location",
-    "TA014": "no-beginning",
-    "TA015": "wrong-arguments",
-    "TA016": "not-supported",
-    "TA017": "bad-weight",
-    "TA018": "malformed-xml",
-    "TA019": "too-large",
-    "TA020": "query-not-supported",
-    "TA021": "no-automaton",
-    "TA022": "unreadable-file",
+    "TA001": "syntax", "TA002": "unknown-name", "TA003": "double-name", "TA004": "wrong-kind",
+    "TA005": "unbounded-int", "TA006": "not-constant", "TA007": "out-of-range",
+    "TA008": "diagonal-constraint", "TA009": "clock-in-wrong-place",
+    "TA010": "channel-without-partner", "TA011": "clock-guard-on-urgent-channel",
+    "TA013": "no-initial-location", "TA014": "no-beginning", "TA015": "wrong-arguments",
+    "TA016": "not-supported", "TA017": "bad-weight", "TA018": "malformed-xml", "TA019": "too-large",
+    "TA020": "query-not-supported", "TA021": "no-automaton", "TA022": "unreadable-file",
     "TA023": "no-unit",
-}
+}  # fmt: skip
 """Name of each code."""
 
 
@@ -75,9 +61,5 @@ def unknown(what: str, name: str, span: Span, known: Iterable[str]) -> ModelErro
 
 def refusal(*findings: Diagnostic) -> ModelError:
     """All findings as one `ModelError`, in order of place."""
-    ordered = sorted(findings, key=_place)
+    ordered = sorted(findings, key=lambda one: one.spans[0].span.start if one.spans else -1)
     return ModelError(ordered, render_full(ordered))
-
-
-def _place(diagnostic: Diagnostic) -> int:
-    return diagnostic.spans[0].span.start if diagnostic.spans else -1

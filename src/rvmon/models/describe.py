@@ -132,15 +132,12 @@ def observation_data(observation: Observation) -> dict[str, Any]:
     """A requirement on all runs as plain data."""
     network = observation.network
     return {
-        "requirement": observation.requirement,
-        "holds": observation.holds,
-        "remark": observation.remark,
-        "triggered": run_data(network, observation.triggered),
+        "requirement": observation.requirement, "holds": observation.holds,
+        "remark": observation.remark, "triggered": run_data(network, observation.triggered),
         "passing": run_data(network, observation.passing),
-        "failing": run_data(network, observation.failing),
-        "states": observation.statistics.visited,
+        "failing": run_data(network, observation.failing), "states": observation.statistics.visited,
         "seconds": round(observation.statistics.seconds, 6),
-    }
+    }  # fmt: skip
 
 
 def suite_data(network: Network, suite: Suite) -> dict[str, Any]:
@@ -221,34 +218,22 @@ def extreme_text(extreme: Extreme) -> str:
 def extreme_data(network: Network, extreme: Extreme) -> dict[str, Any]:
     """An end of the values of a term as plain data."""
     return {
-        "id": extreme.query.id,
-        "query": extreme.query.text,
-        "term": extreme.term,
-        "end": "sup" if extreme.largest else "inf",
-        "value": extreme.value,
-        "attained": extreme.attained,
-        "exact": extreme.exact,
-        "remark": extreme.remark,
-        "trace": run_data(network, extreme.run),
-        "states": extreme.statistics.visited,
+        "id": extreme.query.id, "query": extreme.query.text, "term": extreme.term,
+        "end": "sup" if extreme.largest else "inf", "value": extreme.value,
+        "attained": extreme.attained, "exact": extreme.exact, "remark": extreme.remark,
+        "trace": run_data(network, extreme.run), "states": extreme.statistics.visited,
         "seconds": round(extreme.statistics.seconds, 6),
-    }
+    }  # fmt: skip
 
 
 def outcome_data(network: Network, outcome: Outcome) -> dict[str, Any]:
     """The answer to a query as plain data; `trace` is `None` if there is no run to show."""
     run = outcome.run
     return {
-        "id": outcome.query.id,
-        "query": outcome.query.text,
-        "holds": outcome.holds,
-        "remark": outcome.remark,
-        "policy": None if outcome.policy is None else str(outcome.policy),
+        "id": outcome.query.id, "query": outcome.query.text, "holds": outcome.holds,
+        "remark": outcome.remark, "policy": None if outcome.policy is None else str(outcome.policy),
         "start": None if run is None else position_data(network, run.start),
-        "trace": run_data(network, run),
-        "ending": None if run is None else str(run.ending),
-        "loop": None if run is None else run.loop,
-        "states": outcome.statistics.visited,
-        "stored": outcome.statistics.stored,
-        "seconds": round(outcome.statistics.seconds, 6),
-    }
+        "trace": run_data(network, run), "ending": None if run is None else str(run.ending),
+        "loop": None if run is None else run.loop, "states": outcome.statistics.visited,
+        "stored": outcome.statistics.stored, "seconds": round(outcome.statistics.seconds, 6),
+    }  # fmt: skip

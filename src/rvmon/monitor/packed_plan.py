@@ -135,12 +135,9 @@ class PlannedCore(Struct, frozen=True):
             is_absent = bytes(name in absent for name in self.numbers)
         attempts = (Attempt, self.packed.ids, VERDICTS, DECISIONS, self._details, many)
         return native.Monitor(
-            self.packed.data,
-            (coming, self.words, self.kinds, self.limits),
-            is_absent,
-            (look_closer, look_closer_ns),
-            attempts,
-        )
+            self.packed.data, (coming, self.words, self.kinds, self.limits), is_absent,
+            (look_closer, look_closer_ns), attempts,
+        )  # fmt: skip
 
     def plain(self, t: int, values: Mapping[str, Value]) -> dict[str, Value]:
         """A validated sample in the types that the core takes.
@@ -246,7 +243,11 @@ def planned_core(
         place = Place(spec, *how) if compiled.is_kept else None
         planned = None if place is None else _checked(compiled, ids, place.read())
         if planned is None:
-            kept = _made(compiled, *how)
+            # Imported on use: with a cached plan the compiler is not needed.
+            from rvmon.monitor.requirement_plans import plan_alone
+
+            plan = plan_alone(compiled, ids, traced=how[1], measured=measured)
+            kept = kept_of(plan, compiled.chosen(ids))
             planned = planned_as(spec, ids, kept, compiled)
             if place is not None:
                 place.write(kept)
@@ -264,16 +265,6 @@ def kept_of(plan: Plan, chosen: Sequence[CompiledRequirement]) -> Kept:
         for name in compiled.reads:
             readers[name] = (*readers.get(name, ()), compiled.requirement.id)
     return Kept(pack(plan).data, single, readers)
-
-
-def _made(
-    compiled: CompiledSpec, ids: tuple[str, ...], traced: tuple[str, ...], measured: bool
-) -> Kept:
-    # Imported on use: with a cached plan the compiler is not needed.
-    from rvmon.monitor.requirement_plans import plan_alone
-
-    plan = plan_alone(compiled, ids, traced=traced, measured=measured)
-    return kept_of(plan, compiled.chosen(ids))
 
 
 def _checked(

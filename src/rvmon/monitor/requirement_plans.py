@@ -45,12 +45,6 @@ def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> Pl
     )  # fmt: skip
 
 
-def _traced(compiled: CompiledRequirement) -> PlannedRule:
-    """A requirement judged by the automaton shown to users, whose edges coverage counts."""
-    rule, automaton = planned_rule(compiled), compiled.automaton
-    return replace(rule, automaton=automaton, stepped=True, traced=True)
-
-
 def _stepped(rule: PlannedRule) -> PlannedRule:
     hidden, doubted = (
         None if part is None else _stepped(part) for part in (rule.hidden, rule.doubted)
@@ -96,12 +90,13 @@ def plan_alone(
         RvmonError: one of them is beyond the core; the message says which one and why.
     """
     ids = requirements_asked(compiled.checked, only)
-    rules = [
-        _traced(requirement)
-        if requirement.requirement.id in traced
-        else planned_rule(requirement, measured=measured)
-        for requirement in compiled.chosen(ids)
-    ]
+    rules = []
+    for one in compiled.chosen(ids):
+        if one.requirement.id in traced:  # by the automaton shown to users, whose edges are counted
+            rule = replace(planned_rule(one), automaton=one.automaton, stepped=True, traced=True)
+        else:
+            rule = planned_rule(one, measured=measured)
+        rules.append(rule)
     if stepped:
         rules = [_stepped(rule) for rule in rules]
     return plan_in_units(compiled.checked, rules)

@@ -48,17 +48,12 @@ def snapshot_of(
 ) -> bytes:
     """The snapshot of a run, as bytes; `state` is the part held in Python, as JSON values."""
     document = {
-        "rvmon": _version(),
-        "spec": digest_of(compiled),
-        "only": [*planned.packed.ids],
+        "rvmon": _version(), "spec": digest_of(compiled), "only": [*planned.packed.ids],
         "settle": options.settle,
         "sources": None if options.sources is None else sorted(options.sources),
-        "keep": options.keep,
-        "plan": _digest(planned),
-        "core": _text(run.save()),
-        "arrivals": _text(run.arrivals()),
-        "state": state,
-    }
+        "keep": options.keep, "plan": _digest(planned), "core": _text(run.save()),
+        "arrivals": _text(run.arrivals()), "state": state,
+    }  # fmt: skip
     body = json.dumps(document, separators=(",", ":")).encode()
     return b"%s %s\n%s" % (_KIND, hashlib.sha256(body).hexdigest().encode(), body)
 

@@ -98,12 +98,9 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
                     if declared.ignored is not None and type_.kind is not Kind.REAL:
                         findings.add(type_rules.ignored_nan(declared.ignored, str(type_.kind)))
                     signals[name] = specification.Signal(
-                        name,
-                        type_,
-                        declared.role,
-                        ignores_nan=declared.ignored is not None,
+                        name, type_, declared.role, ignores_nan=declared.ignored is not None,
                         span=declared.name.span,
-                    )
+                    )  # fmt: skip
             case items.EventSyntax():
                 fields = {}
                 for field in declared.fields:

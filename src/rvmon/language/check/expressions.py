@@ -248,12 +248,9 @@ class Checker:
         self, node: SignalValue | FieldValue, kind: Kind, labels: tuple[str, ...], name: ast.Name
     ) -> Quantity:
         return Quantity(
-            node,
-            unit=self.table.units.get(name.text, PLAIN),
-            integral=kind is Kind.INT,
-            labels=labels,
-            truth=kind is Kind.BOOL,
-        )
+            node, unit=self.table.units.get(name.text, PLAIN), integral=kind is Kind.INT,
+            labels=labels, truth=kind is Kind.BOOL,
+        )  # fmt: skip
 
     def _defined_value(self, name: ast.Name, declared: DefineItem | ConstItem) -> Value:
         """A macro without parameters or a constant: evaluated once, shared by all its uses."""

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache, lru_cache
 from importlib import resources
 from pathlib import Path
@@ -187,7 +187,7 @@ def load_files(
         The main file, then the imported ones in the order of their first import.
     """
     loader = _Loader(findings, tree_of(directory or Path()), read)
-    loader.read(source, directory or Path(), _key(Path(source.name)), ())
+    loader.read(source, directory or Path(), _key(Path(source.name)), {})
     return loader.files
 
 
@@ -200,7 +200,7 @@ class _Loader:
         self._seen: set[str] = set()
 
     def read(
-        self, source: Source, directory: Path, key: str, path: tuple[tuple[str, ImportItem], ...]
+        self, source: Source, directory: Path, key: str, path: Mapping[str, ImportItem]
     ) -> None:
         """Read a file; `path` are the files that are being read, with the imports in them."""
         self._seen.add(key)
@@ -208,16 +208,13 @@ class _Loader:
         self.files.append(parsed)
         for item in parsed.items:
             if isinstance(item, ImportItem):
-                self._import(item, directory, (*path, (key, item)))
+                self._import(item, directory, {**path, key: item})
 
-    def _import(
-        self, item: ImportItem, directory: Path, path: tuple[tuple[str, ImportItem], ...]
-    ) -> None:
+    def _import(self, item: ImportItem, directory: Path, path: Mapping[str, ImportItem]) -> None:
         try:
             for source, folder, key in self._sources(item, directory):
-                circle = [step for _, step in path[_index(path, key) :]]
-                if circle:
-                    self._findings.add(name_rules.circle(item.span, circle[0].span))
+                if key in path:
+                    self._findings.add(name_rules.circle(item.span, path[key].span))
                 elif len(path) > name_rules.DEEPEST:
                     raise Refusal(name_rules.too_deep(item.span))
                 elif key not in self._seen:
@@ -252,11 +249,6 @@ class _Loader:
         except ValueError as error:  # a null character in the name
             reason = str(error)
         raise Refusal(name_rules.unreadable(item.span, item.target, reason))
-
-
-def _index(path: tuple[tuple[str, ImportItem], ...], key: str) -> int:
-    keys = [step for step, _ in path]
-    return keys.index(key) if key in keys else len(keys)
 
 
 def _key(path: Path) -> str:

@@ -248,24 +248,13 @@ _CLAUSES = {
     "RUN_SHARE",
 }  # fmt: skip
 _WORDS = {
-    "NAME": "a name",
-    "NUMBER": "a number",
-    "STRING": 'a text in "quotes"',
-    "UNIT": "a unit",
-    "CALL": "a name with `(`",
-    "$END": "the end of the item",
-    "COMPARE": "a comparison",
-    "MINUS": "`-`",
-    "UNWANTED": "`ignore` or `illegal`",
-    "RUN_SHARE": "`in at least`",
-    "IFF": "`<->`",
-    "IMPLIES": "`->`",
-    "INFIX": "an operator such as `until`",
-    "TEMPORAL": "an operator such as `always`",
-    "CTL": "an operator such as `AG`",
-    "PATH": "`A[]` or `E<>`",
-    "QUANTIFIER": "`A` or `E`",
-}
+    "NAME": "a name", "NUMBER": "a number", "STRING": 'a text in "quotes"', "UNIT": "a unit",
+    "CALL": "a name with `(`", "$END": "the end of the item", "COMPARE": "a comparison",
+    "MINUS": "`-`", "UNWANTED": "`ignore` or `illegal`", "RUN_SHARE": "`in at least`",
+    "IFF": "`<->`", "IMPLIES": "`->`", "INFIX": "an operator such as `until`",
+    "TEMPORAL": "an operator such as `always`", "CTL": "an operator such as `AG`",
+    "PATH": "`A[]` or `E<>`", "QUANTIFIER": "`A` or `E`",
+}  # fmt: skip
 _TITLE = re.compile(r'[ \t]*(?:["#\n]|\Z)')
 _SWALLOWED = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[ \t]+([^\W\d]\w*)\s*\Z")
 

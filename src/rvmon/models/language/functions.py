@@ -197,13 +197,10 @@ def _make(
         )
     slots = [*parameters, *indices]
     return ex.Function(
-        text.name,
-        tuple((slot, functions.variable(ex.Slot(slot))) for slot in slots),
-        (place.slot.first, functions.variable(place.slot)),
-        tuple(body),
-        len(functions.locals),
+        text.name, tuple((slot, functions.variable(ex.Slot(slot))) for slot in slots),
+        (place.slot.first, functions.variable(place.slot)), tuple(body), len(functions.locals),
         _changes(body),
-    )
+    )  # fmt: skip
 
 
 def _changes(body: Sequence[ex.Statement]) -> bool:

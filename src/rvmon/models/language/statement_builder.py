@@ -128,17 +128,10 @@ def is_rule(item: object, rule: str) -> bool:
 
 
 _CTL = {
-    "EF": PathOp.POSSIBLY,
-    "AG": PathOp.INVARIANTLY,
-    "AF": PathOp.EVENTUALLY,
-    "EG": PathOp.POTENTIALLY_ALWAYS,
-    "EX": PathOp.SOME_NEXT,
-    "AX": PathOp.EVERY_NEXT,
-    "G": PathOp.GLOBALLY,
-    "[]": PathOp.GLOBALLY,
-    "F": PathOp.FINALLY,
-    "<>": PathOp.FINALLY,
-}
+    "EF": PathOp.POSSIBLY, "AG": PathOp.INVARIANTLY, "AF": PathOp.EVENTUALLY,
+    "EG": PathOp.POTENTIALLY_ALWAYS, "EX": PathOp.SOME_NEXT, "AX": PathOp.EVERY_NEXT,
+    "G": PathOp.GLOBALLY, "[]": PathOp.GLOBALLY, "F": PathOp.FINALLY, "<>": PathOp.FINALLY,
+}  # fmt: skip
 
 
 @v_args(meta=True)

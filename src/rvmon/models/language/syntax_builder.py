@@ -125,14 +125,10 @@ class SyntaxBuilder(QueryBuilder):
         for second in starts[1:]:
             raise model_error("TA003", "a second initial location", second.span)
         return automaton_syntax.Template(
-            str(name),
-            parameters,
-            _all(rest, syntax.Declared),
-            _all(rest, automaton_syntax.LocationText),
-            starts[0] if starts else None,
-            _all(rest, automaton_syntax.EdgeText),
-            self._token_span(name),
-        )
+            str(name), parameters, _all(rest, syntax.Declared),
+            _all(rest, automaton_syntax.LocationText), starts[0] if starts else None,
+            _all(rest, automaton_syntax.EdgeText), self._token_span(name),
+        )  # fmt: skip
 
     def initial(self, meta: Meta, items: Sequence[Token]) -> Tree[syntax.Name]:
         return Tree("initial", [self._name(items[0])])
@@ -171,12 +167,9 @@ class SyntaxBuilder(QueryBuilder):
     def instance(self, meta: Meta, items: Sequence[Any]) -> automaton_syntax.Instance:
         name, *parameters, template, arguments = items
         return automaton_syntax.Instance(
-            str(name),
-            parameters[0] if parameters else (),
-            self._name(template),
-            arguments,
+            str(name), parameters[0] if parameters else (), self._name(template), arguments,
             self._token_span(name),
-        )
+        )  # fmt: skip
 
     # Declarations.
 
@@ -216,12 +209,9 @@ class SyntaxBuilder(QueryBuilder):
         reference = is_rule(rest[0], "reference")
         name, *sizes = rest[1:] if reference else rest
         return syntax.Parameter(
-            kind,
-            str(name),
-            tuple(size.children[0] for size in sizes),
-            reference,
+            kind, str(name), tuple(size.children[0] for size in sizes), reference,
             self._token_span(name),
-        )
+        )  # fmt: skip
 
     # Expressions.
 

@@ -33,14 +33,10 @@ _DYNAMIC: Reason = (
 _TEXTS: Reason = ("texts are not supported", "use numbers")
 
 _DECLARING: dict[str, Reason] = {
-    "hybrid": ("hybrid clocks are not supported", "use a plain clock"),
-    "string": _TEXTS,
-    "import": _OUTSIDE,
-    "dynamic": _DYNAMIC,
-    "spawn": _DYNAMIC,
-    "before_update": _HOOKS,
+    "hybrid": ("hybrid clocks are not supported", "use a plain clock"), "string": _TEXTS,
+    "import": _OUTSIDE, "dynamic": _DYNAMIC, "spawn": _DYNAMIC, "before_update": _HOOKS,
     "after_update": _HOOKS,
-}
+}  # fmt: skip
 _COMPUTING: dict[str, Reason] = {
     **_DECLARING,
     **dict.fromkeys(("break", "continue", "switch"), _JUMPS),

@@ -175,7 +175,8 @@ def read_uppaal(source: Source) -> tuple[Document, list[Diagnostic]]:
     findings, warnings = Findings(), list[Diagnostic]()
     declarations = _part(root.first("declaration"), "declarations", findings, ())
     templates = tuple(_template(element, findings) for element in root.all("template"))
-    instances, system = _system(root, findings)
+    first = _part(root.first("instantiation"), "instances", findings, ())
+    declared, instances, names = _part(root.first("system"), "system", findings, ((), (), None))
     queries = tuple(_queries(root, warnings))
     findings.raise_errors()
     text = _text(root.first("declaration"))
@@ -183,7 +184,7 @@ def read_uppaal(source: Source) -> tuple[Document, list[Diagnostic]]:
     document = Document(
         source, name[1] if name else "model", (name[2] or "") if name else "",
         int(unit[1]) * TICKS_PER_UNIT[unit[2]] if unit and unit[2] in TICKS_PER_UNIT else None,
-        (*declarations, *system[0]), templates, instances, system[1], queries, open_ints=True,
+        (*declarations, *declared), templates, (*first, *instances), names, queries, open_ints=True,
     )  # fmt: skip
     return document, warnings
 
@@ -204,18 +205,6 @@ def _parsed(element: Element, start: str) -> Any:
     return parse_part(_NOT.sub("!  ", element.text), start, element.place)
 
 
-def _system(
-    root: Element, findings: Findings
-) -> tuple[
-    tuple[automaton_syntax.Instance, ...],
-    tuple[tuple[syntax.Declared, ...], tuple[tuple[syntax.Name, int], ...] | None],
-]:
-    first = _part(root.first("instantiation"), "instances", findings, ())
-    element = root.first("system")
-    declared, instances, names = _part(element, "system", findings, ((), (), None))
-    return (*first, *instances), (declared, names)
-
-
 def _template(element: Element, findings: Findings) -> automaton_syntax.Template:
     name = element.first("name")
     span = element.span() if name is None else name.place(0, len(name.text))
@@ -226,14 +215,10 @@ def _template(element: Element, findings: Findings) -> automaton_syntax.Template
     }
     locations = tuple(_location(place, findings) for place in element.all("location"))
     return automaton_syntax.Template(
-        _text(name).strip(),
-        _part(element.first("parameter"), "parameters", findings, ()),
-        _part(element.first("declaration"), "declarations", findings, ()),
-        locations,
-        _reference(element.first("init"), names),
-        tuple(_edges(element, names, findings)),
-        span,
-    )
+        _text(name).strip(), _part(element.first("parameter"), "parameters", findings, ()),
+        _part(element.first("declaration"), "declarations", findings, ()), locations,
+        _reference(element.first("init"), names), tuple(_edges(element, names, findings)), span,
+    )  # fmt: skip
 
 
 def _location_name(element: Element) -> str:
@@ -305,15 +290,13 @@ def _edge(
         weight = None
     return automaton_syntax.EdgeText(
         _reference(element.first("source"), names) or nowhere,
-        _reference(element.first("target"), names) or nowhere,
-        element.span(),
+        _reference(element.first("target"), names) or nowhere, element.span(),
         _part(labels.get("select"), "selections", findings, ()),
         _part(labels.get("guard"), "conditions", findings, None),
         _part(labels.get("synchronisation"), "sync", findings, None),
         _part(labels.get("assignment"), "updates", findings, ()),
-        float(weight[1]) if weight else 1.0,
-        label[1] if label else "",
-    )
+        float(weight[1]) if weight else 1.0, label[1] if label else "",
+    )  # fmt: skip
 
 
 def _queries(root: Element, warnings: list[Diagnostic]) -> Iterator[automaton_syntax.QueryText]:

@@ -30,26 +30,17 @@ def _divide(left: int, right: int) -> int:
 OPERATIONS: dict[ex.BinaryOp, Callable[[int, int], int]] = {
     ex.BinaryOp.AND: lambda a, b: int(bool(a) and bool(b)),
     ex.BinaryOp.OR: lambda a, b: int(bool(a) or bool(b)),
-    ex.BinaryOp.IMPLY: lambda a, b: int(not a or bool(b)),
-    ex.BinaryOp.LT: lambda a, b: int(a < b),
-    ex.BinaryOp.LE: lambda a, b: int(a <= b),
-    ex.BinaryOp.EQ: lambda a, b: int(a == b),
-    ex.BinaryOp.NE: lambda a, b: int(a != b),
-    ex.BinaryOp.GE: lambda a, b: int(a >= b),
-    ex.BinaryOp.GT: lambda a, b: int(a > b),
-    ex.BinaryOp.ADD: lambda a, b: a + b,
-    ex.BinaryOp.SUB: lambda a, b: a - b,
-    ex.BinaryOp.MUL: lambda a, b: a * b,
-    ex.BinaryOp.DIV: _divide,
-    ex.BinaryOp.MOD: lambda a, b: a - b * _divide(a, b),
-    ex.BinaryOp.BIT_AND: lambda a, b: a & b,
-    ex.BinaryOp.BIT_OR: lambda a, b: a | b,
-    ex.BinaryOp.BIT_XOR: lambda a, b: a ^ b,
-    ex.BinaryOp.SHIFT_LEFT: lambda a, b: a << b,
-    ex.BinaryOp.SHIFT_RIGHT: lambda a, b: a >> b,
-    ex.BinaryOp.MINIMUM: min,
+    ex.BinaryOp.IMPLY: lambda a, b: int(not a or bool(b)), ex.BinaryOp.LT: lambda a, b: int(a < b),
+    ex.BinaryOp.LE: lambda a, b: int(a <= b), ex.BinaryOp.EQ: lambda a, b: int(a == b),
+    ex.BinaryOp.NE: lambda a, b: int(a != b), ex.BinaryOp.GE: lambda a, b: int(a >= b),
+    ex.BinaryOp.GT: lambda a, b: int(a > b), ex.BinaryOp.ADD: lambda a, b: a + b,
+    ex.BinaryOp.SUB: lambda a, b: a - b, ex.BinaryOp.MUL: lambda a, b: a * b,
+    ex.BinaryOp.DIV: _divide, ex.BinaryOp.MOD: lambda a, b: a - b * _divide(a, b),
+    ex.BinaryOp.BIT_AND: lambda a, b: a & b, ex.BinaryOp.BIT_OR: lambda a, b: a | b,
+    ex.BinaryOp.BIT_XOR: lambda a, b: a ^ b, ex.BinaryOp.SHIFT_LEFT: lambda a, b: a << b,
+    ex.BinaryOp.SHIFT_RIGHT: lambda a, b: a >> b, ex.BinaryOp.MINIMUM: min,
     ex.BinaryOp.MAXIMUM: max,
-}
+}  # fmt: skip
 
 
 def check_shift(bits: int, span: Span | None) -> int:

@@ -17,37 +17,15 @@ GRID = 1_000
 """Steps of simulated time in one unit: all times are whole numbers of them."""
 
 OPERATIONS: dict[str, Callable[..., float]] = {
-    "=": lambda a: a,
-    "<": lambda a, b: a < b,
-    "<=": lambda a, b: a <= b,
-    "==": lambda a, b: a == b,
-    "!=": lambda a, b: a != b,
-    ">=": lambda a, b: a >= b,
-    ">": lambda a, b: a > b,
-    "+": lambda a, b: a + b,
-    "-": lambda a, b: a - b,
-    "*": lambda a, b: a * b,
-    "/": lambda a, b: a / b,
-    "%": math.fmod,
-    "<?": min,
-    ">?": max,
-    "grid": lambda a: round(a * GRID),
-    "fint": math.trunc,
-    "fabs": abs,
-    "fmod": math.fmod,
-    "sqrt": math.sqrt,
-    "pow": math.pow,
-    "hypot": math.hypot,
-    "exp": math.exp,
-    "ln": math.log,
-    "log": math.log10,
-    "floor": math.floor,
-    "ceil": math.ceil,
-    "round": round,
-    "sin": math.sin,
-    "cos": math.cos,
-    "tan": math.tan,
-}
+    "=": lambda a: a, "<": lambda a, b: a < b, "<=": lambda a, b: a <= b, "==": lambda a, b: a == b,
+    "!=": lambda a, b: a != b, ">=": lambda a, b: a >= b, ">": lambda a, b: a > b,
+    "+": lambda a, b: a + b, "-": lambda a, b: a - b, "*": lambda a, b: a * b,
+    "/": lambda a, b: a / b, "%": math.fmod, "<?": min, ">?": max,
+    "grid": lambda a: round(a * GRID), "fint": math.trunc, "fabs": abs, "fmod": math.fmod,
+    "sqrt": math.sqrt, "pow": math.pow, "hypot": math.hypot, "exp": math.exp, "ln": math.log,
+    "log": math.log10, "floor": math.floor, "ceil": math.ceil, "round": round, "sin": math.sin,
+    "cos": math.cos, "tan": math.tan,
+}  # fmt: skip
 """By sign or name: `=` is the number itself, `grid` are steps of the grid, `double` that of an
 integer."""
 

@@ -244,6 +244,7 @@ class _Tried:
 
     def receivers(self, sender: ReadyEdge) -> Iterator[ReadyEdge]:
         """The edges that can receive from a sender."""
+        assert sender.channel is not None, "asked of senders"
         first = sender.channels
         for edge in self.leaving():
             if edge.automaton == sender.automaton or edge.channel is None or edge.sends:
@@ -251,12 +252,8 @@ class _Tried:
             second = edge.channels
             if first.start < second.stop and second.start < first.stop and self.is_able(edge):
                 single = len(first) == len(second) == 1
-                if single or edge.channel(*self._here) == self._channel(sender):
+                if single or edge.channel(*self._here) == sender.channel(*self._here):
                     yield edge
-
-    def _channel(self, edge: ReadyEdge) -> int:
-        assert edge.channel is not None, "asked of senders"
-        return edge.channel(*self._here)
 
 
 def _ready(network: Network, automaton: int, number: int, grid: int) -> ReadyEdge:

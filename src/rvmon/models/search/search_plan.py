@@ -66,22 +66,12 @@ class Plan:
         variables, ranks = (*network.variables, *network.locals), network.priorities
         sections = [
             (4, [x for v in variables for x in (v.low, v.high, v.initial, v.is_bool)]),
-            (3, automata),
-            (8, locations),
-            (10, edges),
-            (4, self._atoms),
-            (3, self._limits),
-            (1, self._programs.code),
-            (1, self._programs.table),
-            (3, goal),
-            (3, inside),
-            (3, self._extra(sought, timer + 1)),
-            (4, self._tree),
-            (3, self._pieces),
-            (4, _way_rows(states)),
-            (1, [arc for state in states for arc in state.arcs]),
+            (3, automata), (8, locations), (10, edges), (4, self._atoms), (3, self._limits),
+            (1, self._programs.code), (1, self._programs.table), (3, goal), (3, inside),
+            (3, self._extra(sought, timer + 1)), (4, self._tree), (3, self._pieces),
+            (4, _way_rows(states)), (1, [arc for state in states for arc in state.arcs]),
             (1, [] if ranks is None else [*ranks.automata, ranks.internal, *ranks.channels]),
-        ]
+        ]  # fmt: skip
         late = sought.bound if sought.kind in (Seek.LATE, Seek.LATE_AFTER) else sought.progress
         choose = list(Policy).index(sought.choose)
         head = [MAGIC, sought.kind, choose, timer, sought.has_timer, sought.is_levelled]

@@ -156,7 +156,9 @@ def _search(question: _Question, query: Query) -> _Found:
                 case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if guards.is_plain(sought):
                     return _Found(shows, *_reach(question, sought, bound))
                 case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if not guards.has_paths(sought):
-                    return _Found(shows, _reach_deadlock(question, sought, bound))
+                    alive, dead = (guards.with_deadlock(sought, value=v) for v in (False, True))
+                    run = question.run(Sought(Seek.DEADLOCK, alive, dead, bound=bound))
+                    return _Found(shows, run)
                 case ex.PathOp.EVENTUALLY | ex.PathOp.POTENTIALLY_ALWAYS if guards.is_plain(sought):
                     return _Found(shows, _staying(question, None, sought, bound))
                 case _:
@@ -223,11 +225,6 @@ def _reach(
         if best is not None:
             return best, question.policy
     return run, Policy.SHORTEST
-
-
-def _reach_deadlock(question: _Question, formula: ex.Expression, within: int | None) -> Run | None:
-    alive, dead = (guards.with_deadlock(formula, value=value) for value in (False, True))
-    return question.run(Sought(Seek.DEADLOCK, alive, dead, bound=within))
 
 
 def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _Found:

@@ -182,7 +182,7 @@ class Remaining:
         """The residual for positions to come: none if the window is over, else the operator."""
         if core.high is not None and (self.now + 1 - position) * self.gap > core.high:
             return FAILS if isinstance(core, mtl.Until) is positive else HOLDS
-        return self._atom(core, _clock(position), positive, (self.now - position) * self.gap)
+        return self._atom(core, position + _START, positive, (self.now - position) * self.gap)
 
     def _atom(self, core: mtl.Core, clock: int, positive: bool, age: int = 0) -> Residual:
         made = self.duals.of(core, positive)
@@ -203,8 +203,4 @@ def _both(left: Residual, right: Residual) -> Residual:
 
 
 _START = 1 << 100
-
-
-def _clock(position: int) -> int:
-    """The clock started at a position: positive, and smaller for older ones, as in residuals."""
-    return position + _START
+"""Added to positions, gives clocks: positive, and smaller for older ones, as in residuals."""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import partial
 
 from rvmon.language.checked import formula as rv
 from rvmon.language.checked.operators import Tense, Window
@@ -39,17 +38,10 @@ def atom(rng: draw.Rng, shape: numbers.Shape) -> rv.Formula:
 
 
 _LIKELY: dict[rv.UnaryOp | rv.BinaryOp, int] = {
-    rv.BinaryOp.AND: 6,
-    rv.BinaryOp.OR: 6,
-    rv.BinaryOp.IFF: 1,
-    rv.BinaryOp.XOR: 1,
-    rv.BinaryOp.UNTIL: 4,
-    rv.BinaryOp.IMPLIES: 3,
-    rv.UnaryOp.EVENTUALLY: 3,
-    rv.UnaryOp.ALWAYS: 3,
-    rv.UnaryOp.ONCE: 3,
-    rv.UnaryOp.HISTORICALLY: 3,
-}
+    rv.BinaryOp.AND: 6, rv.BinaryOp.OR: 6, rv.BinaryOp.IFF: 1, rv.BinaryOp.XOR: 1,
+    rv.BinaryOp.UNTIL: 4, rv.BinaryOp.IMPLIES: 3, rv.UnaryOp.EVENTUALLY: 3, rv.UnaryOp.ALWAYS: 3,
+    rv.UnaryOp.ONCE: 3, rv.UnaryOp.HISTORICALLY: 3,
+}  # fmt: skip
 """The weight of an operator among those of its kind; default 2."""
 
 _STEPS = (rv.UnaryOp.NOT, rv.UnaryOp.NEXT, rv.UnaryOp.PREVIOUS)
@@ -94,11 +86,7 @@ def _measured(rng: draw.Rng, shape: numbers.Shape, depth: int) -> rv.Formula:
     """A measure of a window, or of the time since an instant."""
     if shape.numbers and not shape.wide and not shape.form and draw.chance(rng, 20):
         return numbers.late(rng, shape)
-    return numbers.amount(rng, shape, partial(_below, depth - 1))
-
-
-def _below(depth: int, rng: draw.Rng, shape: numbers.Shape) -> rv.Formula:
-    return formula(rng, shape, depth)
+    return numbers.amount(rng, shape, lambda rng, below: formula(rng, below, depth - 1))
 
 
 def _future_unary(rng: draw.Rng, shape: numbers.Shape, depth: int) -> rv.Formula:

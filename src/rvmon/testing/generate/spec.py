@@ -100,14 +100,11 @@ def random_spec(rng: Rng, profile: Profile) -> spec.CheckedSpec:
     while profile.form and not any(_has_window(requirement) for requirement in found):
         found[-1] = _requirement(rng, profile, time, f"R{number}")
     return spec.CheckedSpec(
-        name="random",
-        title="",
-        time=time,
-        signals=signals(_stale(rng, profile), _ignoring(rng, profile)),
-        events=events(),
+        name="random", title="", time=time,
+        signals=signals(_stale(rng, profile), _ignoring(rng, profile)), events=events(),
         requirements={requirement.id: requirement for requirement in found},
         period=rng.randint(1, 4) if time is spec.TimeModel.CLOCKED else None,
-    )
+    )  # fmt: skip
 
 
 def _has_window(requirement: spec.Requirement) -> bool:

@@ -219,20 +219,12 @@ def _rounded(x: float) -> float:
 
 
 _OF_NUMBERS: dict[NumericOp, Callable[..., int | float]] = {
-    NumericOp.ADD: operator.add,
-    NumericOp.SUB: operator.sub,
-    NumericOp.MUL: operator.mul,
-    NumericOp.NEG: operator.neg,
-    NumericOp.ABS: abs,
-    NumericOp.MIN: min,
-    NumericOp.MAX: max,
-    NumericOp.FLOOR: math.floor,
-    NumericOp.CEIL: math.ceil,
-    NumericOp.ROUND: _rounded,
-    NumericOp.SIGN: lambda x: (x > 0) - (x < 0),
-    NumericOp.MOD: operator.mod,
+    NumericOp.ADD: operator.add, NumericOp.SUB: operator.sub, NumericOp.MUL: operator.mul,
+    NumericOp.NEG: operator.neg, NumericOp.ABS: abs, NumericOp.MIN: min, NumericOp.MAX: max,
+    NumericOp.FLOOR: math.floor, NumericOp.CEIL: math.ceil, NumericOp.ROUND: _rounded,
+    NumericOp.SIGN: lambda x: (x > 0) - (x < 0), NumericOp.MOD: operator.mod,
     NumericOp.CLAMP: lambda x, low, high: min(max(x, low), high),
-}
+}  # fmt: skip
 
 
 def _of_reals(op: NumericOp, x: float, y: float = 0.0, *more: float) -> float:
@@ -263,13 +255,9 @@ def _distance(lat1: float, lon1: float, lat2: float, lon2: float) -> float:
 
 
 _RELATIONS: dict[rv.CompareOp, Callable[[Any, Any], bool]] = {
-    rv.CompareOp.EQ: operator.eq,
-    rv.CompareOp.NE: operator.ne,
-    rv.CompareOp.LT: operator.lt,
-    rv.CompareOp.LE: operator.le,
-    rv.CompareOp.GE: operator.ge,
-    rv.CompareOp.GT: operator.gt,
-}
+    rv.CompareOp.EQ: operator.eq, rv.CompareOp.NE: operator.ne, rv.CompareOp.LT: operator.lt,
+    rv.CompareOp.LE: operator.le, rv.CompareOp.GE: operator.ge, rv.CompareOp.GT: operator.gt,
+}  # fmt: skip
 
 
 def _related(op: rv.CompareOp, left: Scalar, right: Scalar) -> bool:

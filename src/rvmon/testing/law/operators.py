@@ -112,7 +112,7 @@ class Operators(ABC, Generic[V]):
             case UnaryOp.EVENTUALLY:
                 return self._until(self._always_true, operand, i, interval, positive)
             case UnaryOp.ALWAYS:
-                return self._release(self._always_false, operand, i, interval, positive)
+                return self._release(lambda _: self._false, operand, i, interval, positive)
             case UnaryOp.PREVIOUS:
                 return self.previous(operand, i)
             case UnaryOp.ONCE:
@@ -200,9 +200,6 @@ class Operators(ABC, Generic[V]):
 
     def _always_true(self, _: int) -> V:
         return self._true
-
-    def _always_false(self, _: int) -> V:
-        return self._false
 
     def _inverted(self, operand: At[V]) -> At[V]:
         return lambda k: self.negation(operand(k))

@@ -177,11 +177,9 @@ class _History:
         """The part of the history up to an earlier position."""
         return _History(
             [entry for entry in self.entries if entry.since <= instant],
-            [outage for outage in self.outages if outage.first <= instant],
-            before,
-            instant,
+            [outage for outage in self.outages if outage.first <= instant], before, instant,
             self.has_source,
-        )
+        )  # fmt: skip
 
     @property
     def is_within(self) -> bool:
@@ -264,15 +262,12 @@ def _signal(history: _History, signal: Signal) -> law.SignalState:
     may_be_born = bool(history.outages)
     since_birth = list(dropwhile(lambda update: update.value is None, updates))
     return law.SignalState(
-        value=None if stale or within else last.value,
-        updated=_updated(history),
-        changed=_changed(history, updates),
-        last=last,
-        before=updates[-2] if len(updates) > 1 else None,
-        born=may_be_born or bool(since_birth),
+        value=None if stale or within else last.value, updated=_updated(history),
+        changed=_changed(history, updates), last=last,
+        before=updates[-2] if len(updates) > 1 else None, born=may_be_born or bool(since_birth),
         moved=may_be_born or len(since_birth) > 1,
         lost=not stale and (within or history.entries[-1].lost),
-    )
+    )  # fmt: skip
 
 
 def _updated(history: _History) -> law.Truth:
