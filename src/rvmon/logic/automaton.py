@@ -37,9 +37,7 @@ class Location(Struct, frozen=True):
 def normalise(residual: Residual, clocks: int) -> tuple[Residual, tuple[int, ...]]:
     """Renumber the clocks of a residual after a step, oldest first, without unused ones.
 
-    Args:
-        residual: the result of `rvmon.logic.progress.step`.
-        clocks: the number of clocks before the step, and so the number of the one it started.
+    `clocks` is the number of clocks before the step, and so the number of the one it started.
 
     Returns:
         The renumbered residual, and for each of its clocks the old number, or `NOW`.
@@ -153,8 +151,7 @@ def row_of(automaton: Automaton, location: int, regions: Iterable[int]) -> int:
     return automaton.bases[location] + sum(map(int.__mul__, regions, strides))
 
 
-_MOST = 5
-"""The most locations whose orders are searched (n! of them)."""
+_MOST = 5  # the most locations whose orders are searched (n! of them)
 
 
 def moves_in_runs(automaton: Automaton) -> bool:

@@ -26,8 +26,7 @@ from rvmon.logic.residual import Residual
 _APART = 1 << 10
 """The least distance in ticks between neighbouring bounds, and from 0, for them to be replaced."""
 
-_STRIDE = 1 << 20
-"""The distance in ticks between the bounds that replace them."""
+_STRIDE = 1 << 20  # the distance in ticks between the bounds that replace them
 
 _Key: TypeAlias = tuple[object, ...]
 
@@ -44,11 +43,6 @@ class Shapes:
 
         Of formulas that differ in propositions only, the automaton has the alphabet and residuals
         of whichever came first; `residuals` translates them.
-
-        Args:
-            required: as for `rvmon.logic.construct.construct`.
-            alphabet: the alphabet of that formula.
-            budget: the limits at which it gives up.
         """
         return self._found(required, alphabet, budget)[0]
 

@@ -12,8 +12,7 @@ from collections.abc import Sequence
 NEVER = 1 << 62
 """No bound."""
 
-_NARROW = 8
-"""Regions with fewer ages keep exact ages; in wider ones only differences are kept."""
+_NARROW = 8  # regions with fewer ages keep exact ages; in wider ones only differences are kept
 
 Ages = tuple[tuple[int, ...], ...]
 """A closed difference bound matrix: entry (i, j) is the most by which clock i is older than j.

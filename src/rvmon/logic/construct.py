@@ -33,11 +33,8 @@ def construct(
 ) -> Automaton:
     """Build the automaton of a formula.
 
-    Args:
-        required: `X` of what an attempt requires, as it starts before the trigger's position.
-        alphabet: the alphabet of that formula.
-        budget: the limits at which it gives up.
-        ages: if given, collects the clock ages (ticks) with which locations were explored.
+    `required` is `X` of what an attempt requires, as it starts before the trigger's position;
+    `ages`, if given, collects the clock ages (ticks) with which locations were explored.
 
     Raises:
         DoesNotCloseError: the budget was exceeded.

@@ -41,8 +41,7 @@ from rvmon.logic.state_formula import Elapsed, State
 MOST_CLAUSES = 60
 """The most clauses of a residual, and of its negation."""
 
-_MOST_KNOWN = 10_000
-"""The cache is emptied when it exceeds this many answers."""
+_MOST_KNOWN = 10_000  # the cache is emptied when it exceeds this many answers
 
 
 class Forecaster:
@@ -61,16 +60,7 @@ class Forecaster:
         self._cuts: dict[tuple[Residual, int | None], Cuts] = {}
 
     def of(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
-        """The value of a residual under all continuations; `None` if they differ.
-
-        Args:
-            residual: the residual after a position.
-            ages: of its clocks at that position, ticks.
-            gap: ticks between two positions; `None` if it varies.
-
-        Returns:
-            `None` also where the search exceeds its limits.
-        """
+        """The value of a residual under all continuations; `None`: they differ, or are too many."""
         if residual in (HOLDS, FAILS):
             return residual == HOLDS
         if len(residual) > MOST_CLAUSES:
@@ -124,8 +114,7 @@ class Forecaster:
 MOST_TRIED = 200
 """The most combinations of clock regions tried in one search, long clauses counted extra."""
 
-_MOST_APART = 100
-"""The same when differences of clocks are kept, which distinguishes more states."""
+_MOST_APART = 100  # the same when differences of clocks are kept, which distinguishes more states
 
 _FEW_ATOMS = 8
 """A step of a clause with `n` times this many atoms counts `n`² more: progression is quadratic."""
@@ -163,10 +152,8 @@ Start = tuple[_State, ...]
 def start_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Start | None:
     """The start states of a search, a key for residuals of equal future; `None` if it is true.
 
-    Args:
-        residual: over known propositions, as `rvmon.logic.progress.Duals` makes them.
-        ages: of its clocks at the last position, ticks.
-        gap: ticks between two positions; `None` if it varies.
+    The residual is over known propositions, as `rvmon.logic.progress.Duals` makes them; ages of its
+    clocks and `gap` (`None`: it varies) are in ticks.
     """
     if any(not clause for clause in residual):
         return None
@@ -176,14 +163,10 @@ def start_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Start 
 
 
 def is_satisfiable(start: Start, gap: int | None) -> bool:
-    """Whether some infinite continuation satisfies one of the start states.
+    """Whether some infinite continuation satisfies one of the states of `start_of` for the gap.
 
     False is exact. True may be wrong for bounded windows, because in wide regions ages are
     over-approximated by their differences.
-
-    Args:
-        start: from `start_of`.
-        gap: the same as there.
 
     Raises:
         TooLargeError: the search exceeds its limits even without differences of clocks.

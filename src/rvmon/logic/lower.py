@@ -61,12 +61,9 @@ def lower(
 ) -> Obligation:
     """Lower a requirement to its obligation.
 
-    Args:
-        requirement: as checked.
-        factory: makes the formulas; shared by the requirements of a spec.
-        period: the D of `sampled every D`, ticks; past intervals are cut to its multiples.
-        measured: see `rvmon.logic.three_valued.Reader`.
-        sampled: whether only samples are positions.
+    The period is the D of `sampled every D`, ticks: past intervals are cut to its multiples;
+    `measured` as of `rvmon.logic.three_valued.Reader`; `sampled`: whether only samples are
+    positions.
 
     Raises:
         UnmonitorableError: the trigger has a future operator.
@@ -154,9 +151,7 @@ def _unborn(consequent: rv.Formula, factory: mtl.Factory) -> State | None:
 def _at_once(core: mtl.Core, factory: mtl.Factory) -> State:
     """A state formula that is FALSE where the position alone falsifies the consequent.
 
-    Args:
-        core: the consequent, with the lower bounds of its `G` and `R` taken as 0.
-        factory: makes the state formula.
+    The consequent has the lower bounds of its `G` and `R` taken as 0.
 
     Source: SEMANTICS, section 3 (After a failure).
     """

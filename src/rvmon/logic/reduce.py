@@ -36,9 +36,7 @@ class _DraftLocation(Struct):
 def reduce(automaton: Automaton, label: Label) -> Automaton:
     """Minimise an automaton; it decides the same attempts at the same instants.
 
-    Args:
-        automaton: as constructed.
-        label: key that merged locations must share, so that explanations stay right.
+    Locations that are merged share their label, so that explanations stay right.
     """
     draft = _Draft(automaton)
     # Until neither helps: merged targets make rows equal, and rows joined make locations equal.

@@ -256,13 +256,10 @@ def reach_of(graph: Graph, each: ForEach, trigger: sf.State | None, *, looks_bac
 def keys_of(graph: Graph, each: ForEach, asked: Iterable[sf.State]) -> dict[str, rv.FieldValue]:
     """By event, the field that selects the instance it concerns; other events concern them all.
 
+    `asked` are the state formulas whose values are used; a bare leaf among them must be exact.
+
     An event has such a field if every leaf over it compares the field with the key, or is conjoined
     with a leaf that does: for any other instance the conjunction is FALSE, as without the event.
-
-    Args:
-        graph: the graph of the whole requirement.
-        each: its `for each` clause.
-        asked: the state formulas whose values are used; a bare leaf among them must be exact.
     """
     found = {each.value.event: each.value}
     roots = {graph.index[state] for state in asked}

@@ -86,11 +86,8 @@ def reach_of(plan: NetworkPlan) -> int | None:
 def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
     """The plan as a chain; `None` if it is not one.
 
-    Args:
-        plan: of a network.
-        gap: ticks between two positions; `None` if only samples are positions. There a window with
-            a positive lower bound may contain no position, so the decided positions need not be a
-            prefix, and it is no chain.
+    Where only samples are positions, a window with a positive lower bound may contain none, so the
+    decided positions need not be a prefix, and it is no chain.
     """
     nodes = plan.nodes
     top, left, excused = len(nodes) - 1, None, None

@@ -281,10 +281,7 @@ def recording_of(
 ) -> tuple[list[Sample], int]:
     """A run as it would be recorded: its signals at each action, the actions' labels as events.
 
-    Args:
-        network: with a unit of time.
-        run: of the network.
-        signals: the expression of each signal over locations and variables.
+    The network has a unit of time; `signals` are expressions over its locations and variables.
 
     Returns:
         The samples, actions at one instant in one of them; the instant at which the run ends.

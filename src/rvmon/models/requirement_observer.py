@@ -37,8 +37,7 @@ from rvmon.models.requirement_propositions import (
 MOST_STEPS = 20
 """A monitor that still moves after so many steps at one instant is moved by time itself."""
 
-_LOST = -2
-"""In place of a location: the monitor is moved by time itself."""
+_LOST = -2  # in place of a location: the monitor is moved by time itself
 
 
 class Phase(Enum):

@@ -128,12 +128,7 @@ Ages = Mapping[int, tuple[int, float]]
 
 
 class Tables:
-    """The tables of a monitor.
-
-    Args:
-        automaton: the monitor.
-        propositions: of its alphabet.
-        unit: ticks of one unit of the network.
+    """The tables of a monitor over the propositions of its alphabet; `unit`: of the network, ticks.
 
     Raises:
         NotExpressibleError: it reads too many conditions, or a window does not end at a whole
@@ -242,11 +237,8 @@ class Tables:
     ) -> Ages | None:
         """The part of some ages from which any delay, however short, leads into a region.
 
-        Args:
-            location: of the monitor.
-            clocks: in use; `NOW`: one that begins at this instant.
-            region: of it.
-            ages: to begin with.
+        `clocks` are those in use, `NOW` one that begins at this instant; `region` is of the
+        location.
         """
         narrowed = dict(ages)
         for clock, below, above in self._bounds(location, clocks, region):

@@ -55,11 +55,7 @@ class Thing:
 
 
 class Names:
-    """The new names of everything in a network.
-
-    Args:
-        network: the network to name; local names become global ones.
-    """
+    """The new names of everything in a network; local names become global ones."""
 
     def __init__(self, network: Network) -> None:
         self._taken: set[str] = set(_RESERVED)

@@ -32,8 +32,7 @@ _HEAD = """<?xml version="1.0" encoding="utf-8"?>
 'http://www.it.uu.se/research/group/darts/uppaal/flat-1_2.dtd'>
 <nta>
 """
-_GRID = (200, 150)
-"""Distance of locations in a drawing, right and down."""
+_GRID = (200, 150)  # distance of locations in a drawing, right and down
 
 
 def uppaal_xml(network: nta.Network) -> str:

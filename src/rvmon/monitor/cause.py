@@ -37,12 +37,8 @@ class Cause(Struct, frozen=True):
 class CauseFinder:
     """Finds the cause of a decision of an automaton.
 
-    Args:
-        valuation: the truth values of the propositions at the decision, as the deciding run reads
-            them.
-        ages: the ages of the clocks at the decision, ticks.
-        verdict: the decision.
-        by_time: whether time alone decided, without a letter.
+    Truth values, as the deciding run reads them, and ages of clocks, ticks, are those at the
+    decision; `by_time`: time alone decided, without a letter.
     """
 
     def __init__(

@@ -49,11 +49,7 @@ def judge_recording(
 ) -> Report:
     """Judge a recording.
 
-    Args:
-        checked: the specification.
-        planned: the plan of its requirements.
-        source: the recording, in order of time.
-        decided: called with the attempts decided before an error in the recording.
+    `decided` is called with the attempts decided before an error in the recording.
 
     Raises:
         TimeOrderError: an instant is before its predecessor.
@@ -270,11 +266,7 @@ def judge_source(
 ) -> Report:
     """Judge a recording: rows of columns together, samples one by one.
 
-    Args:
-        compiled: the specification.
-        source: the recording.
-        only: ids of the requirements; `None`: all.
-        decided: called with the attempts decided before an error in the recording.
+    `decided` is called with the attempts decided before an error in the recording.
 
     Raises:
         RvmonError: a requirement exceeds the limits of the core.
@@ -312,12 +304,8 @@ def evaluate_trace(
 ) -> Report:
     """Judge a trace.
 
-    Args:
-        compiled: the specification.
-        trace: as `Spec.evaluate` takes it; so are the errors.
-        reading: the options for reading it.
-        only: ids of the requirements; default all.
-        until: the end of the trace in ticks, if after its last sample.
+    The trace is as `Spec.evaluate` takes it, and so are the errors; `until` is its end in ticks, if
+    after its last sample.
     """
     recording = open_trace(compiled.checked, trace, reading, only=only)
     source = Source(recording, until)

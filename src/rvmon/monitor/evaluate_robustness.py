@@ -37,13 +37,8 @@ def margins_of(
 ) -> Margins:
     """The robustness of all attempts on a trace.
 
-    Args:
-        compiled: the specification.
-        trace: as `Spec.evaluate` takes it; so are the errors.
-        reading: the options for reading it.
-        only: ids of the requirements; default all.
-        until: the end of the trace in ticks, if after its last sample.
-        streams: whether to measure every position besides the attempts.
+    The trace is as `Spec.evaluate` takes it, and so are the errors; `until` is its end in ticks, if
+    after its last sample; `streams`: whether to measure every position besides the attempts.
     """
     recording = open_trace(compiled.checked, trace, reading, only=only)
     source = Source(recording, until)
@@ -150,11 +145,7 @@ class _Positions:
 
 
 class RecordedMargins:
-    """Collects the robustness figures of a run.
-
-    Args:
-        ids: of requirements, by number.
-    """
+    """Collects the robustness figures of a run; `ids` are of requirements, by number."""
 
     def __init__(self, ids: Sequence[str]) -> None:
         self._ids = ids

@@ -145,11 +145,8 @@ class Judged(Protocol):
 def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = None) -> Explanation:
     """Why an attempt is undecided; an attempt in doubt has no deadline, as it cannot fail.
 
-    Args:
-        judged: its judge.
-        attempt: the attempt.
-        now: the present stamp: twice the instant in ticks, plus one if its letter is known.
-        end: the last instant of the trace, if it has ended.
+    `now` is twice the present instant in ticks, plus one if its letter is known; `end` is the last
+    instant of the trace, if it has ended.
     """
     if attempt.sure:
         why = _obligation(judged, attempt, now, end)

@@ -36,10 +36,8 @@ class Known(Struct, frozen=True):
 class TruthsPlan:
     """A plan that evaluates formulas over any number of recordings.
 
-    Args:
-        spec: the specification.
-        formulas: may have future operators; UNKNOWN where the recording ends too early.
-        captured: by name, the captured values that the formulas read.
+    They may have future operators, and are UNKNOWN where the recording ends too early; `captured`
+    are the values that they read, by name.
     """
 
     def __init__(
@@ -56,9 +54,7 @@ class TruthsPlan:
 class TruthsRun:
     """Evaluates formulas while a recording is read.
 
-    Args:
-        plan: the plan of the formulas.
-        recording: gives names, end and outages; its samples are passed to `take`.
+    The recording gives names, end and outages; its samples are passed to `take`.
     """
 
     def __init__(self, plan: TruthsPlan, recording: Trace) -> None:
@@ -93,11 +89,7 @@ def known_truths(
 ) -> list[Known]:
     """Evaluate formulas at all positions of a recording; see `TruthsRun`.
 
-    Args:
-        spec: the specification.
-        formulas: may have future operators; they read no captured value.
-        samples: the recording, in order of time.
-        end: its last instant, ticks.
+    They may have future operators, but read no captured value; `end` is the last instant, ticks.
 
     Cost: one pass over the samples in C.
     """

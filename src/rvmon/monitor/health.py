@@ -61,12 +61,7 @@ class HealthLog:
     ) -> tuple[Health, ...]:
         """All entries, sorted by name, each with the requirements that read the name.
 
-        Args:
-            planned: the plan of the requirements.
-            run: finished.
-            absent: the names without a source.
-            first: by signal, the instant of its first update, ticks; `None`: there was none.
-            further: entries found elsewhere.
+        `first` is, by signal, the instant of its first update, ticks; `None`: there was none.
         """
         readers, names = planned.readers, list(planned.numbers)
         entries = [
@@ -186,12 +181,6 @@ class Losses:
 
     `lose`, `find`, `miss` and `end_missed` return the turns to apply, now or in order with the
     samples held back; `turn` applies one to the core.
-
-    Args:
-        checked: the specification.
-        planned: the plan of its requirements.
-        core: the run of the core.
-        intake: holds samples back; `None` if none are.
     """
 
     def __init__(

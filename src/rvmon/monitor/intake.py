@@ -31,9 +31,7 @@ class Turn(Struct, frozen=True):
 class Intake:
     """Holds samples back until no other can come at their instant or before (SEMANTICS 6).
 
-    Args:
-        delay: `max delay`, how far behind the newest sample another may come, ticks.
-        events: the names that are events.
+    `delay` is `max delay`, how far behind the newest sample another may come, ticks.
     """
 
     def __init__(self, delay: int, events: Container[str]) -> None:
@@ -124,12 +122,7 @@ class Intake:
         check: Callable[[int, Any], Mapping[str, Value]],
         known: Callable[[Iterable[Any]], set[str]],
     ) -> None:
-        """Restore a state.
-
-        Args:
-            state: from `state`.
-            check: validates the values of a sample at an instant.
-            known: validates the names of a turn.
+        """Restore a `state`; values of its samples and names of its turns are checked.
 
         Raises:
             TraceError: a sample has a name or value unknown to the specification.
@@ -198,10 +191,7 @@ _TAKES: Mapping[Kind, tuple[type, ...]] = {
 class Validator:
     """Checks samples against the declarations.
 
-    Args:
-        spec: declares signals and events.
-        sources: the names that can arrive; `None`: all.
-        single: events of which only one payload can be judged at one instant.
+    `sources` can arrive (`None`: all); of `single`, only one payload can be judged at one instant.
     """
 
     def __init__(

@@ -19,11 +19,7 @@ Callback = Callable[[Attempt], object]
 
 
 def checked(callback: object, takes: str) -> None:
-    """Refuse what cannot be called back.
-
-    Args:
-        callback: given by the user.
-        takes: its argument, such as "an attempt".
+    """Refuse what cannot be called back; `takes` names its argument, such as "an attempt".
 
     Raises:
         RvmonError: it is not callable, or a coroutine function, of which a call does nothing.
@@ -51,10 +47,7 @@ class Listeners:
     ) -> Callable[[], None]:
         """Register a callback.
 
-        Args:
-            callback: takes an attempt.
-            changed: called when a callback was added or removed.
-            failures_only: whether it is called for failed attempts only.
+        `changed` is called when a callback was added or removed.
 
         Returns:
             A function without arguments that unregisters it; idempotent.

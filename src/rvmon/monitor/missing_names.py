@@ -18,8 +18,7 @@ if TYPE_CHECKING:
     from rvmon.recordings.joined import Joined
     from rvmon.recordings.table_recording import TableRecording
 
-_SHOWN = 8
-"""The most unread columns listed where none resembles a name."""
+_SHOWN = 8  # the most unread columns listed where none resembles a name
 
 
 def names_read(
@@ -27,10 +26,7 @@ def names_read(
 ) -> dict[str, tuple[str, ...]]:
     """The signals and events that are read, each with the ids of the requirements that read it.
 
-    Args:
-        spec: the specification.
-        only: ids of the requirements; `None`: all.
-        coverage: whether to include the coverpoints and crosses.
+    `coverage`: whether to include the coverpoints and crosses.
     """
     readers: dict[str, list[str]] = {}
     for name, requirement in spec.requirements.items():
@@ -54,13 +50,8 @@ def expect_names(
 ) -> tuple[str, ...]:
     """Refuse a recording that lacks a name that is read.
 
-    Args:
-        spec: the specification.
-        recording: only its names are used.
-        mapped: by declared name, the column or topic that the user mapped to it.
-        only: ids of the requirements; `None`: all.
-        allowed: the names that it may lack; True for all, False for none.
-        coverage: whether to include the names that coverpoints and crosses read.
+    `mapped` is, by declared name, the column or topic that the user mapped to it; `allowed` are the
+    names that it may lack, True for all; `coverage` as of `names_read`.
 
     Returns:
         The names that it lacks, all of them allowed.

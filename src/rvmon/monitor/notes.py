@@ -36,8 +36,7 @@ from rvmon.verdicts.attempt import Attempt, Decision
 
 _DECIDED, _OPEN, _NOTHING = 0, 1, 2
 _NETWORK, _CUT, _PARTED, _HOLLOW, _SURE = 1, 2, 4, 8, 16
-_HEAD = 7
-"""Words of a note before those of the leaves."""
+_HEAD = 7  # words of a note before those of the leaves
 _NOT_YET = (1 << 63) - 1
 _SPAN = (1 << 31) - 1
 _IN_WORD = 32

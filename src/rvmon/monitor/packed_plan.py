@@ -79,8 +79,7 @@ VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGE
 DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
 """Decisions, and above verdicts, by their numbers in `core.h`."""
 
-_KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)
-"""Kinds by their numbers in `module_intake.h`."""
+_KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)  # kinds by their numbers in `module_intake.h`
 
 Noted = tuple[Sequence[float | None] | None, bytes, bytes | None, Any, bytes | None]
 """The data an attempt keeps for its details: captured values, note, truth values at the decision,
@@ -223,11 +222,7 @@ def planned_core(
 ) -> PlannedCore:
     """The packed plan of some requirements; made once per specification and options.
 
-    Args:
-        compiled: the specification.
-        only: ids of its requirements; `None`: all.
-        traced: ids of those whose paths through their automata are recorded, for coverage.
-        measured: whether robustness is measured as well.
+    `traced` are the ids of those whose paths through their automata are recorded, for coverage.
 
     Raises:
         RvmonError: a requirement is beyond the core.

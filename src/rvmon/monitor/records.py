@@ -37,8 +37,7 @@ NUMBER = np.dtype([("kind", np.int32), ("bits", np.int64)], align=True)
 
 _WHOLE, _REAL = 1, 2
 
-_TOGETHER = 4096
-"""Records of which Python's numbers are made at once."""
+_TOGETHER = 4096  # records of which Python's numbers are made at once
 
 _MOST_EXPLAINED = 256
 """Explanations that are kept of a run: an attempt is asked for by the analysis of failures, by the
@@ -223,12 +222,7 @@ def report_of_run(
 ) -> Report:
     """Sort and fold the records of a run, as `rvmon.verdicts.report.report_of` does attempts.
 
-    Args:
-        planned: the plan of the run.
-        run: finished.
-        origin: the instant that reports show as 0 s, ticks.
-        end: the last instant of the trace, ticks.
-        health: findings about the input.
+    `origin` is the instant that reports show as 0 s, `end` the last one of the trace, ticks.
 
     Source: SEMANTICS, section 3.
     """

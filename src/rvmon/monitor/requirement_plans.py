@@ -78,12 +78,8 @@ def plan_alone(
 ) -> Plan:
     """The plan for a run of the core.
 
-    Args:
-        compiled: the specification.
-        only: ids of its requirements; `None`: all.
-        traced: ids of those whose paths through their automata are recorded, for coverage.
-        stepped: whether no chains are used, so that each attempt is stepped.
-        measured: whether robustness is measured as well.
+    `traced` and `measured` as of `planned_core`; `stepped`: no chains are used, so that each
+    attempt is stepped.
 
     Raises:
         UnknownNameError: there is no such requirement.

@@ -30,11 +30,7 @@ T = TypeVar("T")
 
 
 def check(spec: ResolvedSpec, findings: Findings) -> specification.CheckedSpec:
-    """Check everything that a specification says.
-
-    Returns:
-        What could be checked; it is fit for use if no finding is an error.
-    """
+    """Check all that a specification says; the result is fit for use if no finding is an error."""
     recursive = find_cycles(spec.declared, findings)
     table = _table(spec, recursive, findings)
     checker = Checker(table, findings, sum(len(source.text) for source in spec.sources))

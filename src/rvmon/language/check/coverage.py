@@ -24,8 +24,7 @@ from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import requirements as rules
 from rvmon.language.syntax import expressions, items
 
-_MOST = 10**9
-"""The largest goal and weight: what a test will never do is a slip of the pen."""
+_MOST = 10**9  # the largest goal and weight: what a test will never do is a slip of the pen
 
 
 def checked_cover(checker: Checker, item: items.CoverItem) -> Cover | None:

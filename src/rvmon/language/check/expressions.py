@@ -59,12 +59,9 @@ NOW = "now"
 class Checker:
     """Evaluates expressions to what they stand for; findings gather in a list.
 
-    A method that takes an expression reports what is wrong in *all* its operands before it raises.
+    `characters` are those of the whole specification: a long file may do more.
 
-    Args:
-        table: the names of the file.
-        findings: takes what is wrong.
-        characters: of the whole specification: a long file may do more.
+    A method that takes an expression reports what is wrong in *all* its operands before it raises.
     """
 
     def __init__(self, table: Table, findings: Findings, characters: int) -> None:

@@ -24,8 +24,7 @@ Placed = tuple[Quantity, Span]
 
 _RADIAN = parse_unit("rad")
 _OF_ANGLES = {UnitRule.OF_ANGLE: PLAIN, UnitRule.PLACES: parse_unit("m")}
-_HIGHEST = 9
-"""The highest power of a unit."""
+_HIGHEST = 9  # the highest power of a unit
 _DOING = {NumericOp.ADD: "added to", NumericOp.SUB: "reduced by"}
 
 

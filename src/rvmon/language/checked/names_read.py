@@ -106,11 +106,7 @@ def labelled(
 ) -> tuple[str, ...]:
     """Ids of the requirements that have, of each list, one of the severities or tags in it.
 
-    Args:
-        spec: with the requirements.
-        only: ids among which is chosen, which exist; `None`: all.
-        severities: lists of severities.
-        tags: lists of tags.
+    It chooses among `only`, ids that exist; `None`: among all.
 
     Raises:
         UnknownNameError: no requirement has such a severity or tag, or none has one of each list.

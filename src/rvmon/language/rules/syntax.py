@@ -117,11 +117,7 @@ class Cost(Struct, frozen=True):
 
 
 class Effort:
-    """Counts what is evaluated, and refuses what is too much of it.
-
-    Args:
-        characters: of the whole specification: a long file may do more.
-    """
+    """Counts what is evaluated, and refuses what is too much of it; a long file may do more."""
 
     def __init__(self, characters: int) -> None:
         self._depth = self._deepest = self._size = 0

@@ -22,12 +22,7 @@ _FORMAT = 1
 
 
 def parser_of(grammar: str, options: Mapping[str, Any]) -> lark.Lark:
-    """The parser of a grammar.
-
-    Args:
-        grammar: its text.
-        options: as `lark.Lark` takes them; no functions among them.
-    """
+    """The parser of a grammar; `options` as `lark.Lark` takes them, no functions among them."""
     folder = cache_folder()
     if folder is None:
         return lark.Lark(grammar, **options)

@@ -177,14 +177,8 @@ def load_files(
 ) -> list[ParsedSpec]:
     """Read a file and those it imports.
 
-    Args:
-        source: the main file.
-        directory: its folder; default the current one.
-        findings: takes what is wrong with how they are written or imported.
-        read: gives the text of an imported file.
-
-    Returns:
-        The main file, then the imported ones in the order of their first import.
+    The main file comes first, then the imported ones in the order of their first import. Its folder
+    is by default the current one; `read` gives the text of an imported file.
     """
     loader = _Loader(findings, tree_of(directory or Path()), read)
     loader.read(source, directory or Path(), _key(Path(source.name)), {})

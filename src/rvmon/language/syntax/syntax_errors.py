@@ -51,8 +51,7 @@ _SHARE = "write `in at least 95 % of runs`, or `in at most 5 % of runs`"
 _BEGINNINGS = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->"
 """Before what a formula begins."""
 _DURATION_OF = r"(?<![\w.])(?:within|for)[ \t]+[\w.]+(?:[ \t]+\w+)?[ \t]*"
-_BEHIND = 100
-"""So many characters behind the word are looked at."""
+_BEHIND = 100  # so many characters behind the word are looked at
 _Rows = tuple[tuple[str, str, str], ...]
 """Of an item, the text before a word that cannot stand there, `\\0`, that word, `\\0` and what
 follows; a terminal that could stand there, or none; and the fix."""

@@ -55,9 +55,7 @@ _MARKS = {
 class Builder:
     """Makes the syntax tree of one item, of depth that the parser has limited.
 
-    Args:
-        source: the file.
-        offset: the start in it of the text given to the parser.
+    `offset` is the start in the file of the text given to the parser.
     """
 
     def __init__(self, source: Source, offset: int) -> None:

@@ -45,11 +45,7 @@ def parse_query(text: str) -> QueryText:
 
 
 def parse_part(text: str, start: str, place: Place) -> Any:
-    """Read a text by one of the grammar's start rules; `place` maps its offsets to spans.
-
-    Returns:
-        What `SyntaxBuilder` makes of that rule.
-    """
+    """What `SyntaxBuilder` makes of a text by a start rule; `place` maps its offsets to spans."""
     try:
         return _read(start, text, place)
     except ModelError:
@@ -109,8 +105,7 @@ def _fix(text: str, offset: int) -> str:
 
 
 _PATH = re.compile(r"[AE](?:<>|\[\])")
-_WORD = re.compile(r"[^\W_][\w-]*")
-"""Text that was meant as a name."""
+_WORD = re.compile(r"[^\W_][\w-]*")  # text that was meant as a name
 
 _OPERATORS = {
     "_AND", "_OR", "IMPLY", "EQUALITY", "RELATION", "PLUS", "MINUS", "FACTOR", "LSQB", "DOT",
@@ -180,11 +175,8 @@ def all_mistakes(
 ) -> tuple[Diagnostic, ...]:
     """The mistakes that are found when each part with one is left out in turn.
 
-    Args:
-        text: the text that could not be read.
-        rule: of the grammar, that should have read it.
-        place: maps offsets of the text to spans.
-        read: raises `ModelError` for the first mistake of a text.
+    `rule` should have read the text; `place` maps its offsets to spans; `read` raises `ModelError`
+    for the first mistake of a text.
     """
     starts = dict[int, int]()
 

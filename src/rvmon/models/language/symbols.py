@@ -51,13 +51,7 @@ def laid_out(
 ) -> sc.Symbol:
     """The symbol of something declared; a record's fields are laid out one after the other.
 
-    Args:
-        kind: its type.
-        extents: of the array, if it is one.
-        names: its names.
-        value: its initial value.
-        placer: for single things and arrays of them.
-        unnamed: the last dimensions, of which the names say nothing yet; default all.
+    `unnamed` are the last dimensions, of which the names say nothing yet; default all.
     """
     suffixes = _suffixes(extents if unnamed is None else unnamed)
     names = [name + suffix for name in names for suffix in suffixes]

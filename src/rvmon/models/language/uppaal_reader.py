@@ -163,11 +163,7 @@ _LABEL = re.compile(r"^[ \t]*as[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 
 
 def read_uppaal(source: Source) -> tuple[Document, list[Diagnostic]]:
-    """Read a model in UPPAAL's XML.
-
-    Returns:
-        The model, and warnings.
-    """
+    """Read a model in UPPAAL's XML; returns it with the warnings."""
     root = read_xml(source)
     if root.name != "nta":
         fix = "the outermost element of UPPAAL's models is `nta`"

@@ -255,9 +255,7 @@ def alternatives_of(
 ) -> list[Guard]:
     """A plain normalised formula as guards of which some hold where it does; none for `None`.
 
-    Args:
-        formula: without path operators and `deadlock`.
-        due: bounds that hold besides in each.
+    The formula has no path operators and no `deadlock`; `due` are bounds that hold besides in each.
     """
     if formula is None:
         return []

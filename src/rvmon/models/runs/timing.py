@@ -168,13 +168,8 @@ def make_run(
 ) -> runs.Run:
     """The run along a path that does everything as early as possible.
 
-    Args:
-        network: the network of the run. The path may be of another that has more automata, clocks
-            and variables behind those of this one.
-        start: its initial state.
-        steps: the path.
-        ending: the way the run ends.
-        loop: the first step that is repeated, of a loop.
+    The path may be of another network that has more automata, clocks and variables behind those of
+    this one; `loop` is the first step that is repeated.
     """
     timing = timing_of([step.timed for step in steps])
     assert timing is not None, "the search found a run along the path"

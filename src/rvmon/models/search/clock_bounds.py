@@ -51,10 +51,7 @@ def location_bounds(
 ) -> list[ClockBounds]:
     """The bounds of each location of an automaton, from its guards and invariants.
 
-    Args:
-        network: of the automaton.
-        automaton: the owner of the bounds.
-        asked: by location, what a query compares clocks with only while the automaton is there.
+    `asked` is, by location, what a query compares clocks with only while the automaton is there.
     """
     bounds = [ClockBounds() for _ in automaton.locations]
     for index, location in enumerate(automaton.locations):

@@ -50,11 +50,7 @@ def extremes(
 ) -> Iterator[Extreme]:
     """Answer `sup`, `inf` or `bounds`: for each term its ends.
 
-    Args:
-        network: the network in question.
-        query: as resolved.
-        budget: the limits at which it gives up, for each end.
-        watch: called now and then.
+    The budget is that of each end; `watch` is called now and then.
 
     Raises:
         ModelError: the query asks for no values, or the network cannot start, or a run of it

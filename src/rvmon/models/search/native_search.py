@@ -73,11 +73,7 @@ class Answer:
 def seek(network: Network, sought: Sought, meter: Meter, *, proper_only: bool = False) -> Answer:
     """Search for a run.
 
-    Args:
-        network: the network.
-        sought: the question.
-        meter: counts the states, and ends the search.
-        proper_only: whether a way to stay counts only if time passes on it without bound.
+    `proper_only`: whether a way to stay counts only if time passes on it without bound.
     """
     plan = Plan(network, sought)
     paths = _Paths(network, plan, sought)
@@ -280,18 +276,15 @@ def _rounded(constraint: timings.Piece, *, uppers: bool) -> timings.Piece:
 def time_passes(loop: Sequence[timings.TimedStep], head: Zone, dim: int) -> bool:
     """Whether time passes without bound on a loop: going round more often can take longer.
 
+    The loop starts and ends in the symbolic state `head`; each of its steps, at least one, waits
+    only as long as some clock allows, for else the loop would not be needed for staying on it.
+
     If it does not, the longest time that rounds can take together stops growing: more rounds than
     there are clocks show it. One round is a relation between the instants at which the clocks were
     0 before and after it; relations of many rounds are put together from those of fewer.
 
     Source: Comon and Jurski, Timed Automata and the Theory of Real Numbers, CONCUR 1999 (loops as
     relations); Tripakis, Verifying Progress in Timed Systems, 1999 (strong non-Zenoness).
-
-    Args:
-        loop: its steps, at least one; each waits only as long as some clock allows, for else the
-            loop would not be needed for staying on it.
-        head: the symbolic state in which it starts and ends.
-        dim: of the head.
     """
     sure = surely_passes(loop)
     if sure is not None:

@@ -211,12 +211,8 @@ class Network:
 def settled(alone: Known, position: int) -> tuple[int, bool] | None:
     """The last instant (ticks) before time alone decides the formula at a position, and its value.
 
-    Args:
-        alone: from `Network.alone`, for a stamp at which the value is unknown.
-        position: in the network's numbering.
-
-    Returns:
-        `None` if time alone does not decide it.
+    `None` if it does not; `alone` is from `Network.alone`, for a stamp at which the value is
+    unknown.
     """
     found = _at(alone, position)
     return None if found is None else (found[1] // 2 - 1, found[0])

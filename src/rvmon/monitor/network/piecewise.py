@@ -178,8 +178,7 @@ def _refined(pieces: Pieces, other: Pieces) -> Iterable[tuple[int, int, Line | N
         j += its_end < at
 
 
-_NO_MORE: Piece = (FAR + 1, FAR + 1, 0, 0)
-"""A sentinel after all pieces."""
+_NO_MORE: Piece = (FAR + 1, FAR + 1, 0, 0)  # a sentinel after all pieces
 
 
 def some_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
@@ -247,11 +246,8 @@ def _sliding(
 ) -> Pieces:
     """The best stamp of the points within the window of each position.
 
-    Args:
-        points: positions, ascending, with their stamps.
-        low: offset of the window's first position.
-        high: offset of its last position.
-        keeps: whether the stamp of an older point is better than that of a newer one.
+    Points are positions, ascending, with their stamps; `low` and `high` are the window's offsets;
+    `keeps`: whether the stamp of an older point is better than that of a newer one.
     """
     made: list[Piece] = []
     best: deque[tuple[int, int]] = deque()

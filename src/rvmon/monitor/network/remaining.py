@@ -21,8 +21,7 @@ MOST_POSITIONS = 60
 
 MOST_CLAUSES = 60
 
-_FEW = 8
-"""The most undecided positions of a stretch that are examined, besides the last."""
+_FEW = 8  # the most undecided positions of a stretch that are examined, besides the last
 
 
 class Remaining:
@@ -43,11 +42,6 @@ class Remaining:
 
     def of(self, core: mtl.Core, position: int, positive: bool) -> tuple[Residual, list[int]]:
         """A residual implied by a formula, or by its negation, at a position.
-
-        Args:
-            core: a formula of the network's plan.
-            position: in the network's numbering.
-            positive: whether the residual is that of the formula, not of its negation.
 
         Returns:
             The residual, and the ages of its clocks at the last position, ticks.

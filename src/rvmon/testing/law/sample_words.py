@@ -122,15 +122,11 @@ def _is_sure(
 ) -> bool:
     """Whether an instant is surely a position; where it may be none, every formula is unknown.
 
+    `begun` is the instant of the first sample that was read.
+
     In an outage of sampled time no tick surely is, even if a sample was read there: `next` and
     `previous` cannot know which position is the neighbour. In the other time models the trace may
     have begun in an outage, so no position before the first sample that was read is sure.
-
-    Args:
-        spec: gives the time model.
-        instant: of the position.
-        begun: the instant of the first sample that was read.
-        outages: the outages.
     """
     if spec.time is TimeModel.SAMPLED:
         return not any(outage.covers(instant) for outage in outages)
