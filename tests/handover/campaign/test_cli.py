@@ -38,7 +38,7 @@ SHOWN = ("legacy-released", "mutant-hurries", "mutant-releases-late", "released"
 @pytest.fixture(scope="module")
 def demo(shared):
     def make(folder):
-        words = ["demo", "--tests", "2", "--conform", "1", "--jobs", "1", "--out", str(folder)]
+        words = ["demo", "--tests", "1", "--conform", "1", "--jobs", "1", "--out", str(folder)]
         printed = io.StringIO()
         few = [one for one in directed() if one.name in SHOWN]
         with contextlib.redirect_stdout(printed), pytest.MonkeyPatch.context() as patch:
@@ -101,7 +101,7 @@ def test_the_demo_leaves_all_its_files(demo):
     columns = json.loads((demo / "table.json").read_text())["robots"]["correct"]["strategies"]
     assert {path.name for path in (demo / "templates").iterdir()} <= columns.keys()
     assert "likeliest by the model's weights" in " ".join((demo / "table.txt").read_text().split())
-    assert "constrained-001" in {path.stem for path in (demo / "tests").iterdir()}
+    assert "constrained-000" in {path.stem for path in (demo / "tests").iterdir()}
 
 
 def test_the_terminal_fits_two_screens(demo):
