@@ -5,17 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
-from tests.tools.build import (
-    always,
-    e,
-    eventually,
-    following,
-    no,
-    p,
-    q,
-    requirement,
-    two,
-)
+from tests.tools.build import always, e, eventually, following, no, p, q, requirement, two
 from tests.tools.each import each
 
 from rvmon.language.checked.formula import Formula
@@ -26,27 +16,18 @@ EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}
 
 
 @each(
-    ("told", "expected"),
-    [
-        # Held: max(last sample, last advance - 1, the t of finish).
-        ({"p": "1..1"}, "0 P 3 held"),
-        ({"p": "1", "advances": [6]}, "0 P 5 held"),
-        ({"p": "1", "end": 4, "advances": [6]}, "0 P 5 held"),
-        ({"p": "1..1", "end": 1}, "0 P 3 held"),
-        # Sampled: `advance` moves no end, `finish` does.
-        ({"p": "1", "advances": [6], **SAMPLED}, "0 P 0 held"),
-        ({"p": "1", "end": 7, **SAMPLED}, "0 P 7 held"),
-        ({"p": "1", "advances": [7], **EVERY_3}, "0 P 6 held"),
-    ],
-)
-def test_where_the_end_is(judge: Any, told: dict[str, Any], expected: str) -> None:
-    """What the end settles is decided at the end."""
-    assert judge(always(p), **told) == [expected]
-
-
-@each(
     ("formula", "told", "expected"),
     [
+        # What the end settles is decided at the end.
+        # Held: max(last sample, last advance - 1, the t of finish).
+        (always(p), {"p": "1..1"}, "0 P 3 held"),
+        (always(p), {"p": "1", "advances": [6]}, "0 P 5 held"),
+        (always(p), {"p": "1", "end": 4, "advances": [6]}, "0 P 5 held"),
+        (always(p), {"p": "1..1", "end": 1}, "0 P 3 held"),
+        # Sampled: `advance` moves no end, `finish` does.
+        (always(p), {"p": "1", "advances": [6], **SAMPLED}, "0 P 0 held"),
+        (always(p), {"p": "1", "end": 7, **SAMPLED}, "0 P 7 held"),
+        (always(p), {"p": "1", "advances": [7], **EVERY_3}, "0 P 6 held"),
         # An unbounded R counts as true if its window has opened.
         (always(p, 3), {"p": "1", "end": 2}, "0 I"),
         (always(p, 3), {"p": "1", "end": 3}, "0 P 3 held"),
@@ -128,32 +109,12 @@ def test_policies(judge: Any, policy: str, formula: Formula, told: Any, expected
         # The window is over, one of its values was never known.
         (eventually(p, 0, 2), {"p": "0u0", "end": 9}, {}),
         # Pending, and unknown: true to the rest leaves p unknown, false decides against it.
-        (
-            two(p, "and", always(q)),
-            {"p": "u", "q": "1", "end": 3},
-            {"strong": "0 F 3 policy"},
-        ),
-        (
-            two(p, "or", eventually(q)),
-            {"p": "u", "q": "0", "end": 3},
-            {"weak": "0 P 3 policy"},
-        ),
+        (two(p, "and", always(q)), {"p": "u", "q": "1", "end": 3}, {"strong": "0 F 3 policy"}),
+        (two(p, "or", eventually(q)), {"p": "u", "q": "0", "end": 3}, {"weak": "0 P 3 policy"}),
         # p U q with p unknown at 1: a later q would be of no certain use.
-        (
-            two(p, "U", q),
-            {"p": "1u1", "q": "0", "end": 3},
-            {"strong": "0 F 3 policy"},
-        ),
-        (
-            eventually(p),
-            {"p": "0u0", "end": 3},
-            {"weak": "0 P 3 policy"},
-        ),
-        (
-            always(p),
-            {"p": "1u1", "end": 3},
-            {"strong": "0 F 3 policy"},
-        ),
+        (two(p, "U", q), {"p": "1u1", "q": "0", "end": 3}, {"strong": "0 F 3 policy"}),
+        (eventually(p), {"p": "0u0", "end": 3}, {"weak": "0 P 3 policy"}),
+        (always(p), {"p": "1u1", "end": 3}, {"strong": "0 F 3 policy"}),
     ],
 )
 def test_policies_and_unknown_input(

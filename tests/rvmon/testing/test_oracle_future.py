@@ -18,9 +18,14 @@ SAMPLED = {"time": TimeModel.SAMPLED}
 EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}
 
 
+UNTIL, WEAK, STRONG = two(p, "U", q, 2, 4), two(p, "W", q, 0, 3), two(p, "M", q, 0, 3)
+
+
+@pytest.mark.slow
 @each(
     ("formula", "told", "expected"),
     [
+        # `F[a,b]` is met in its window, missed at b + 1, open until then.
         # The last instant of the window still counts; the tick after it decides.
         (eventually(p, 0, 3), {"p": "0..1"}, "0 P 3"),
         (eventually(p, 0, 3), {"p": "0...1"}, "0 F 4"),
@@ -47,68 +52,60 @@ EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}
         # An unknown value is neither: the window may still be met, else it stays open.
         (eventually(p, 0, 3), {"p": "u.1"}, "0 P 2"),
         (eventually(p, 0, 3), {"p": "0u0", "end": 9}, "0 I"),
-    ],
-)
-def test_eventually(judge: Any, formula: Formula, told: dict[str, Any], expected: str) -> None:
-    """`F[a,b]` is met in its window, missed at b + 1, open until then."""
-    assert judge(formula, **told) == [expected]
-
-
-@pytest.mark.parametrize(
-    ("formula", "told", "expected"),
-    [
+        # `G[a,b]` fails where its operand does, and holds at b + 1.
         (always(p, 0, 3), {"p": "1", "end": 3}, "0 P 4"),
         (always(p, 0, 3), {"p": "1..0"}, "0 F 3"),
         (always(p, 2, 3), {"p": "0..1"}, "0 F 2"),
         (always(p, 0, 3), {"p": "1u0", "end": 9}, "0 F 2"),
-    ],
-)
-def test_always(judge: Any, formula: Formula, told: dict[str, Any], expected: str) -> None:
-    """`G[a,b]` fails where its operand does, and holds at b + 1."""
-    assert judge(formula, **told) == [expected]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("told", "expected"),
-    [
-        ({"p": "1", "q": "0..1"}, "0 P 3"),
+        # `p U[2,4] q` needs q in the window and p at every instant before it.
+        (UNTIL, {"p": "1", "q": "0..1"}, "0 P 3"),
         # The left operand is required from the start on, also before the window opens.
-        ({"p": "01", "q": "0..1"}, "0 F 0"),
-        ({"p": "10", "q": "0.1"}, "0 F 1"),
+        (UNTIL, {"p": "01", "q": "0..1"}, "0 F 0"),
+        (UNTIL, {"p": "10", "q": "0.1"}, "0 F 1"),
         # It is not required where the right one is met.
-        ({"p": "1.0", "q": "0.1"}, "0 P 2"),
+        (UNTIL, {"p": "1.0", "q": "0.1"}, "0 P 2"),
         # Met before the window is not met.
-        ({"p": "1", "q": "010", "end": 9}, "0 F 5"),
+        (UNTIL, {"p": "1", "q": "010", "end": 9}, "0 F 5"),
         # The bound itself, the tick after it, the end at the bound.
-        ({"p": "1", "q": "0...1"}, "0 P 4"),
-        ({"p": "1", "q": "0....1"}, "0 F 5"),
-        ({"p": "1", "q": "0", "end": 4}, "0 F 5"),
+        (UNTIL, {"p": "1", "q": "0...1"}, "0 P 4"),
+        (UNTIL, {"p": "1", "q": "0....1"}, "0 F 5"),
+        (UNTIL, {"p": "1", "q": "0", "end": 4}, "0 F 5"),
         # An unknown left operand leaves it open, a false one behind it does not.
-        ({"p": "1u1", "q": "0..1", "end": 9}, "0 I"),
-        ({"p": "1u0", "q": "0"}, "0 F 2"),
+        (UNTIL, {"p": "1u1", "q": "0..1", "end": 9}, "0 I"),
+        (UNTIL, {"p": "1u0", "q": "0"}, "0 F 2"),
         # An unknown right operand may have been it, but a later sure one is.
-        ({"p": "1", "q": "0.u1"}, "0 P 3"),
-        ({"p": "1", "q": "0.u0", "end": 9}, "0 I"),
+        (UNTIL, {"p": "1", "q": "0.u1"}, "0 P 3"),
+        (UNTIL, {"p": "1", "q": "0.u0", "end": 9}, "0 I"),
+        # `p U q` is met at once by q, fails as p ends before, and is open for ever else.
+        (two(p, "U", q), {"p": "0", "q": "1"}, "0 P 0"),
+        (two(p, "U", q), {"p": "1..0", "q": "0"}, "0 F 3"),
+        (two(p, "U", q), {"p": "1..0", "q": "0..1"}, "0 P 3"),
+        (two(p, "U", q), {"p": "1", "q": "0", "end": 50}, "0 I"),
+        # `p W[0,3] q` is `q R[0,3] (p | q)`: p, for 3 ticks or until q.
+        (WEAK, {"p": "1", "q": "0", "end": 3}, "0 P 4"),
+        (WEAK, {"p": "1.0", "q": "0.1"}, "0 P 2"),
+        (WEAK, {"p": "10", "q": "0.1"}, "0 F 1"),
+        # `p M[0,3] q` is `q U[0,3] (p & q)`: q up to p, with it, and p within 3 ticks.
+        (STRONG, {"p": "0.1", "q": "1"}, "0 P 2"),
+        (STRONG, {"p": "0.1", "q": "1.0"}, "0 F 2"),
+        (STRONG, {"p": "0", "q": "1", "end": 3}, "0 F 4"),
+        (STRONG, {"p": "0", "q": "1", "end": 2}, "0 I"),
+        (STRONG, {"p": "1", "q": "0"}, "0 F 0"),
+        # Nested operators are decided as soon as their operands leave one value:
+        # F[0,2] G[0,2] p: p from 1 to 3 makes G true at 1, known at 4.
+        (eventually(always(p, 0, 2), 0, 2), {"p": "01..0"}, "0 P 4"),
+        # p only on 1 and 2, then on 4 ...: G fails at 0 (0), 1 (3), 2 (3), the last at 3.
+        (eventually(always(p, 0, 2), 0, 2), {"p": "01.01", "end": 9}, "0 F 3"),
+        # G[0,2] F[0,1] p: at 0 by 1, at 1 by 1, at 2 it needs 2 or 3.
+        (always(eventually(p, 0, 1), 0, 2), {"p": "010.", "end": 9}, "0 F 4"),
+        # (p U[0,2] q) at 0 or 3 ticks later.
+        (eventually(two(p, "U", q, 0, 2), 3, 3), {"p": "0..1", "q": "0....1"}, "0 P 5"),
+        (eventually(two(p, "U", q, 0, 2), 3, 3), {"p": "0..1", "q": "0.....1"}, "0 F 6"),
     ],
 )
-def test_until(judge: Any, told: dict[str, Any], expected: str) -> None:
-    """`p U[2,4] q` needs q in the window and p at every instant before it."""
-    assert judge(two(p, "U", q, 2, 4), **told) == [expected]
-
-
-@pytest.mark.parametrize(
-    ("told", "expected"),
-    [
-        ({"p": "0", "q": "1"}, "0 P 0"),
-        ({"p": "1..0", "q": "0"}, "0 F 3"),
-        ({"p": "1..0", "q": "0..1"}, "0 P 3"),
-        ({"p": "1", "q": "0", "end": 50}, "0 I"),
-    ],
-)
-def test_until_without_bound(judge: Any, told: dict[str, Any], expected: str) -> None:
-    """`p U q` is met at once by q, fails as p ends before, and is open for ever else."""
-    assert judge(two(p, "U", q), **told) == [expected]
+def test_held(judge: Any, formula: Formula, told: dict[str, Any], expected: str) -> None:
+    """In `held` time every tick is a position."""
+    assert judge(formula, **told) == [expected]
 
 
 @pytest.mark.slow
@@ -128,34 +125,6 @@ def test_release(judge: Any, low: int, told: dict[str, Any], expected: str) -> N
     assert judge(two(p, "R", q, low, 3), **told) == [expected]
     dual = no(two(no(p), "U", no(q), low, 3))
     assert judge(dual, **told) == [expected]
-
-
-@pytest.mark.parametrize(
-    ("told", "expected"),
-    [
-        ({"p": "1", "q": "0", "end": 3}, "0 P 4"),
-        ({"p": "1.0", "q": "0.1"}, "0 P 2"),
-        ({"p": "10", "q": "0.1"}, "0 F 1"),
-    ],
-)
-def test_weak_until(judge: Any, told: dict[str, Any], expected: str) -> None:
-    """`p W[0,3] q` is `q R[0,3] (p | q)`: p, for 3 ticks or until q."""
-    assert judge(two(p, "W", q, 0, 3), **told) == [expected]
-
-
-@pytest.mark.parametrize(
-    ("told", "expected"),
-    [
-        ({"p": "0.1", "q": "1"}, "0 P 2"),
-        ({"p": "0.1", "q": "1.0"}, "0 F 2"),
-        ({"p": "0", "q": "1", "end": 3}, "0 F 4"),
-        ({"p": "0", "q": "1", "end": 2}, "0 I"),
-        ({"p": "1", "q": "0"}, "0 F 0"),
-    ],
-)
-def test_strong_release(judge: Any, told: dict[str, Any], expected: str) -> None:
-    """`p M[0,3] q` is `q U[0,3] (p & q)`: q up to p, with it, and p within 3 ticks."""
-    assert judge(two(p, "M", q, 0, 3), **told) == [expected]
 
 
 @each(
@@ -204,23 +173,3 @@ def test_sampled(judge: Any, formula: Formula, told: dict[str, Any], expected: s
 def test_clocked(judge: Any, formula: Formula, told: dict[str, Any], expected: str | None) -> None:
     """In `sampled every 3` the multiples of 3 are positions, up to the end."""
     assert judge(formula, **told, **EVERY_3) == ([] if expected is None else [expected])
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("formula", "told", "expected"),
-    [
-        # F[0,2] G[0,2] p: p from 1 to 3 makes G true at 1, known at 4.
-        (eventually(always(p, 0, 2), 0, 2), {"p": "01..0"}, "0 P 4"),
-        # p only on 1 and 2, then on 4 ...: G fails at 0 (0), 1 (3), 2 (3), the last at 3.
-        (eventually(always(p, 0, 2), 0, 2), {"p": "01.01", "end": 9}, "0 F 3"),
-        # G[0,2] F[0,1] p: at 0 by 1, at 1 by 1, at 2 it needs 2 or 3.
-        (always(eventually(p, 0, 1), 0, 2), {"p": "010.", "end": 9}, "0 F 4"),
-        # (p U[0,2] q) at 0 or 3 ticks later.
-        (eventually(two(p, "U", q, 0, 2), 3, 3), {"p": "0..1", "q": "0....1"}, "0 P 5"),
-        (eventually(two(p, "U", q, 0, 2), 3, 3), {"p": "0..1", "q": "0.....1"}, "0 F 6"),
-    ],
-)
-def test_nested(judge: Any, formula: Formula, told: dict[str, Any], expected: str) -> None:
-    """Nested operators are decided as soon as their operands leave one value."""
-    assert judge(formula, **told) == [expected]

@@ -50,6 +50,11 @@ def at(judge: Any, formula: Formula, instant: int, **told: Any) -> str:
     return attempt.split()[1]
 
 
+def of_updates(function: str, name: str = "x") -> Numeric:
+    return UpdateValue(UpdateFunction(function), name)
+
+
+@pytest.mark.slow
 @each(
     ("formula", "instant", "told", "expected"),
     [
@@ -70,6 +75,36 @@ def at(judge: Any, formula: Formula, instant: int, **told: Any) -> str:
         (compared(SignalValue("mode"), "!=", "red"), 1, {"mode": "u"}, "I"),
         # A bool as a number.
         (compared(SignalValue("p"), "==", 1), 1, {"p": "1"}, "P"),
+        # An update is any entry in a sample; `changed` compares the last two.
+        (probe("updated", "x"), 1, {"x": ".5"}, "P"),
+        (probe("updated", "x"), 2, {"x": ".5"}, "F"),
+        (probe("updated", "x"), 1, {"x": ".u"}, "P"),
+        (probe("updated", "e"), 1, {"e": ".1"}, "P"),
+        (probe("known", "x"), 1, {"x": "u5n"}, "P"),
+        (probe("known", "x"), 2, {"x": "u5n"}, "F"),
+        # The first update changes nothing; the same value neither; then only at its tick.
+        (probe("changed", "x"), 0, {"x": "5"}, "F"),
+        (probe("changed", "x"), 2, {"x": "5.5"}, "F"),
+        (probe("changed", "x"), 2, {"x": "5.6"}, "P"),
+        (probe("changed", "x"), 3, {"x": "5.6"}, "F"),
+        (probe("changed", "x"), 1, {"x": "5u7"}, "I"),
+        (probe("changed", "x"), 2, {"x": "5u7"}, "I"),
+        (probe("changed", "mode"), 1, {"mode": "rg"}, "P"),
+        # A stale value is still the value of the last update.
+        (probe("changed", "x"), 9, {"x": "5........6", "stale": {"x": 2}}, "P"),
+        # `prev`, `delta` and `rate` speak of the last two updates.
+        # The last two updates of x, however many ticks and other samples lie between.
+        (compared(of_updates("prev"), "==", 5), 7, {"x": "5..7", "p": "1.0.1"}, "P"),
+        (compared(of_updates("delta"), "==", 2), 3, {"x": "5..7"}, "P"),
+        (compared(of_updates("delta"), "==", 0), 4, {"x": "5..77"}, "P"),
+        # 2 in 4 ns is 5e8 per second.
+        (compared(of_updates("rate"), "==", 500_000_000), 4, {"x": "5...7"}, "P"),
+        # Unknown before the second update, if either value is, or x itself is stale.
+        (compared(of_updates("prev"), "==", 5), 2, {"x": "5..7"}, "I"),
+        (compared(of_updates("prev"), "==", 5), 2, {"x": "5u7"}, "I"),
+        (compared(of_updates("prev"), "==", 5), 2, {"x": "57u"}, "I"),
+        (compared(of_updates("prev"), "==", 5), 3, {"x": "57", "stale": {"x": 2}}, "P"),
+        (compared(of_updates("prev"), "==", 5), 4, {"x": "57", "stale": {"x": 2}}, "I"),
     ],
 )
 def test_values(judge: Any, formula: Formula, instant: int, told: Any, expected: str) -> None:
@@ -161,59 +196,6 @@ def test_payload_with_signal(judge: Any) -> None:
     assert at(judge, formula, 1, x="2", g=".5") == "P"
     assert at(judge, formula, 1, x="2", g=".4") == "F"
     assert at(judge, formula, 1, x="2", g="5") == "F"
-
-
-@pytest.mark.slow
-@each(
-    ("formula", "instant", "told", "expected"),
-    [
-        (probe("updated", "x"), 1, {"x": ".5"}, "P"),
-        (probe("updated", "x"), 2, {"x": ".5"}, "F"),
-        (probe("updated", "x"), 1, {"x": ".u"}, "P"),
-        (probe("updated", "e"), 1, {"e": ".1"}, "P"),
-        (probe("known", "x"), 1, {"x": "u5n"}, "P"),
-        (probe("known", "x"), 2, {"x": "u5n"}, "F"),
-        # The first update changes nothing; the same value neither; then only at its tick.
-        (probe("changed", "x"), 0, {"x": "5"}, "F"),
-        (probe("changed", "x"), 2, {"x": "5.5"}, "F"),
-        (probe("changed", "x"), 2, {"x": "5.6"}, "P"),
-        (probe("changed", "x"), 3, {"x": "5.6"}, "F"),
-        (probe("changed", "x"), 1, {"x": "5u7"}, "I"),
-        (probe("changed", "x"), 2, {"x": "5u7"}, "I"),
-        (probe("changed", "mode"), 1, {"mode": "rg"}, "P"),
-        # A stale value is still the value of the last update.
-        (probe("changed", "x"), 9, {"x": "5........6", "stale": {"x": 2}}, "P"),
-    ],
-)
-def test_probes(judge: Any, formula: Formula, instant: int, told: Any, expected: str) -> None:
-    """An update is any entry in a sample; `changed` compares the last two."""
-    assert at(judge, formula, instant, **told) == expected
-
-
-def of_updates(function: str, name: str = "x") -> Numeric:
-    return UpdateValue(UpdateFunction(function), name)
-
-
-@each(
-    ("formula", "instant", "told", "expected"),
-    [
-        # The last two updates of x, however many ticks and other samples lie between.
-        (compared(of_updates("prev"), "==", 5), 7, {"x": "5..7", "p": "1.0.1"}, "P"),
-        (compared(of_updates("delta"), "==", 2), 3, {"x": "5..7"}, "P"),
-        (compared(of_updates("delta"), "==", 0), 4, {"x": "5..77"}, "P"),
-        # 2 in 4 ns is 5e8 per second.
-        (compared(of_updates("rate"), "==", 500_000_000), 4, {"x": "5...7"}, "P"),
-        # Unknown before the second update, if either value is, or x itself is stale.
-        (compared(of_updates("prev"), "==", 5), 2, {"x": "5..7"}, "I"),
-        (compared(of_updates("prev"), "==", 5), 2, {"x": "5u7"}, "I"),
-        (compared(of_updates("prev"), "==", 5), 2, {"x": "57u"}, "I"),
-        (compared(of_updates("prev"), "==", 5), 3, {"x": "57", "stale": {"x": 2}}, "P"),
-        (compared(of_updates("prev"), "==", 5), 4, {"x": "57", "stale": {"x": 2}}, "I"),
-    ],
-)
-def test_updates(judge: Any, formula: Formula, instant: int, told: Any, expected: str) -> None:
-    """`prev`, `delta` and `rate` speak of the last two updates."""
-    assert at(judge, formula, instant, **told) == expected
 
 
 @pytest.mark.parametrize(
