@@ -37,9 +37,7 @@ PAGES = sorted(
 )
 """The pages of the documentation, the README and the rules for contributors."""
 
-OWN_TESTS = {
-    "docs/reference/what-changed-in-the-law.md": "tests/rvmon/verdicts/test_law_page.py",
-}
+OWN_TESTS = {"docs/reference/what-changed-in-the-law.md": "tests/rvmon/verdicts/test_law_page.py"}
 """Pages whose blocks stand in a form of their own, with the test that runs them."""
 
 NO_CODE = frozenset(("", "text"))

@@ -116,10 +116,7 @@ def test_a_fleet_over_mqtt(play, tmp_path):
                 time.sleep(0.02)
         counts = {name: dict(status.counts) for name, status in live.status().items()}
     broker.stop()
-    assert counts == {
-        "left": {("B1", "F"): 1, ("B2", "F"): 1},
-        "right": {("B2", "P"): 1},
-    }
+    assert counts == {"left": {("B1", "F"): 1, ("B2", "F"): 1}, "right": {("B2", "P"): 1}}
 
 
 def test_a_microcontroller(cortex_m):

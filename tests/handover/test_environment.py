@@ -97,10 +97,7 @@ def test_the_piece_is_given_to_who_takes_it():
     steps = [*_taken(_env())]
     assert [
         after for after, name, *_, info in steps if name != "nothing" and not info["begun"]
-    ] == [
-        10,
-        110,
-    ]
+    ] == [10, 110]
     assert sum(reward for *_, reward, _, _ in steps) == 1.0
     _, _, observation, _, terminated, info = steps[-1]
     assert observation[-1] == 1.0  # who took it holds it

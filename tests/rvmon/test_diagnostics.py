@@ -21,10 +21,7 @@ FINDING = Diagnostic(
     "unknown-signal",
     Severity.ERROR,
     "no signal or event named `relased`",
-    (
-        Label(Span(SOURCE, PLACE, PLACE + 7)),
-        Label(Span(SOURCE, 16, 24), "declared here"),
-    ),
+    (Label(Span(SOURCE, PLACE, PLACE + 7)), Label(Span(SOURCE, 16, 24), "declared here")),
     "did you mean `released`?",
 )
 BARE = Diagnostic("RV006", "too-many-findings", Severity.WARNING, "so much")

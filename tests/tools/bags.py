@@ -59,11 +59,7 @@ def drive(*, stops_in_s: float) -> list[Sent]:
 
 
 def write_ros1(
-    path: Path,
-    sent: Sequence[Sent],
-    types: Types = TYPES,
-    own: Types = NONE,
-    compression: str = "",
+    path: Path, sent: Sequence[Sent], types: Types = TYPES, own: Types = NONE, compression: str = ""
 ) -> Path:
     """A bag of ROS 1."""
     from rosbags.rosbag1 import Writer

@@ -44,16 +44,7 @@ from rvmon.language.checked.specification import (
     TimeModel,
     Type,
 )
-from rvmon.testing.generate import (
-    BOOLS,
-    CARRIER,
-    FIELD,
-    LABEL,
-    LABELS,
-    NUMBERS,
-    events,
-    signals,
-)
+from rvmon.testing.generate import BOOLS, CARRIER, FIELD, LABEL, LABELS, NUMBERS, events, signals
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Kind

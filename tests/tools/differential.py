@@ -22,11 +22,7 @@ from tests.tools.forms import HeldBack
 from tests.tools.health import health_differences
 from tests.tools.judgement import Judgement
 from tests.tools.law import names_read
-from tests.tools.online import (
-    differences_after_end,
-    is_silent,
-    online_differences,
-)
+from tests.tools.online import differences_after_end, is_silent, online_differences
 from tests.tools.random_specs import random_chain, random_letters
 from tests.tools.shrink import shrink
 

@@ -174,10 +174,7 @@ def test_a_message_that_no_broker_should_let_through_is_lost():
     objects = JsonObjects(driver)
     good = b"\x30\x0c\x00\x09arm/speed1"
     answers = b"\x90\x04\x00\x01\x00\x00", good, b"\x30\x05\x00\x02\xff\xfe1", good
-    with (
-        _answers(*answers) as port,
-        MqttSource(objects, address_of(f"mqtt://127.0.0.1:{port}/#")),
-    ):
+    with _answers(*answers) as port, MqttSource(objects, address_of(f"mqtt://127.0.0.1:{port}/#")):
         until(lambda: driver.waiting == 3)
     driver.work()
     assert objects.unread == 1
@@ -195,8 +192,7 @@ def test_a_broker_that_is_not_there_is_told():
 
 
 @pytest.mark.parametrize(
-    "url",
-    ["mqtt://host", "mqtt:///a", "http://host/a", "mqtt://host:99999/a", "mqtt://h/a/#/b"],
+    "url", ["mqtt://host", "mqtt:///a", "http://host/a", "mqtt://host:99999/a", "mqtt://h/a/#/b"]
 )
 def test_a_wrong_address_is_told(url):
     with pytest.raises(RvmonError, match=r"mqtt://|behind the last"):

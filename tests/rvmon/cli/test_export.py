@@ -128,10 +128,7 @@ def test_queries_that_uppaal_has_not_are_named(tmp_path, says):
     ("words", "told"),
     [
         ([str(MODELS / "dock.ta"), "--to", "c"], "--to c is of specifications"),
-        (
-            [str(MODELS / "dock.ta"), "--to", "dot", "--const", "X=a"],
-            "expected NAME=NUMBER",
-        ),
+        ([str(MODELS / "dock.ta"), "--to", "dot", "--const", "X=a"], "expected NAME=NUMBER"),
         ([str(MODELS / "dock.ta"), "--to", "dot", "-o", "/nowhere/a.dot"], "No such file"),
         (["door.rv", "--to", "uppaal"], "is no model"),
     ],

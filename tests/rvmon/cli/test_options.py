@@ -44,10 +44,7 @@ def test_no_command_writes_over_what_it_reads(folder, capsys, words, over):
 
 @pytest.mark.parametrize(
     "words",
-    [
-        "run door.rv a.csv --out v.csv --junit ./v.csv",
-        "cover a.cov --report v.csv --ucis v.csv",
-    ],
+    ["run door.rv a.csv --out v.csv --junit ./v.csv", "cover a.cov --report v.csv --ucis v.csv"],
 )
 def test_no_result_takes_the_place_of_another(folder, says, words):
     assert "v.csv: two results would go there" in says(2, *words.split()).err

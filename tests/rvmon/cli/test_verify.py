@@ -25,10 +25,7 @@ def test_json_has_the_promised_shape(capsys):
     assert exclusion["holds"] is False
     assert exclusion["query"].startswith("A[] forall")
     assert {"delay", "edge", "state"} <= exclusion["trace"][0].keys()
-    assert exclusion["trace"][-1]["state"]["locations"] == {
-        "P(1)": "critical",
-        "P(2)": "critical",
-    }
+    assert exclusion["trace"][-1]["state"]["locations"] == {"P(1)": "critical", "P(2)": "critical"}
     assert exclusion["states"] > 0
     assert exclusion["seconds"] >= 0
     assert (alive["holds"], alive["trace"]) == (True, None)

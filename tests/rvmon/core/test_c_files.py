@@ -125,10 +125,7 @@ def test_notes_change_nothing_and_are_bounded(exported):
     told = [len(records(run)) for run in runs]
     grown = [b - a for a, b in zip(used[::2], used[1::2], strict=True)]
     more = [b - a for a, b in zip(told[::2], told[1::2], strict=True)]
-    assert all(size <= 400 * count for size, count in zip(grown, more, strict=True)), (
-        grown,
-        more,
-    )
+    assert all(size <= 400 * count for size, count in zip(grown, more, strict=True)), (grown, more)
 
 
 def test_short_memory_is_never_green(exported):

@@ -10,13 +10,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from msgspec import structs
-from tests.rvmon.laws.tried import (
-    ONE,
-    TRIED,
-    judge,
-    judged_otherwise,
-    known_from_the_first,
-)
+from tests.rvmon.laws.tried import ONE, TRIED, judge, judged_otherwise, known_from_the_first
 from tests.tools.build import (
     always,
     eventually,

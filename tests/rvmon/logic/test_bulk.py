@@ -44,11 +44,7 @@ def test_one_clock_from_the_trigger_is_proved(body):
 
 
 @pytest.mark.parametrize(
-    "body",
-    [
-        "whenever p\n  then within 2 s q",
-        "upon asked\n  then within 2 s (p and for 1 s q)",
-    ],
+    "body", ["whenever p\n  then within 2 s q", "upon asked\n  then within 2 s (p and for 1 s q)"]
 )
 def test_a_clock_that_is_started_later_is_none(body):
     """A run could lose its order: only attempts that share their clocks are stepped together."""

@@ -13,11 +13,7 @@ from rvmon.models.language.load import loads_network
 from rvmon.models.network.evaluate import evaluator
 from rvmon.models.requirement_check import observe
 from rvmon.models.runs import Ending
-from rvmon.models.runs.exact_times import (
-    InvalidRunError,
-    Rules,
-    initial_configuration,
-)
+from rvmon.models.runs.exact_times import InvalidRunError, Rules, initial_configuration
 from rvmon.models.search.budget import Budget
 from rvmon.models.search.verify import verify
 from rvmon.trace.time import TICKS_PER_SECOND

@@ -7,15 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from tests.tools.bags import (
-    START,
-    TYPES,
-    Content,
-    Sent,
-    write_json_mcap,
-    write_ros1,
-    write_ros2,
-)
+from tests.tools.bags import START, TYPES, Content, Sent, write_json_mcap, write_ros1, write_ros2
 
 SHOP = """
 spec shop

@@ -136,11 +136,7 @@ BAD = {
     "truncated JSON": ("a.jsonl", '{"t": 1, "n": 1}\n{"t": 2, "n', "line 2: not a JSON object"),
     "JSON array": ("a.jsonl", "[1, 2]\n", "line 1: expected an object"),
     "JSON without time": ("a.jsonl", '{"n": 1}\n', "line 1: expected one time"),
-    "JSON text in a number": (
-        "a.jsonl",
-        '{"t": 1, "n": "x"}\n',
-        'field `n`: `"x"` is not a whole',
-    ),
+    "JSON text in a number": ("a.jsonl", '{"t": 1, "n": "x"}\n', 'field `n`: `"x"` is not a whole'),
     "JSON truth in a number": ("a.jsonl", '{"t": 1, "n": true}\n', "field `n`: `true`"),
     "JSON late": ("a.jsonl", f'{{"t_ns": {"9" * 20}, "n": 1}}\n', "is out of range"),
     "JSON truth as time": ("a.jsonl", '{"t": false, "n": 1}\n', "line 1: time `false` is neither"),

@@ -99,10 +99,7 @@ def test_what_no_function_takes_is_refused(call, message):
         ("round(d) == 3 m and floor(d) == 2 m and ceil(d) == 3 m", {"d": 2.5}),
         ("clamp(d, 0 m, 2 m) == 2 m and sign(d) == 1", {"d": 2.5}),
         ("atan2(d, d) > 44.9 deg and atan2(d, d) < 45.1 deg", {"d": 2.5}),
-        (
-            "abs(distance_on_earth(a, a, 0 deg, 0 deg) - 157.25 km) < 0.01 km",
-            {"a": 1.0},
-        ),
+        ("abs(distance_on_earth(a, a, 0 deg, 0 deg) - 157.25 km) < 0.01 km", {"a": 1.0}),
     ],
 )
 def test_functions_know_their_units(claim, values):

@@ -154,17 +154,9 @@ def test_a_topic_that_is_missing_is_told_with_the_nearest(tmp_path, name, says):
     [
         ("real", "/mode", "declared real, and `data` of topic /mode .* holds text"),
         ("bool", "/speed", "declared bool, and `data` of topic /speed .* holds numbers: compare"),
-        (
-            "{idle, busy}",
-            "/base/scan.state",
-            "whole numbers: name in a binding which `labels`",
-        ),
+        ("{idle, busy}", "/base/scan.state", "whole numbers: name in a binding which `labels`"),
         ("real", "/base/scan.stat", "has no field `stat`: did you mean `state`"),
-        (
-            "real",
-            "/base/scan.ranges",
-            r"`ranges` is an array: .* `ranges\[0\]`",
-        ),
+        ("real", "/base/scan.ranges", r"`ranges` is an array: .* `ranges\[0\]`"),
         ("real", "/base/scan.header.stamp", "is a message: name a field of it: `header.stamp.sec`"),
     ],
 )
