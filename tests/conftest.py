@@ -162,6 +162,14 @@ def scratch(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.fixture
+def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The folder of a cache of its own, which is not there yet."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.delenv("RVMON_CACHE", raising=False)
+    return tmp_path / "rvmon"
+
+
+@pytest.fixture
 def quick_turns() -> Iterator[None]:
     """Threads take turns as often as they can."""
     before = sys.getswitchinterval()

@@ -2,42 +2,58 @@
 
 import errno
 import os
+import shutil
 import stat
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
 import rvmon
 from rvmon.files import cache_folder, keep, read_kept
+from rvmon.language.syntax.grammar_cache import parser_of
+
+ROOT = Path(__file__).parents[2]
 
 
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.delenv("RVMON_CACHE", raising=False)
-    return tmp_path / "rvmon"
+@pytest.mark.parametrize("why", ["it is switched off", "its place is a file"])
+def test_without_it_all_goes_on(own_cache, monkeypatch, why):
+    """Parsers, what is compiled, and plans are made anew."""
+    found = rvmon.load(ROOT / "examples" / "base.rv").evaluate(ROOT / "examples" / "base.csv")
+    assert {path.name[:4] for path in own_cache.iterdir()} >= {"spec", "plan"}
+    shutil.rmtree(own_cache)
+    if why == "its place is a file":
+        own_cache.touch()
+    else:
+        monkeypatch.setenv("RVMON_CACHE", "off")
+    assert cache_folder() is None
+    again = rvmon.load(ROOT / "examples" / "base.rv").evaluate(ROOT / "examples" / "base.csv")
+    assert again == found
+    options = {"parser": "lalr", "propagate_positions": True}
+    assert parser_of('start: "a" /[0-9]+/', options).parse("a7").children == ["7"]
+    assert not own_cache.is_dir()
 
 
 @pytest.mark.skipif(not hasattr(os, "getuid"), reason="needs the rights of POSIX")
-def test_a_folder_that_others_can_write_to_is_not_used(folder):
+def test_a_folder_that_others_can_write_to_is_not_used(own_cache):
     """What is kept is data, but whose data?"""
-    folder.mkdir(mode=0o700)
-    folder.chmod(0o777)
+    own_cache.mkdir(mode=0o700)
+    own_cache.chmod(0o777)
     assert cache_folder() is None
-    folder.chmod(0o700)
-    assert cache_folder() == folder
+    own_cache.chmod(0o700)
+    assert cache_folder() == own_cache
 
 
-def test_a_relative_place_is_ignored(folder, monkeypatch):
+def test_a_relative_place_is_ignored(own_cache, monkeypatch):
     """The XDG specification says so: it would be another one in each folder."""
-    monkeypatch.setenv("HOME", str(folder.parent))
+    monkeypatch.setenv("HOME", str(own_cache.parent))
     monkeypatch.setenv("XDG_CACHE_HOME", "somewhere")
-    assert cache_folder() == folder.parent / ".cache" / "rvmon"
+    assert cache_folder() == own_cache.parent / ".cache" / "rvmon"
 
 
 @pytest.mark.parametrize("said", ["1", "none"])
-def test_what_was_used_last_is_kept(folder, monkeypatch, said):
+def test_what_was_used_last_is_kept(own_cache, monkeypatch, said):
     monkeypatch.setenv("RVMON_CACHE_MB", said)
     place = cache_folder()
     assert place is not None
@@ -54,7 +70,7 @@ def test_what_was_used_last_is_kept(folder, monkeypatch, said):
     assert sum(left) >= 5
 
 
-def test_what_killed_processes_left_is_deleted(folder):
+def test_what_killed_processes_left_is_deleted(own_cache):
     """Unfinished files of long ago go; younger ones, and what is not ours, stay."""
     place = cache_folder()
     assert place is not None
@@ -75,7 +91,7 @@ def test_what_killed_processes_left_is_deleted(folder):
     }
 
 
-def test_files_are_private_whatever_the_umask_says(folder):
+def test_files_are_private_whatever_the_umask_says(own_cache):
     known = os.umask(0)
     try:
         place = cache_folder()
@@ -88,7 +104,7 @@ def test_files_are_private_whatever_the_umask_says(folder):
 
 
 @pytest.mark.parametrize("harm", ["cut", "flip", "others", "gone", "pipe", "folder"])
-def test_what_is_damaged_or_foreign_is_not_used(folder, harm):
+def test_what_is_damaged_or_foreign_is_not_used(own_cache, harm):
     place = cache_folder()
     assert place is not None
     path = place / "spec-0.json"
@@ -107,16 +123,16 @@ def test_what_is_damaged_or_foreign_is_not_used(folder, harm):
     assert read_kept(path) is None
 
 
-def test_a_link_of_someone_else_is_not_followed(folder, monkeypatch):
+def test_a_link_of_someone_else_is_not_followed(own_cache, monkeypatch):
     """It is the link that someone else can change."""
-    folder.parent.joinpath("elsewhere").mkdir(mode=0o700)
-    folder.symlink_to("elsewhere")
-    assert cache_folder() == folder
-    foreign = folder.lstat().st_uid + 1
+    own_cache.parent.joinpath("elsewhere").mkdir(mode=0o700)
+    own_cache.symlink_to("elsewhere")
+    assert cache_folder() == own_cache
+    foreign = own_cache.lstat().st_uid + 1
     if os.geteuid():
         monkeypatch.setattr(os, "getuid", lambda: foreign)
     else:
-        os.lchown(folder, foreign, -1)
+        os.lchown(own_cache, foreign, -1)
     assert cache_folder() is None
 
 
@@ -144,20 +160,20 @@ def opened(path, flags, *more, real=os.open, **where):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("call", "fails"), [("open", opened), ("fsync", full), ("replace", full)])
-def test_a_full_disk_costs_only_what_would_be_kept(folder, tmp_path, monkeypatch, call, fails):
+def test_a_full_disk_costs_only_what_would_be_kept(own_cache, tmp_path, monkeypatch, call, fails):
     path = tmp_path / "a.rv"
     path.write_text(SPEC)
     with monkeypatch.context() as patch:
         patch.setattr(os, call, fails)
         spec = rvmon.load(path)
         assert spec.evaluate(TRACE).verdicts == {"R": "P"}
-    assert [*folder.iterdir()] == []
+    assert [*own_cache.iterdir()] == []
     rvmon.load(path)
-    assert any(one.name.startswith("spec-") for one in folder.iterdir())
+    assert any(one.name.startswith("spec-") for one in own_cache.iterdir())
 
 
 @pytest.mark.process
-def test_two_processes_that_compile_the_same_at_once_keep_it_whole(folder, tmp_path):
+def test_two_processes_that_compile_the_same_at_once_keep_it_whole(own_cache, tmp_path):
     path = tmp_path / "a.rv"
     path.write_text(SPEC)
     words = [sys.executable, "-c", COMPILE, str(path)]
@@ -172,6 +188,6 @@ def test_two_processes_that_compile_the_same_at_once_keep_it_whole(folder, tmp_p
     assert [one.returncode for one in begun] == [0, 0]
     assert told[0] == told[1]
     assert '"P"' in told[0]
-    assert not [one for one in folder.iterdir() if one.name.endswith(".part")]
-    [kept] = [one for one in folder.iterdir() if one.name.startswith("spec-")]
+    assert not [one for one in own_cache.iterdir() if one.name.endswith(".part")]
+    [kept] = [one for one in own_cache.iterdir() if one.name.startswith("spec-")]
     assert read_kept(kept) is not None

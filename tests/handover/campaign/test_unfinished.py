@@ -11,6 +11,7 @@ import pytest
 from msgspec.structs import replace
 
 from handover.cli import main
+from rvmon.cdv import campaign_text
 from rvmon.cdv.play import execute
 from rvmon.cdv.resume import NAME
 from rvmon.cli import campaign_run
@@ -51,8 +52,8 @@ def whole(tmp_path_factory):
             kept.append(Path("out", NAME).read_bytes())
             real(*arguments)
 
-        real = campaign_run.write_tables
-        patch.setattr(campaign_run, "write_tables", write_tables)
+        real = campaign_text.write_tables
+        patch.setattr(campaign_text, "write_tables", write_tables)
         assert main(WORDS) == 0
     return files(folder / "out"), kept[0]
 
@@ -102,23 +103,18 @@ def test_it_comes_to_the_same_wherever_it_was_killed(whole, here, played, capsys
     assert (f"{tests} of 8 tests were played before" in capsys.readouterr().err) == (tests > 0)
 
 
-def test_what_lies_behind_damage_is_played_again(whole, here, played):
+@pytest.mark.parametrize("first", [pytest.param(3, id="damage"), pytest.param(5, id="of two")])
+def test_what_lies_behind_damage_is_played_again(whole, here, played, first):
+    """So is what two have written at once, from where they met."""
     known, journal = whole
     lines = journal.splitlines(keepends=True)
-    left(here, b"".join([*lines[:3], lines[3].replace(b"seconds", b"Seconds"), *lines[4:]]))
+    lines[first:first] = (
+        [lines[4]] if first == 5 else [lines.pop(3).replace(b"seconds", b"Seconds")]
+    )
+    left(here, b"".join(lines))
     assert main(WORDS) == 0
     assert files(here) == known
-    assert played[0] == 3
-
-
-def test_what_two_have_written_at_once_is_not_mixed(whole, here, played):
-    """From where they met, tests are played again."""
-    known, journal = whole
-    lines = journal.splitlines(keepends=True)
-    left(here, b"".join([*lines[:5], lines[4], *lines[5:]]))
-    assert main(WORDS) == 0
-    assert files(here) == known
-    assert played[0] == 5
+    assert played[0] == first
 
 
 def test_shards_are_joined(whole, here, played, capsys):

@@ -1,4 +1,4 @@
-"""Open attempts of automata with several clocks stand in a queue, and the law decides them too."""
+"""Open attempts stand in a queue, or move in runs, and are decided as the law has it."""
 
 import random
 
@@ -18,8 +18,13 @@ REQUIRED = [
     "(F[3 ns, 6 ns] q) U (p and not q)",
     "(F[0 ns, 6 ns] p) U[0 ns, 20 ns] (G[0 ns, 6 ns] q)",
     "p U (q U[3 ns, 6 ns] not p)",
+    # With one clock from the trigger: attempts are moved in runs.
+    "F[0 ns, 40 ns] p",
+    "F[7 ns, 40 ns] p",
+    "p U[2 ns, 30 ns] q",
+    "G[0 ns, 25 ns] not p",
 ]
-"""Nested so that they reset clocks at their triggers, at changes, and at each tick."""
+"""The first so that they reset clocks at their triggers, at changes, and at each tick."""
 
 
 @pytest.mark.law

@@ -18,15 +18,8 @@ TEXT = (
 )
 
 
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.delenv("RVMON_CACHE", raising=False)
-    return tmp_path / "rvmon"
-
-
-def kept_in(folder):
-    return sorted(folder.glob("spec-*.json"))
+def kept_in(own_cache):
+    return sorted(own_cache.glob("spec-*.json"))
 
 
 @pytest.mark.slow
@@ -53,52 +46,52 @@ def test_random_specifications_are_restored_and_told_apart():
     assert identity_text(moved) == identity_text(compile_text(TEXT, name="b.rv")[0])
 
 
-def test_the_second_time_it_is_read(folder):
+def test_the_second_time_it_is_read(own_cache):
     first = compile_cached(TEXT)
     assert first[1]  # `f` is never read
     assert compile_cached(TEXT) == first == compile_text(TEXT)
-    [path] = kept_in(folder)
+    [path] = kept_in(own_cache)
     other = compile_cached(TEXT.replace("x > 1 m", "x > 3 m"))
     # That it is read at all: it tells what stands in the file.
-    [second] = {*kept_in(folder)} - {path}
+    [second] = {*kept_in(own_cache)} - {path}
     path.write_bytes(second.read_bytes())
     assert compile_cached(TEXT) == other
 
 
-def test_all_that_counts_is_told_apart(folder):
+def test_all_that_counts_is_told_apart(own_cache):
     compile_cached(TEXT)
     compile_cached(TEXT, name="b.rv")
     five, _ = compile_cached(TEXT, constants={"T": "5 s"})
     assert five == compile_text(TEXT, constants={"T": "5 s"})[0]
-    assert len(kept_in(folder)) == 3
+    assert len(kept_in(own_cache)) == 3
 
 
 @pytest.mark.parametrize("damage", [b"", b"x", b"[]", b'["dict",5]', b'["os.system","ls"]'])
-def test_a_damaged_file_is_of_no_account(folder, damage):
+def test_a_damaged_file_is_of_no_account(own_cache, damage):
     import hashlib
 
     first = compile_cached(TEXT)
-    [path] = kept_in(folder)
+    [path] = kept_in(own_cache)
     for content in (damage, hashlib.sha256(damage).hexdigest().encode() + b"\n" + damage):
         path.write_bytes(content)
         assert compile_cached(TEXT) == first
 
 
-def test_errors_are_not_kept(folder):
+def test_errors_are_not_kept(own_cache):
     for _ in range(2):
         with pytest.raises(SpecError, match="unknown"):
             compile_cached("requirement R\n  always nothing\n")
-    assert not kept_in(folder)
+    assert not kept_in(own_cache)
 
 
 IMPORTING = 'import "names.rv"\nrequirement R\n  always p\n'
 
 
-def test_what_is_imported_is_looked_at_each_time(folder, tmp_path):
+def test_what_is_imported_is_looked_at_each_time(own_cache, tmp_path):
     names = tmp_path / "names.rv"
     names.write_text("signal p : bool\n")
     first = compile_cached(IMPORTING, directory=tmp_path)
-    [kept] = kept_in(folder)
+    [kept] = kept_in(own_cache)
     names.write_text("signal p : bool\nsignal q : bool\n")
     second = compile_cached(IMPORTING, directory=tmp_path)
     assert [set(spec.signals) for spec, _ in (first, second)] == [{"p"}, {"p", "q"}]
@@ -107,35 +100,29 @@ def test_what_is_imported_is_looked_at_each_time(folder, tmp_path):
     assert compile_cached(IMPORTING, directory=tmp_path) == first
     written = kept.read_bytes()
     assert compile_cached(IMPORTING, directory=tmp_path) == first
-    assert kept_in(folder) == [kept]
+    assert kept_in(own_cache) == [kept]
     assert kept.read_bytes() == written
 
 
-def test_of_imports_each_folder_has_its_own(folder, tmp_path):
+def test_of_imports_each_folder_has_its_own(own_cache, tmp_path):
     for name, more in (("a", ""), ("b", "signal q : bool\n")):
         (tmp_path / name).mkdir()
         (tmp_path / name / "names.rv").write_text(f"signal p : bool\n{more}")
     specs = [compile_cached(IMPORTING, directory=tmp_path / name)[0] for name in "abab"]
     assert [len(spec.signals) for spec in specs] == [1, 2, 1, 2]
-    assert len(kept_in(folder)) == 2
+    assert len(kept_in(own_cache)) == 2
 
 
 @pytest.mark.parametrize("harm", ["gone", "outside"])
-def test_what_may_not_be_imported_any_more_is_refused(folder, tmp_path, harm):
+def test_what_may_not_be_imported_any_more_is_refused(own_cache, tmp_path, harm):
     names, elsewhere = tmp_path / "own" / "names.rv", tmp_path / "elsewhere.rv"
     names.parent.mkdir()
     elsewhere.write_text("signal p : bool\n")
     names.write_text("signal p : bool\n")
     compile_cached(IMPORTING, directory=names.parent)
-    assert kept_in(folder)
+    assert kept_in(own_cache)
     names.unlink()
     if harm == "outside":
         names.symlink_to(elsewhere)
     with pytest.raises(SpecError, match=r"cannot read|outside"):
         compile_cached(IMPORTING, directory=names.parent)
-
-
-def test_it_can_be_switched_off(folder, monkeypatch):
-    monkeypatch.setenv("RVMON_CACHE", "off")
-    assert compile_cached(TEXT) == compile_text(TEXT)
-    assert not folder.exists()

@@ -37,13 +37,6 @@ SAMPLES = [
 
 
 @pytest.fixture
-def folder(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.delenv("RVMON_CACHE", raising=False)
-    return tmp_path / "rvmon"
-
-
-@pytest.fixture
 def packs_nothing(monkeypatch):
     """From now on who packs a plan fails."""
 
@@ -53,8 +46,8 @@ def packs_nothing(monkeypatch):
     return forbid
 
 
-def kept_in(folder):
-    return sorted(folder.glob("plan-*.bin"))
+def kept_in(own_cache):
+    return sorted(own_cache.glob("plan-*.bin"))
 
 
 def judged(text=TEXT, **how):
@@ -65,10 +58,10 @@ def judged(text=TEXT, **how):
     return decided, monitor.finish(9).to_json(), spec
 
 
-def test_the_second_time_it_is_read(folder, packs_nothing):
+def test_the_second_time_it_is_read(own_cache, packs_nothing):
     decided, report, spec = judged()
     evaluated = spec.evaluate(SAMPLES).verdicts
-    assert [path.stat().st_mode & 0o077 for path in kept_in(folder)] == [0]
+    assert [path.stat().st_mode & 0o077 for path in kept_in(own_cache)] == [0]
     packs_nothing()
     again, same, spec = judged()
     assert (again, same) == (decided, report)
@@ -76,13 +69,13 @@ def test_the_second_time_it_is_read(folder, packs_nothing):
     spec = rvmon.loads(TEXT)
     assert spec.evaluate(SAMPLES).verdicts == evaluated
     assert "requirements" not in vars(spec._compiled)
-    assert len(kept_in(folder)) == 1
+    assert len(kept_in(own_cache)) == 1
 
 
-def test_what_coverage_judges_is_kept_apart(folder, monkeypatch):
+def test_what_coverage_judges_is_kept_apart(own_cache, monkeypatch):
     first = rvmon.loads(TEXT).coverage(SAMPLES)
     rvmon.loads(TEXT).evaluate(SAMPLES)
-    assert len(kept_in(folder)) == 3
+    assert len(kept_in(own_cache)) == 3
     planned = []
     monkeypatch.setattr(
         "rvmon.monitor.requirement_plans.plan_alone", lambda *_, **__: planned.append(1)
@@ -92,12 +85,12 @@ def test_what_coverage_judges_is_kept_apart(folder, monkeypatch):
     assert not planned
 
 
-def test_other_plans_are_told_apart(folder):
+def test_other_plans_are_told_apart(own_cache):
     judged()
     judged(only=["R"])
     judged(TEXT.replace("T = 2 s", "T = 3 s"))
     judged(TEXT.replace("x > 1\n", "x > 1.5\n"))
-    assert len(kept_in(folder)) == 4
+    assert len(kept_in(own_cache)) == 4
 
 
 def whole(body):
@@ -124,11 +117,11 @@ def damages(path, other):
         yield content[: len(content) - len(data)] + changed
 
 
-def test_a_damaged_file_is_of_no_account(folder):
+def test_a_damaged_file_is_of_no_account(own_cache):
     decided, report, _ = judged()
-    [path] = kept_in(folder)
+    [path] = kept_in(own_cache)
     judged(TEXT.replace("x > 1\n", "x > 2\n").replace("requirement S", "requirement Q"))
-    [other] = {*kept_in(folder)} - {path}
+    [other] = {*kept_in(own_cache)} - {path}
     right = path.read_bytes()
     for damage in damages(path, other):
         path.write_bytes(damage)
@@ -136,34 +129,25 @@ def test_a_damaged_file_is_of_no_account(folder):
         assert path.read_bytes() == right
 
 
-def test_what_is_refused_is_not_kept(folder):
+def test_what_is_refused_is_not_kept(own_cache):
     deep = "(x - " * 40 + "x" + ")" * 40
     for _ in range(2):
         with pytest.raises(rvmon.RvmonError, match="deep"):
             judged(TEXT.replace("x > 1\n", f"{deep} > 1\n"))
-    assert not kept_in(folder)
+    assert not kept_in(own_cache)
 
 
-def test_only_what_was_loaded_is_kept(folder):
+def test_only_what_was_loaded_is_kept(own_cache):
     """Not each of the specifications that programs make up, of which there may be thousands."""
     from rvmon.monitor.compiled_spec import compile_spec
     from rvmon.monitor.monitor import build_monitor
 
     build_monitor(compile_spec(rvmon.loads(TEXT).checked))
-    assert not kept_in(folder)
-
-
-def test_it_can_be_switched_off(folder, monkeypatch):
-    decided, report, _ = judged()
-    [path] = kept_in(folder)
-    path.unlink()
-    monkeypatch.setenv("RVMON_CACHE", "off")
-    assert judged()[:2] == (decided, report)
-    assert not kept_in(folder)
+    assert not kept_in(own_cache)
 
 
 @pytest.mark.process
-def test_all_processes_share_it(folder, tmp_path):
+def test_all_processes_share_it(own_cache, tmp_path):
     """Whatever the order of their sets is."""
     spec = tmp_path / "spec.rv"
     spec.write_text(TEXT)
@@ -172,4 +156,4 @@ def test_all_processes_share_it(folder, tmp_path):
         env = {**os.environ, "PYTHONHASHSEED": seed}
         command = [sys.executable, "-c", program]
         subprocess.run(command, env=env, check=True)  # noqa: S603
-    assert len(kept_in(folder)) == 1
+    assert len(kept_in(own_cache)) == 1

@@ -3,25 +3,15 @@
 import json
 from hashlib import sha256
 
-import pytest
-
-from rvmon.files import cache_folder
 from rvmon.language.syntax.grammar_cache import parser_of
 
 GRAMMAR = 'start: "a" NUMBER+\nNUMBER: /[0-9]+/\n%ignore " "\n'
 OPTIONS = {"parser": "lalr", "propagate_positions": True}
 
 
-@pytest.fixture(autouse=True)
-def folder(tmp_path, monkeypatch):
-    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
-    monkeypatch.delenv("RVMON_CACHE", raising=False)
-    return tmp_path / "rvmon"
-
-
-def test_a_parser_from_the_cache_is_the_same(folder):
+def test_a_parser_from_the_cache_is_the_same(own_cache):
     made = parser_of(GRAMMAR, OPTIONS)
-    [path] = folder.glob("grammar-*")
+    [path] = own_cache.glob("grammar-*")
     written = path.stat().st_ino
     known = parser_of(GRAMMAR, OPTIONS)
     assert path.stat().st_ino == written
@@ -31,33 +21,20 @@ def test_a_parser_from_the_cache_is_the_same(folder):
     assert known.rules == made.rules
 
 
-def test_another_grammar_has_other_tables(folder):
+def test_another_grammar_has_other_tables(own_cache):
     parser_of(GRAMMAR, OPTIONS)
     other = parser_of(GRAMMAR.replace('"a"', '"b"'), OPTIONS)
-    assert len(list(folder.glob("grammar-*"))) == 2
+    assert len(list(own_cache.glob("grammar-*"))) == 2
     assert other.parse("b 1").children
 
 
-def test_what_is_wrong_is_passed_over(folder):
+def test_what_is_wrong_is_passed_over(own_cache):
     parser_of(GRAMMAR, OPTIONS)
-    [path] = folder.glob("grammar-*")
+    [path] = own_cache.glob("grammar-*")
     good = path.read_bytes()
     forged = json.dumps({"data": 1, "memo": {}}).encode()
     for wrong in (b"", good[:-9], sha256(forged).hexdigest().encode() + b"\n" + forged):
         path.write_bytes(wrong)
         assert parser_of(GRAMMAR, OPTIONS).parse("a 7").children[0] == "7"
         assert path.read_bytes() != wrong
-    assert list(folder.glob("grammar-*")) == [path]
-
-
-def test_it_can_be_switched_off(folder, monkeypatch):
-    monkeypatch.setenv("RVMON_CACHE", "off")
-    assert cache_folder() is None
-    assert parser_of(GRAMMAR, OPTIONS).parse("a 7").children[0] == "7"
-    assert not folder.exists()
-
-
-def test_a_place_that_cannot_be_written_is_no_trouble(folder):
-    folder.parent.joinpath("rvmon").write_text("a file")
-    assert cache_folder() is None
-    assert parser_of(GRAMMAR, OPTIONS).parse("a 7").children[0] == "7"
+    assert list(own_cache.glob("grammar-*")) == [path]
