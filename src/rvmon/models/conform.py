@@ -37,31 +37,48 @@ RESOLUTION = TICKS_PER_UNIT["ms"]
 
 @dataclass(frozen=True, slots=True)
 class Allowed:
-    """An action that the network would have allowed instead."""
+    """An action that the network would have allowed instead.
 
-    label: str  # of an action; empty: nothing more until the end of the recording
-    earliest: int  # ticks since the start
-    latest: int | None  # ticks; `None` if it has no end
+    Attributes:
+        label: of an action; empty: nothing more until the end of the recording.
+        earliest: ticks since the start.
+        latest: ticks; `None` if it has no end.
+    """
+
+    label: str
+    earliest: int
+    latest: int | None
 
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """The point at which a recording stops being a run of the network."""
+    """The point at which a recording stops being a run of the network.
 
-    at: int  # ticks since the start
-    # the action that no run can do then; empty: the recording ends, but every run would have done
-    # something before
+    Attributes:
+        at: ticks since the start.
+        label: the action that no run can do then; empty: the recording ends, but every run would
+            have done something before.
+        allowed: the actions possible after those before.
+    """
+
+    at: int
     label: str
-    allowed: tuple[Allowed, ...]  # the actions possible after those before
+    allowed: tuple[Allowed, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class Conformance:
-    """The answer for one recording."""
+    """The answer for one recording.
 
-    explained: int  # actions that some run of the network does at these instants
-    divergence: Divergence | None  # the first that none does; `None` if the recording conforms
-    undecided: str = ""  # the budget that ended the search; empty if it was done
+    Attributes:
+        explained: actions that some run of the network does at these instants.
+        divergence: the first that none does; `None` if the recording conforms.
+        undecided: the budget that ended the search; empty if it was done.
+    """
+
+    explained: int
+    divergence: Divergence | None
+    undecided: str = ""
 
     @property
     def conforms(self) -> bool | None:

@@ -21,11 +21,17 @@ from rvmon.verdicts.attempt import Attempt, Decision, measured_attempt
 
 @dataclass(frozen=True, slots=True)
 class Robustness(Bounds):
-    """Bounds on the robustness of a formula, in SI base units."""
+    """Bounds on the robustness of a formula, in SI base units.
 
-    low: float  # lower bound over all values of unknown input and all continuations of the trace
-    high: float  # upper bound, likewise
-    kept: float  # lower bound if every opened unbounded `R` (`always`) holds after the end
+    Attributes:
+        low: lower bound over all values of unknown input and all continuations of the trace.
+        high: upper bound, likewise.
+        kept: lower bound if every opened unbounded `R` (`always`) holds after the end.
+    """
+
+    low: float
+    high: float
+    kept: float
 
     def of(self, attempt: Attempt) -> float | None:
         """The robustness of a decided attempt, or the bound nearer to the other verdict.
@@ -50,14 +56,21 @@ class Robustness(Bounds):
 
 @dataclass(frozen=True, slots=True)
 class Measured(Figure):
-    """The robustness of one attempt, or at one position."""
+    """The robustness of one attempt, or at one position.
+
+    Attributes:
+        requirement: its id.
+        number: the number of the attempt; `None` for the robustness at a position, of a stream.
+        t: the instant of the trigger, or of the position, ticks.
+        robustness: the bounds.
+        in_doubt: whether the attempt is in doubt.
+    """
 
     requirement: str
-    # the number of the attempt; `None` for the robustness at a position, of a stream
     number: int | None
-    t: int  # the instant of the trigger, or of the position, ticks
+    t: int
     robustness: Robustness = field()
-    in_doubt: bool = False  # whether the attempt is in doubt
+    in_doubt: bool = False
 
 
 FIGURES = Measured, Robustness
@@ -103,12 +116,17 @@ Key = tuple[str, int]
 
 
 class Margins(Struct, frozen=True):
-    """The robustness of all attempts of a run."""
+    """The robustness of all attempts of a run.
 
-    attempts: Mapping[Key, Robustness]  # by requirement and number of the attempt
-    doubtful: Mapping[Key, Robustness]  # the same for attempts in doubt that have a record
-    # by requirement, its robustness at the instants of samples. Requirements with `let` or `for
-    # each` have none: it would depend on the attempt
+    Attributes:
+        attempts: by requirement and number of the attempt.
+        doubtful: the same for attempts in doubt that have a record.
+        streams: by requirement, its robustness at the instants of samples. Requirements with `let`
+            or `for each` have none: it would depend on the attempt.
+    """
+
+    attempts: Mapping[Key, Robustness]
+    doubtful: Mapping[Key, Robustness]
     streams: Mapping[str, Sequence[tuple[int, Robustness]]]
 
     def of(self, attempt: Attempt) -> Attempt:

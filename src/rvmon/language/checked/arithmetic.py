@@ -166,26 +166,20 @@ class NumericOp(StrEnum):
     MIN = "min", _exact(2, None, UnitRule.SAME, min, "the least")
     MAX = "max", _exact(2, None, UnitRule.SAME, max, "the greatest")
     SQRT = "sqrt", Operation(1, 1, UnitRule.ROOT, math.sqrt, False, "the square root")
-    HYPOT = (
-        "hypot",
-        Operation(2, 2, UnitRule.SAME, math.hypot, False, "the length of a vector of two sides"),
-    )
-    FLOOR = (
-        "floor",
-        _exact(1, 1, UnitRule.SAME, math.floor, "the whole number not above, in its unit"),
-    )
+    HYPOT = "hypot", Operation(
+        2, 2, UnitRule.SAME, math.hypot, False, "the length of a vector of two sides",
+    )  # fmt: skip
+    FLOOR = "floor", _exact(
+        1, 1, UnitRule.SAME, math.floor, "the whole number not above, in its unit",
+    )  # fmt: skip
     CEIL = "ceil", _exact(1, 1, UnitRule.SAME, math.ceil, "the whole number not below, in its unit")
-    ROUND = (
-        "round",
-        _exact(1, 1, UnitRule.SAME, nearest_whole, "the nearest whole number, halves away from 0"),
-    )
+    ROUND = "round", _exact(
+        1, 1, UnitRule.SAME, nearest_whole, "the nearest whole number, halves away from 0",
+    )  # fmt: skip
     SIGN = "sign", _exact(1, 1, UnitRule.SIGN, sign, "1, 0 or −1")
-    MOD = (
-        "mod",
-        Operation(
-            2, 2, UnitRule.SAME, operator.mod, True, "the remainder of x / y, with the sign of y"
-        ),
-    )
+    MOD = "mod", Operation(
+        2, 2, UnitRule.SAME, operator.mod, True, "the remainder of x / y, with the sign of y",
+    )  # fmt: skip
     CLAMP = ("clamp", _exact(3, 3, UnitRule.SAME, clamp, "x, at least y, and then at most z"))
     SIN = "sin", _library(1, UnitRule.OF_ANGLE, math.sin, "the sine of an angle")
     COS = "cos", _library(1, UnitRule.OF_ANGLE, math.cos, "the cosine of an angle")
@@ -197,31 +191,23 @@ class NumericOp(StrEnum):
     LOG = "log", _library(1, UnitRule.PLAIN, math.log, "the natural logarithm")
     LOG10 = "log10", _library(1, UnitRule.PLAIN, math.log10, "the decimal logarithm")
     POW = "pow", _library(2, UnitRule.POWER, math.pow, "x to the power of y")
-    ANGLE_BETWEEN = (
-        "angle_between",
-        Operation(
-            *(2, 2, UnitRule.TURN, angle_between, False),
-            "by how much to turn from x to y, the shorter way: above −180° up to 180°",
-        ),
-    )
-    DISTANCE_ON_EARTH = (
-        "distance_on_earth",
-        _library(
-            *(4, UnitRule.PLACES, distance_on_earth),
-            "from (latitude, longitude) to (latitude, longitude), on a sphere",
-        ),
-    )
+    ANGLE_BETWEEN = "angle_between", Operation(
+        2, 2, UnitRule.TURN, angle_between, False,
+        "by how much to turn from x to y, the shorter way: above −180° up to 180°",
+    )  # fmt: skip
+    DISTANCE_ON_EARTH = "distance_on_earth", _library(
+        4, UnitRule.PLACES, distance_on_earth,
+        "from (latitude, longitude) to (latitude, longitude), on a sphere",
+    )  # fmt: skip
     BIT_AND = "bit_and", _exact(2, 2, UnitRule.BITS, operator.and_, "the bits that both have")
     BIT_OR = "bit_or", _exact(2, 2, UnitRule.BITS, operator.or_, "the bits that one has, or both")
     BIT_XOR = "bit_xor", _exact(2, 2, UnitRule.BITS, operator.xor, "the bits that one has alone")
-    SHIFT_LEFT = (
-        "shift_left",
-        _exact(2, 2, UnitRule.BITS, shifted_left, "x, its bits y places up"),
-    )
-    SHIFT_RIGHT = (
-        "shift_right",
-        _exact(2, 2, UnitRule.BITS, shifted_right, "x, its bits y places down"),
-    )
+    SHIFT_LEFT = "shift_left", _exact(
+        2, 2, UnitRule.BITS, shifted_left, "x, its bits y places up",
+    )  # fmt: skip
+    SHIFT_RIGHT = "shift_right", _exact(
+        2, 2, UnitRule.BITS, shifted_right, "x, its bits y places down",
+    )  # fmt: skip
     BIT = ("bit", _exact(2, 2, UnitRule.BITS, bit, "bit y of x is set; the lowest is bit 0"))
 
     @property

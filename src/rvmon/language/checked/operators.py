@@ -162,69 +162,54 @@ class UnaryOp(_Sign):
     """
 
     NOT = Operator(
-        *("!", "not", Tense.PRESENT, Window.NONE, PREFIXED),
-        lambda reading, it, _: reading.no(it),
-        *("", ""),
-        "φ does not hold",
-    )
+        "!", "not", Tense.PRESENT, Window.NONE, PREFIXED, lambda reading, it, _: reading.no(it),
+        "", "", "φ does not hold",
+    )  # fmt: skip
     NEXT = Operator(
-        *("X", "next", Tense.FUTURE, Window.NONE, PREFIXED),
-        lambda reading, it, _: reading.next(it),
-        *("at the next sample, {it}", "at the next sample, {no_it}"),
-        "φ at the position after; not in `time held`",
-        dual="X",
-    )
+        "X", "next", Tense.FUTURE, Window.NONE, PREFIXED, lambda reading, it, _: reading.next(it),
+        "at the next sample, {it}", "at the next sample, {no_it}",
+        "φ at the position after; not in `time held`", dual="X",
+    )  # fmt: skip
     EVENTUALLY = Operator(
-        *("F", "eventually", Tense.FUTURE, Window.ANY, PREFIXED, _eventually),
-        *("{some}, {it}", "{all}, {no_it}"),
-        "φ at some instant from now on",
-        dual="G",
-    )
+        "F", "eventually", Tense.FUTURE, Window.ANY, PREFIXED, _eventually,
+        "{some}, {it}", "{all}, {no_it}", "φ at some instant from now on", dual="G",
+    )  # fmt: skip
     ALWAYS = Operator(
-        *("G", "always", Tense.FUTURE, Window.ANY, PREFIXED),
+        "G", "always", Tense.FUTURE, Window.ANY, PREFIXED,
         lambda reading, it, window: reading.no(_eventually(reading, reading.no(it), window)),
-        *("{all}, {it}", "{some}, {no_it}"),
-        "φ at all instants from now on",
-        dual="F",
-    )
+        "{all}, {it}", "{some}, {no_it}", "φ at all instants from now on", dual="F",
+    )  # fmt: skip
     PREVIOUS = Operator(
-        *("Y", "previous", Tense.PAST, Window.NONE, PREFIXED),
+        "Y", "previous", Tense.PAST, Window.NONE, PREFIXED,
         lambda reading, it, _: reading.previous(it),
-        *("at the sample before, {it}", ""),
+        "at the sample before, {it}", "",
         "φ at the position before, false at the first; not in `time held`",
-    )
+    )  # fmt: skip
     ONCE = Operator(
-        *("O", "once", Tense.PAST, Window.ANY, PREFIXED, _once),
-        *("{some}, {it}", "{all}, {no_it}"),
-        "φ at some instant up to now",
-        dual="H",
-    )
+        "O", "once", Tense.PAST, Window.ANY, PREFIXED, _once,
+        "{some}, {it}", "{all}, {no_it}", "φ at some instant up to now", dual="H",
+    )  # fmt: skip
     HISTORICALLY = Operator(
-        *("H", "historically", Tense.PAST, Window.ANY, PREFIXED, _historically),
-        *("{all}, {it}", "{some}, {no_it}"),
-        "φ at all instants up to now",
-        dual="O",
-    )
+        "H", "historically", Tense.PAST, Window.ANY, PREFIXED, _historically,
+        "{all}, {it}", "{some}, {no_it}", "φ at all instants up to now", dual="O",
+    )  # fmt: skip
     RISE = Operator(
-        *("rise", "rise", Tense.PAST, Window.NONE, CALLED),
+        "rise", "rise", Tense.PAST, Window.NONE, CALLED,
         lambda reading, it, _: reading.both(it, reading.no(reading.previous(it))),
-        *("{begins}", "it is not the instant at which {begins}"),
-        "φ holds and did not right before",
+        "{begins}", "it is not the instant at which {begins}", "φ holds and did not right before",
         pulse=True,
-    )
+    )  # fmt: skip
     FALL = Operator(
-        *("fall", "fall", Tense.PAST, Window.NONE, CALLED),
+        "fall", "fall", Tense.PAST, Window.NONE, CALLED,
         lambda reading, it, _: reading.both(reading.no(it), reading.previous(it)),
-        *("{ends}", "it is not the instant at which {ends}"),
-        "φ does not hold and did right before",
+        "{ends}", "it is not the instant at which {ends}", "φ does not hold and did right before",
         pulse=True,
-    )
+    )  # fmt: skip
     HELD = Operator(
-        *("held", "held", Tense.PAST, Window.LENGTH, CALLED, _held),
+        "held", "held", Tense.PAST, Window.LENGTH, CALLED, _held,
         "for the last {length} without a break, {it}",
-        "not for the last {length} without a break, {it}",
-        "φ has held for D, all within the run",
-    )
+        "not for the last {length} without a break, {it}", "φ has held for D, all within the run",
+    )  # fmt: skip
 
 
 class BinaryOp(_Sign):
@@ -235,81 +220,62 @@ class BinaryOp(_Sign):
     """
 
     AND = Operator(
-        *("and", "and", Tense.PRESENT, Window.NONE, 4),
+        "and", "and", Tense.PRESENT, Window.NONE, 4,
         lambda reading, left, right, _: reading.both(left, right),
-        *("", ""),
-        "both hold",
-        chained=True,
-        also=("&", "&&"),
-    )
+        "", "", "both hold", chained=True, also=("&", "&&"),
+    )  # fmt: skip
     OR = Operator(
-        *("or", "or", Tense.PRESENT, Window.NONE, 2),
+        "or", "or", Tense.PRESENT, Window.NONE, 2,
         lambda reading, left, right, _: reading.either(left, right),
-        *("", ""),
-        "one holds, or both",
-        chained=True,
-        also=("|", "||"),
-    )
+        "", "", "one holds, or both", chained=True, also=("|", "||"),
+    )  # fmt: skip
     IMPLIES = Operator(
-        *("->", "->", Tense.PRESENT, Window.NONE, 1),
+        "->", "->", Tense.PRESENT, Window.NONE, 1,
         lambda reading, left, right, _: reading.either(reading.no(left), right),
-        *("if {left}, then {right}", "{left} but {no_right}"),
-        "ψ holds if φ does; groups to the right",
-        also=("implies",),
-    )
+        "if {left}, then {right}", "{left} but {no_right}",
+        "ψ holds if φ does; groups to the right", also=("implies",),
+    )  # fmt: skip
     IFF = Operator(
-        *("<->", "<->", Tense.PRESENT, Window.NONE, 0, _same),
-        *("{left} exactly if {right}", "either {left} or {right}, not both"),
-        "both hold, or none",
-        chained=True,
-        also=("iff",),
-    )
+        "<->", "<->", Tense.PRESENT, Window.NONE, 0, _same,
+        "{left} exactly if {right}", "either {left} or {right}, not both", "both hold, or none",
+        chained=True, also=("iff",),
+    )  # fmt: skip
     XOR = Operator(
-        *("xor", "xor", Tense.PRESENT, Window.NONE, 3),
+        "xor", "xor", Tense.PRESENT, Window.NONE, 3,
         lambda reading, left, right, window: _same(reading, left, reading.no(right), window),
-        *("either {left} or {right}, not both", "{left} exactly if {right}"),
-        "one holds and not the other",
-        chained=True,
-    )
+        "either {left} or {right}, not both", "{left} exactly if {right}",
+        "one holds and not the other", chained=True,
+    )  # fmt: skip
     UNTIL = Operator(
-        *("U", "until", Tense.FUTURE, Window.ANY, 5),
+        "U", "until", Tense.FUTURE, Window.ANY, 5,
         lambda reading, left, right, window: reading.until(left, right, window),
-        *("{some}, {right}; and until then {left}", ""),
-        "ψ at some instant from now on, φ at all before it",
-        dual="R",
-    )
+        "{some}, {right}; and until then {left}", "",
+        "ψ at some instant from now on, φ at all before it", dual="R",
+    )  # fmt: skip
     RELEASE = Operator(
-        *("R", "R", Tense.FUTURE, Window.ANY, 5, _release),
-        "{all}, {right}; up to and at the instant when {left}, if that comes earlier",
-        "",
-        "ψ at all instants up to and at one at which φ holds, if there is one",
-        dual="U",
-    )
+        "R", "R", Tense.FUTURE, Window.ANY, 5, _release,
+        "{all}, {right}; up to and at the instant when {left}, if that comes earlier", "",
+        "ψ at all instants up to and at one at which φ holds, if there is one", dual="U",
+    )  # fmt: skip
     WEAK_UNTIL = Operator(
-        *("W", "unless", Tense.FUTURE, Window.FROM_NOW, 5),
-        lambda reading, left, right, window: _release(
-            reading, right, reading.either(left, right), window
-        ),
-        *("{all}, {left}; until {right}, if that comes earlier", ""),
-        "as `until`, but ψ need not come",
-        dual="M",
-        also=("weak until",),
-    )
+        "W", "unless", Tense.FUTURE, Window.FROM_NOW, 5,
+        lambda reading, left, right, window:
+            _release(reading, right, reading.either(left, right), window),
+        "{all}, {left}; until {right}, if that comes earlier", "",
+        "as `until`, but ψ need not come", dual="M", also=("weak until",),
+    )  # fmt: skip
     STRONG_RELEASE = Operator(
-        *("M", "M", Tense.FUTURE, Window.FROM_NOW, 5),
-        lambda reading, left, right, window: reading.until(
-            right, reading.both(left, right), window
-        ),
-        *("{some}, {left}; until then and at that instant {right}", ""),
-        "as `R`, but φ has to come",
+        "M", "M", Tense.FUTURE, Window.FROM_NOW, 5,
+        lambda reading, left, right, window:
+            reading.until(right, reading.both(left, right), window),
+        "{some}, {left}; until then and at that instant {right}", "", "as `R`, but φ has to come",
         dual="W",
-    )
+    )  # fmt: skip
     SINCE = Operator(
-        *("S", "since", Tense.PAST, Window.ANY, 5),
+        "S", "since", Tense.PAST, Window.ANY, 5,
         lambda reading, left, right, window: reading.since(left, right, window),
-        *("{right} {ago}and since then {left}", ""),
-        "ψ at some instant up to now, φ at all after it",
-    )
+        "{right} {ago}and since then {left}", "", "ψ at some instant up to now, φ at all after it",
+    )  # fmt: skip
 
 
 OPERATORS: tuple[UnaryOp | BinaryOp, ...] = (*UnaryOp, *BinaryOp)

@@ -64,14 +64,20 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class RunStep:
-    """A wait, and the action behind it."""
+    """A wait, and the action behind it.
 
-    window: Window  # the bounds of the wait, over all runs along this path
-    delay: Fraction  # the wait in the concrete run
-    # taken then; `None` at the end of a run, or where nothing is done but the query's formula
-    # changes its truth
+    Attributes:
+        window: the bounds of the wait, over all runs along this path.
+        delay: the wait in the concrete run.
+        action: taken then; `None` at the end of a run, or where nothing is done but the
+            query's formula changes its truth.
+        position: the state after the action.
+    """
+
+    window: Window
+    delay: Fraction
     action: Action | None
-    position: Position  # the state after the action
+    position: Position
 
 
 class Ending(StrEnum):
@@ -98,13 +104,20 @@ class Ending(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A path of the network and one way to run along it."""
+    """A path of the network and one way to run along it.
+
+    Attributes:
+        start: its initial state.
+        steps: in order.
+        ending: the way it ends.
+        loop: for loops the number of the first step that is repeated.
+        timing: all timed runs along the path, if it is known.
+    """
 
     start: Position
-    steps: tuple[RunStep, ...]  # in order
-    ending: Ending = Ending.REACHED  # the way it ends
-    loop: int | None = None  # for loops the number of the first step that is repeated
-    # all timed runs along the path, if it is known
+    steps: tuple[RunStep, ...]
+    ending: Ending = Ending.REACHED
+    loop: int | None = None
     timing: Timing | None = field(default=None, compare=False, repr=False)
 
     @property

@@ -49,16 +49,23 @@ Drawn = TypeVar("Drawn")
 
 @dataclass(frozen=True, slots=True)
 class Sampled:
-    """The answer to a query from random runs."""
+    """The answer to a query from random runs.
+
+    Attributes:
+        query: the question.
+        runs: the number simulated.
+        value: the share of runs, or the mean.
+        low, high: bounds of an estimate, with 95 % confidence; of a test there are none.
+        holds: of a test; `None` if it gave up, or for an estimate.
+        margin: of a test: it may be wrong where the probability is nearer to the level.
+    """
 
     query: Query
-    runs: int  # the number simulated
-    value: float  # the share of runs, or the mean
-    # low, high: bounds of an estimate, with 95 % confidence; of a test there are none
+    runs: int
+    value: float
     low: float | None = None
     high: float | None = None
-    holds: bool | None = None  # of a test; `None` if it gave up, or for an estimate
-    # of a test: it may be wrong where the probability is nearer to the level
+    holds: bool | None = None
     margin: float | None = None
 
 

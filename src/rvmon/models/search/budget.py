@@ -17,11 +17,17 @@ from rvmon.models.runs import Run
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """The limits at which a search gives up; `None`: no limit."""
+    """The limits at which a search gives up; `None`: no limit.
 
-    states: int | None = None  # symbolic states visited
-    seconds: float | None = None  # of wall-clock time
-    megabytes: int | None = None  # of memory that the whole process holds
+    Attributes:
+        states: symbolic states visited.
+        seconds: of wall-clock time.
+        megabytes: of memory that the whole process holds.
+    """
+
+    states: int | None = None
+    seconds: float | None = None
+    megabytes: int | None = None
 
 
 UNLIMITED = Budget()
@@ -41,11 +47,17 @@ Watch = Callable[[Progress], None]
 
 @dataclass(frozen=True, slots=True)
 class Statistics:
-    """The cost of a search."""
+    """The cost of a search.
 
-    visited: int  # symbolic states that were kept when they were met
-    stored: int  # the states that were not dropped later for a larger one
-    seconds: float  # of wall-clock time
+    Attributes:
+        visited: symbolic states that were kept when they were met.
+        stored: the states that were not dropped later for a larger one.
+        seconds: of wall-clock time.
+    """
+
+    visited: int
+    stored: int
+    seconds: float
 
 
 class Policy(StrEnum):
@@ -63,14 +75,23 @@ class Policy(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Whether a query holds, and a run that shows why or why not."""
+    """Whether a query holds, and a run that shows why or why not.
+
+    Attributes:
+        query: the question.
+        holds: `None` if the budget ended first.
+        run: a witness where `E` holds, a counterexample where `A` or `-->` does not.
+        policy: the choice of the run; `None` where there is no choice.
+        statistics: its cost.
+        remark: for people: the reason why it is not decided, or that time stops.
+    """
 
     query: Query
-    holds: bool | None  # `None` if the budget ended first
-    run: Run | None  # a witness where `E` holds, a counterexample where `A` or `-->` does not
-    policy: Policy | None  # the choice of the run; `None` where there is no choice
+    holds: bool | None
+    run: Run | None
+    policy: Policy | None
     statistics: Statistics
-    remark: str = ""  # for people: the reason why it is not decided, or that time stops
+    remark: str = ""
 
 
 class Meter:

@@ -30,19 +30,30 @@ FARTHEST = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Extreme:
-    """An end of the values of a term."""
+    """An end of the values of a term.
+
+    Attributes:
+        query: the question.
+        term: of which it is an end, as written.
+        largest: whether it is the largest value, or the least.
+        value: in units of time, if of a clock; `None`: it grows without bound, or no state was
+            found that counts.
+        attained: whether some state has it; a clock may only come near it.
+        exact: whether no state goes further; else that was not decided.
+        run: to a state that has the value, or comes near it.
+        statistics: its cost.
+        remark: the reason why it is not exact, or has no value.
+    """
 
     query: Query
-    term: str  # of which it is an end, as written
-    largest: bool  # whether it is the largest value, or the least
-    # in units of time, if of a clock; `None`: it grows without bound, or no state was found that
-    # counts
+    term: str
+    largest: bool
     value: int | None
-    attained: bool  # whether some state has it; a clock may only come near it
-    exact: bool  # whether no state goes further; else that was not decided
-    run: Run | None  # to a state that has the value, or comes near it
+    attained: bool
+    exact: bool
+    run: Run | None
     statistics: Statistics
-    remark: str = ""  # the reason why it is not exact, or has no value
+    remark: str = ""
 
 
 def extremes(
@@ -50,7 +61,11 @@ def extremes(
 ) -> Iterator[Extreme]:
     """Answer `sup`, `inf` or `bounds`: for each term its ends.
 
-    The budget is that of each end; `watch` is called now and then.
+    Args:
+        network: the network in question.
+        query: as resolved.
+        budget: the limits at which it gives up, for each end.
+        watch: called now and then.
 
     Raises:
         ModelError: the query asks for no values, or the network cannot start, or a run of it

@@ -42,14 +42,20 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Suite:
-    """Runs that cover what can be covered."""
+    """Runs that cover what can be covered.
+
+    Attributes:
+        criterion: the coverage criterion.
+        runs: each with the items that it adds to those before.
+        missing: items that no run goes through.
+        statistics: the cost of the search.
+        stopped: the budget that ended the search early, so that `missing` may say too much, or "".
+    """
 
     criterion: Criterion
-    # each with the items that it adds to those before
     runs: tuple[tuple[Run, tuple[Item, ...]], ...]
-    missing: tuple[Item, ...]  # items that no run goes through
+    missing: tuple[Item, ...]
     statistics: Statistics
-    # the budget that ended the search early, so that `missing` may say too much, or ""
     stopped: str
 
     @property
