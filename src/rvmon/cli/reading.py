@@ -83,12 +83,9 @@ def reading_words(arguments: argparse.Namespace) -> list[str]:
     words = time_words(arguments)
     for text in arguments.map:
         words += ["--map", text]
-    if arguments.nan is not None:
-        words += ["--nan", arguments.nan]
-    if arguments.binding is not None:
-        words += ["--binding", arguments.binding]
-    if arguments.clock is not None:
-        words += ["--clock", arguments.clock]
+    for name in ("nan", "binding", "clock"):
+        if (value := getattr(arguments, name)) is not None:
+            words += [f"--{name}", value]
     if arguments.allow_missing is not None:
         words.append(f"--allow-missing={arguments.allow_missing}".rstrip("="))
     return words
@@ -166,21 +163,13 @@ def chosen_attempt(report: Report, name: str, exact: str | None) -> Attempt:
         why = without_attempts(report.verdicts[name], report.misses.get(name, ""))
         raise RvmonError(f"error: {name} has no attempt in this recording: {why}")
     if exact is None:
-        return _most_telling(attempts)
+        return min(attempts, key=lambda one: {"F": 0, "I": 1}.get(one.verdict.value, 2))
     for attempt in attempts:
         if attempt.name == exact:
             return attempt
     first, last = attempts[0].name, attempts[-1].name
     listed = f"there are {first} to {last}" if last != first else f"there is {first} only"
     raise UnknownNameError(f"error: no attempt {exact}: {listed}")
-
-
-def _most_telling(attempts: Sequence[Attempt]) -> Attempt:
-    for verdict in ("F", "I"):
-        for attempt in attempts:
-            if attempt.verdict.value == verdict:
-                return attempt
-    return attempts[0]
 
 
 ENDING = ".rvcase"  # the suffix of reproducers

@@ -36,9 +36,6 @@ def clip_messages(path: str, form: str, piece: Piece, out: Path) -> Copied:
     Where the stamps of headers count, what is copied was recorded between the first and the last
     message that lie in the piece. Of each topic that feeds what it brings along, and of each that
     serves late subscribers, the last message is put at its start.
-
-    Where the stamps of headers count, what is copied was recorded between the first and the last
-    message that lie in the piece.
     """
     place = local_path(path)
     with closing(open_messages(place, form, piece.schema)) as source:

@@ -70,9 +70,11 @@ class LateColumn:
     `read` gives its values, and where they are invalid, if somewhere.
     """
 
-    def __init__(self, form: str, read: Callable[[], tuple[Any, Any]]) -> None:
-        self._form = form
-        self._read = read
+    def __init__(
+        self, form: str, read: Callable[[], tuple[Any, Any]], dtype: Any, ndim: int, unit: str = ""
+    ) -> None:
+        self._form, self._read = form, read
+        self.dtype, self.ndim, self.unit = dtype, ndim, unit
 
     def tolist(self) -> list[Any]:
         """Its values, bytes as texts; `None` where the file says that one is invalid."""
@@ -131,21 +133,20 @@ def _tree(columns: Columns) -> dict[str, Any]:
 
 def leaves_of(columns: Columns) -> dict[str, Kind]:
     """The fields of columns with their kinds; those of several values a row are arrays."""
-    found: dict[str, Kind] = {}
-    for path, column in columns.items():
-        leaf = re.sub(r"\[\d+\]", "[]", path) + "[]" * (column.ndim - 1)
-        found[leaf] = kind_of_type(column.dtype)
-    return found
-
-
-def kind_of_type(dtype: Any) -> Kind:
-    """The kind of the values of an array.
-
-    >>> kind_of_type(np.dtype("float32")), kind_of_type(np.dtype("uint8"))
-    (<Kind.REAL: 'real'>, <Kind.INT: 'int'>)
-    """
     kinds = {"b": Kind.BOOL, "i": Kind.INT, "u": Kind.INT, "f": Kind.REAL}
-    return kinds.get(dtype.kind, Kind.LABEL)
+    return {
+        _leaf(path, column): kinds.get(column.dtype.kind, Kind.LABEL)
+        for path, column in columns.items()
+    }
+
+
+def units_of(columns: Mapping[str, LateColumn]) -> dict[str, str]:
+    """The units of fields of columns that say one."""
+    return {_leaf(path, column): column.unit for path, column in columns.items() if column.unit}
+
+
+def _leaf(path: str, column: Any) -> str:
+    return re.sub(r"\[\d+\]", "[]", path) + "[]" * int(column.ndim - 1)
 
 
 def joined(columns: Mapping[str, Any]) -> dict[str, Any]:

@@ -34,9 +34,14 @@ class _Array(column_topics.LateColumn):
     ) -> None:
         # An array of a single row or column is a list.
         is_list = len(shape) == 2 and 1 in shape
-        super().__init__(_FORM, lambda: (read().reshape(-1) if is_list else read(), None))
         self.shape = (max(shape),) if is_list else shape
-        self.dtype, self.unit = dtype, unit
+        super().__init__(
+            _FORM,
+            lambda: (read().reshape(-1) if is_list else read(), None),
+            dtype,
+            len(self.shape),
+            unit,
+        )
 
 
 _Tree = dict[str, Any]  # arrays, and trees of them, by name
@@ -155,13 +160,11 @@ def _topic(tree: _Tree, place: str, time: str, stamps: Stamps | None) -> column_
     found = {
         name: one
         for name, one in _within(tree)
-        if one is not array and one.shape[0] == count and len(one.shape) <= 2
+        if one is not array and one.shape[0] == count and one.ndim <= 2
     }
     paths = column_topics.distinct([column_topics.path_of(name) for name in found])
     columns = dict(zip(paths, found.values(), strict=True))
-    arrays = {path + "[]" * (len(column.shape) - 1): column for path, column in columns.items()}
-    leaves = {leaf: column_topics.kind_of_type(array.dtype) for leaf, array in arrays.items()}
-    units = {leaf: array.unit for leaf, array in arrays.items() if array.unit}
+    leaves, units = column_topics.leaves_of(columns), column_topics.units_of(columns)
     name = "/" + "/".join(
         column_topics.path_of(step) for step in place.strip("/").split("/") if step
     )

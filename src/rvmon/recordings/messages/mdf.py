@@ -156,15 +156,15 @@ def _topic(file: Any, name: str, group: int) -> column_topics.ColumnTopic:
         if place != file.masters_db[group]
     ]
     paths = column_topics.distinct([column_topics.path_of(channel.name) for _, channel in listed])
-    columns, leaves, units = {}, {}, {}
+    columns = {}
     for path, (place, _) in zip(paths, listed, strict=True):
         first = file.get(group=group, index=place, record_count=1)
         if first.samples.dtype.names:
             continue  # a structure, whose members are channels as well
-        columns[path] = column_topics.LateColumn("MDF", partial(_channel, file, group, place))
-        leaf = path + "[]" * (first.samples.ndim - 1)
-        leaves[leaf] = column_topics.kind_of_type(first.samples.dtype)
-        if first.unit:
-            units[leaf] = first.unit.strip()
+        read, unit = partial(_channel, file, group, place), (first.unit or "").strip()
+        columns[path] = column_topics.LateColumn(
+            "MDF", read, first.samples.dtype, first.samples.ndim, unit
+        )
+    leaves, units = column_topics.leaves_of(columns), column_topics.units_of(columns)
     topic = Topic(name, type_name, leaves, units=units)
     return column_topics.ColumnTopic(topic, counted, lambda: (_times(file, group), columns))
