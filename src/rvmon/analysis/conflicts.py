@@ -43,22 +43,15 @@ class Implication(Struct, frozen=True):
 
 
 class ConflictSearch:
-    """Searches for conflicts among requirements each of which can pass by itself.
-
-    Attributes:
-        conflicts: found so far; none contains another one.
-        pairs: the number of pairs that read a common name.
-        pairs_undecided: the number of these that are not decided.
-        sets_undecided: the number of larger sets examined but not decided.
-        whole_sets: all sets of up to this size were examined; `None` if those of any size were.
-    """
+    """Searches for conflicts among requirements each of which can pass by itself."""
 
     def __init__(self, together: Together, subjects: Sequence[Subject], deadline: float) -> None:
         self.together = together
         self.subjects = subjects
         self.deadline = deadline
-        self.conflicts: list[Conflict] = []
-        self.sets_undecided = 0
+        self.conflicts: list[Conflict] = []  # found so far; none contains another one
+        self.sets_undecided = 0  # the number of larger sets examined but not decided
+        # all sets of up to this size were examined; `None` if those of any size were
         self.whole_sets: int | None = 2
         self._always = [subject for subject in subjects if subject.is_always]
         self._pairs = [pair for pair in combinations(subjects, 2) if pair[0].names & pair[1].names]
@@ -264,12 +257,8 @@ def _offsets(first: Subject, second: Subject) -> list[int]:
     """Distances (ticks) at which bounds of the two meet, within a tick; round ones first."""
     theirs = {0, *_cuts(second)}
     distances = {a - b + step for a in _cuts(first) for b in theirs for step in (-1, 0, 1)}
-    return sorted((at for at in distances if at > 0), key=_roundness)[:MOST_OFFSETS]
-
-
-def _roundness(offset: int) -> tuple[int, int]:
-    digits = str(offset)
-    return len(digits.rstrip("0")), offset
+    later = (at for at in distances if at > 0)
+    return sorted(later, key=lambda at: (len(str(at).rstrip("0")), at))[:MOST_OFFSETS]
 
 
 def _cuts(subject: Subject) -> set[int]:

@@ -79,13 +79,8 @@ def turning_values(
 
 def is_solved(comparison: Compare) -> bool:
     """Whether `turning_values` of its only variable are sure to show all its truth values."""
-    match comparison:
-        case Compare(left=SignalValue() | FieldValue(), right=Literal()):
-            return True
-        case Compare(left=Literal(), right=SignalValue() | FieldValue()):
-            return True
-        case _:
-            return False
+    sides = {type(comparison.left), type(comparison.right)}
+    return Literal in sides and not sides.isdisjoint((SignalValue, FieldValue))
 
 
 def _stride(value: float) -> float:

@@ -121,7 +121,7 @@ def look_through(
             instants.append(times)
         if valueless:
             valueless -= _born(piece, valueless)
-        samples = _samples(piece) if of_instances else ()
+        samples = tuple(HeldRecording([piece])) if of_instances else ()
         for run in runs:
             run.take(piece, samples)
     positions = None if begin is None else _positions(spec, begin, end, instants)
@@ -201,10 +201,6 @@ class _Group:
             nowhere = np.empty((0, 2), np.int64)
             truths[None] = Truth(nowhere, nowhere)
         return {text: truths[core] for text, core in self._made.cores.items()}
-
-
-def _samples(piece: Batch | Sample) -> Sequence[Sample]:
-    return (piece,) if isinstance(piece, Sample) else tuple(piece.samples())
 
 
 def _born(piece: Batch | Sample, valueless: Set[str]) -> set[str]:

@@ -41,11 +41,6 @@ class CsvText(Generic[_Found]):
     """A text that is taken in stretches, and what of one is not taken yet.
 
     Mostly the end of a line is that of a row. Where it is not, what lies behind it is read again.
-
-    Attributes:
-        is_whole: whether all of the file was read at once, so that nothing more is read of it.
-        found: gives what was found in all of `rest`, if that was read ahead.
-        lost: the names that are unknown as the last line has no end.
     """
 
     def __init__(self, file: BinaryIO) -> None:
@@ -53,15 +48,15 @@ class CsvText(Generic[_Found]):
         first = file.read(size)
         if len(first) == size:
             first += file.read(places.BLOCK - size)
-        self.is_whole = len(first) < places.BLOCK
+        self.is_whole = len(first) < places.BLOCK  # all was read at once: nothing more is read
         self._stretches = stretches(first, file)
         self._read: Generator[tuple[bytes, Callable[[], _Found] | None], None, None]
         self._read = ((stretch, None) for stretch in self._stretches)
-        self.rest, self.found = next(self._read)
+        self.rest, self.found = next(self._read)  # what was found in all of `rest`, if read ahead
         self.start = len(_MARK) if self.rest.startswith(_MARK) else 0
         self.line = 0
         self.is_last = False
-        self.lost: frozenset[str] = frozenset()
+        self.lost: frozenset[str] = frozenset()  # names: unknown as the last line has no end
 
     def read_ahead(self, read: Callable[[bytes], _Found]) -> None:
         """Have further stretches read by other threads."""

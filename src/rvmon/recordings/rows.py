@@ -75,13 +75,6 @@ class Rows:
         unit: the word for a row.
         ordered: whether a stamp before the one above it is an error. Under `max delay` rows are put
             in order instead.
-
-    Attributes:
-        ordered: as given.
-        count: of the rows that were read.
-        first: the instants of the first rows, ticks.
-        lateness: the most by which time goes backwards, ticks; not measured where that is an error.
-        alternations: of known and unknown values.
     """
 
     def __init__(self, schema: Schema, unit: str, *, ordered: bool) -> None:
@@ -151,8 +144,9 @@ class Rows:
 
     def _begin(self) -> None:
         self._conflicts, self.alternations = Conflicts(), Alternations()
+        # of rows that were read; the most by which time goes backwards, ticks, where it may
         self.count = self.lateness = 0
-        self.first: list[int] = []
+        self.first: list[int] = []  # the instants of the first rows, ticks
         self._last: int | None = None
         self._number = 0
         self._given = 0, 0

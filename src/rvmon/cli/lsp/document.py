@@ -13,13 +13,6 @@ from itertools import islice
 from pathlib import Path
 
 from lsprotocol import types as lsp
-from lsprotocol.types import (
-    Position,
-    PositionEncodingKind,
-    Range,
-    TextDocumentContentChangeEvent,
-    TextDocumentContentChangePartial,
-)
 from pygls.uris import from_fs_path, to_fs_path
 
 from rvmon.analysis.diagnostic_codes import page_of
@@ -33,9 +26,9 @@ from rvmon.language.syntax.keywords import split_items
 from rvmon.texts import proposed, shown
 
 _WIDTHS = {
-    PositionEncodingKind.Utf8: (0x80, 0x800, 0x10000),
-    PositionEncodingKind.Utf16: (0x10000,),
-    PositionEncodingKind.Utf32: (),
+    lsp.PositionEncodingKind.Utf8: (0x80, 0x800, 0x10000),
+    lsp.PositionEncodingKind.Utf16: (0x10000,),
+    lsp.PositionEncodingKind.Utf32: (),
 }
 """The characters from which on one takes a unit more."""
 
@@ -46,10 +39,10 @@ class Text:
     Source: Language Server Protocol 3.17, Text Documents and Position.
     """
 
-    def __init__(self, raw: str, encoding: str = PositionEncodingKind.Utf16) -> None:
+    def __init__(self, raw: str, encoding: str = lsp.PositionEncodingKind.Utf16) -> None:
         self.raw = raw
         self.encoding = encoding
-        self._widths = _WIDTHS[PositionEncodingKind(encoding)]
+        self._widths = _WIDTHS[lsp.PositionEncodingKind(encoding)]
         self._starts = [0, *(end.end() for end in re.finditer(r"\r\n|\r|\n", raw))]
 
     @property
@@ -57,7 +50,7 @@ class Text:
         """The text that is compiled: with the language's ends of lines, at the same offsets."""
         return self.raw.replace("\r\n", " \n").replace("\r", "\n")
 
-    def position(self, offset: int) -> Position:
+    def position(self, offset: int) -> lsp.Position:
         r"""Where a character is.
 
         >>> Text("# 😋\nspec a").position(3).character
@@ -65,13 +58,13 @@ class Text:
         """
         line = bisect_right(self._starts, offset) - 1
         column = sum(map(self._width, self.raw[self._starts[line] : offset]))
-        return Position(line, column)
+        return lsp.Position(line, column)
 
-    def range(self, start: int, end: int) -> Range:
+    def range(self, start: int, end: int) -> lsp.Range:
         """The range of some characters."""
-        return Range(self.position(start), self.position(end))
+        return lsp.Range(self.position(start), self.position(end))
 
-    def offset(self, position: Position) -> int:
+    def offset(self, position: lsp.Position) -> int:
         """The character at a position, at the end of its line at most."""
         if position.line >= len(self._starts):
             return len(self.raw)
@@ -84,9 +77,9 @@ class Text:
             place += 1
         return place
 
-    def changed(self, change: TextDocumentContentChangeEvent) -> Text:
+    def changed(self, change: lsp.TextDocumentContentChangeEvent) -> Text:
         """The text after an edit."""
-        if not isinstance(change, TextDocumentContentChangePartial):
+        if not isinstance(change, lsp.TextDocumentContentChangePartial):
             return Text(change.text, self.encoding)
         start, end = self.offset(change.range.start), self.offset(change.range.end)
         return Text(self.raw[:start] + change.text + self.raw[end:], self.encoding)

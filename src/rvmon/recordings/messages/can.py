@@ -59,14 +59,9 @@ _PDU_2 = 240  # from this format on the second byte of an identifier of J1939 is
 class FrameMessages(Messages):
     """An open log, gone through once for what is in it.
 
-    Without texts of databases, by file name, those beside the log count.
-
-    Attributes:
-        topics: by name, one a message of the database that the log has; the name says the channel
-            where a message comes on several, and the identifier where another has its name.
-        end: the last stamp.
-        count: of the frames of these topics.
-        outages: the stretches of lines that cannot be read, and its end if it was cut off.
+    Without texts of databases, by file name, those beside the log count. A topic is a message of
+    the database that the log has: its name says the channel where the message comes on several, and
+    the identifier where another has its name.
     """
 
     def __init__(self, path: Path, definitions: Mapping[str, str]) -> None:
@@ -74,6 +69,7 @@ class FrameMessages(Messages):
         self._is_cut = _is_cut(path)
         self._known = _messages(path, definitions)
         self._seen: dict[_Key, Any] = {}
+        # the stretches of lines that cannot be read, and its end if it was cut off
         self.outages: list[Outage] = []
         self._called = _names(self._known.values())
         channels: dict[str, set[Any]] = {}

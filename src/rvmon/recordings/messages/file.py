@@ -92,17 +92,7 @@ def _close(ready: list[Messages]) -> None:
 
 
 class MessageFile:
-    """A recording of messages, looked at.
-
-    Attributes:
-        topics: by name.
-        names: declared names that have a topic.
-        unread: the topics and fields that feed nothing.
-        end: the last instant of the recording; `None` where another clock counts.
-        count: of its messages; 0 if nobody knows.
-        skew: of the clocks of those who sent what was read last.
-        outages: its outages, in order.
-    """
+    """A recording of messages, looked at."""
 
     def __init__(self, path: str, form: str, schema: Schema) -> None:
         self._place = path, form
@@ -111,16 +101,17 @@ class MessageFile:
         # To open it anew takes as long as to read a few hundred messages.
         self._ready = [source]
         weakref.finalize(self, _close, self._ready)
-        self.topics = source.topics
+        self.topics = source.topics  # by name
+        # also the topics and fields that feed nothing
         self._bounds, self.unread = matched(schema, source.topics)
-        self.count = source.count
-        self.end = source.end
+        self.count = source.count  # of its messages; 0 if nobody knows
+        self.end = source.end  # its last instant; `None` where another clock counts
         clocks = {bound.clock or schema.binding.clock for bound in self._bounds.values()}
         if Clock.HEADER in clocks:
             self.end = None
-        self.names = frozenset(self._bounds)
-        self.skew = Skew()
-        self.outages = tuple(self._of_names(source.outages))
+        self.names = frozenset(self._bounds)  # declared, that have a topic
+        self.skew = Skew()  # of the clocks of those who sent what was read last
+        self.outages = tuple(self._of_names(source.outages))  # in order
         if source.outages and Clock.HEADER in clocks:
             raise TraceError(
                 f"{source.outages[0].why}; its instant by the stamps of headers is not known: "
