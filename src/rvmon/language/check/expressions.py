@@ -6,36 +6,13 @@ from collections.abc import Callable, Sequence
 from typing import ParamSpec, TypeVar, assert_never
 
 from rvmon.diagnostics import Diagnostic, Span
+from rvmon.language.check import scope as sc
 from rvmon.language.check.comparisons import compared, formula_of, moved, number_of
 from rvmon.language.check.function_calls import applied
 from rvmon.language.check.moving_windows import bound_of, bounded
 from rvmon.language.check.quantities import arithmetic, closed_interval, spread, ticks_of
-from rvmon.language.check.scope import (
-    EVERYWHERE,
-    Chosen,
-    Closure,
-    Moment,
-    Now,
-    Quantity,
-    Scope,
-    Table,
-    Value,
-    close_name,
-    close_unit,
-)
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
-from rvmon.language.checked.formula import (
-    Binary,
-    BoundAtom,
-    Constant,
-    EventAtom,
-    FieldValue,
-    Formula,
-    Interval,
-    SignalValue,
-    Unary,
-    UnaryOp,
-)
 from rvmon.language.checked.operators import Tense, Window
 from rvmon.language.checked.specification import TimeModel
 from rvmon.language.rules import Findings, Refusal, Reported
@@ -64,11 +41,11 @@ class Checker:
     A method that takes an expression reports what is wrong in *all* its operands before it raises.
     """
 
-    def __init__(self, table: Table, findings: Findings, characters: int) -> None:
+    def __init__(self, table: sc.Table, findings: Findings, characters: int) -> None:
         self.table = table
         self._findings = findings
         self.effort = Effort(characters)
-        self._defined: dict[str, tuple[Value | None, Cost]] = {}
+        self._defined: dict[str, tuple[sc.Value | None, Cost]] = {}
 
     def report(self, finding: Diagnostic) -> None:
         """Record a finding.
@@ -78,7 +55,7 @@ class Checker:
         """
         self._findings.add(finding)
 
-    def top(self, expression: ast.Expression, scope: Scope) -> Formula | None:
+    def top(self, expression: ast.Expression, scope: sc.Scope) -> rv.Formula | None:
         """A whole formula, or `None` if it is wrong."""
         self.effort.begin()
         return self.collected(self.formula, expression, scope)
@@ -93,7 +70,7 @@ class Checker:
             pass
         return None
 
-    def formula(self, expression: ast.Expression, scope: Scope) -> Formula:
+    def formula(self, expression: ast.Expression, scope: sc.Scope) -> rv.Formula:
         """The formula that the expression stands for.
 
         Raises:
@@ -102,22 +79,26 @@ class Checker:
         """
         return self.formulas((expression,), scope)[0]
 
-    def formulas(self, expressions: tuple[ast.Expression, ...], scope: Scope) -> list[Formula]:
+    def formulas(
+        self, expressions: tuple[ast.Expression, ...], scope: sc.Scope
+    ) -> list[rv.Formula]:
         """As `formula`, for several operands."""
         values = self.values(expressions, scope)
         return [formula_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
 
-    def quantities(self, expressions: tuple[ast.Expression, ...], scope: Scope) -> list[Quantity]:
+    def quantities(
+        self, expressions: tuple[ast.Expression, ...], scope: sc.Scope
+    ) -> list[sc.Quantity]:
         """The quantities that the expressions stand for."""
         values = self.values(expressions, scope)
         return [number_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
 
     def calculated(
-        self, op: NumericOp, args: tuple[ast.Expression, ...], scope: Scope, span: Span
-    ) -> Value:
+        self, op: NumericOp, args: tuple[ast.Expression, ...], scope: sc.Scope, span: Span
+    ) -> sc.Value:
         """An operation on numbers, or on choices between them."""
 
-        def calculate(values: Sequence[Value]) -> Value:
+        def calculate(values: Sequence[sc.Value]) -> sc.Value:
             if (instant := moved(op, values)) is not None:
                 return instant
             pairs = zip(values, args, strict=True)
@@ -125,7 +106,7 @@ class Checker:
 
         return spread(self.values(args, scope), span, calculate)
 
-    def values(self, expressions: tuple[ast.Expression, ...], scope: Scope) -> list[Value]:
+    def values(self, expressions: tuple[ast.Expression, ...], scope: sc.Scope) -> list[sc.Value]:
         """The values that the expressions stand for.
 
         Raises:
@@ -137,7 +118,7 @@ class Checker:
             raise Reported
         return values
 
-    def duration(self, expression: ast.Expression, scope: Scope) -> int:
+    def duration(self, expression: ast.Expression, scope: sc.Scope) -> int:
         """A constant duration in ticks.
 
         Raises:
@@ -146,7 +127,7 @@ class Checker:
         """
         return ticks_of(self.values((expression,), scope)[0], expression.span)
 
-    def value(self, expression: ast.Expression, scope: Scope) -> Value | None:
+    def value(self, expression: ast.Expression, scope: sc.Scope) -> sc.Value | None:
         """The value that the expression stands for; `None` if it is wrong, which is recorded."""
         try:
             self.effort.enter(expression.span)
@@ -159,7 +140,7 @@ class Checker:
             self.effort.leave()
         return None
 
-    def _value(self, expression: ast.Expression, scope: Scope) -> Value:
+    def _value(self, expression: ast.Expression, scope: sc.Scope) -> sc.Value:
         match expression:
             case ast.Group(inner=inner):
                 return self._value(inner, scope)
@@ -168,9 +149,9 @@ class Checker:
             case ast.Name():
                 return self._name(expression, scope)
             case ast.Truth(value=value, span=span):
-                return Constant(value, span)
+                return rv.Constant(value, span)
             case ast.Edge(bound=bound, span=span):
-                return BoundAtom(bound, span)
+                return rv.BoundAtom(bound, span)
             case ast.Call():
                 return self._call(expression, scope)
             case ast.Prefix():
@@ -183,7 +164,7 @@ class Checker:
                 return compared(self, expression, scope)
             case ast.Choice(condition=condition, chosen=chosen, otherwise=otherwise):
                 sides = self.values((chosen, otherwise), scope)
-                return Chosen(self.formula(condition, scope), *sides)
+                return sc.Chosen(self.formula(condition, scope), *sides)
             case ast.Operation(op=op, args=args, span=span):
                 return self.calculated(op, args, scope, span)
             case ast.Path() | ast.Quantified() | ast.LeadsTo():
@@ -191,19 +172,19 @@ class Checker:
             case _:
                 assert_never(expression)
 
-    def _number(self, number: ast.Number) -> Quantity:
+    def _number(self, number: ast.Number) -> sc.Quantity:
         if number.value is None:
             raise Refusal(rules.out_of_range(number.span))
         try:
             unit = parse_unit(number.unit) if number.unit else PLAIN
         except UnknownUnitError as error:
             part = str(error)
-            raise Refusal(rules.unknown_unit(number.span, part, close_unit(part))) from None
-        return Quantity(constant=number.value, unit=unit)
+            raise Refusal(rules.unknown_unit(number.span, part, sc.close_unit(part))) from None
+        return sc.Quantity(constant=number.value, unit=unit)
 
     # Names.
 
-    def known(self, name: str, scope: Scope) -> bool:
+    def known(self, name: str, scope: sc.Scope) -> bool:
         """Whether the name stands for anything but a label."""
         table = self.table
         return (
@@ -213,43 +194,49 @@ class Checker:
             or table.field(name) is not None
         )
 
-    def _name(self, name: ast.Name, scope: Scope) -> Value:
+    def _name(self, name: ast.Name, scope: sc.Scope) -> sc.Value:
         local = scope.names.get(name.text)
         match local:
-            case Quantity() | Moment():
+            case sc.Quantity() | sc.Moment():
                 return local
-            case Closure(expression=expression, scope=outer):
+            case sc.Closure(expression=expression, scope=outer):
                 return self.values((expression,), outer)[0]
         declared = self.table.declared.get(name.text)
         if isinstance(declared, DefineItem | ConstItem):
             return self._defined_value(name, declared)
         return self._atom(name, scope)
 
-    def _atom(self, name: ast.Name, scope: Scope) -> Value:
+    def _atom(self, name: ast.Name, scope: sc.Scope) -> sc.Value:
         table = self.table
         if signal := table.signals.get(name.text):
-            return self._typed(SignalValue(signal.name), signal.type.kind, signal.type.labels, name)
+            return self._typed(
+                rv.SignalValue(signal.name), signal.type.kind, signal.type.labels, name
+            )
         if name.text in table.events:
-            return EventAtom(name.text, name.span)
+            return rv.EventAtom(name.text, name.span)
         if field := table.field(name.text):
-            value = FieldValue(field.event, field.field)
+            value = rv.FieldValue(field.event, field.field)
             return self._typed(value, field.type.kind, field.type.labels, name)
         if name.text in table.declared or name.text in table.doubtful:
             raise Reported  # its declaration is wrong, and that is recorded
         if name.text == NOW:
-            return Now()
-        close = close_name(table, name.text, tuple(scope.names))
+            return sc.Now()
+        close = sc.close_name(table, name.text, tuple(scope.names))
         raise Refusal(name_rules.unknown(name.span, name.text, close))
 
     def _typed(
-        self, node: SignalValue | FieldValue, kind: Kind, labels: tuple[str, ...], name: ast.Name
-    ) -> Quantity:
-        return Quantity(
+        self,
+        node: rv.SignalValue | rv.FieldValue,
+        kind: Kind,
+        labels: tuple[str, ...],
+        name: ast.Name,
+    ) -> sc.Quantity:
+        return sc.Quantity(
             node, unit=self.table.units.get(name.text, PLAIN), integral=kind is Kind.INT,
             labels=labels, truth=kind is Kind.BOOL,
         )  # fmt: skip
 
-    def _defined_value(self, name: ast.Name, declared: DefineItem | ConstItem) -> Value:
+    def _defined_value(self, name: ast.Name, declared: DefineItem | ConstItem) -> sc.Value:
         """A macro without parameters or a constant: evaluated once, shared by all its uses."""
         if isinstance(declared, DefineItem) and declared.parameters is not None:
             count = len(declared.parameters)
@@ -268,16 +255,16 @@ class Checker:
         self.effort.add(cost, name.span)
         return body_value
 
-    def _body_value(self, declared: DefineItem | ConstItem) -> Value | None:
+    def _body_value(self, declared: DefineItem | ConstItem) -> sc.Value | None:
         if isinstance(declared, DefineItem):
-            return self.value(declared.body, EVERYWHERE)
-        value = self.value(declared.value, EVERYWHERE)
-        if value is None or (isinstance(value, Quantity) and value.constant is not None):
+            return self.value(declared.body, sc.EVERYWHERE)
+        value = self.value(declared.value, sc.EVERYWHERE)
+        if value is None or (isinstance(value, sc.Quantity) and value.constant is not None):
             return value
         self.report(rules.not_constant(declared.value.span))
         return None
 
-    def _call(self, call: ast.Call, scope: Scope) -> Value:
+    def _call(self, call: ast.Call, scope: sc.Scope) -> sc.Value:
         declared = self.table.declared.get(call.function.text)
         if not isinstance(declared, DefineItem) or declared.parameters is None:
             return applied(self, call, scope)
@@ -288,24 +275,28 @@ class Checker:
             raise Refusal(rules.argument_count(call.span, call.function.text, takes, given))
         if call.function.text in self.table.recursive:
             raise Reported
-        closures = (Closure(arg, scope) for arg in call.args)
+        closures = (sc.Closure(arg, scope) for arg in call.args)
         inner = scope.inside(dict(zip(parameters, closures, strict=True)))
         return self.values((declared.body,), inner)[0]
 
-    def peeled(self, expression: ast.Expression, scope: Scope) -> tuple[ast.Expression, Scope]:
+    def peeled(
+        self, expression: ast.Expression, scope: sc.Scope
+    ) -> tuple[ast.Expression, sc.Scope]:
         """The expression itself, without brackets and macro parameters around it."""
         while True:
             match expression:
                 case ast.Group(inner=inner):
                     expression = inner
-                case ast.Name(text=text) if isinstance(argument := scope.names.get(text), Closure):
+                case ast.Name(text=text) if isinstance(
+                    argument := scope.names.get(text), sc.Closure
+                ):
                     expression, scope = argument.expression, argument.scope
                 case _:
                     return expression, scope
 
     # Operators.
 
-    def _prefix(self, prefix: ast.Prefix, scope: Scope) -> Formula:
+    def _prefix(self, prefix: ast.Prefix, scope: sc.Scope) -> rv.Formula:
         present = prefix.op.entry.tense is Tense.PRESENT
         # Both operand and window are checked before either is refused, to show all findings.
         operand = self.value(prefix.operand, scope if present else scope.later())
@@ -317,11 +308,11 @@ class Checker:
         required = formula_of(operand, prefix.operand.span)
         if bound is not None:
             return bounded(prefix.op, (required,), bound, prefix.span)
-        return Unary(prefix.op, required, interval, prefix.span)
+        return rv.Unary(prefix.op, required, interval, prefix.span)
 
     def _interval_of(
-        self, op: UnaryOp, window: WindowSyntax | None, span: Span, scope: Scope
-    ) -> Interval | None:
+        self, op: rv.UnaryOp, window: WindowSyntax | None, span: Span, scope: sc.Scope
+    ) -> rv.Interval | None:
         if op.entry.tense is Tense.PRESENT:
             return None
         if op.entry.window is Window.NONE:
@@ -334,7 +325,7 @@ class Checker:
             return None
         return self.interval(window, scope)
 
-    def _infix(self, infix: ast.Infix, scope: Scope) -> Formula:
+    def _infix(self, infix: ast.Infix, scope: sc.Scope) -> rv.Formula:
         present = infix.op.entry.window is Window.NONE
         inner = scope if present else scope.later()
         operands = [self.value(side, inner) for side in (infix.left, infix.right)]
@@ -351,9 +342,9 @@ class Checker:
         sides = formula_of(left, infix.left.span), formula_of(right, infix.right.span)
         if bound is not None:
             return bounded(infix.op, sides, bound, infix.span)
-        return Binary(infix.op, *sides, interval, infix.span)
+        return rv.Binary(infix.op, *sides, interval, infix.span)
 
-    def interval(self, window: WindowSyntax | None, scope: Scope) -> Interval:
+    def interval(self, window: WindowSyntax | None, scope: sc.Scope) -> rv.Interval:
         """The window in ticks; none is from 0 on.
 
         Raises:
@@ -361,7 +352,7 @@ class Checker:
             Reported: a bound is wrong.
         """
         if window is None:
-            return Interval()
+            return rv.Interval()
         low = 0 if window.low is None else self.duration(window.low, scope)
         high = None if window.high is None else self.duration(window.high, scope)
         if window.low and window.high and high is not None and high < low:

@@ -62,26 +62,15 @@ def checked_requirement(checker: Checker, item: items.RequirementItem) -> spec.R
     _warn_of_traps(checker, item, parts, captures)
     texts = {clause.word: clause.text for clause in _clauses(item, items.TextClause)}
     scopes = [clause.span.text for clause in _clauses(item, items.ScopeClause)]
+    # The findings of the trigger were collected in `_parts`, while checking the consequent.
     return spec.Requirement(
-        item.name.text,
-        mode,
-        when,
-        consequent,
-        item.text,
-        at_end=policy,
-        pulse=classify.is_pulse(when),
-        # The findings of the trigger were collected in `_parts`, while checking the consequent.
-        captures=(*captures, *trigger.captures),
-        for_each=for_each,
-        source=texts.get("source", ""),
-        rationale=texts.get("rationale", ""),
-        severity=texts.get("severity", ""),
+        item.name.text, mode, when, consequent, item.text, at_end=policy,
+        pulse=classify.is_pulse(when), captures=(*captures, *trigger.captures), for_each=for_each,
+        source=texts.get("source", ""), rationale=texts.get("rationale", ""),
+        severity=texts.get("severity", ""), span=item.span, ctl=ctl,
         tags=tuple(tag for clause in _clauses(item, items.TagsClause) for tag in clause.tags),
-        span=item.span,
-        ctl=ctl,
-        scope=scopes[0] if scopes else "",
-        run_share=share,
-    )
+        scope=scopes[0] if scopes else "", run_share=share,
+    )  # fmt: skip
 
 
 def _refuse_fields_in_sums(formulas: Iterable[rv.Formula], place: Span) -> None:

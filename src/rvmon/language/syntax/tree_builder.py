@@ -17,27 +17,8 @@ from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import Mode, Role, TimeModel
 from rvmon.language.rules import Refusal, short
 from rvmon.language.rules import syntax as rules
+from rvmon.language.syntax import expressions as ast
 from rvmon.language.syntax import items
-from rvmon.language.syntax.expressions import (
-    Call,
-    Choice,
-    Comparison,
-    Edge,
-    Expression,
-    Group,
-    Ident,
-    Immediately,
-    Infix,
-    LeadsTo,
-    Name,
-    Number,
-    Operation,
-    Path,
-    Prefix,
-    Quantified,
-    Truth,
-    Window,
-)
 
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
 _LARGEST = 400
@@ -81,16 +62,16 @@ class Builder:
     def _span(self, start: int, end: int) -> Span:
         return Span(self._source, self._offset + start, self._offset + end)
 
-    def _word(self, token: Token) -> Ident | str:
+    def _word(self, token: Token) -> ast.Ident | str:
         """A name without quotes or bracket, or another word, with its place; a text without."""
         start, end = token.start_pos or 0, token.end_pos or 0
         if token.type == "STRING":
             return re.sub(r"\\(.)", r"\1", token[1:-1])
         if token.type == "CALL":
-            return Ident(token[:-1], self._span(start, end - 1))
-        return Ident(token[1:-1] if token[0] == "`" else str(token), self._span(start, end))
+            return ast.Ident(token[:-1], self._span(start, end - 1))
+        return ast.Ident(token[1:-1] if token[0] == "`" else str(token), self._span(start, end))
 
-    def chain(self, _: Span, *parts: Any) -> Infix:
+    def chain(self, _: Span, *parts: Any) -> ast.Infix:
         """Operands with one connective, or several of one precedence, between them."""
         operands, words = parts[::2], parts[1::2]
         if not _are_alike(operands):
@@ -98,48 +79,48 @@ class Builder:
                 self._check_reach(operand, operands[-1])
         if BinaryOp.of(words[0].text) is not BinaryOp.IFF:
             self._check_sides(operands, words)
-        infix: Infix = _balanced(operands, words)
+        infix: ast.Infix = _balanced(operands, words)
         return infix
 
-    def infix(self, span: Span, left: Expression, word: Ident, *rest: Any) -> Infix:
+    def infix(self, span: Span, left: ast.Expression, word: ast.Ident, *rest: Any) -> ast.Infix:
         """An operator of the `until` family, or an implication."""
         *window, right = rest
         op = BinaryOp.of(" ".join(word.text.split()))
         self._check_reach(left, right)
-        if _is_kin_of_until(op) and isinstance(right, Infix) and right.op is not op:
+        if _is_kin_of_until(op) and isinstance(right, ast.Infix) and right.op is not op:
             self.findings.append(rules.mixed_chain(right.op_span, word.span, short(word.span.text)))
-        return Infix(op, left, first_of(window), right, word.span, span)
+        return ast.Infix(op, left, first_of(window), right, word.span, span)
 
-    def _check_sides(self, operands: Sequence[Expression], words: Sequence[Ident]) -> None:
+    def _check_sides(self, operands: Sequence[ast.Expression], words: Sequence[ast.Ident]) -> None:
         """Between `until` or its kin and a connective a reader may see the other bracket first."""
         for number, operand in enumerate(operands):
-            if isinstance(operand, Infix) and _is_kin_of_until(operand.op):
+            if isinstance(operand, ast.Infix) and _is_kin_of_until(operand.op):
                 word = words[min(number, len(words) - 1)]
                 near = operand.right if number < len(words) else operand.left
                 self.findings.append(
                     rules.two_sides(operand.span, operand.op_span, word.span, near.span)
                 )
 
-    def _check_reach(self, left: Expression, last: Expression) -> None:
+    def _check_reach(self, left: ast.Expression, last: ast.Expression) -> None:
         """A temporal prefix right before a connective has to say how far it reaches."""
         edge = left
         while True:
             match edge:
-                case Prefix(op=UnaryOp.NOT, operand=inner) | Infix(right=inner):
+                case ast.Prefix(op=UnaryOp.NOT, operand=inner) | ast.Infix(right=inner):
                     edge = inner
-                case Prefix() | Path(reaching=False):
+                case ast.Prefix() | ast.Path(reaching=False):
                     break
                 case _:
                     return
-        if not isinstance(edge.operand, Group):
+        if not isinstance(edge.operand, ast.Group):
             operand = edge.operand.span
             operator = Span(operand.source, edge.span.start, operand.start)
             self.findings.append(rules.reach(operator, operand, last.span))
 
 
-def _are_alike(operands: Sequence[Expression]) -> bool:
+def _are_alike(operands: Sequence[ast.Expression]) -> bool:
     """Whether all begin with the same operator of time, which nobody takes for one in the other."""
-    firsts = {operand.op if isinstance(operand, Prefix) else None for operand in operands}
+    firsts = {operand.op if isinstance(operand, ast.Prefix) else None for operand in operands}
     return len(firsts) == 1 and not firsts & {None, UnaryOp.NOT}
 
 
@@ -147,7 +128,7 @@ def _is_kin_of_until(op: BinaryOp) -> bool:
     return op.entry.level == BinaryOp.UNTIL.entry.level
 
 
-def _balanced(operands: Sequence[Any], words: Sequence[Ident]) -> Any:
+def _balanced(operands: Sequence[Any], words: Sequence[ast.Ident]) -> Any:
     """All four connectives are associative, so a long chain need not become a deep tree."""
     if len(operands) == 1:
         return operands[0]
@@ -155,7 +136,7 @@ def _balanced(operands: Sequence[Any], words: Sequence[Ident]) -> Any:
     left = _balanced(operands[:middle], words[: middle - 1])
     right = _balanced(operands[middle:], words[middle:])
     word = words[middle - 1]
-    return Infix(BinaryOp.of(word.text), left, None, right, word.span, left.span.to(right.span))
+    return ast.Infix(BinaryOp.of(word.text), left, None, right, word.span, left.span.to(right.span))
 
 
 def first_of(parts: Sequence[Any]) -> Any:
@@ -163,70 +144,80 @@ def first_of(parts: Sequence[Any]) -> Any:
     return parts[0] if parts else None
 
 
-def _number(span: Span, word: Ident) -> Number:
+def _number(span: Span, word: ast.Ident) -> ast.Number:
     digits = word.text[: _NUMBER.match(word.text).end()]  # type: ignore[union-attr]  # terminal NUMBER
     decimal = Decimal(digits)
     # As a fraction, `1e999999999` would take half a gigabyte.
     small = abs(decimal.adjusted()) <= _LARGEST and len(digits) <= 2 * _LARGEST
     value = Fraction(decimal) if small or not decimal else None
-    return Number(value, word.text[len(digits) :].strip(), span)
+    return ast.Number(value, word.text[len(digits) :].strip(), span)
 
 
-def _comparison(span: Span, left: Expression, word: Ident, right: Expression, *rest: Any) -> Any:
+def _comparison(
+    span: Span, left: ast.Expression, word: ast.Ident, right: ast.Expression, *rest: Any
+) -> Any:
     if rest:
         further = rest[0].text, rest[1].span
         raise Refusal(rules.comparison_chain(left.span, word.text, right.span, *further))
     op = CompareOp("==" if word.text == "=" else word.text)
-    return Comparison(op, left, right, word.span, span)
+    return ast.Comparison(op, left, right, word.span, span)
 
 
-def _among(span: Span, left: Expression, *rest: Any) -> Expression:
-    values = [part for part in rest if not isinstance(part, Ident)]
-    equal = [Comparison(CompareOp.EQ, left, value, value.span, span) for value in values]
-    either: Expression = equal[0]
+def _among(span: Span, left: ast.Expression, *rest: Any) -> ast.Expression:
+    values = [part for part in rest if not isinstance(part, ast.Ident)]
+    equal = [ast.Comparison(CompareOp.EQ, left, value, value.span, span) for value in values]
+    either: ast.Expression = equal[0]
     for further in equal[1:]:
-        either = Infix(BinaryOp.OR, either, None, further, span, span)
-    either = Group(either, span)
+        either = ast.Infix(BinaryOp.OR, either, None, further, span, span)
+    either = ast.Group(either, span)
     denied = len(values) < len(rest)
-    return Prefix(UnaryOp.NOT, None, either, span, span) if denied else either
+    return ast.Prefix(UnaryOp.NOT, None, either, span, span) if denied else either
 
 
-def _prefix(span: Span, word: Ident, *rest: Any) -> Prefix | Immediately:
+def _prefix(span: Span, word: ast.Ident, *rest: Any) -> ast.Prefix | ast.Immediately:
     *window, operand = rest
     if word.text == "immediately":
-        return Immediately(operand, span)
-    return Prefix(UnaryOp.of(word.text), first_of(window), operand, word.span, span)
+        return ast.Immediately(operand, span)
+    return ast.Prefix(UnaryOp.of(word.text), first_of(window), operand, word.span, span)
 
 
-def _bounded(span: Span, word: Ident, bound: Expression | Window, operand: Expression) -> Prefix:
+def _bounded(
+    span: Span, word: ast.Ident, bound: ast.Expression | ast.Window, operand: ast.Expression
+) -> ast.Prefix:
     op = UnaryOp.EVENTUALLY if word.text == "within" else UnaryOp.ALWAYS
-    window = bound if isinstance(bound, Window) else Window(None, bound, False, False, bound.span)
-    return Prefix(op, window, operand, word.span, span)
+    window = (
+        bound
+        if isinstance(bound, ast.Window)
+        else ast.Window(None, bound, False, False, bound.span)
+    )
+    return ast.Prefix(op, window, operand, word.span, span)
 
 
-def _path(span: Span, word: Ident, *rest: Any) -> Path:
+def _path(span: Span, word: ast.Ident, *rest: Any) -> ast.Path:
     *window, operand = rest
     reaching = word.text[1] in "[<"
     op = UnaryOp.of({"[": "G", "<": "F"}.get(word.text[1], word.text[1]))
-    return Path(word.text[0] == "A", op, first_of(window), operand, reaching, word.span, span)
+    return ast.Path(word.text[0] == "A", op, first_of(window), operand, reaching, word.span, span)
 
 
-def _at_most(span: Span, *parts: Any) -> Window:
-    (bound,) = (part for part in parts if not isinstance(part, Ident))
-    return Window(None, bound, False, False, span)
+def _at_most(span: Span, *parts: Any) -> ast.Window:
+    (bound,) = (part for part in parts if not isinstance(part, ast.Ident))
+    return ast.Window(None, bound, False, False, span)
 
 
-def _window(span: Span, opening: Ident, low: Expression, high: Any, closing: Ident) -> Window:
-    end = None if isinstance(high, Ident) else high
-    return Window(low, end, opening.text == "(", closing.text == ")", span)
+def _window(
+    span: Span, opening: ast.Ident, low: ast.Expression, high: Any, closing: ast.Ident
+) -> ast.Window:
+    end = None if isinstance(high, ast.Ident) else high
+    return ast.Window(low, end, opening.text == "(", closing.text == ")", span)
 
 
-def _text(part: Ident | str) -> str:
+def _text(part: ast.Ident | str) -> str:
     return part if isinstance(part, str) else part.text
 
 
 def _signals(
-    span: Span, names: Sequence[Ident], type_: items.TypeSyntax, *rest: Any
+    span: Span, names: Sequence[ast.Ident], type_: items.TypeSyntax, *rest: Any
 ) -> items.Declarations:
     role = first_of([part for part in rest if isinstance(part, Role)])
     ignored = first_of([part for part in rest if isinstance(part, Span)])
@@ -242,26 +233,26 @@ def _events(span: Span, *parts: Any) -> items.Declarations:
     return items.Declarations(tuple(events), span)
 
 
-def _requirement(span: Span, name: Ident, *rest: Any) -> items.RequirementItem:
+def _requirement(span: Span, name: ast.Ident, *rest: Any) -> items.RequirementItem:
     text, *parts = rest if isinstance(rest[0], str) else ("", *rest)
     (body, early), *clauses = parts
     return items.RequirementItem(name, text, body, (*early, *clauses), span)
 
 
-def _triggered(mode: Mode, trigger: Expression, *rest: Any) -> tuple[items.Triggered, Any]:
+def _triggered(mode: Mode, trigger: ast.Expression, *rest: Any) -> tuple[items.Triggered, Any]:
     """A trigger with what is required, and the clauses between the two."""
     *clauses, consequent = rest
     return items.Triggered(mode, trigger, consequent), clauses
 
 
 def _bin(span: Span, *parts: Any) -> items.BinSyntax:
-    names = [part for part in parts if isinstance(part, Ident)]
-    values = first_of([part for part in parts if not isinstance(part, Ident)])
+    names = [part for part in parts if isinstance(part, ast.Ident)]
+    values = first_of([part for part in parts if not isinstance(part, ast.Ident)])
     kind = BinKind(names[0].text) if len(names) > 1 else BinKind.GOAL
     return items.BinSyntax(names[-1], values, kind, span)
 
 
-def _coverpoint(span: Span, name: Ident, *rest: Any) -> items.CoverpointItem:
+def _coverpoint(span: Span, name: ast.Ident, *rest: Any) -> items.CoverpointItem:
     bins = tuple(part for part in rest if isinstance(part, items.BinSyntax))
     expression = None if isinstance(rest[0], items.BinSyntax) else rest[0]
     clauses = rest[len(bins) + (expression is not None) :]
@@ -271,29 +262,29 @@ def _coverpoint(span: Span, name: Ident, *rest: Any) -> items.CoverpointItem:
 _MADE: Mapping[str, Callable[..., Any]] = {
     # Expressions.
     "literal": _number,
-    "name": lambda span, word: Name(word.text, span),
-    "truth": lambda span, word: Truth(word.text == "true", span),
-    "edge": lambda span, word: Edge(Bound(word.text), span),
-    "group": Group,
-    "minus": lambda span, _, operand: Operation(NumericOp.NEG, (operand,), span),
-    "arithmetic": lambda span, left, word, right: Operation(
+    "name": lambda span, word: ast.Name(word.text, span),
+    "truth": lambda span, word: ast.Truth(word.text == "true", span),
+    "edge": lambda span, word: ast.Edge(Bound(word.text), span),
+    "group": ast.Group,
+    "minus": lambda span, _, operand: ast.Operation(NumericOp.NEG, (operand,), span),
+    "arithmetic": lambda span, left, word, right: ast.Operation(
         NumericOp.of(word.text), (left, right), span
     ),
-    "call": lambda span, function, *args: Call(function, args, span),
-    "choice": Choice,
+    "call": lambda span, function, *args: ast.Call(function, args, span),
+    "choice": ast.Choice,
     "comparison": _comparison,
     "among": _among,
     "prefix": _prefix,
     "bounded": _bounded,
     "path": _path,
-    "quantified": lambda span, word, path: Quantified(word.text == "A", path, span),
-    "leads_to": lambda span, left, _, *rest: LeadsTo(left, first_of(rest[:-1]), rest[-1], span),
+    "quantified": lambda span, word, path: ast.Quantified(word.text == "A", path, span),
+    "leads_to": lambda span, left, _, *rest: ast.LeadsTo(left, first_of(rest[:-1]), rest[-1], span),
     "at_most": _at_most,
     "window": _window,
     # Declarations.
     "header": lambda span, name, title="": items.Header(name, title, span),
     "import_item": lambda span, target: items.ImportItem(
-        _text(target), isinstance(target, Ident), span
+        _text(target), isinstance(target, ast.Ident), span
     ),
     "time_held": lambda span: items.TimeItem(TimeModel.HELD, None, span),
     "time_sampled": lambda span: items.TimeItem(TimeModel.SAMPLED, None, span),
@@ -330,7 +321,7 @@ _MADE: Mapping[str, Callable[..., Any]] = {
     "tags": lambda span, *tags: items.TagsClause(tuple(map(_text, tags)), span),
     "let": items.LetClause,
     "for_each": lambda span, name, field: items.ForEachClause(
-        name, Name(field.text, field.span), span
+        name, ast.Name(field.text, field.span), span
     ),
     "at_end": items.AtEndClause,
     "owned_property": items.PropertyClause,

@@ -9,19 +9,8 @@ from fractions import Fraction
 
 from msgspec.structs import replace
 
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
-from rvmon.language.checked.formula import (
-    Amount,
-    Arithmetic,
-    Compare,
-    Formula,
-    Literal,
-    Measured,
-    Numeric,
-    Passed,
-    WindowValue,
-    itself,
-)
 from rvmon.testing.law.numbers import at_edge, compare, compare_at, events_of, is_born, number
 from rvmon.testing.law.syntax import constant_value, parts_of
 from rvmon.testing.law.word import Letter, Truth, conjunction, truth_of
@@ -30,18 +19,18 @@ from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 
 _OF_SOME = (
-    *(Measured.MEAN, Measured.VARIANCE, Measured.DELTA),
-    *(Measured.MIN, Measured.MAX, Measured.AGO),
+    *(rv.Measured.MEAN, rv.Measured.VARIANCE, rv.Measured.DELTA),
+    *(rv.Measured.MIN, rv.Measured.MAX, rv.Measured.AGO),
 )
 """The measures that are undefined for an empty window."""
 _WHOLE = (
-    *(Measured.COUNT, Measured.DISTINCT, Measured.SUM),
-    *(Measured.DELTA, Measured.MIN, Measured.MAX, Measured.AGO),
+    *(rv.Measured.COUNT, rv.Measured.DISTINCT, rv.Measured.SUM),
+    *(rv.Measured.DELTA, rv.Measured.MIN, rv.Measured.MAX, rv.Measured.AGO),
 )
 """The measures that are whole numbers if all members are."""
-UNKNOWN = Arithmetic(NumericOp.DIV, (Literal(0), Literal(0)))
+UNKNOWN = rv.Arithmetic(NumericOp.DIV, (rv.Literal(0), rv.Literal(0)))
 """An expression whose value is unknown."""
-State = Callable[[Formula, int], Truth]
+State = Callable[[rv.Formula, int], Truth]
 """The truth of a formula at a position."""
 
 
@@ -62,7 +51,7 @@ class Past:
     captured: Mapping[str, Scalar]
     state: State
 
-    def truth(self, formula: Amount, i: int) -> Truth:
+    def truth(self, formula: rv.Amount, i: int) -> Truth:
         """Whether the measure of the window of a position reaches the limit.
 
         UNBORN if the limit is, or if the measure is undefined without a signal that is unborn.
@@ -86,57 +75,61 @@ class Past:
         found = {enough(least), Truth.TRUE if most is None else enough(most)}
         return found.pop() if len(found) == 1 else Truth.UNKNOWN
 
-    def compared(self, formula: Compare, i: int) -> Truth:
+    def compared(self, formula: rv.Compare, i: int) -> Truth:
         """The truth of a comparison of expressions with windows."""
         parts = [part for side in (formula.left, formula.right) for part in parts_of(side)]
-        plain = [itself(part) for part in parts if not isinstance(part, WindowValue | Arithmetic)]
-        windows = [part for part in parts if isinstance(part, WindowValue)]
+        plain = [
+            rv.itself(part)
+            for part in parts
+            if not isinstance(part, rv.WindowValue | rv.Arithmetic)
+        ]
+        windows = [part for part in parts if isinstance(part, rv.WindowValue)]
         born = all(is_born(comparison, self.letters[i]) for comparison in plain)
         if not born or not all(self.is_born(window, i) for window in windows):
             return Truth.UNBORN
         found = self.settled(formula.left, i), self.settled(formula.right, i)
-        return compare(Compare(formula.op, *found), self.letters[i], self.captured)
+        return compare(rv.Compare(formula.op, *found), self.letters[i], self.captured)
 
-    def number(self, expression: Numeric, i: int) -> int | float | None:
+    def number(self, expression: rv.Numeric, i: int) -> int | float | None:
         """The value of an expression with windows at a position; `None` if unknown."""
         return finite(number(self.settled(expression, i), self.letters[i], {}, self.captured))
 
-    def settled(self, expression: Numeric, i: int) -> Numeric:
+    def settled(self, expression: rv.Numeric, i: int) -> rv.Numeric:
         """An expression with each window replaced by its value at a position."""
         match expression:
-            case Arithmetic(args=args):
+            case rv.Arithmetic(args=args):
                 return replace(expression, args=tuple(self.settled(arg, i) for arg in args))
-            case WindowValue():
+            case rv.WindowValue():
                 found = self.amount(expression, i)
-                return UNKNOWN if found is None else Literal(found)
+                return UNKNOWN if found is None else rv.Literal(found)
             case _:
                 return expression
 
-    def is_born(self, window: WindowValue, i: int) -> bool:
+    def is_born(self, window: rv.WindowValue, i: int) -> bool:
         """Whether the signals of a window have values; for `ago`, whether they had them D ago."""
         if window.value is None or window.measured not in _OF_SOME:
             return True
-        letter = self.letters[i] if window.measured is not Measured.AGO else self._ago(window, i)
-        return letter is not None and is_born(itself(window.value), letter)
+        letter = self.letters[i] if window.measured is not rv.Measured.AGO else self._ago(window, i)
+        return letter is not None and is_born(rv.itself(window.value), letter)
 
-    def _ago(self, window: WindowValue, i: int) -> Letter | None:
+    def _ago(self, window: rv.WindowValue, i: int) -> Letter | None:
         then = self.letters[i].instant - (window.window or 0)
         held = [letter for letter in self.letters[: i + 1] if letter.instant <= then]
         return held[-1] if held else None
 
-    def amount(self, window: WindowValue, i: int) -> int | float | None:
+    def amount(self, window: rv.WindowValue, i: int) -> int | float | None:
         """The value of a window, rounded once; `None` if it is not certain.
 
         Counts are whole numbers; so are measures of whole numbers that need no division.
         """
-        if window.measured is Measured.AGO:
+        if window.measured is rv.Measured.AGO:
             letter = self._ago(window, i)
             return None if letter is None else self._value(window, letter)
         members = self.members(window, i)
         ends = None if members is None else ends_of(window, members)
         if members is None or ends is None or ends[0] != ends[1]:
             return None
-        seconds = window.measured is Measured.DURATION
+        seconds = window.measured is rv.Measured.DURATION
         exact = ends[0] / TICKS_PER_SECOND if seconds else ends[0]
         if window.measured in _WHOLE and all(isinstance(member.value, int) for member in members):
             return finite(at_edge(int(exact), Kind.INT))
@@ -145,39 +138,39 @@ class Past:
         except OverflowError:
             return None
 
-    def _value(self, window: WindowValue, letter: Letter) -> int | float | None:
+    def _value(self, window: rv.WindowValue, letter: Letter) -> int | float | None:
         if window.value is None:
             raise AssertionError("`ago` has a value")
         return finite(number(window.value, letter, {}, self.captured))
 
-    def members(self, window: WindowValue, i: int) -> list[Member] | None:
+    def members(self, window: rv.WindowValue, i: int) -> list[Member] | None:
         """The members of the window of a position; `None` if it is unknown which these are."""
         return self.last(window, i) if window.most else [*self.window(window, i)]
 
-    def window(self, formula: WindowValue, i: int) -> Iterator[Member]:
+    def window(self, formula: rv.WindowValue, i: int) -> Iterator[Member]:
         """The members of a window of duration, the oldest first."""
         for k in range(self.begin(formula, i), i + 1):
             if size := _size(self.letters, k, i, formula):
                 for value, sure in self.at(formula, k):
                     yield Member(value, sure, size)
 
-    def begin(self, formula: WindowValue, i: int) -> int:
+    def begin(self, formula: rv.WindowValue, i: int) -> int:
         """The first position of a window that starts at a captured instant; else the first of all.
 
         Possible positions before that instant are no members.
         """
         since = self.letters[i].since
         left = getattr(formula.operand, "left", formula.operand)
-        if since is None or not isinstance(left, Passed) or left.since is None:
+        if since is None or not isinstance(left, rv.Passed) or left.since is None:
             return 0
         captured = self.captured[left.since]
-        if not isinstance(captured, int) or left.after != Literal(0) or left.strict:
+        if not isinstance(captured, int) or left.after != rv.Literal(0) or left.strict:
             return 0
         return next(
             k for k in range(i + 1) if self.letters[k].instant - since >= captured or k == i
         )
 
-    def last(self, formula: WindowValue, i: int) -> list[Member] | None:
+    def last(self, formula: rv.WindowValue, i: int) -> list[Member] | None:
         """The members of a window of the last N; `None` if it is unknown which these are."""
         found: list[Member] = []
         for k in range(i, -1, -1):
@@ -192,7 +185,7 @@ class Past:
                 break
         return found[::-1]
 
-    def at(self, formula: WindowValue, k: int) -> Iterator[tuple[int | float | None, bool]]:
+    def at(self, formula: rv.WindowValue, k: int) -> Iterator[tuple[int | float | None, bool]]:
         """The members at a position: the number of each, and whether it surely is a member.
 
         A condition that is constantly false has no member with a number, even at a possible
@@ -207,7 +200,7 @@ class Past:
             yield int(counted in (Truth.TRUE, Truth.UNKNOWN)), counted is not Truth.UNKNOWN
         elif formula.value is None:
             yield 1, there is Truth.TRUE
-        elif isinstance(formula.value, Literal):
+        elif isinstance(formula.value, rv.Literal):
             yield finite(formula.value.value), there is Truth.TRUE
         elif not self.letters[k].sure:
             yield None, False
@@ -215,7 +208,7 @@ class Past:
             yield from self._numbers(formula, formula.value, there, k)
 
     def _numbers(
-        self, formula: WindowValue, value: Numeric, there: Truth, k: int
+        self, formula: rv.WindowValue, value: rv.Numeric, there: Truth, k: int
     ) -> Iterator[tuple[int | float | None, bool]]:
         letter = self.letters[k]
         events = {*events_of(value)}
@@ -251,17 +244,17 @@ Ends = tuple[Fraction, Fraction | None]
 """Lower and upper bound of a measure; `None`: no upper bound."""
 
 
-def ends_of(window: WindowValue, members: Sequence[Member]) -> Ends | None:
+def ends_of(window: rv.WindowValue, members: Sequence[Member]) -> Ends | None:
     """The bounds of a measure over members; `None` if it has no known bounds."""
     measured = window.measured
-    if measured is Measured.DISTINCT:
+    if measured is rv.Measured.DISTINCT:
         known = Fraction(
             len({member.value for member in members if member.sure and member.value is not None})
         )
         return known, None if any(
             not member.sure or member.value is None for member in members
         ) else known
-    if measured is Measured.DELTA:
+    if measured is rv.Measured.DELTA:
         members = [*members[:1], *members[-1:]]
     if any(member.value is None for member in members):
         return None
@@ -269,7 +262,7 @@ def ends_of(window: WindowValue, members: Sequence[Member]) -> Ends | None:
     if measured in _OF_SOME:
         found = _of_sure(measured, numbers) if all(sure for _, sure, _ in numbers) else None
         return None if found is None else (found, found)
-    divisor = TICKS_PER_SECOND if measured is Measured.INTEGRAL else 1
+    divisor = TICKS_PER_SECOND if measured is rv.Measured.INTEGRAL else 1
     least, most = (
         sum(size * (value if sure else end(value, Fraction(0))) for value, sure, size in numbers)
         for end in (min, max)
@@ -277,27 +270,29 @@ def ends_of(window: WindowValue, members: Sequence[Member]) -> Ends | None:
     return Fraction(least) / divisor, Fraction(most) / divisor
 
 
-def _of_sure(measured: Measured, numbers: Sequence[tuple[Fraction, bool, int]]) -> Fraction | None:
+def _of_sure(
+    measured: rv.Measured, numbers: Sequence[tuple[Fraction, bool, int]]
+) -> Fraction | None:
     """A measure of sure members with known numbers; `None` if there are none."""
     count = sum(size for _, _, size in numbers)
     if count == 0:
         return None
     values = [value for value, _, _ in numbers]
     match measured:
-        case Measured.MIN:
+        case rv.Measured.MIN:
             return min(values)
-        case Measured.MAX:
+        case rv.Measured.MAX:
             return max(values)
-        case Measured.DELTA:
+        case rv.Measured.DELTA:
             return values[-1] - values[0]
     mean = Fraction(sum(value * size for value, _, size in numbers), count)
-    if measured is Measured.MEAN:
+    if measured is rv.Measured.MEAN:
         return mean
     squares = sum((value - mean) * (value - mean) * size for value, _, size in numbers)
     return Fraction(squares, count)
 
 
-def _size(letters: Sequence[Letter], k: int, i: int, formula: WindowValue) -> int:
+def _size(letters: Sequence[Letter], k: int, i: int, formula: rv.WindowValue) -> int:
     """The number of positions, or ticks, that position `k` contributes to the window of `i`."""
     begin = letters[k].instant
     first = begin if formula.window is None else max(begin, letters[i].instant - formula.window)
