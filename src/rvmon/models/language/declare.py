@@ -171,20 +171,18 @@ def _symbol(item: syntax.Named, scope: sc.Scope, parts: Parts, resolver: Resolve
         seen = sc.Scope(scope.parent, scope.prefix, dict(scope.symbols), dict(scope.places))
         seen.symbols[item.name] = symbol = sc.FunctionSymbol(item, seen)
         return symbol
-    kind, extents = resolver.typed(item, scope)
+    kind = resolver.typed(item, scope)
     if isinstance(item, syntax.TypeDefinition):
-        return sc.TypeSymbol(replace(kind, extents=extents))
-    if prod(map(len, extents)) > symbols.MAX_VALUES:
+        return sc.TypeSymbol(kind)
+    if prod(map(len, kind.extents)) > symbols.MAX_VALUES:
         raise model_error(
             "TA019", f"an array of more than {symbols.MAX_VALUES:,} elements", item.span
         )
-    value = None if item.initial is None else _initial(item.initial, extents, kind, scope, resolver)
+    value = None if item.initial is None else _initial(item.initial, kind, scope, resolver)
     if kind.const and value is None:
         fix = f"write const {item.name} = …"
         raise model_error("TA006", f"the constant `{item.name}` has no value", item.span, fix)
-    return symbols.laid_out(
-        kind, extents, [scope.prefix + item.name], value, _Placer(parts, item.span)
-    )
+    return symbols.laid_out(kind, [scope.prefix + item.name], value, _Placer(parts, item.span))
 
 
 @dataclass(frozen=True, slots=True)
@@ -194,13 +192,7 @@ class _Placer:
     parts: Parts
     span: Span
 
-    def place(
-        self,
-        kind: sc.ResolvedType,
-        extents: tuple[range, ...],
-        names: Sequence[str],
-        value: symbols.Value,
-    ) -> sc.Symbol:
+    def place(self, kind: sc.ResolvedType, names: Sequence[str], value: symbols.Value) -> sc.Symbol:
         """Put clocks, variables or channels of some names behind those that are there."""
         parts, span = self.parts, self.span
         match kind.base:
@@ -209,12 +201,10 @@ class _Placer:
             case BaseType.CLOCK:
                 first = _room(parts.clocks, len(names), MAX_CLOCKS, "clocks", span)
                 parts.clocks += map(Clock, names)
-                return sc.PlacedSymbol(kind.base, Slot(first, extents))
             case BaseType.CHANNEL:
                 first = _room(parts.channels, len(names), MAX_PARTS, "channels", span)
                 parts.channels += [Channel(name, kind.broadcast, kind.urgent) for name in names]
                 parts.channel_spans += [span] * len(names)
-                return sc.PlacedSymbol(kind.base, Slot(first, extents))
             case _:
                 first = _room(parts.variables, len(names), MAX_PARTS, "variables", span)
                 numbers = (
@@ -223,7 +213,7 @@ class _Placer:
                     else symbols.flat(value)
                 )
                 parts.variables += map(partial(symbols.variable_of, kind), names, numbers)
-                return sc.PlacedSymbol(BaseType.INT, Slot(first, extents))
+        return sc.PlacedSymbol(kind.placed_as, Slot(first, kind.extents))
 
 
 def _room(parts: Sequence[Part], count: int, most: int, what: str, span: Span) -> int:
@@ -235,15 +225,12 @@ def _room(parts: Sequence[Part], count: int, most: int, what: str, span: Span) -
 
 
 def _initial(
-    written: syntax.Initial,
-    extents: tuple[range, ...],
-    kind: sc.ResolvedType,
-    scope: sc.Scope,
-    resolver: Resolver,
+    written: syntax.Initial, kind: sc.ResolvedType, scope: sc.Scope, resolver: Resolver
 ) -> sc.ConstantValue:
-    if (extents or kind.fields) and isinstance(written, syntax.Name | syntax.Index | syntax.Member):
-        return _copied(resolver.symbol(written, scope), extents, kind, written.span)
-    parts = symbols.parts_of_initial(written, extents, kind)
+    has_parts = kind.extents or kind.fields
+    if has_parts and isinstance(written, syntax.Name | syntax.Index | syntax.Member):
+        return _copied(resolver.symbol(written, scope), kind, written.span)
+    parts = symbols.parts_of_initial(written, kind)
     if parts is None:
         assert not isinstance(written, syntax.Values), "it would have parts"
         value = resolver.constant(written, scope, real=kind.base is BaseType.DOUBLE)
@@ -252,16 +239,15 @@ def _initial(
     return tuple(_initial(*part, scope, resolver) for part in parts)
 
 
-def _copied(
-    symbol: sc.Symbol, extents: tuple[range, ...], kind: sc.ResolvedType, span: Span
-) -> sc.ConstantValue:
+def _copied(symbol: sc.Symbol, kind: sc.ResolvedType, span: Span) -> sc.ConstantValue:
     """The values of a constant array or record."""
-    if extents:
-        elements = (symbols.element_of(symbol, Constant(index), span) for index in extents[0])
-        return tuple(_copied(element, extents[1:], kind, span) for element in elements)
+    if kind.extents:
+        first, inner = kind.extents[0], replace(kind, extents=kind.extents[1:])
+        elements = (symbols.element_of(symbol, Constant(index), span) for index in first)
+        return tuple(_copied(element, inner, span) for element in elements)
     if kind.fields and isinstance(symbol, sc.RecordSymbol):
         pairs = zip(symbol.fields, kind.fields, strict=False)
-        return tuple(_copied(own, field.extents, field, span) for (_, own), (_, field) in pairs)
+        return tuple(_copied(own, field, span) for (_, own), (_, field) in pairs)
     match symbol:
         case sc.ConstantSymbol(int(value)) if not kind.fields:
             check_range(value, kind, span)

@@ -36,13 +36,7 @@ class Functions:
     made: dict[tuple[object, ...], ex.Function] = field(default_factory=dict)
     open: set[tuple[object, ...]] = field(default_factory=set)  # the functions being made
 
-    def place(
-        self,
-        kind: sc.ResolvedType,
-        extents: symbols.Extents,
-        names: Sequence[str],
-        value: symbols.Value,
-    ) -> sc.Symbol:
+    def place(self, kind: sc.ResolvedType, names: Sequence[str], value: symbols.Value) -> sc.Symbol:
         """Make room for parameters or local variables."""
         del value  # they are set whenever the function runs
         self.locals += [
@@ -50,7 +44,7 @@ class Functions:
         ]
         if len(self.locals) > MAX_LOCALS:
             raise model_error("TA019", f"more than {MAX_LOCALS:,} local variables", None)
-        return sc.PlacedSymbol(ex.BaseType.INT, ex.Slot(-len(self.locals), extents))
+        return sc.PlacedSymbol(ex.BaseType.INT, ex.Slot(-len(self.locals), kind.extents))
 
     def variable(self, slot: ex.Slot) -> ex.Variable:
         """The variable of a slot, or the first of its array."""
@@ -67,16 +61,16 @@ class Functions:
         values: list[ex.Expression] = []
         chosen: list[ex.Expression] = []
         for parameter, argument in zip(text.parameters, written.arguments, strict=True):
-            kind, extents = resolver.typed(parameter, symbol.scope)
-            is_bound = _is_bound(parameter, kind, extents)
+            kind = resolver.typed(parameter, symbol.scope)
+            is_bound = _is_bound(parameter, kind)
             bound.append(None)
-            if not (is_bound or extents or kind.fields):
+            if not (is_bound or kind.extents or kind.fields):
                 value = number(argument, scope, resolver)
                 real = kind.base is ex.BaseType.DOUBLE
                 values.append(fitted(value, real, resolver.functions, argument.span))
                 continue
             thing = resolver.symbol(argument, scope)
-            _check_fit(thing, kind, extents, parameter, argument.span, self)
+            _check_fit(thing, kind, parameter, argument.span, self)
             if is_bound:
                 bound[-1] = _with_slots(thing, lambda slot: _without_choice(slot, chosen))
             else:
@@ -96,17 +90,16 @@ class Functions:
         return ex.Invoke(function, (*values, *chosen), written.span)
 
 
-def _is_bound(parameter: syntax.Parameter, kind: sc.ResolvedType, extents: symbols.Extents) -> bool:
+def _is_bound(parameter: syntax.Parameter, kind: sc.ResolvedType) -> bool:
     """Whether a parameter stands for the argument itself, not for its value."""
     if kind.placed_as is not ex.BaseType.INT:
         return True
-    return parameter.reference and not (kind.const and not (extents or kind.fields))
+    return parameter.reference and not (kind.const and not (kind.extents or kind.fields))
 
 
 def _check_fit(
     thing: sc.Symbol,
     kind: sc.ResolvedType,
-    extents: symbols.Extents,
     parameter: syntax.Parameter,
     span: Span,
     calls: Functions,
@@ -120,7 +113,7 @@ def _check_fit(
     )
     if (
         own is not kind.placed_as
-        or len(single) != symbols.count_of(kind, extents)
+        or len(single) != symbols.count_of(kind)
         or (not kind.fields and is_real != (kind.base is ex.BaseType.DOUBLE))
     ):
         fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
@@ -164,7 +157,7 @@ def _make(
         for index, extent in zip(slot.indices, slot.extents, strict=False):
             if index == _CHOSEN:
                 kind = sc.ResolvedType(ex.BaseType.INT, extent.start, extent.stop - 1)
-                symbol = functions.place(kind, (), ["index"], None)
+                symbol = functions.place(kind, ["index"], None)
                 assert isinstance(symbol, sc.PlacedSymbol), "of numbers"
                 indices.append(symbol.slot.first)
                 index = ex.VariableValue(symbol.slot)
@@ -176,9 +169,9 @@ def _make(
         if thing is not None:
             inner.symbols[parameter.name] = _with_slots(thing, chosen)
             continue
-        kind, extents = resolver.typed(parameter, scope)
-        kind, called = variable_type(kind), [f"{text.name}.{parameter.name}"]
-        symbol = symbols.laid_out(kind, extents, called, None, functions)
+        kind = variable_type(resolver.typed(parameter, scope))
+        called = [f"{text.name}.{parameter.name}"]
+        symbol = symbols.laid_out(kind, called, None, functions)
         inner.symbols[parameter.name] = symbol
         parameters += [
             leaf.slot.first for leaf in symbols.leaves(symbol) if isinstance(leaf, sc.PlacedSymbol)
@@ -188,7 +181,7 @@ def _make(
         fix = "let it set a parameter that is passed by reference"
         message = f"`{text.name}` returns an array or record"
         raise model_error("TA016", message, text.span, fix)
-    place = functions.place(replace(result, const=False), (), [f"{text.name}(…)"], None)
+    place = functions.place(replace(result, const=False), [f"{text.name}(…)"], None)
     assert isinstance(place, sc.PlacedSymbol), "of a number"
     body, goes_on = Bodies(text, resolver).statements(text.body.statements, inner)
     if goes_on:

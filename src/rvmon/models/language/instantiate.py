@@ -132,19 +132,18 @@ def _argument(
     resolver: Resolver,
 ) -> sc.Symbol:
     """The symbol of an argument; its type is read in the scope `own`, its expression in `scope`."""
-    kind, extents = resolver.typed(parameter, own)
-    if not parameter.reference and kind.base in (BaseType.INT, BaseType.BOOL) and not extents:
+    kind = resolver.typed(parameter, own)
+    is_number = kind.base in (BaseType.INT, BaseType.BOOL) and not kind.extents
+    if is_number and not parameter.reference:
         value = resolver.constant(written, scope)
         check_range(value, kind, written.span)
         return sc.ConstantSymbol(value)
     symbol = resolver.symbol(written, scope)
     match symbol:
         case sc.PlacedSymbol(place, slot):
-            fits = place is kind.placed_as and slot.extents[len(slot.indices) :] == extents
+            fits = place is kind.placed_as and slot.extents[len(slot.indices) :] == kind.extents
         case sc.RecordSymbol():
-            fits = bool(kind.fields) and len(symbols.leaves(symbol)) == symbols.count_of(
-                kind, extents
-            )
+            fits = bool(kind.fields) and len(symbols.leaves(symbol)) == symbols.count_of(kind)
         case _:
             fits = isinstance(symbol, sc.ConstantSymbol) and (kind.const or not parameter.reference)
     if not fits:

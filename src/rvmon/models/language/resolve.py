@@ -144,14 +144,11 @@ class Resolver:
         return tuple(self._extent(size, scope) for size in sizes)
 
     def typed(
-        self,
-        declared: syntax.Declaration | syntax.TypeDefinition | syntax.Parameter,
-        scope: sc.Scope,
-    ) -> tuple[sc.ResolvedType, symbols.Extents]:
-        """The type of what is declared, and its own dimensions with those of the type."""
-        kind = self.type(declared.type, scope)
-        extents = (*self.extents(declared.sizes, scope), *kind.extents)
-        return replace(kind, extents=()), extents
+        self, it: syntax.Declaration | syntax.TypeDefinition | syntax.Parameter, scope: sc.Scope
+    ) -> sc.ResolvedType:
+        """The type of what is declared, its own dimensions before those of the type."""
+        kind = self.type(it.type, scope)
+        return replace(kind, extents=(*self.extents(it.sizes, scope), *kind.extents))
 
     def _extent(self, size: syntax.Size, scope: sc.Scope) -> range:
         if isinstance(size, syntax.TypeText):

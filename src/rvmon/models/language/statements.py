@@ -144,19 +144,19 @@ class Bodies:
     def _declaration(self, item: syntax.Declaration, scope: sc.Scope) -> list[ex.Statement]:
         resolver = self.resolver
         symbols.claim(item.name, item.span, scope)
-        kind, extents = resolver.typed(item, scope)
+        kind = resolver.typed(item, scope)
         if kind.base in (ex.BaseType.CLOCK, ex.BaseType.CHANNEL):
             fix = "declare it outside the function"
             raise model_error("TA004", "a clock or channel in a function", item.span, fix)
         initial = item.initial
-        if kind.const and initial is not None and not (extents or kind.fields):
+        if kind.const and initial is not None and not (kind.extents or kind.fields):
             value = self._single(initial, scope)
             if isinstance(value, ex.Constant):
                 scope.symbols[item.name] = sc.ConstantSymbol(value.value)
                 return []
         name = f"{self.text.name}.{item.name}"
-        symbol = symbols.laid_out(variable_type(kind), extents, [name], None, resolver.functions)
-        statements = self._initial(symbol, initial, extents, kind, scope)
+        symbol = symbols.laid_out(variable_type(kind), [name], None, resolver.functions)
+        statements = self._initial(symbol, initial, kind, scope)
         scope.symbols[item.name] = symbol  # its initial value sees what the name meant before
         return statements
 
@@ -164,7 +164,6 @@ class Bodies:
         self,
         symbol: sc.Symbol,
         written: syntax.Initial | None,
-        extents: symbols.Extents,
         kind: sc.ResolvedType,
         scope: sc.Scope,
     ) -> list[ex.Statement]:
@@ -178,15 +177,16 @@ class Bodies:
                 _set(leaf, ex.Constant(max(v.low, min(0, v.high))), span, resolver)
                 for leaf, v in zip(single, ranges, strict=True)
             ]
-        if (extents or kind.fields) and not isinstance(written, syntax.Values):
+        if (kind.extents or kind.fields) and not isinstance(written, syntax.Values):
             return _copy(symbol, resolver.symbol(written, scope), written.span, resolver)
-        parts = symbols.parts_of_initial(written, extents, kind)
+        parts = symbols.parts_of_initial(written, kind)
         if parts is None:
             return [_set(symbol, self._single(written, scope), written.span, resolver)]
-        if isinstance(symbol, sc.RecordSymbol) and not extents:
+        if isinstance(symbol, sc.RecordSymbol) and not kind.extents:
             members = [inner for _, inner in symbol.fields]
         else:
-            members = [symbols.element_of(symbol, ex.Constant(i), written.span) for i in extents[0]]
+            indices = map(ex.Constant, kind.extents[0])
+            members = [symbols.element_of(symbol, index, written.span) for index in indices]
         pairs = zip(members, parts, strict=True)
         return [s for member, part in pairs for s in self._initial(member, *part, scope)]
 
@@ -201,7 +201,7 @@ class Bodies:
         values = symbols.values_of(resolver.type(written.type, scope), written.type.span)
         span = written.span
         kind = sc.ResolvedType(ex.BaseType.INT, values.start, values.stop)
-        symbol = resolver.functions.place(kind, (), [f"{self.text.name}.{written.name}"], None)
+        symbol = resolver.functions.place(kind, [f"{self.text.name}.{written.name}"], None)
         assert isinstance(symbol, sc.PlacedSymbol), "of a number"
         inner.symbols[written.name], inner.places[written.name] = symbol, span
         body, goes_on = self.statements(written.body, inner.inner({}))

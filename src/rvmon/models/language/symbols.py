@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence, Sized
+from collections.abc import Mapping, Sequence, Sized
 from dataclasses import replace
 from math import prod
 from typing import Any, Protocol, assert_never
@@ -34,16 +34,13 @@ Value = sc.ConstantValue | None
 class Placer(Protocol):
     """Gives things their places."""
 
-    def place(
-        self, kind: sc.ResolvedType, extents: Extents, names: Sequence[str], value: Value
-    ) -> sc.Symbol:
+    def place(self, kind: sc.ResolvedType, names: Sequence[str], value: Value) -> sc.Symbol:
         """Make a symbol for things of one type, side by side."""
         ...
 
 
 def laid_out(
     kind: sc.ResolvedType,
-    extents: Extents,
     names: Sequence[str],
     value: Value,
     placer: Placer,
@@ -53,21 +50,20 @@ def laid_out(
 
     `unnamed` are the last dimensions, of which the names say nothing yet; default all.
     """
-    suffixes = _suffixes(extents if unnamed is None else unnamed)
+    suffixes = _suffixes(kind.extents if unnamed is None else unnamed)
     names = [name + suffix for name in names for suffix in suffixes]
     if kind.base is not ex.BaseType.RECORD:
         real = kind.base is ex.BaseType.DOUBLE
-        if kind.const and value is not None and not (real and extents):
-            return sc.ConstantSymbol(value, extents, real)
-        return placer.place(kind, extents, names, value)
+        if kind.const and value is not None and not (real and kind.extents):
+            return sc.ConstantSymbol(value, kind.extents, real)
+        return placer.place(kind, names, value)
     fields = []
     for place, (field, written) in enumerate(kind.fields):
-        own = replace(written, const=kind.const or written.const, extents=())
-        inner = None if value is None else _field(value, len(extents), place)
+        whole = (*kind.extents, *written.extents)
+        own = replace(written, const=kind.const or written.const, extents=whole)
+        inner = None if value is None else _field(value, len(kind.extents), place)
         called = [f"{name}.{field}" for name in names]
-        whole = (*extents, *written.extents)
-        symbol = laid_out(own, whole, called, inner, placer, written.extents)
-        fields.append((field, symbol))
+        fields.append((field, laid_out(own, called, inner, placer, written.extents)))
     return sc.RecordSymbol(tuple(fields))
 
 
@@ -97,38 +93,30 @@ def default_of(kind: sc.ResolvedType) -> int:
     return 0 if kind.low <= 0 <= kind.high else kind.low
 
 
-def count_of(kind: sc.ResolvedType, extents: Extents) -> int:
+def count_of(kind: sc.ResolvedType) -> int:
     """The single things that an array or record of a type has."""
-    each = sum(count_of(field, field.extents) for _, field in kind.fields) if kind.fields else 1
-    return prod(map(len, extents)) * each
-
-
-Part = tuple[syntax.Initial, Extents, sc.ResolvedType]
-"""A part of an initial value: as written, the array that it is for, the type."""
+    each = sum(count_of(field) for _, field in kind.fields) if kind.fields else 1
+    return prod(map(len, kind.extents)) * each
 
 
 def parts_of_initial(
-    written: syntax.Initial, extents: Extents, kind: sc.ResolvedType
-) -> list[Part] | None:
-    """The values for the parts of an array or a record; `None` of a single thing."""
+    written: syntax.Initial, kind: sc.ResolvedType
+) -> list[tuple[syntax.Initial, sc.ResolvedType]] | None:
+    """The values for the parts of an array or a record, and their types; `None`: it has none."""
     if not isinstance(written, syntax.Values):
-        if extents or kind.fields:
+        if kind.extents or kind.fields:
             fix = "write {a, b, …}"
             raise model_error("TA004", "an array needs a list of values", written.span, fix)
         return None
-    expected = list(_expected(extents, kind))
+    if kind.extents:
+        expected = [replace(kind, extents=kind.extents[1:])] * len(kind.extents[0])
+    else:
+        expected = [field for _, field in kind.fields]
     if len(expected) != len(written.items):
         count = f"{len(expected)} values" if expected else "one value"
         message = f"{count} expected, {len(written.items)} found"
         raise model_error("TA004", message, written.span)
-    return [(item, *rest) for item, rest in zip(written.items, expected, strict=True)]
-
-
-def _expected(extents: Extents, kind: sc.ResolvedType) -> Iterator[tuple[Extents, sc.ResolvedType]]:
-    if extents:
-        yield from [(extents[1:], kind)] * len(extents[0])
-    for _, field in () if extents else kind.fields:
-        yield field.extents, replace(field, extents=())
+    return list(zip(written.items, expected, strict=True))
 
 
 def values_of(kind: sc.ResolvedType, span: Span) -> range:
