@@ -108,13 +108,9 @@ class Intake:
             else:
                 held.append([t, place, dict(what)])
         return {
-            "floor": self.floor,
-            "newest": self.newest,
-            "crowded": self.crowded,
-            "conflicts": self.conflicts.seen,
-            "held": held,
-            "turns": turns,
-        }
+            "floor": self.floor, "newest": self.newest, "crowded": self.crowded,
+            "conflicts": self.conflicts.seen, "held": held, "turns": turns,
+        }  # fmt: skip
 
     def restore_state(
         self,
@@ -180,6 +176,11 @@ def refuse_earlier(t: int, last: int | None, reached: int | None) -> None:
         )
 
 
+def _refused(t: int, why: str) -> TraceError:
+    """The error of a sample that is not as declared."""
+    return TraceError(f"sample at {format_ticks(t)}: {why}")
+
+
 _TAKES: Mapping[Kind, tuple[type, ...]] = {
     Kind.BOOL: (bool,),
     Kind.INT: (int,),
@@ -212,13 +213,11 @@ class Validator:
             TraceError: a name or value is unknown to the specification; the message names it.
         """
         if not isinstance(values, Mapping):
-            raise TraceError(
-                f"sample at {format_ticks(t)}: expected values by name, found {values!r}"
-            )
+            raise _refused(t, f"expected values by name, found {values!r}")
         checked: dict[str, Value] = {}
         for name, value in values.items():
             if name not in self._expected:
-                raise TraceError(self._unknown(name, t))
+                raise _refused(t, self._unknown(name))
             type_ = self._signals.get(name)
             if type_ is None:
                 checked[name] = self._occurrence(name, value, t)
@@ -226,11 +225,10 @@ class Validator:
                 checked[name] = _scalar(value, type_, f"`{name}`", t)
         return updates_in(checked, self._ignoring)
 
-    def _unknown(self, name: str, t: int) -> str:
-        where = f"sample at {format_ticks(t)}: "
+    def _unknown(self, name: str) -> str:
         if name in self._declared:
-            return f"{where}`{name}` arrived, but it is not among the sources of this monitor"
-        return f"{where}no signal or event named `{name}`: declare it in the spec, or leave it out"
+            return f"`{name}` arrived, but it is not among the sources of this monitor"
+        return f"no signal or event named `{name}`: declare it in the spec, or leave it out"
 
     def _occurrence(self, name: str, value: Any, t: int) -> Value:
         declared = as_declared(plain(value), Kind.BOOL)
@@ -240,28 +238,22 @@ class Validator:
             return self._payload(name, value, t)
         if isinstance(value, tuple | list):
             if len(value) > 1 and name in self._single:
-                raise TraceError(
-                    f"sample at {format_ticks(t)}: {len(value)} payloads of `{name}`: only "
-                    "`for each` can distinguish them, and not all that reads its fields has it"
+                why = (
+                    "only `for each` can distinguish them, and not all that reads its fields has it"
                 )
+                raise _refused(t, f"{len(value)} payloads of `{name}`: {why}")
             return tuple(self._payload(name, payload, t) for payload in value)
-        raise TraceError(
-            f"sample at {format_ticks(t)}: `{name}` is an event: expected True, False, None or its "
-            f"payload, found {value!r}"
-        )
+        expected = "True, False, None or its payload"
+        raise _refused(t, f"`{name}` is an event: expected {expected}, found {value!r}")
 
     def _payload(self, name: str, payload: Any, t: int) -> Mapping[str, Scalar]:
         fields = self._events[name]
         if not isinstance(payload, Mapping):
-            raise TraceError(
-                f"sample at {format_ticks(t)}: `{name}`: expected a payload, found {payload!r}"
-            )
+            raise _refused(t, f"`{name}`: expected a payload, found {payload!r}")
         unknown = [field for field in payload if field not in fields]
         if unknown:
             known = ", ".join(fields) or "none"
-            raise TraceError(
-                f"sample at {format_ticks(t)}: `{name}` has no field `{unknown[0]}`: it has {known}"
-            )
+            raise _refused(t, f"`{name}` has no field `{unknown[0]}`: it has {known}")
         return {
             field: _scalar(value, fields[field], f"`{name}.{field}`", t)
             for field, value in payload.items()
@@ -289,4 +281,4 @@ def _scalar(value: Any, type_: Type, name: str, t: int) -> Scalar:
         expected = {Kind.BOOL: "True or False", Kind.INT: "a whole number"}.get(
             type_.kind, "a number"
         )
-    raise TraceError(f"sample at {format_ticks(t)}: {name}: expected {expected}, found {value!r}")
+    raise _refused(t, f"{name}: expected {expected}, found {value!r}")
