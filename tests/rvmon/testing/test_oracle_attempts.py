@@ -35,7 +35,7 @@ from tests.tools.each import each
 from rvmon.errors import RvmonError
 from rvmon.language.checked import classify
 from rvmon.language.checked.formula import Captured, Formula
-from rvmon.language.checked.specification import Capture, ForEach, TimeModel
+from rvmon.language.checked.specification import Capture, ForEach, Requirement, TimeModel
 from rvmon.testing.law.attempts import is_pulse
 from rvmon.testing.oracle import evaluate
 from rvmon.trace.sample import Sample
@@ -147,76 +147,63 @@ def test_order_of_the_report(judge: Any) -> None:
     assert judge(required, p="0", q="010", e="11...1", end=7) == ["1 P 1", "0 F 4", "5 I"]
 
 
+EPISODES, OF_A_PULSE = requirement(q, whenever=p), requirement(q, whenever=e)
+IN_TIME = requirement(eventually(q, 0, 3), whenever=p)
+
+
 @each(
-    ("rows", "expected"),
+    ("required", "rows", "expected"),
     [
+        # An episode of p, q required throughout.
         # From 1 to 2 q is required and given; at 3 the episode ends.
-        ({"p": "01.0", "q": "01"}, ["1 P 3"]),
-        ({"p": "01.0", "q": "010"}, ["1 F 2"]),
+        (EPISODES, {"p": "01.0", "q": "01"}, ["1 P 3"]),
+        (EPISODES, {"p": "01.0", "q": "010"}, ["1 F 2"]),
         # Further samples make no further attempts.
-        ({"p": "01.0", "q": "01", "x": "123456"}, ["1 P 3"]),
-        ({"p": "1.01.0", "q": "1"}, ["0 P 2", "3 P 5"]),
+        (EPISODES, {"p": "01.0", "q": "01", "x": "123456"}, ["1 P 3"]),
+        (EPISODES, {"p": "1.01.0", "q": "1"}, ["0 P 2", "3 P 5"]),
         # An unknown trigger starts an episode and ends none; q is required there if it held.
-        ({"p": "1u10", "q": "1"}, ["0 P 3"]),
-        ({"p": "1u10", "q": "101"}, ["0 I"]),
-        ({"p": "1u10", "q": "100"}, ["0 F 2"]),
-        ({"p": "u1.0", "q": "1"}, ["1 P 3"]),
-        ({"p": "1.u", "q": "1"}, ["0 P 2 held"]),
+        (EPISODES, {"p": "1u10", "q": "1"}, ["0 P 3"]),
+        (EPISODES, {"p": "1u10", "q": "101"}, ["0 I"]),
+        (EPISODES, {"p": "1u10", "q": "100"}, ["0 F 2"]),
+        (EPISODES, {"p": "u1.0", "q": "1"}, ["1 P 3"]),
+        (EPISODES, {"p": "1.u", "q": "1"}, ["0 P 2 held"]),
         # What is required but not known leaves the episode open, unless something else fails.
-        ({"p": "1..0", "q": "1u1"}, ["0 I"]),
-        ({"p": "1..0", "q": "1u0"}, ["0 F 2"]),
+        (EPISODES, {"p": "1..0", "q": "1u1"}, ["0 I"]),
+        (EPISODES, {"p": "1..0", "q": "1u0"}, ["0 F 2"]),
         # Running at the end: held to it.
-        ({"p": "1", "q": "1", "end": 4}, ["0 P 4 held"]),
+        (EPISODES, {"p": "1", "q": "1", "end": 4}, ["0 P 4 held"]),
         # A failed episode goes on where what is required has not failed at once.
-        ({"p": "1..01", "q": "0"}, ["0 F 0", "4 F 4"]),
-        ({"p": "1.1.1", "q": "01"}, ["0 F 0", "1 P 4 held"]),
-        ({"p": "1....0", "q": "0101"}, ["0 F 0", "1 F 2", "3 P 5"]),
+        (EPISODES, {"p": "1..01", "q": "0"}, ["0 F 0", "4 F 4"]),
+        (EPISODES, {"p": "1.1.1", "q": "01"}, ["0 F 0", "1 P 4 held"]),
+        (EPISODES, {"p": "1....0", "q": "0101"}, ["0 F 0", "1 F 2", "3 P 5"]),
+        # An episode of a pulse starts where it holds and none is running.
+        (OF_A_PULSE, {"e": ".11.1", "q": "1", "end": 5}, ["1 P 3", "4 P 5"]),
+        (OF_A_PULSE, {"e": ".11", "q": "1.0", "end": 5}, ["1 F 2"]),
+        (OF_A_PULSE, {"e": ".1u1", "q": "1", "end": 5}, ["1 P 4"]),
+        (OF_A_PULSE, {"e": ".1", "q": "1"}, ["1 P 1 held"]),
+        # `whenever p then F[0,3] q` is settled when p has ended and nothing is required.
+        # Required at 0 only; the episode is over at 1, q comes in time.
+        (IN_TIME, {"p": "10", "q": "0..1"}, ["0 P 3"]),
+        # Required at 0 to 2, q at 3 answers all; at 4 only those from 1 on.
+        (IN_TIME, {"p": "1..0", "q": "0..1"}, ["0 P 3"]),
+        (IN_TIME, {"p": "1..0", "q": "0...1"}, ["0 F 4"]),
+        # A second episode while the first still owes.
+        (IN_TIME, {"p": "1010", "q": "0...1"}, ["0 F 4", "2 P 4"]),
+        (IN_TIME, {"p": "1010", "q": "0...0", "end": 4}, ["0 F 4", "2 I"]),
+        (IN_TIME, {"p": "1010", "q": "0...0", "end": 5}, ["0 F 4", "2 F 6"]),
+        (IN_TIME, {"p": "1", "q": "1", "end": 9}, ["0 P 9 held"]),
+        (IN_TIME, {"p": "1", "q": "1....0", "end": 7}, ["0 I"]),
     ],
 )
-def test_whenever(judge: Any, rows: Any, expected: list[str]) -> None:
-    """`whenever p then q`: one attempt per episode of p, q required throughout."""
-    assert judge(requirement(q, whenever=p), **rows) == expected
-
-
-@pytest.mark.parametrize(
-    ("rows", "expected"),
-    [
-        ({"e": ".11.1", "q": "1", "end": 5}, ["1 P 3", "4 P 5"]),
-        ({"e": ".11", "q": "1.0", "end": 5}, ["1 F 2"]),
-        ({"e": ".1u1", "q": "1", "end": 5}, ["1 P 4"]),
-        ({"e": ".1", "q": "1"}, ["1 P 1 held"]),
-    ],
-)
-def test_whenever_a_pulse(judge: Any, rows: Any, expected: list[str]) -> None:
-    """An episode of a pulse starts where it holds and none is running."""
-    assert judge(requirement(q, whenever=e), **rows) == expected
+def test_whenever(judge: Any, required: Requirement, rows: Any, expected: list[str]) -> None:
+    """`whenever p then …`: one attempt per episode of p."""
+    assert judge(required, **rows) == expected
 
 
 def test_whenever_sampled(judge: Any) -> None:
     """In `sampled` time the next sample ends the episode of an event."""
     required = requirement(q, whenever=e)
     assert judge(required, e="1", q="1....1", time=TimeModel.SAMPLED) == ["0 P 5"]
-
-
-@each(
-    ("rows", "expected"),
-    [
-        # Required at 0 only; the episode is over at 1, q comes in time.
-        ({"p": "10", "q": "0..1"}, ["0 P 3"]),
-        # Required at 0 to 2, q at 3 answers all; at 4 only those from 1 on.
-        ({"p": "1..0", "q": "0..1"}, ["0 P 3"]),
-        ({"p": "1..0", "q": "0...1"}, ["0 F 4"]),
-        # A second episode while the first still owes.
-        ({"p": "1010", "q": "0...1"}, ["0 F 4", "2 P 4"]),
-        ({"p": "1010", "q": "0...0", "end": 4}, ["0 F 4", "2 I"]),
-        ({"p": "1010", "q": "0...0", "end": 5}, ["0 F 4", "2 F 6"]),
-        ({"p": "1", "q": "1", "end": 9}, ["0 P 9 held"]),
-        ({"p": "1", "q": "1....0", "end": 7}, ["0 I"]),
-    ],
-)
-def test_whenever_with_deadlines(judge: Any, rows: Any, expected: list[str]) -> None:
-    """`whenever p then F[0,3] q` is settled when p has ended and nothing is required."""
-    assert judge(requirement(eventually(q, 0, 3), whenever=p), **rows) == expected
 
 
 def test_whenever_true_is_always(judge: Any) -> None:

@@ -29,57 +29,13 @@ from tests.tools.each import each
 from rvmon.language.checked.formula import Formula
 from rvmon.language.checked.specification import TimeModel
 
-
-@each(
-    ("formula", "rows", "expected"),
-    [
-        # p at 0 only, judged at 3.
-        (once(p, 0, 2), {"p": "10", "e": "...1"}, "F"),
-        (once(p, 0, 3), {"p": "10", "e": "...1"}, "P"),
-        (once(p, 3, 3), {"p": "10", "e": "...1"}, "P"),
-        (once(p), {"p": "10", "e": "...1"}, "P"),
-        # Over nothing once is false and historically true.
-        (once(p, 4, 9), {"p": "1", "e": "...1"}, "F"),
-        (historically(p, 0, 2), {"p": "1u1", "e": "...1"}, "I"),
-    ],
-)
-def test_once_and_historically(judge: Any, formula: Formula, rows: Any, expected: str) -> None:
-    """`O` and `H` look back over the held trace, also before the trigger."""
-    instant = "" if expected == "I" else " 3"
-    assert judge(requirement(formula, upon=e), **rows) == [f"3 {expected}{instant}"]
-
-
-@each(
-    ("low", "high", "p_row", "q_row", "expected"),
-    [
-        # q at 0 only, p from 1 on: the left operand is required behind q, up to now.
-        (0, None, "01", "10", "P"),
-        (0, 2, "01", "10", "F"),
-        (0, 3, "01", "10", "P"),
-        (3, 3, "01", "10", "P"),
-        (0, None, "01.0", "10", "F"),
-        (0, None, "010", "10", "F"),
-        # q now needs no p.
-        (0, None, "0", "1", "P"),
-        # q at 1 and 2: with a = 2 only 1 counts, and p is required at 2 and 3.
-        (2, None, "0.1", "01.0", "P"),
-        (2, None, "0..1", "01.0", "F"),
-        (0, None, "0.u1", "010", "I"),
-    ],
-)
-def test_since(
-    judge: Any, low: int, high: int | None, p_row: str, q_row: str, expected: str
-) -> None:
-    """`p S[a,b] q` is `U` mirrored: q back in the window, and p at every instant after it."""
-    instant = "" if expected == "I" else " 3"
-    formula = two(p, "S", q, low, high)
-    got = judge(requirement(formula, upon=e), p=p_row, q=q_row, e="...1")
-    assert got == [f"3 {expected}{instant}"]
+SAMPLED = {"time": TimeModel.SAMPLED}
 
 
 @each(
     ("formula", "rows", "expected"),
     [
+        # `rise` and `fall` compare with the position before.
         # At the first position Y is false, rise(φ) is φ, fall(φ) is false.
         (previous(p), {"p": "1", "e": "1"}, "0 F 0"),
         (rise(p), {"p": "1", "e": "1"}, "0 P 0"),
@@ -92,46 +48,49 @@ def test_since(
         (rise(p), {"p": "u.1", "e": "..1"}, "2 P 2"),
         (rise(p), {"p": "0u1", "e": "..1"}, "2 I"),
         (fall(p), {"p": "1.u", "e": "..1"}, "2 I"),
-    ],
-)
-def test_rise_and_fall(judge: Any, formula: Formula, rows: Any, expected: str) -> None:
-    """`rise` and `fall` compare with the position before."""
-    assert judge(requirement(formula, upon=e), **rows) == [expected]
-
-
-@pytest.mark.parametrize(
-    ("formula", "rows", "expected"),
-    [
-        # The sample before, however long ago.
-        (previous(p), {"p": "1...0", "e": "....1"}, "4 P 4"),
-        (rise(p), {"p": "0...1", "e": "....1"}, "4 P 4"),
-        (rise(p), {"p": "0.1.1", "e": "....1"}, "4 F 4"),
-        (once(p, 1, 3), {"p": "1...0", "e": "....1"}, "4 F 4"),
-    ],
-)
-def test_sampled_past(judge: Any, formula: Formula, rows: Any, expected: str) -> None:
-    """In `sampled` time past operators see samples only."""
-    got = judge(requirement(formula, upon=e), **rows, time=TimeModel.SAMPLED)
-    assert got == [expected]
-
-
-@each(
-    ("rows", "expected"),
-    [
-        ({"p": "1", "e": "..1"}, "2 P 2"),
+        # `O` and `H` look back over the held trace, also before the trigger.
+        # p at 0 only, judged at 3.
+        (once(p, 0, 2), {"p": "10", "e": "...1"}, "3 F 3"),
+        (once(p, 0, 3), {"p": "10", "e": "...1"}, "3 P 3"),
+        (once(p, 3, 3), {"p": "10", "e": "...1"}, "3 P 3"),
+        (once(p), {"p": "10", "e": "...1"}, "3 P 3"),
+        # Over nothing once is false and historically true.
+        (once(p, 4, 9), {"p": "1", "e": "...1"}, "3 F 3"),
+        (historically(p, 0, 2), {"p": "1u1", "e": "...1"}, "3 I"),
+        # `p S[a,b] q` is `U` mirrored: q back in the window, and p at every instant after it.
+        # q at 0 only, p from 1 on: the left operand is required behind q, up to now.
+        (two(p, "S", q), {"p": "01", "q": "10", "e": "...1"}, "3 P 3"),
+        (two(p, "S", q, 0, 2), {"p": "01", "q": "10", "e": "...1"}, "3 F 3"),
+        (two(p, "S", q, 0, 3), {"p": "01", "q": "10", "e": "...1"}, "3 P 3"),
+        (two(p, "S", q, 3, 3), {"p": "01", "q": "10", "e": "...1"}, "3 P 3"),
+        (two(p, "S", q), {"p": "01.0", "q": "10", "e": "...1"}, "3 F 3"),
+        (two(p, "S", q), {"p": "010", "q": "10", "e": "...1"}, "3 F 3"),
+        # q now needs no p.
+        (two(p, "S", q), {"p": "0", "q": "1", "e": "...1"}, "3 P 3"),
+        # q at 1 and 2: with a = 2 only 1 counts, and p is required at 2 and 3.
+        (two(p, "S", q, 2, None), {"p": "0.1", "q": "01.0", "e": "...1"}, "3 P 3"),
+        (two(p, "S", q, 2, None), {"p": "0..1", "q": "01.0", "e": "...1"}, "3 F 3"),
+        (two(p, "S", q), {"p": "0.u1", "q": "010", "e": "...1"}, "3 I"),
+        # `held(p, 2)`: p now and for two ticks back, and at least two since the start.
+        (held(p, 2), {"p": "1", "e": "..1"}, "2 P 2"),
         # Not yet two ticks since the start, though p was never false.
-        ({"p": "1", "e": ".1"}, "1 F 1"),
-        ({"p": "01", "e": "...1"}, "3 P 3"),
+        (held(p, 2), {"p": "1", "e": ".1"}, "1 F 1"),
+        (held(p, 2), {"p": "01", "e": "...1"}, "3 P 3"),
         # The start is the first sample, not zero.
-        ({"p": ".1", "e": "...1"}, "3 P 3"),
-        ({"p": ".1", "e": "..1"}, "2 F 2"),
-        ({"p": "1u1", "e": "...1"}, "3 I"),
-        ({"p": "1u1", "e": ".1"}, "1 F 1"),
+        (held(p, 2), {"p": ".1", "e": "...1"}, "3 P 3"),
+        (held(p, 2), {"p": ".1", "e": "..1"}, "2 F 2"),
+        (held(p, 2), {"p": "1u1", "e": "...1"}, "3 I"),
+        (held(p, 2), {"p": "1u1", "e": ".1"}, "1 F 1"),
+        # In `sampled` time they see samples only: the one before, however long ago.
+        (previous(p), {"p": "1...0", "e": "....1", **SAMPLED}, "4 P 4"),
+        (rise(p), {"p": "0...1", "e": "....1", **SAMPLED}, "4 P 4"),
+        (rise(p), {"p": "0.1.1", "e": "....1", **SAMPLED}, "4 F 4"),
+        (once(p, 1, 3), {"p": "1...0", "e": "....1", **SAMPLED}, "4 F 4"),
     ],
 )
-def test_held(judge: Any, rows: Any, expected: str) -> None:
-    """`held(p, 2)`: p now and for two ticks back, and at least two since the start."""
-    assert judge(requirement(held(p, 2), upon=e), **rows) == [expected]
+def test_past(judge: Any, formula: Formula, rows: Any, expected: str) -> None:
+    """Operators of the past, asked where `e` occurs."""
+    assert judge(requirement(formula, upon=e), **rows) == [expected]
 
 
 @pytest.mark.parametrize(
@@ -145,6 +104,11 @@ def test_held(judge: Any, rows: Any, expected: str) -> None:
         # H[0,1] F[0,2] p at 0: one position; p by 2.
         (historically(eventually(p, 0, 2), 0, 1), {"p": "0.1"}, "0 P 2"),
         (historically(eventually(p, 0, 2), 0, 1), {"p": "0..1"}, "0 F 3"),
+        # `start` is true at the first position only.
+        (true, {"p": "01"}, "0 P 0"),
+        (false, {"p": "01"}, "0 F 0"),
+        (start, {"p": "01"}, "0 P 0"),
+        (always(start, 0, 1), {"p": "01"}, "0 F 1"),
     ],
 )
 def test_past_and_future(judge: Any, formula: Formula, rows: Any, expected: str | None) -> None:
@@ -176,12 +140,3 @@ def test_connectives(judge: Any, op: str, table: list[str]) -> None:
 def test_no_rule_of_the_excluded_middle(judge: Any) -> None:
     """An unknown `p or not p` is unknown: no operator looks at two operands at once."""
     assert judge(two(p, "or", no(p)), p="u") == ["0 I"]
-
-
-@pytest.mark.parametrize(
-    ("formula", "expected"),
-    [(true, "0 P 0"), (false, "0 F 0"), (start, "0 P 0"), (always(start, 0, 1), "0 F 1")],
-)
-def test_constants(judge: Any, formula: Formula, expected: str) -> None:
-    """`start` is true at the first position only."""
-    assert judge(formula, p="01") == [expected]
