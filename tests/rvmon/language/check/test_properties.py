@@ -75,34 +75,42 @@ def test_names_of_a_model(checked, codes):
     assert codes("signal released : bool\nproperty P: E<> relased") == ["RV052"]
 
 
+RESPONSE = f"{ROLES}requirement R\n  monitor as response within 3 s\n  property "
+
+
 @each(
     ("text", "code"),
     [
-        ("A[] (a -> eventually b)", "RV051"),
-        ("A[] a until b", "RV051"),
-        ("A[] once a", "RV051"),
-        ("A[a and b]", "RV051"),
-        ("AX[0, 1 s] a", "RV051"),
-        ("A[] (eventually Robot.done)", "RV051"),
-        ("A[] (AG a) < 3", "RV050"),
-        ("A[] (d < 3)", "RV023"),
-        ("AG a and b", "RV002"),
+        ("property P: A[] (a -> eventually b)", "RV051"),
+        ("property P: A[] a until b", "RV051"),
+        ("property P: A[] once a", "RV051"),
+        ("property P: A[a and b]", "RV051"),
+        ("property P: AX[0, 1 s] a", "RV051"),
+        ("property P: A[] (eventually Robot.done)", "RV051"),
+        ("property P: A[] (AG a) < 3", "RV050"),
+        ("property P: A[] (d < 3)", "RV023"),
+        ("property P: AG a and b", "RV002"),
+        # A requirement speaks of one run.
+        ("requirement R upon a then EF b", "RV050"),
+        ("define p = A[] a\nrequirement R p", "RV050"),
+        # A response is derived of a property, whose parts are of the inputs or of the outputs.
+        ("requirement R monitor as response within 3 s", "RV053"),
+        (RESPONSE + "E<> (sensed or released)", "RV053"),
+        (RESPONSE + "E<> (sensed and ok)", "RV053"),
+        (RESPONSE + "E<> (both and released)", "RV053"),
+        (RESPONSE + "A[] released", "RV053"),
+        (RESPONSE + "E<> (EF released)", "RV053"),
+        (RESPONSE + "E<> (Robot.done and released)", "RV053"),
+        (RESPONSE + "E<> (true and released)", "RV053"),
     ],
 )
-def test_what_is_no_property_is_refused(codes, text, code):
-    assert codes(f"property P: {text}") == [code]
-
-
-def test_path_quantifier_outside_a_property(codes):
-    """A requirement speaks of one run."""
-    assert codes("requirement R upon a then EF b") == ["RV050"]
-    assert codes("define p = A[] a\nrequirement R p") == ["RV050"]
+def test_what_is_refused(codes, text, code):
+    assert codes(text) == [code]
 
 
 def response(checked, body):
     """Trigger and consequent of a derived monitor."""
-    text = f"{ROLES}requirement R\n  monitor as response within 3 s\n  property {body}"
-    found = checked(text).requirements["R"]
+    found = checked(RESPONSE + body).requirements["R"]
     return format_formula(found.trigger), format_formula(found.consequent)
 
 
@@ -128,27 +136,6 @@ def response(checked, body):
 def test_response_monitor(checked, body, trigger, consequent):
     """Inputs trigger, positive outputs are awaited together, negated ones stay away."""
     assert response(checked, body) == (trigger, consequent)
-
-
-@each(
-    "body",
-    [
-        "E<> (sensed or released)",
-        "E<> (sensed and ok)",
-        "E<> (both and released)",
-        "A[] released",
-        "E<> (EF released)",
-        "E<> (Robot.done and released)",
-        "E<> (true and released)",
-    ],
-)
-def test_role_split_that_is_refused(codes, body):
-    text = f"{ROLES}requirement R\n  monitor as response within 3 s\n  property {body}"
-    assert codes(text) == ["RV053"]
-
-
-def test_response_monitor_needs_a_property(codes):
-    assert codes("requirement R monitor as response within 3 s") == ["RV053"]
 
 
 def test_roles(checked):
