@@ -179,6 +179,16 @@ A = "automaton A { location a start a } "
         ("int[0,1] v[1000000] " + A, "TA019"),
         (A + "query: A<> (E<> A.a)  query: true -->[<=3] (A.a --> A.a)", "TA001"),
         ("", "TA021"),
+        # Nothing begins, which is refused like any other.
+        *((text, "TA001") for text in ("t,b", '"', "x", "=1")),
+        # A mistake is not blamed on a word that only UPPAAL knows.
+        *(
+            (
+                f"automaton A {{ location {word} start {word} edge {word} -> {word} do = 3 }}",
+                "TA001",
+            )
+            for word in ("do", "for", "priority", "E")
+        ),
     ],
 )
 def test_each_mistake_has_its_code(text, code):
@@ -216,6 +226,8 @@ query Q3: E<> (A.c
     [
         (MISTAKEN, "3:1:10 5:2:1 2:4:24 2:5:9 2:6:13 2:7:18"),
         (UNREADABLE, "1:4:13 1:7:24 1:9:15 1:12:1 1:15:9 1:16:1"),
+        # Those of a template are told once.
+        ("automaton T(const int[1,10] i) { location a start b }", "2:1:51"),
     ],
 )
 def test_all_that_is_wrong_appears_at_once_in_order_of_place(text, found):
@@ -235,18 +247,6 @@ def test_what_is_damaged_is_told_and_nothing_else():
         assert [line for _, line, _ in findings("\n".join(lines))] == [row + 1 for row in damaged]
 
 
-def test_a_finding_says_what_was_probably_meant():
-    diagnostic = one("clock speed automaton A { location a invariant spede <= 3 start a }")
-    assert diagnostic.help == "did you mean `speed`?"
-
-
-def test_an_unbounded_int_is_fixed_by_a_range():
-    """An int without a range is refused, and the message says how to write one."""
-    diagnostic = one("int v automaton A { location a start a }")
-    assert diagnostic.name == "unbounded-int"
-    assert "int[low, high]" in diagnostic.help
-
-
 def test_a_channel_used_by_nobody_is_a_warning():
     network = loads_network("""
     chan lonely, sent, heard
@@ -264,10 +264,6 @@ def test_a_channel_used_by_nobody_is_a_warning():
         ("TA010", "the channel `sent` is never received", "sent"),
         ("TA010", "the channel `heard` is never sent", "heard"),
     ]
-
-
-def test_mistakes_of_a_template_are_told_once():
-    assert findings("automaton T(const int[1,10] i) { location a start b }") == [("TA002", 1, 51)]
 
 
 @pytest.mark.slow
@@ -318,23 +314,6 @@ def test_a_division_by_zero_has_its_place(guard):
     assert found.spans[0].span.text == guard.removesuffix(" > 0")
 
 
-@pytest.mark.parametrize(
-    ("text", "name"),
-    [
-        ("automaton my-name { location l start l }", "my_name"),
-        ("automaton a { location l-1 start l }", "l_1"),
-        ("automaton a { location 1st start l }", "st"),
-    ],
-)
-def test_what_is_no_name_is_fixed(text, name):
-    assert f"first a letter: `{name}`" in one(text).help
-
-
-@pytest.mark.parametrize("text", ["t,b", '"', "x", "=1"])
-def test_a_text_in_which_nothing_begins_is_refused_like_any_other(text):
-    assert [code for code, *_ in findings(text)] == ["TA001"]
-
-
 @each(
     ("text", "bound"),
     [
@@ -360,15 +339,24 @@ def test_operators_bind_as_those_of_uppaal(text, bound):
 
 
 @each(
-    ("text", "message"),
+    ("text", "said"),
     [
-        ("chan a chan priority a < a", "a second priority"),
-        ("chan a, b chan priority a < b", "without `default`"),
-        ("chan a chan priority a < default chan priority default", "a second list"),
-        ("int[0,1] a chan priority a < default", "no channel"),
-        ("int[0,1] i chan a[2] chan priority a[i] < default", "no channel"),
-        ("chan priority a < default", "no name `a`"),
+        ("clock speed automaton A { location a invariant spede <= 3 start a }", "mean `speed`?"),
+        ("int v " + A, "unbounded-int"),
+        ("int v " + A, "int[low, high]"),
+        ("automaton my-name { location l start l }", "first a letter: `my_name`"),
+        ("automaton a { location l-1 start l }", "first a letter: `l_1`"),
+        ("automaton a { location 1st start l }", "first a letter: `st`"),
+        # Priorities that have no meaning.
+        ("chan a chan priority a < a " + A, "a second priority"),
+        ("chan a, b chan priority a < b " + A, "without `default`"),
+        ("chan a chan priority a < default chan priority default " + A, "a second list"),
+        ("int[0,1] a chan priority a < default " + A, "no channel"),
+        ("int[0,1] i chan a[2] chan priority a[i] < default " + A, "no channel"),
+        ("chan priority a < default " + A, "no name `a`"),
     ],
 )
-def test_priorities_that_have_no_meaning_are_refused(text, message):
-    assert message in one(f"{text} automaton A {{ location l start l }}").message
+def test_what_is_said_of_a_mistake(text, said):
+    """What was probably meant, and how to write it."""
+    diagnostic = one(text)
+    assert said in f"{diagnostic.name}: {diagnostic.message} ({diagnostic.help})"

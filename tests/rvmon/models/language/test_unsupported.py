@@ -79,14 +79,6 @@ def test_steps_may_stand_before_the_variable():
     assert network.automata == same.automata
 
 
-@pytest.mark.parametrize("text", ["do", "for", "priority", "E"])
-def test_names_of_the_text_form_are_free(text):
-    """A mistake in a `.ta` file is not blamed on a word that only UPPAAL knows."""
-    with pytest.raises(ModelError) as caught:
-        loads_network(f"automaton A {{ location {text} location end\n edge {text} -> end do = 3 }}")
-    assert caught.value.diagnostics[0].code == "TA001"
-
-
 def test_constants_are_computed_and_copied():
     network = loads_network("""<nta><declaration>
     int half(int n) { int k = n; while (k * 2 &gt; n) k--; return k; }
