@@ -198,11 +198,9 @@ class ConflictSearch:
 
     def _fits(self, group: Collection[Subject], other: Subject) -> bool:
         """Whether one more shares a name with a member, can start with all, conflicts with none."""
-        if other in group or not any(
-            frozenset((subject, other)) in self._near for subject in group
-        ):
-            return False
-        return not self._is_hopeless(frozenset((*group, other)))
+        near = (frozenset((subject, other)) in self._near for subject in group)
+        together = frozenset((*group, other))
+        return other not in group and any(near) and not self._is_hopeless(together)
 
     def _is_hopeless(self, group: frozenset[Subject]) -> bool:
         """Whether a group contains a conflict, or a pair that never starts together."""

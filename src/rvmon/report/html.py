@@ -178,11 +178,5 @@ def table_html(
 
 
 def _counts_in(table: VerdictTable, group: str, requirement: str) -> Counts | None:
-    return next(
-        (
-            run_group.counts.get(requirement)
-            for run_group in table.groups
-            if run_group.name == group
-        ),
-        None,
-    )
+    found = (one.counts.get(requirement) for one in table.groups if one.name == group)
+    return next(found, None)

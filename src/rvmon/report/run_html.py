@@ -145,15 +145,11 @@ def _rows(
     worst: dict[str, Panel] = {}
     for panel in sorted(panels, key=lambda panel: WORST_FIRST.index(panel.verdict)):
         worst.setdefault(panel.requirement, panel)
-    names = sorted(worst, key=lambda name: WORST_FIRST.index(report.verdicts[name]))
-    return [
-        (
-            name,
-            worst[name],
-            [(place_of(left, width), shown) for left, width, shown in _bars(report, name, view)],
-        )
-        for name in names
-    ]
+    rows = []
+    for name in sorted(worst, key=lambda name: WORST_FIRST.index(report.verdicts[name])):
+        bars = [(place_of(left, width), shown) for left, width, shown in _bars(report, name, view)]
+        rows.append((name, worst[name], bars))
+    return rows
 
 
 def _siblings(panels: Sequence[Panel], report: Report, panel: Panel) -> tuple[list[Panel], int]:

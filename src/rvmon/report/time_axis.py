@@ -39,16 +39,10 @@ def view_of(attempt: Attempt, report: Report, late: int | None = None) -> View:
 
     A late response at `late` (ticks) is in view if it is near.
     """
-    instants = [attempt.triggered]
-    if attempt.decided is not None:
-        instants.append(attempt.decided)
-    elif report.end is not None:
-        instants.append(report.end)
-    if attempt.blame is not None:
-        instants.extend(bound for bound in attempt.blame.window if bound is not None)
-        instants.extend(attempt.blame.at)
-    if attempt.deadline is not None:
-        instants.append(attempt.deadline)
+    decided = report.end if attempt.decided is None else attempt.decided
+    blame = () if attempt.blame is None else (*attempt.blame.window, *attempt.blame.at)
+    shown = (attempt.triggered, decided, attempt.deadline, *blame)
+    instants = [instant for instant in shown if instant is not None]
     first, last = min(instants), max(instants)
     # A response later than that would squeeze the attempt into less than half of the view: the
     # label points to it instead.

@@ -40,24 +40,10 @@ _LEVELS = {Verdict.PASS: 2, Verdict.INCONCLUSIVE: 3, Verdict.FAIL: 4}
 
 _TYPES = {Kind.BOOL: "boolean", Kind.INT: "integer", Kind.REAL: "number", Kind.LABEL: "string"}
 
-_STATE = {
-    "state": "string",
-    "open": "integer",
-    "passed": "integer",
-    "failed": "integer",
-    "undecided": "integer",
-}
-_ATTEMPT = {
-    "level": "integer",
-    "message": "string",
-    "name": "string",
-    "file": "string",
-    "line": "integer",
-    "verdict": "string",
-    "reason": "string",
-    "triggered": "integer",
-    "decided": "integer",
-}
+_STATE = {"state": "string"} | dict.fromkeys(("open", "passed", "failed", "undecided"), "integer")
+_OF_ATTEMPT = "level message name file line verdict reason triggered decided"
+_WHOLE = ("level", "line", "triggered", "decided")
+_ATTEMPT = {name: "integer" if name in _WHOLE else "string" for name in _OF_ATTEMPT.split()}
 
 _Message = tuple[int, str, Mapping[str, Any]]  # ticks, topic, content
 
@@ -125,16 +111,12 @@ def _value_schemas(
     for name in sorted(names):
         if name in spec.signals:
             kind = _TYPES[spec.signals[name].type.kind]
-            schemas[topic_of("signals", name)] = (
-                f"rvmon.{kind}",
-                {"known": "boolean", "value": kind},
-            )
+            members = {"known": "boolean", "value": kind}
+            schemas[topic_of("signals", name)] = f"rvmon.{kind}", members
         else:
             fields = {field: _TYPES[one.kind] for field, one in spec.events[name].fields.items()}
-            schemas[topic_of("events", name)] = (
-                f"rvmon.event.{name}",
-                {"occurs": "boolean", **fields},
-            )
+            members = {"occurs": "boolean", **fields}
+            schemas[topic_of("events", name)] = f"rvmon.event.{name}", members
     return schemas
 
 

@@ -93,13 +93,9 @@ def compare(before: Iterable[VerdictRow], after: Iterable[VerdictRow]) -> Compar
             elif not now.error:
                 differences.append(Difference(Change.READABLE, name))
             continue
-        only[0].extend(
-            f"{verdict} in {name}" for verdict in was.verdicts if verdict not in now.verdicts
-        )
-        only[1].extend(
-            f"{verdict} in {name}" for verdict in now.verdicts if verdict not in was.verdicts
-        )
-        for requirement in [verdict for verdict in was.verdicts if verdict in now.verdicts]:
+        only[0].extend(f"{one} in {name}" for one in was.verdicts if one not in now.verdicts)
+        only[1].extend(f"{one} in {name}" for one in now.verdicts if one not in was.verdicts)
+        for requirement in [one for one in was.verdicts if one in now.verdicts]:
             change = _difference(name, requirement, was, now)
             if change is not None:
                 differences.append(change)
@@ -108,13 +104,7 @@ def compare(before: Iterable[VerdictRow], after: Iterable[VerdictRow]) -> Compar
             if fold(now.verdicts[requirement]) is Verdict.FAIL:
                 failing.setdefault(name, []).append(requirement)
     order = list(Change)
-    differences.sort(
-        key=lambda difference: (
-            order.index(difference.change),
-            difference.recording,
-            difference.requirement,
-        )
-    )
+    differences.sort(key=lambda one: (order.index(one.change), one.recording, one.requirement))
     return Comparison(differences, failing, *only, same)
 
 
