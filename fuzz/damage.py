@@ -22,13 +22,7 @@ _NUMBERS = (b"0", b"1", b"3", b"-1", b"100", b"9999", b"16777216", b"2147483648"
 
 
 def damaged(data: bytes, random: Random, others: Sequence[bytes]) -> bytes:
-    """An input with one to five changes of pieces: of another kind, none, often, from elsewhere.
-
-    Args:
-        data: of the input.
-        random: the source of all choices.
-        others: inputs that pieces are taken from.
-    """
+    """An input with one to five changes of pieces: of another kind, none, often, from others."""
     pieces = _pieces(data)
     for _ in range(random.choice((1, 1, 1, 1, 2, 5))):
         other = _pieces(random.choice(others))

@@ -20,11 +20,7 @@ def fuzz(
 ) -> int:
     """Run a fuzzer on some targets, and print what came of each; 1 if anything stumbled.
 
-    Args:
-        targets: their names.
-        run: given a target, the folder that keeps what is found from run to run, and seconds.
-        out: holds the folders.
-        seconds: in all.
+    Each has its part of the seconds, and a folder in `out` that keeps what is found.
     """
     code = 0
     for name in targets:

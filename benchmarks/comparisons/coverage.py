@@ -14,7 +14,6 @@ from rvmon.coverage import combination
 from rvmon.coverage.monitor import SpecCoverage
 from rvmon.language.checked.formula import Formula
 from rvmon.language.checked.properties import Bin
-from rvmon.language.checked.specification import CheckedSpec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.testing.law.attempts import is_pulse
@@ -26,25 +25,8 @@ from rvmon.trace.sample import Sample
 EACH = 10
 """Traces of a specification."""
 
-Counted = dict[str, dict[str, tuple[int, int | None]]]
-Found = dict[tuple[str, ...], tuple[int, int]]
+Found = dict[str, tuple[int, int | None]]
 """By combination of bins, how often it was hit and when first."""
-
-
-def hits_on(spec: CheckedSpec, word: Word) -> dict[str, Found]:
-    """What a word hits, by the name of the coverpoint or cross; what hits nothing is left out.
-
-    Args:
-        spec: has the coverpoints and crosses.
-        word: the trace, position by position.
-    """
-    found = {
-        point.name: _hits(word, [point.bins], point.upon) for point in spec.coverpoints.values()
-    }
-    for cross in spec.crosses.values():
-        axes = [spec.coverpoints[name].bins for name in cross.points]
-        found[cross.name] = _hits(word, axes, cross.upon)
-    return {name: own for name, own in found.items() if own}
 
 
 def _hits(word: Word, axes: Sequence[Sequence[Bin]], upon: Formula | None) -> Found:
@@ -61,7 +43,7 @@ def _hits(word: Word, axes: Sequence[Sequence[Bin]], upon: Formula | None) -> Fo
         else:
             instants = [*_stretches(truths)]
         if instants:
-            name = tuple(bin_.name for bin_ in bins)
+            name = combination([bin_.name for bin_ in bins])
             found[name] = (len(instants), word.letters[instants[0]].instant)
     return found
 
@@ -94,16 +76,18 @@ def _stretches(truths: Sequence[Truth]) -> list[int]:
     return found
 
 
-def by_law(case: Case) -> Counted:
-    """What the definition says, as `by_monitor` tells it."""
-    word = word_of(case.spec, case.samples, end=case.end, advances=case.advances, names=case.names)
-    return {
-        name: {combination(bins): found for bins, found in own.items()}
-        for name, own in hits_on(case.spec, word).items()
-    }
+def by_law(case: Case) -> dict[str, Found]:
+    """What the definition says of coverpoints and crosses; what hits nothing is left out."""
+    spec = case.spec
+    word = word_of(spec, case.samples, end=case.end, advances=case.advances, names=case.names)
+    found = {one.name: _hits(word, [one.bins], one.upon) for one in spec.coverpoints.values()}
+    for cross in spec.crosses.values():
+        axes = [spec.coverpoints[name].bins for name in cross.points]
+        found[cross.name] = _hits(word, axes, cross.upon)
+    return {name: own for name, own in found.items() if own}
 
 
-def by_monitor(case: Case, coverage: SpecCoverage) -> Counted:
+def by_monitor(case: Case, coverage: SpecCoverage) -> dict[str, Found]:
     """What a monitor finds: how often, and when first."""
     monitor = coverage.monitor(sources=case.names, requirements=False)
     for one in case.actions:

@@ -30,7 +30,7 @@ from rvmon.language.checked.specification import TimeModel
 from rvmon.language.print import format_formula
 from rvmon.monitor.robustness import Robustness, RobustnessMonitor
 from rvmon.session import Spec
-from rvmon.testing.generate import BOOLS, Rng, chance
+from rvmon.testing.generate import BOOLS, chance
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, show_case
 from rvmon.testing.law.margins import margins
@@ -208,7 +208,8 @@ def judge_forecasts(found: Campaign, seed: int, own: Forecasts, numbers: range) 
         kinds = dict.fromkeys(BOOLS, Kind.BOOL)
         spec = Spec(spec_over(kinds, requirement(formula), time))
         for _ in range(own.words):
-            word = _word(rng)
+            places = range(rng.randint(1, 8))
+            word = [frozenset(name for name in BOOLS if chance(rng, 50)) for _ in places]
             for length, (decided, ours) in enumerate(_said(spec, word), 1):
                 possible = tableau.possible(word[:length])
                 wanted = next(iter(possible)) if len(possible) == 1 else None
@@ -235,11 +236,6 @@ def _said(spec: Spec, word: Sequence[Letter]) -> Iterator[tuple[bool, bool | Non
             decided = attempt.verdict
         value = monitor.open[0].forecast if decided is None else decided
         yield decided is not None, None if value is None else value is Verdict.PASS
-
-
-def _word(rng: Rng) -> list[Letter]:
-    length = rng.randint(1, 8)
-    return [frozenset(name for name in BOOLS if chance(rng, 50)) for _ in range(length)]
 
 
 _SPECS = "specifications"

@@ -65,11 +65,7 @@ def compare(
 ) -> Iterator[Agreement]:
     """Compare ours on the workload's first formula with each peer that was timed.
 
-    Args:
-        workload: the measured workload.
-        timed: the figures: a peer gets as many rows as it judges in the time.
-        peers: the other monitors, by label.
-        size: the time for which a peer may judge each trace.
+    Each gets as many of the rows as it judges in the time that the size allows.
     """
     about = Agreement("rvmon", workload.name, workload.form)
     formula = workload.formulas[0]

@@ -198,13 +198,7 @@ def _odd(plain: Path) -> Mapping[str, Path]:
 
 
 def written(path: Path, rows: int, seed: int) -> Path:
-    """A recording of a base whose values change at every row and that now and then disobeys.
-
-    Args:
-        path: to write to.
-        rows: their number.
-        seed: of the values.
-    """
+    """A recording of a base whose values change at every row and that now and then disobeys."""
     rng = random.Random(seed)
     speeds = [f"{0.3 + rng.random():.3f}" for _ in range(997)]
     distances = [f"{0.6 + 10 * rng.random():.2f}" for _ in range(1009)]

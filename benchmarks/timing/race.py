@@ -212,11 +212,7 @@ def measure(
 ) -> Result:
     """Give the workload to all contenders and let them pass over it in turn; they stay open.
 
-    Args:
-        workload: given to all.
-        contenders: the monitors that pass over it.
-        repeats: passes of each.
-        seconds: the limit of each; slow ones get fewer rows.
+    None passes longer than so many seconds: slow ones get fewer rows.
     """
     seconds *= LONGER.get(workload.section, 1)
     refusals: dict[str, str] = {}

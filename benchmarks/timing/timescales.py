@@ -76,14 +76,7 @@ def _parts(rng: random.Random, rows: Rows, high: int) -> Iterator[tuple[str, int
 
 
 def trace(family: Family, high: int, rows: int, seed: int = 1) -> dict[str, list[bool]]:
-    """A trace that fulfils the past form at every row but the last.
-
-    Args:
-        family: the property.
-        high: the upper bound, rows; the lower one is three tenths of it.
-        rows: the least length; the last episode is made whole.
-        seed: of the random choices.
-    """
+    """A trace that fulfils the past form at every row but the last, at least so many rows long."""
     rng = random.Random(f"{family.name}/{high}/{seed}")
     columns: dict[str, list[bool]] = {name: [] for name in family.names}
 

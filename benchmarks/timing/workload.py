@@ -78,14 +78,10 @@ def formula(text: str, bools: str = "p, q, r, s", reals: str = "") -> Formula:
 
 
 def specification(requirements: Sequence[str], columns: Mapping[str, Column]) -> str:
-    """A specification with one requirement per text, in held time.
+    """A specification with one requirement per text, the lines below its name, in held time.
 
     The rows are as many ticks apart as the bounds are scaled by, so that a value held from row to
     row is what discrete-time tools see at each row.
-
-    Args:
-        requirements: the lines below `requirement R1`, `R2`, …
-        columns: the signals, Boolean or numbers.
     """
     lines = ["spec benchmark", "time held", ""]
     for name, column in columns.items():
