@@ -99,7 +99,7 @@ def handover_campaign(
             "beside a line is how many tests took it, a dashed line was taken by none.",
             sections=partial(model_sections, count=conforming),
             foremost=FOREMOST if monitors else (),
-            write_more=_write_templates,
+            write_more=lambda folder, strategies: save_templates(strategies, folder / TEMPLATES),
         ),
         closing=closing(),
     )
@@ -111,8 +111,3 @@ def _work(summary: CampaignSummary) -> str:
         f"{summary.simulated_s:,.0f} s simulated, {stepped_s:,.0f} s of them with physics, the "
         "rest at rest and jumped over"
     )
-
-
-def _write_templates(folder: Path, strategies: frozenset[str]) -> None:
-    """Write the templates of the model-based strategies."""
-    save_templates(strategies, folder / TEMPLATES)

@@ -11,14 +11,10 @@ from handover.world.parameters import LATCH_LINGER_S, NS
 
 
 class Schedule:
-    """Calls in order of time; calls of one instant in the order in which they were added.
-
-    Attributes:
-        now_ns: the instant of the call that is running.
-    """
+    """Calls in order of time; calls of one instant in the order in which they were added."""
 
     def __init__(self) -> None:
-        self.now_ns = 0
+        self.now_ns = 0  # the instant of the call that is running
         self._queue: list[tuple[int, int, Callable[[], None]]] = []
         self._entered = 0
 
@@ -81,14 +77,10 @@ class Bus:
 
 
 class Node:
-    """One process on the bus: publishes, subscribes, reads, and ends.
-
-    Attributes:
-        params: its parameters from the launch file.
-    """
+    """One process on the bus: publishes, subscribes, reads, and ends."""
 
     def __init__(self, bus: Bus, params: Mapping[str, Any], poll_growth_s: float) -> None:
-        self.params = params
+        self.params = params  # its parameters from the launch file
         self._bus = bus
         self._growth_s = poll_growth_s
         self._subscriptions: dict[str, int] = {}

@@ -120,9 +120,6 @@ class Human:
         scene: the scene of the bodies.
         wake: called with the seconds for which something is going to move.
         after: calls a function so many seconds later.
-
-    Attributes:
-        hand_is_slack: whether the hand is neither opened nor closed for the piece.
     """
 
     def __init__(
@@ -131,7 +128,7 @@ class Human:
         wake: Callable[[float], None],
         after: Callable[[float, Callable[[], None]], None],
     ) -> None:
-        self.hand_is_slack = True
+        self.hand_is_slack = True  # whether the hand is neither opened nor closed for the piece
         self._scene = scene
         self._wake = wake
         self._after = after
@@ -228,18 +225,18 @@ class Human:
     def _part(self, *_: object) -> None:
         self._touches -= 1
 
-    def _contact_forces(self) -> dict[pymunk.Body, float]:
-        # Asked at each step of the physics: most of the time nothing touches the hand.
-        return contact_forces(self._scene.hand) if self._touches else {}
+    def _forces(self, body: pymunk.Body) -> dict[pymunk.Body, float]:
+        # Asked at each step of the physics: most of the time nothing touches the person.
+        return contact_forces(body) if self._touches else {}
 
     def _pressed(self, body: pymunk.Body, by_grasp: float = 0.0) -> float:
-        forces = contact_forces(body) if self._touches else {}
+        forces = self._forces(body)
         by_piece = by_grasp + forces.get(self._scene.piece, 0.0)
         parts = (self._scene.links[2], *self._scene.fingers)
         return max(by_piece, *(forces.get(part, 0.0) for part in parts))
 
     def _touch_force(self) -> float:
-        return self._contact_forces().get(self._scene.piece, 0.0)
+        return self._forces(self._scene.hand).get(self._scene.piece, 0.0)
 
     def _grasp_force(self) -> float:
         return 0.0 if self._grasp is None else self._grasp.force()

@@ -20,12 +20,7 @@ _ENDED = object()
 
 
 class Process:
-    """Runs one program on one node, from now until it returns, crashes or the time is over.
-
-    Attributes:
-        is_over: whether it returned or crashed.
-        error: the exception that crashed it, as one line with its place, or `None`.
-    """
+    """Runs one program on one node, from now until it returns, crashes or the time is over."""
 
     def __init__(
         self,
@@ -34,7 +29,8 @@ class Process:
         program: Program,
         around: Callable[[], AbstractContextManager[object]] = nullcontext,
     ) -> None:
-        self.is_over = False
+        self.is_over = False  # whether it returned or crashed
+        # the exception that crashed it, as one line with its place, or `None`
         self.error: str | None = None
         self._schedule = schedule
         self._node = node

@@ -14,13 +14,10 @@ Sample = tuple[int, dict[str, SampleValue]]
 
 
 class Recorder:
-    """Collects samples in time order; a signal is kept only when it changes, an event always.
-
-    Attributes:
-        samples: the whole ones; the instant that is still going on is not among them.
-    """
+    """Collects samples in time order; a signal is kept only when it changes, an event always."""
 
     def __init__(self, observer: Callable[[int, dict[str, SampleValue]], None] | None) -> None:
+        # the whole ones; the instant that is still going on is not among them
         self.samples: list[Sample] = []
         self._observer = observer
         self._t_ns = 0

@@ -41,17 +41,13 @@ class JsonObjects:
         clock: set to the stamps of the objects, so that one without a stamp cannot be read: nobody
             knows when between its neighbours it came. `None`: the driver has a wall clock, by which
             such an object is stamped on arrival.
-
-    Attributes:
-        driver: receives the samples.
-        ignored: names that are not declared, with their numbers of occurrences.
-        unread: the number of objects that could not be read.
     """
 
     def __init__(self, driver: Driver, *, clock: SimulatedClock | None = None) -> None:
+        # names that are not declared, with their numbers of occurrences
         self.ignored: Counter[str] = Counter()
-        self.unread = 0
-        self.driver = driver
+        self.unread = 0  # the number of objects that could not be read
+        self.driver = driver  # receives the samples
         self._clock = clock
         self._last: dict[str, int | None] = {}
         self._logged = 0
@@ -229,11 +225,7 @@ def _name_of_robot(fields: object, robot: str) -> str:
 
 
 def read_lines(file: int) -> Iterator[bytes]:
-    """The lines of a file, each as soon as it is complete; a byte order mark is none of it.
-
-    Args:
-        file: the descriptor of a pipe, a file or a terminal.
-    """
+    """The lines of a pipe, file or terminal, each once it is whole, without a byte order mark."""
     begun: list[bytes] = []  # the pieces of a line without its end, joined once
     length, mark = 0, BOM_UTF8
     while piece := os.read(file, _PIECE):

@@ -34,10 +34,6 @@ class MessageFeed:
         schema: the declared names and their binding.
         robot: the name of the robot.
         clock: the driver's clock, if it is to follow `/clock`; `None` for a wall clock.
-
-    Attributes:
-        has_time: whether the time is known. Only then are topics other than `/clock` to be
-            subscribed to: earlier messages could not be stamped.
     """
 
     def __init__(
@@ -48,6 +44,8 @@ class MessageFeed:
         *,
         clock: SimulatedClock | None = None,
     ) -> None:
+        # whether the time is known. Only then are topics other than `/clock` to be subscribed to:
+        # earlier messages could not be stamped
         self.has_time = clock is None
         self._clock = clock
         self._driver = driver

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
 from rvmon.cdv import campaign_summary
@@ -18,7 +18,7 @@ from rvmon.cdv.code_coverage import (
 from rvmon.cdv.sequential_test import decide
 from rvmon.coverage import STATES, TRANSITIONS, Ending, Group, model_of, without
 from rvmon.language.checked.properties import BinKind
-from rvmon.language.checked.specification import RunShare
+from rvmon.language.checked.specification import Requirement
 from rvmon.report.verdict_table import Counts
 from rvmon.session import Spec
 from rvmon.verdicts import Verdict
@@ -32,21 +32,20 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> campaign_summary.C
     robots = {}
     for name, robot in campaign.robots.items():
         groups = without(measured, unreachable_items(campaign, name, measured)).groups
-        texts = _texts(specs.get(name))
-        shares = _shares(specs.get(name))
+        requirements = {} if (spec := specs.get(name)) is None else spec.requirements
         played = [played for played in results.played if played.job.robot == name]
         by_strategy = _by_strategy(played)
         robots[name] = campaign_summary.RobotSummary(
             title=robot.title or name,
             spec=robot.spec_name or _shown(robot.spec),
-            requirements=texts,
+            requirements={key: one.text for key, one in requirements.items()},
             strategies={
-                strategy: _strategy(several, tuple(texts), groups, blocks, shares)
+                strategy: _strategy(several, requirements, groups, blocks)
                 for strategy, several in by_strategy.items()
             },
             controls={
                 strategy: _counts(
-                    (played.control or played.outcome for played in several), tuple(texts)
+                    (played.control or played.outcome for played in several), requirements
                 )
                 for strategy, several in by_strategy.items()
                 if any(played.control is not None for played in several)
@@ -85,12 +84,6 @@ def _shown(path: str | Path | None) -> str:
     return str(Path(path).relative_to(here))
 
 
-def _texts(spec: Spec | None) -> Mapping[str, str]:
-    if spec is None:
-        return {}
-    return {name: requirement.text for name, requirement in spec.requirements.items()}
-
-
 def _by_strategy(played: Sequence[Played]) -> dict[str, list[Played]]:
     """Tests of the robot as it is: a planted fault says nothing about the robot."""
     groups: dict[str, list[Played]] = {}
@@ -102,10 +95,9 @@ def _by_strategy(played: Sequence[Played]) -> dict[str, list[Played]]:
 
 def _strategy(
     played: Sequence[Played],
-    requirements: Sequence[str],
+    requirements: Mapping[str, Requirement],
     groups: Mapping[str, Group],
     blocks: Sequence[str],
-    shares: Mapping[str, RunShare],
 ) -> campaign_summary.StrategySummary:
     outcomes = [test_run.outcome for test_run in played]
     statements = {block: _coverage(groups[statements_name(block)], outcomes) for block in blocks}
@@ -124,22 +116,23 @@ def _strategy(
             source_and_target(name): tests
             for name, tests in _counted(groups[TRANSITIONS], outcomes).items()
         },
-        errors=_errors(played),
+        errors={
+            ending: {
+                test_run.job.test.name: test_run.outcome.error or ""
+                for test_run in played
+                if test_run.outcome.ending == ending
+            }
+            for ending in Ending
+            if ending != Ending.COMPLETED
+        },
         figures=_sums(outcomes),
         simulated_s=sum(outcome.simulated_s for outcome in outcomes),
-        shares={name: decide(share, _drawn(name, played)) for name, share in shares.items()},
+        shares={
+            name: decide(requirement.run_share, _drawn(name, played))
+            for name, requirement in requirements.items()
+            if requirement.run_share is not None
+        },
     )
-
-
-def _shares(spec: Spec | None) -> Mapping[str, RunShare]:
-    if spec is None:
-        return {}
-    requirements = spec.requirements.items()
-    return {
-        name: requirement.run_share
-        for name, requirement in requirements
-        if requirement.run_share is not None
-    }
 
 
 def _drawn(requirement: str, played: Sequence[Played]) -> Iterator[Verdict]:
@@ -149,17 +142,7 @@ def _drawn(requirement: str, played: Sequence[Played]) -> Iterator[Verdict]:
             yield test_run.outcome.verdicts[requirement]
 
 
-def _errors(played: Sequence[Played]) -> dict[Ending, dict[str, str]]:
-    errors: dict[Ending, dict[str, str]] = {
-        ending: {} for ending in Ending if ending != Ending.COMPLETED
-    }
-    for test_run in played:
-        if test_run.outcome.ending in errors:
-            errors[test_run.outcome.ending][test_run.job.test.name] = test_run.outcome.error or ""
-    return errors
-
-
-def _counts(outcomes: Iterable[Outcome], requirements: Sequence[str]) -> Mapping[str, Counts]:
+def _counts(outcomes: Iterable[Outcome], requirements: Collection[str]) -> Mapping[str, Counts]:
     counts = {name: dict.fromkeys(Verdict, 0) for name in requirements}
     for outcome in outcomes:
         for name in requirements:

@@ -172,7 +172,7 @@ class _Search(Generic[_Test]):
         while size:
             start = 0
             is_smaller = False
-            while start < len(parts := _sequence(self.test, name)):
+            while start < len(parts := getattr(self.test, name)):
                 rest = (*parts[:start], *parts[start + size :])
                 if self._fails(structs.replace(self.test, **{name: rest})):
                     is_smaller = True
@@ -210,11 +210,6 @@ class _Search(Generic[_Test]):
 
 class _EnoughError(Exception):
     """The most tests allowed were played."""
-
-
-def _sequence(test: Test, name: str) -> Sequence[object]:
-    parts: Sequence[object] = getattr(test, name)
-    return parts
 
 
 def _kind(outcome: Outcome) -> str:

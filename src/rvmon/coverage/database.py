@@ -247,12 +247,7 @@ def _together(paths: Iterable[str | Path]) -> Database:
 
 
 class _Items:
-    """The items of a database in the order of its model.
-
-    Attributes:
-        places: by names of group and item, the index in that order.
-        ids: by index, the id in the table.
-    """
+    """The items of a database in the order of its model."""
 
     def __init__(self, stored: Stored) -> None:
         named = [
@@ -260,7 +255,9 @@ class _Items:
             for group in model_from(stored).groups.values()
             for item in group.items
         ]
+        # by names of group and item, the index in that order
         self.places = {names: place for place, names in enumerate(named)}
+        # by index, the id in the table
         self.ids: NDArray[np.int64] = np.array(
             [stored[group].items[item].id for group, item in named], np.int64
         )

@@ -91,18 +91,12 @@ def _without_one(formula: Formula) -> Iterator[tuple[Formula, Formula, _Change]]
                     yield operand, _rest(formula, side), change
                 for part, without, change in _without_one(operand):
                     outer = change.within(op, side)
-                    yield part, _with(formula, side, without), outer
+                    yield part, structs.replace(formula, **{side: without}), outer
         case Unary(op=op, operand=operand):
             for part, without, change in _without_one(operand):
                 yield part, structs.replace(formula, operand=without), change.within(op)
         case _:
             return
-
-
-def _with(formula: Binary, side: str, operand: Formula) -> Formula:
-    if side == "left":
-        return structs.replace(formula, left=operand)
-    return structs.replace(formula, right=operand)
 
 
 def _rest(formula: Binary, side: str) -> Formula:

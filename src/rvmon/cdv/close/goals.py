@@ -42,17 +42,11 @@ class Goals:
     Args:
         model: the coverage model.
         argued: by item, the reason why it cannot be covered.
-
-    Attributes:
-        model: as it was given.
-        wanted: the hits wanted of each item.
-        proved: the query that proves an item to be unreachable, by item.
-        argued: as it was given.
-        wrong: unreachable items that were hit all the same, with the test that hit them first.
     """
 
     def __init__(self, model: Model, argued: Mapping[Goal, str]) -> None:
         self.model = model
+        # the hits wanted of each item
         self.wanted: dict[Goal, int] = {
             (group.name, item.name): item.goal
             for group in model.groups.values()
@@ -61,7 +55,9 @@ class Goals:
             if item.kind is BinKind.GOAL
         }
         self.argued = {goal: why for goal, why in argued.items() if goal in self.wanted}
+        # the query that proves an item to be unreachable, by item
         self.proved: dict[Goal, str] = {}
+        # unreachable items that were hit all the same, with the test that hit them first
         self.wrong: dict[Goal, str] = {}
         self._seen: list[tuple[str, Hits]] = []
         self._counts: dict[Goal, int] = {}

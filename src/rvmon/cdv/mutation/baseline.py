@@ -17,7 +17,7 @@ from rvmon.cdv.system import Code, Run, Values
 from rvmon.cdv.test import Test
 from rvmon.coverage import Subject
 from rvmon.errors import RvmonError
-from rvmon.execute import Ended, parallel
+from rvmon.execute import parallel
 from rvmon.session import Spec
 from rvmon.verdicts import Verdict
 
@@ -199,7 +199,7 @@ def record_suite(
             partial(recorder, robot, under_test, code),
             jobs=jobs,
             what="test",
-            instead=_ended,
+            instead=lambda _, ended: ended.why,
             timeout_s=campaign.timeout_s,
         )
     ) as results:
@@ -207,7 +207,7 @@ def record_suite(
             if isinstance(result, Recorded) and result.run.error is None:
                 recorded[test.name] = result
             else:
-                error = result.run.error if isinstance(result, Recorded) else result
+                error = result.run.error if isinstance(result, Recorded) else str(result)
                 left_out[test.name] = error or ""
             if progress is not None:
                 progress(number)
@@ -216,7 +216,3 @@ def record_suite(
         raise RvmonError(f"the suite has no result for robot `{robot}`: {why}")
     used = {test.name: test for test in usable if test.name in recorded}
     return Suite(robot, under_test, spec, code, used, recorded, left_out)
-
-
-def _ended(_: Test, ended: Ended) -> Recorded | str:
-    return ended.why

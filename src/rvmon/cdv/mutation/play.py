@@ -100,7 +100,8 @@ def _change_constants(module: ModuleType, mutant: Mutant) -> None:
     for statement in ast.parse(mutant.source).body:
         match statement:
             case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name)):
-                if name in names or names & _read(statement):
+                read = {node.id for node in ast.walk(statement) if isinstance(node, ast.Name)}
+                if name in names or names & read:
                     only = ast.Module([statement], [])
                     exec(compile(only, str(mutant.path), "exec"), namespace)  # noqa: S102 - our mutant
                     names.add(name)
@@ -110,10 +111,6 @@ def _change_constants(module: ModuleType, mutant: Mutant) -> None:
             # Modules that imported the constant by its name hold it, too.
             if getattr(other, "__dict__", {}).get(name) is old:
                 setattr(other, name, namespace[name])
-
-
-def _read(statement: ast.stmt) -> set[str]:
-    return {node.id for node in ast.walk(statement) if isinstance(node, ast.Name)}
 
 
 MOST_MEMORY = 2 << 30
