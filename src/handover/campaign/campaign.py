@@ -41,10 +41,7 @@ STRATEGIES: Mapping[str, Strategy] = {
 }
 """The strategies, in the order of the columns of a table."""
 
-ROBOTS = {
-    "correct": "Correct robot",
-    "legacy": "Robot of the paper's testbench",
-}
+ROBOTS = {"correct": "Correct robot", "legacy": "Robot of the paper's testbench"}
 """The names of the two robots in titles."""
 
 

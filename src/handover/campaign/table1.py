@@ -230,10 +230,7 @@ def table_document(summary: CampaignSummary) -> dict[str, object]:
         "source": SOURCE,
         "model_checking": table.checked,
         "strategies": {
-            group.name: {
-                "tests": group.runs,
-                "requirements": tables.rows_document(group.counts),
-            }
+            group.name: {"tests": group.runs, "requirements": tables.rows_document(group.counts)}
             for group in table.groups
         },
     }

@@ -9,15 +9,7 @@ if TYPE_CHECKING:
     from rvmon.models.conform import Conformance, Recorded
     from rvmon.models.network import Network
 
-OBSERVED = (
-    "grip_closed",
-    "informed",
-    "sensed",
-    "decided",
-    "withheld",
-    "released",
-    "timed_out",
-)
+OBSERVED = ("grip_closed", "informed", "sensed", "decided", "withheld", "released", "timed_out")
 """The robot's messages that are labels of the network.
 
 Of what the human does only the readiness is watched, where the model's human has it: a run conforms
@@ -63,10 +55,4 @@ def check_run(network: Network, run: Run) -> Conformance:
     from rvmon.models.conform import conform
 
     actions, observed = actions_of(run)
-    return conform(
-        network,
-        actions,
-        observed=observed,
-        end=run.end_ns,
-        tolerance=TOLERANCE_NS,
-    )
+    return conform(network, actions, observed=observed, end=run.end_ns, tolerance=TOLERANCE_NS)

@@ -9,7 +9,7 @@ from itertools import pairwise
 
 from handover.world import parameters as p
 from handover.world.measures import beside_distance
-from handover.world.motion import Joints, Trajectory, grip_point, joints_for, min_jerk
+from handover.world.motion import Joints, Trajectory, between, grip_point, joints_for, min_jerk
 from handover.world.scene import Scene
 
 
@@ -101,13 +101,7 @@ class Arm:
         wanted = self._goal
         if path is not None:
             self._path_s += p.CONTROL_S
-            share = min_jerk(self._path_s / path.duration)
-            a, b = path.start, path.goal
-            wanted = (
-                a[0] + (b[0] - a[0]) * share,
-                a[1] + (b[1] - a[1]) * share,
-                a[2] + (b[2] - a[2]) * share,
-            )
+            wanted = between(path.start, path.goal, min_jerk(self._path_s / path.duration))
             if self._path_s >= path.duration:
                 self._path = None
         for index, (motor, want, have) in enumerate(
@@ -129,16 +123,8 @@ class Arm:
     def _path_to(self, goal: Joints) -> Trajectory | None:
         start = self._start()
         steps = 40
-        points = [
-            grip_point(
-                (
-                    start[0] + (goal[0] - start[0]) * share,
-                    start[1] + (goal[1] - start[1]) * share,
-                    start[2] + (goal[2] - start[2]) * share,
-                )
-            )
-            for share in (min_jerk(i / steps) for i in range(steps + 1))
-        ]
+        shares = (min_jerk(i / steps) for i in range(steps + 1))
+        points = [grip_point(between(start, goal, share)) for share in shares]
         if any(beside_distance(self._scene, *point) < p.CLEARANCE[0] for point in points):
             return None
         fastest = max(math.dist(a, b) for a, b in pairwise(points)) * steps

@@ -96,18 +96,13 @@ def _meet(bodies: Iterable[pymunk.Body], category: int) -> None:
 def table_corners() -> tuple[tuple[float, float], ...]:
     """The table's outline in the scene, metres."""
     left, right = p.TABLE
-    return (
-        (left, -p.TABLE_THICKNESS),
-        (right, -p.TABLE_THICKNESS),
-        (right, 0.0),
-        (left, 0.0),
-    )
+    return ((left, -p.TABLE_THICKNESS), (right, -p.TABLE_THICKNESS), (right, 0.0), (left, 0.0))
 
 
-def palm_corners() -> tuple[tuple[float, float], ...]:
-    """The palm's outline around its centre, metres."""
-    length, width = p.PALM_LENGTH / 2, p.PALM_WIDTH / 2
-    return ((-length, -width), (length, -width), (length, width), (-length, width))
+def box_corners(length: float, width: float) -> tuple[tuple[float, float], ...]:
+    """The outline of a body around its centre, metres."""
+    x, z = length / 2, width / 2
+    return (-x, -z), (x, -z), (x, z), (-x, z)
 
 
 def _add_scenery(space: pymunk.Space, raised_m: float) -> None:
@@ -154,7 +149,7 @@ def _add_arm(
         motors.append(motor)
         x, z = x + length * math.cos(angle), z + length * math.sin(angle)
         before = link
-    palm = pymunk.Poly(links[2], palm_corners())
+    palm = pymunk.Poly(links[2], box_corners(p.PALM_LENGTH, p.PALM_WIDTH))
     palm.friction = p.FRICTION
     palm.filter = _filter(_GRIPPER, _SCENERY, _PIECE)
     space.add(palm)
@@ -174,7 +169,7 @@ def _add_fingers(
 ) -> tuple[tuple[pymunk.Body, pymunk.Body], tuple[pymunk.SimpleMotor, pymunk.SimpleMotor]]:
     fingers: list[pymunk.Body] = []
     motors: list[pymunk.SimpleMotor] = []
-    length, width = p.FINGER_LENGTH / 2, p.FINGER_THICKNESS / 2
+    length = p.FINGER_LENGTH / 2
     for side in (1, -1):
         root = palm.local_to_world((_FINGER_X, _FINGER_OFFSET * side))
         finger = pymunk.Body(p.FINGER_MASS, p.FINGER_MASS * p.FINGER_LENGTH**2 / 6)
@@ -183,9 +178,7 @@ def _add_fingers(
             root.x + length * math.cos(finger.angle),
             root.y + length * math.sin(finger.angle),
         )
-        shape = pymunk.Poly(
-            finger, ((-length, -width), (length, -width), (length, width), (-length, width))
-        )
+        shape = pymunk.Poly(finger, box_corners(p.FINGER_LENGTH, p.FINGER_THICKNESS))
         shape.friction = p.FRICTION
         shape.filter = _filter(_GRIPPER, _SCENERY, _PIECE)
         motor = pymunk.SimpleMotor(palm, finger, 0.0)

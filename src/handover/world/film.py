@@ -5,20 +5,11 @@ from __future__ import annotations
 import math
 
 from handover.world import parameters as p
-from handover.world.building import palm_corners, table_corners
+from handover.world.building import box_corners, table_corners
 from handover.world.scene import Scene
 from rvmon.report import tracks as shown
 
-BODIES = (
-    "upper_arm",
-    "forearm",
-    "palm",
-    "left_finger",
-    "right_finger",
-    "piece",
-    "hand",
-    "head",
-)
+BODIES = ("upper_arm", "forearm", "palm", "left_finger", "right_finger", "piece", "hand", "head")
 BESIDE = ("lower_arm", "other_hand")
 """The further bodies of a person beside the robot's way."""
 
@@ -61,18 +52,15 @@ class Film:
 def outlines() -> tuple[shown.Outline, ...]:
     """The outlines of each body, the ground, and the cone of the human's gaze."""
     half = (p.LOWER_ARM[1] - p.LOWER_ARM[0]) / 2 - p.LOWER_ARM_RADIUS
-    length, width = p.FINGER_LENGTH / 2, p.FINGER_THICKNESS / 2
-    finger = ((-length, -width), (length, -width), (length, width), (-length, width))
-    half_x, half_z = p.PIECE_SIZE[0] / 2, p.PIECE_SIZE[1] / 2
-    piece = ((-half_x, -half_z), (half_x, -half_z), (half_x, half_z), (-half_x, half_z))
+    finger = box_corners(p.FINGER_LENGTH, p.FINGER_THICKNESS)
     x, z = GAZE_LENGTH, GAZE_LENGTH * math.tan(GAZE_HALF_ANGLE)
     return (
         shown.Outline("upper_arm", ((-p.UPPER_ARM / 2, 0.0), (p.UPPER_ARM / 2, 0.0)), 0.03, "link"),
         shown.Outline("forearm", ((-p.FOREARM / 2, 0.0), (p.FOREARM / 2, 0.0)), 0.025, "link"),
-        shown.Outline("palm", palm_corners(), 0.0, "gripper"),
+        shown.Outline("palm", box_corners(p.PALM_LENGTH, p.PALM_WIDTH), 0.0, "gripper"),
         shown.Outline("left_finger", finger, 0.0, "gripper"),
         shown.Outline("right_finger", finger, 0.0, "gripper"),
-        shown.Outline("piece", piece, 0.0, "piece"),
+        shown.Outline("piece", box_corners(*p.PIECE_SIZE), 0.0, "piece"),
         shown.Outline("hand", ((0.0, 0.0),), p.HAND_RADIUS, "person"),
         shown.Outline("lower_arm", ((-half, 0.0), (half, 0.0)), p.LOWER_ARM_RADIUS, "person"),
         shown.Outline("other_hand", ((0.0, 0.0),), p.HAND_RADIUS, "person"),

@@ -52,6 +52,15 @@ def joints_for(x: float, z: float) -> Joints | None:
     return shoulder, elbow, DOWN - shoulder - elbow
 
 
+def between(start: Joints, goal: Joints, share: float) -> Joints:
+    """The joint angles at a share of the way."""
+    return (
+        start[0] + (goal[0] - start[0]) * share,
+        start[1] + (goal[1] - start[1]) * share,
+        start[2] + (goal[2] - start[2]) * share,
+    )
+
+
 @dataclass(frozen=True, slots=True)
 class Trajectory:
     """A path in joint space, at rest at both ends."""

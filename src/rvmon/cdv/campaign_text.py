@@ -15,14 +15,7 @@ from msgspec import structs
 
 from rvmon.cdv.campaign_plan import Results
 from rvmon.cdv.campaign_summary import NOTHING, BlockCoverage, CampaignSummary, RobotSummary
-from rvmon.cdv.tables import (
-    INTERVALS,
-    LEGEND,
-    Presentation,
-    RobotTables,
-    named_tables,
-    to_json,
-)
+from rvmon.cdv.tables import INTERVALS, LEGEND, Presentation, RobotTables, named_tables, to_json
 from rvmon.cdv.test import save
 from rvmon.files import write_whole
 from rvmon.report.printer import Cell, Printer, text_of

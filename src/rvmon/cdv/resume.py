@@ -62,11 +62,7 @@ class Unfinished(journal.Journal, frozen=True):
 
 
 def unfinished(
-    folder: Path,
-    plan: Plan,
-    specs: Mapping[str, Spec],
-    command: str,
-    shard: Shard | None = None,
+    folder: Path, plan: Plan, specs: Mapping[str, Spec], command: str, shard: Shard | None = None
 ) -> Unfinished:
     """A campaign in its folder, from where it was left: a shard, or all with what shards have done.
 

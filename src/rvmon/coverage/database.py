@@ -23,13 +23,7 @@ from numpy.typing import NDArray
 
 from rvmon.coverage import Coverage, Hits, Model, TestRecord
 from rvmon.coverage.database_file import connect, damaged, name_of, readable_errors, transaction
-from rvmon.coverage.stored_model import (
-    Stored,
-    model_from,
-    read_groups,
-    stored_of,
-    write_groups,
-)
+from rvmon.coverage.stored_model import Stored, model_from, read_groups, stored_of, write_groups
 from rvmon.coverage.stored_tests import entry_of, read_entries, write_entries
 from rvmon.errors import CoverageError
 

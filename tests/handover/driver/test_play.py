@@ -15,7 +15,7 @@ from msgspec import structs
 
 from handover.driver import Run, run_test
 from handover.driver.play import draw
-from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam
+from handover.generator.abstract_test import AbstractTest, ReceiveSignal, SendSignal, SetParam
 from handover.generator.disturbed import disturbed
 from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.world.faults import SensorFaults

@@ -10,7 +10,7 @@ import pytest
 from tests.tools.each import each
 
 from handover.driver.script import INFORMED, Script
-from handover.generator import Action, ReceiveSignal, SendSignal, SetParam, Withdraw
+from handover.generator.abstract_test import Action, ReceiveSignal, SendSignal, SetParam, Withdraw
 from handover.world import parameters as p
 from handover.world.bus import Bus, Node, Schedule
 from handover.world.process import Process

@@ -11,8 +11,7 @@ import rvmon
 from handover.checker import spec_path
 from handover.collector.code import TRANSITIONS
 from handover.driver import run_test
-from handover.generator import AbstractTest
-from handover.generator.abstract_test import directed
+from handover.generator.abstract_test import AbstractTest, directed
 from rvmon.cdv.system import Checker
 
 

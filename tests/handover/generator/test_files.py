@@ -11,8 +11,15 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from tests.tools.each import each
 
-from handover.generator import AbstractTest, ReceiveSignal, SendSignal, SetParam, Withdraw
-from handover.generator.abstract_test import Switch, directed
+from handover.generator.abstract_test import (
+    AbstractTest,
+    ReceiveSignal,
+    SendSignal,
+    SetParam,
+    Switch,
+    Withdraw,
+    directed,
+)
 from handover.generator.pseudorandom import constrained
 from handover.robot.mutants import MUTATIONS
 from handover.world.faults import SceneFaults, SensorFaults

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from handover.generator import Action, ReceiveSignal, SendSignal, SetParam, Withdraw
 from handover.generator import disturbed as generator
+from handover.generator.abstract_test import Action, ReceiveSignal, SendSignal, SetParam, Withdraw
 from handover.generator.disturbed import PERSON, disturbed
 from handover.generator.pseudorandom import PREFIX, constrained, pseudorandom
 from handover.world import parameters as p
