@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from contextlib import contextmanager
+from functools import partial
+from typing import Any
 
 from tests.tools.each import each
 
@@ -30,36 +32,36 @@ def test_waits_are_exact() -> None:
     assert schedule.now_ns == NS
 
 
-def test_crash_is_a_result() -> None:
-    def program() -> Program:
-        yield 1.0
-        raise KeyError("gripper")
+def crashing() -> Program:
+    yield 1.0
+    raise KeyError("gripper")
 
+
+def hanging() -> Program:
+    while True:
+        yield 0.0
+
+
+def waiting(wait: object) -> Any:
+    yield wait
+
+
+@each(
+    ("program", "error"),
+    [
+        (crashing, "KeyError: 'gripper' (test_process.py, line "),
+        (hanging, "hangs"),
+        # Whatever is no number of seconds is the program's error.
+        *(
+            (partial(waiting, wait), "yielding seconds")
+            for wait in (-1.0, float("nan"), float("inf"), "2", None, True)
+        ),
+    ],
+)
+def test_how_a_program_failed_is_a_result(program: Callable[[], Program], error: str) -> None:
     process, _ = play(program())
     assert process.error is not None
-    assert process.error.startswith("KeyError: 'gripper' (test_process.py, line ")
-
-
-@each("wait", [-1.0, float("nan"), float("inf"), "2", None, True])
-def test_wrong_waits_are_errors(wait: object) -> None:
-    """Whatever is no number of seconds is the program's error."""
-
-    def program() -> Generator[object, None, None]:
-        yield wait
-
-    process, _ = play(program())  # type: ignore[arg-type]
-    assert process.error is not None
-    assert "yielding seconds" in process.error
-
-
-def test_program_that_passes_no_time_is_ended() -> None:
-    def program() -> Program:
-        while True:
-            yield 0.0
-
-    process, _ = play(program())
-    assert process.error is not None
-    assert "hangs" in process.error
+    assert error in process.error
 
 
 def test_context_surrounds_each_step_only() -> None:

@@ -3,6 +3,7 @@
 import os
 
 import pytest
+from tests.tools.each import each
 
 from rvmon import Verdict, loads
 from rvmon.adapters.json_objects import (
@@ -52,11 +53,38 @@ def test_the_clock_follows_the_stamps(live):
     assert driver.status()[""].run == 2
 
 
-def test_a_line_that_cannot_be_read_may_have_said_anything(live):
-    driver, _, source = live
-    found = _verdicts(driver, [b'{"t": 0, "x": 0}', b"x: 7", b'{"t": 2}'], source)
-    assert found == {"": Verdict.INCONCLUSIVE}
-    assert source.unread == 1
+LEFT = [b'{"t": 1, "id": "left", "x": 1}', b'{"t": 2, "id": "left", "x": 1}']
+
+
+@each(
+    ("lines", "robot", "unread", "verdicts"),
+    [
+        # A line that cannot be read may have said anything.
+        ([b'{"t": 0, "x": 0}', b"x: 7", b'{"t": 2}'], None, 1, {"": "I"}),
+        # One without a time came somewhere between its neighbours: perhaps too late.
+        ([b'{"t": 0, "x": 0}', b'{"x": 0}', b'{"t": 9, "x": 0}'], None, 1, {"": "I"}),
+        # A line of nobody known may be of any robot, also of one that comes later.
+        (LEFT, "id", 0, {"left": "P"}),
+        ([b"torn {", *LEFT], "id", 1, {"left": "I"}),
+        (
+            [
+                b'{"t": 0, "id": "left", "x": 0}',
+                b'{"t": 0, "id": 2, "x": 3}',
+                b'{"t": 0.5, "id": 2}',
+                b'{"t": 1, "x": 0}',
+                b'{"t": 2, "id": "left"}',
+            ],
+            "id",
+            1,
+            {"left": "I", "2": "F"},
+        ),
+    ],
+)
+def test_what_a_line_does_not_say_is_unknown(lines, robot, unread, verdicts):
+    clock = SimulatedClock()
+    source = JsonObjects(driver := Driver(loads(SPEC), clock=clock), clock=clock)
+    assert _verdicts(driver, lines, source, robot) == verdicts
+    assert source.unread == unread
 
 
 @pytest.mark.parametrize(("waits", "verdict"), [(True, "NT"), (False, "F")])
@@ -117,28 +145,6 @@ def test_lines_that_come_after_the_end_are_nobodys(live):
     assert source.unread == 0
 
 
-def test_a_field_names_the_robot(live):
-    """A line without it is of nobody known: it may be of any."""
-    driver, _, source = live
-    lines = [
-        b'{"t": 0, "id": "left", "x": 0}',
-        b'{"t": 0, "id": 2, "x": 3}',
-        b'{"t": 0.5, "id": 2}',
-        b'{"t": 1, "x": 0}',
-        b'{"t": 2, "id": "left"}',
-    ]
-    found = _verdicts(driver, lines, source, "id")
-    assert found == {"left": Verdict.INCONCLUSIVE, "2": Verdict.FAIL}
-
-
-@pytest.mark.parametrize(("lines", "verdict"), [([b"torn {"], "I"), ([], "P")])
-def test_a_line_of_nobody_may_have_been_the_first_of_a_robot_that_comes_later(live, lines, verdict):
-    """Whose it was cannot be read; who was heard before has lost it as well."""
-    driver, _, source = live
-    stamped = [b'{"t": 1, "id": "left", "x": 1}', b'{"t": 2, "id": "left", "x": 1}']
-    assert _verdicts(driver, [*lines, *stamped], source, "id") == {"left": verdict}
-
-
 def test_lines_are_read_as_they_come():
     """A pipe gives them in pieces; the last one may lack its end."""
     read, write = os.pipe()
@@ -173,14 +179,6 @@ def test_a_byte_order_mark_is_no_part_of_a_line():
 def test_the_first_line_that_says_something_tells_whether_lines_have_stamps(lines, taken, stamp):
     """What a program greets with does not; all that was read is given on."""
     assert begin_of(iter(lines), loads(SPEC).schema) == (lines[:taken], stamp)
-
-
-def test_a_line_without_a_time_among_those_that_have_one_is_lost(live):
-    """It came somewhere between its neighbours: as an answer it may have been too late."""
-    driver, _, source = live
-    lines = [b'{"t": 0, "x": 0}', b'{"x": 0}', b'{"t": 9, "x": 0}']
-    assert _verdicts(driver, lines, source) == {"": Verdict.INCONCLUSIVE}
-    assert source.unread == 1
 
 
 def test_a_line_longer_than_any_is_given_up(tmp_path, monkeypatch):

@@ -73,6 +73,8 @@ def test_what_is_owed(required, fix):
         ("requirement R in at least 9 % of runs released", "a clause, as `in at …`, stands behind"),
         ("requirement R property released", "a clause, as `property …`, stands behind"),
         ("requirement R then within 3 s released", "a trigger stands before `then`"),
+        ("signal x : real m", "a unit stands in brackets: `[m]`"),
+        ("event hit(force: real m)", "a unit stands in brackets: `[m]`"),
         ("// signals\nsignal x : bool", "a comment begins with `#`"),
         ("signal x : bool // a signal", "a comment begins with `#`"),
         ("/* signals */", "a comment begins with `#`"),
@@ -133,8 +135,3 @@ def test_never(formula):
     assert first_finding(f"requirement R\n  {formula}\n").help == (
         "for `never` write `always not (…)`"
     )
-
-
-@pytest.mark.parametrize("item", ["signal x : real m\n", "event hit(force: real m)\n"])
-def test_a_unit_without_brackets(item):
-    assert "a unit stands in brackets: `[m]`" in first_finding(item).help
