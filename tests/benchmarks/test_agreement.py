@@ -1,7 +1,5 @@
 """Who judges alike, asked of a peer that is played."""
 
-from __future__ import annotations
-
 from pathlib import Path
 from typing import Any
 

@@ -1,7 +1,5 @@
 """Formulas in the languages of the peers."""
 
-from __future__ import annotations
-
 import pytest
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.ways import Question, answers, ask_oracle

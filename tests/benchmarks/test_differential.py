@@ -1,7 +1,5 @@
 """The command that compares ours with something independent."""
 
-from __future__ import annotations
-
 import re
 
 import pytest

@@ -1,7 +1,5 @@
 """Measuring, without a clock."""
 
-from __future__ import annotations
-
 from benchmarks.peers.client import PeerError
 from benchmarks.timing.race import Pass, measure
 from benchmarks.timing.workload import Workload

@@ -1,7 +1,5 @@
 """Asking a program in a process of its own."""
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 

@@ -1,7 +1,5 @@
 """Each benchmark is a program that says what it does."""
 
-from __future__ import annotations
-
 import runpy
 import sys
 

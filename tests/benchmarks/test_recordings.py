@@ -1,7 +1,5 @@
 """The table of what whole files take."""
 
-from __future__ import annotations
-
 import io
 import sys
 from collections.abc import Sequence

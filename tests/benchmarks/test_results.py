@@ -1,7 +1,5 @@
 """The page of results."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """The Timescales families."""
 
-from __future__ import annotations
-
 import pytest
 from benchmarks.peers.ways import Question, answers, ask_oracle
 from benchmarks.timing.timescales import FAMILIES, Family, trace

@@ -6,8 +6,6 @@ errors, `elided` that `…` stands for anything in its output, `not-run="why"` t
 `python -m tests.docs.pages` counts.
 """
 
-from __future__ import annotations
-
 import doctest
 import os
 import re

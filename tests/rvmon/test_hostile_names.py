@@ -4,8 +4,6 @@ Every writer gets names as ids, texts, columns, reasons and names of files; comm
 specifications, models and recordings. `HOSTILE_NAMES=100000` in the environment tries so many.
 """
 
-from __future__ import annotations
-
 import contextlib
 import csv
 import io

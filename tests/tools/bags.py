@@ -1,7 +1,5 @@
 """Recordings of messages as the libraries of ROS, MCAP and Protocol Buffers write them."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache

@@ -5,8 +5,6 @@
 [0, 1, 3]
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Container, Mapping
 from functools import partial
 from typing import Any

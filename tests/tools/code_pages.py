@@ -1,7 +1,5 @@
 """The pages of diagnostic codes, taken apart: an example, what is said of it, the same fixed."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import dataclass
 

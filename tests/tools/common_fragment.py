@@ -3,8 +3,6 @@
 For who knows no bounds they can be taken away.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 
 from msgspec.structs import replace

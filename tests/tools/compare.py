@@ -1,7 +1,5 @@
 """Two reports on the same case: do they say the same?"""
 
-from __future__ import annotations
-
 from collections.abc import Mapping
 from dataclasses import dataclass
 

@@ -1,7 +1,5 @@
 """Databases of coverage for tests."""
 
-from __future__ import annotations
-
 from itertools import product
 
 from msgspec.structs import replace

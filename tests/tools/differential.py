@@ -1,7 +1,5 @@
 """An engine against the oracle on random cases; a disagreement is shrunk and shown."""
 
-from __future__ import annotations
-
 import itertools
 import random
 from collections import Counter

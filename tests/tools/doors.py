@@ -1,7 +1,5 @@
 """One random recording through every door: files, tables, frames, pairs."""
 
-from __future__ import annotations
-
 import csv
 import json
 import math

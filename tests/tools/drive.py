@@ -1,7 +1,5 @@
 """Lead a monitor through a case, as a program that uses it would."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby

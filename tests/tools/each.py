@@ -1,7 +1,5 @@
 """Tests of many small cases, each of which takes less than a test by itself costs."""
 
-from __future__ import annotations
-
 import inspect
 from collections.abc import Callable, Iterable, Sequence
 from functools import wraps

@@ -1,7 +1,5 @@
 """The core in its forms, stepped and fed rows, as the differential test drives monitors."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any

@@ -1,7 +1,5 @@
 """What the input health of a run has to say, worked out from its samples (SEMANTICS 1 and 6)."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise

@@ -1,7 +1,5 @@
 """Names that would be something else in some output, if that wrote them as they are."""
 
-from __future__ import annotations
-
 import random
 import re
 from collections.abc import Iterator

@@ -1,7 +1,5 @@
 """What the law says of a case."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any

@@ -1,7 +1,5 @@
 """Logs of PX4 and of CAN, written as their tools do: a speed and a mode over time."""
 
-from __future__ import annotations
-
 import struct
 from collections.abc import Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """What a monitor says while it runs: each call's decisions, what is open, what is due."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 

@@ -3,8 +3,6 @@
 Future formulas over truth values, windows within windows, many letters, coverpoints and crosses.
 """
 
-from __future__ import annotations
-
 import random
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Brokers and masters on ports of their own, started and ended by who needs them."""
 
-from __future__ import annotations
-
 import os
 import shutil
 import socket

@@ -1,7 +1,5 @@
 """From a random case that shows something to a small one, by fewer and smaller choices."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Sequence
 from random import Random
 from typing import TypeVar

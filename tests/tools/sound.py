@@ -4,8 +4,6 @@ What a random case lost is filled in at random; so filled it is a case that diff
 only in what that did not know.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 

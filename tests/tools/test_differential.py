@@ -1,7 +1,5 @@
 """The differential test finds what it is for, and shrinks it to what a person can read."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress

@@ -1,7 +1,5 @@
 """Random small networks of timed automata with queries, as `.ta` text."""
 
-from __future__ import annotations
-
 from random import Random
 
 _COMPARISONS = ("<", "<=", "==", ">=", ">")

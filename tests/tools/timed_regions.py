@@ -7,8 +7,6 @@ with the model checker, and so can say whether that is right.
 Source: Alur and Dill, A Theory of Timed Automata, 1994, section 4.3.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction

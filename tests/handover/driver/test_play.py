@@ -1,7 +1,5 @@
 """Whole runs: repeatable, equal with and without jumps, within the protocol's bounds."""
 
-from __future__ import annotations
-
 import hashlib
 import itertools
 import os

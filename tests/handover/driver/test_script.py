@@ -1,7 +1,5 @@
 """An abstract test's actions as signals, waits and postures in time."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Callable
 from dataclasses import dataclass, field

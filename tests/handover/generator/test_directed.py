@@ -1,7 +1,5 @@
 """The directed tests, played and judged by the specification of their robot."""
 
-from __future__ import annotations
-
 from functools import cache
 from itertools import pairwise
 

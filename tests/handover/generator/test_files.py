@@ -1,7 +1,5 @@
 """Tests as files: exact, strict, and with messages that say what is wrong."""
 
-from __future__ import annotations
-
 import pickle
 from pathlib import Path
 from typing import get_args

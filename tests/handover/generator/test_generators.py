@@ -1,7 +1,5 @@
 """Random tests: their alphabet, their shape, their repeatability."""
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The robot's code against hand-made surroundings: no world, no physics."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Generator
 from dataclasses import dataclass, field, replace
 from itertools import pairwise

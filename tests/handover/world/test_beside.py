@@ -1,7 +1,5 @@
 """A person beside the robot's way has a forearm and another hand there, each with its own force."""
 
-from __future__ import annotations
-
 import math
 import random
 

@@ -1,7 +1,5 @@
 """Latched messages, publishers that end, and reads that become slow."""
 
-from __future__ import annotations
-
 import pytest
 
 from handover.world.bus import Bus, Node, Schedule, Value

@@ -1,7 +1,5 @@
 """Programs that wait, end, crash or hang."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from functools import partial

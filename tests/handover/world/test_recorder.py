@@ -1,7 +1,5 @@
 """Samples: one for each instant, in order, signals only on change."""
 
-from __future__ import annotations
-
 from handover.world.recorder import Recorder, SampleValue
 
 

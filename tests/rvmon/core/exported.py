@@ -1,7 +1,5 @@
 """Cases for the exported C: what `judge.c` reads, what it prints, and what the extension says."""
 
-from __future__ import annotations
-
 import struct
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence

@@ -1,7 +1,5 @@
 """Reads the bytes of a plan by what plan.h declares."""
 
-from __future__ import annotations
-
 import re
 import struct
 from collections.abc import Mapping, Sequence

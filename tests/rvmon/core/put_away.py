@@ -1,7 +1,5 @@
 """A run of the core that is put away and taken up again at each call, beside one that is not."""
 
-from __future__ import annotations
-
 from dataclasses import fields
 from typing import Any
 

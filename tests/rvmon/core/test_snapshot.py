@@ -1,7 +1,5 @@
 """A run of the core as bytes, and from them: nothing is lost, and no bytes do harm."""
 
-from __future__ import annotations
-
 import random
 import struct
 from collections import Counter

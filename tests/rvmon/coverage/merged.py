@@ -1,7 +1,5 @@
 """Databases of coverage to merge."""
 
-from __future__ import annotations
-
 import random
 from collections.abc import Iterable
 

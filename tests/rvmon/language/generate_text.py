@@ -1,7 +1,5 @@
 """Random texts by the grammar of specifications, and what texts say apart from their layout."""
 
-from __future__ import annotations
-
 from collections import defaultdict
 from collections.abc import Hashable, Mapping, Sequence
 from functools import cache

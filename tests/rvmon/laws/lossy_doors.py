@@ -4,8 +4,6 @@ The doors are a pipe of lines, `Live` and `DurableMonitor`. What files refuse, a
 middleware notice what they lose, their tests show; all of them tell the same driver.
 """
 
-from __future__ import annotations
-
 import itertools
 import json
 import random

@@ -1,7 +1,5 @@
 """A monitor that is used again is as a new one."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

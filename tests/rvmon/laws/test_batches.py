@@ -1,7 +1,5 @@
 """Samples that come in pieces, or out of order, are judged as if they had come whole, in order."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """Operators are what SEMANTICS 2 defines them to be, on random operands and traces."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from dataclasses import replace

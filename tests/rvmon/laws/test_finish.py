@@ -1,7 +1,5 @@
 """`finish(t)` is `advance(t + 1 tick)`, and then the end."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

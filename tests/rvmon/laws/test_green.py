@@ -1,7 +1,5 @@
 """Green never hides a failure: what was lost, filled in, turns no verdict."""
 
-from __future__ import annotations
-
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st

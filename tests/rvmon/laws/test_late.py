@@ -1,7 +1,5 @@
 """What comes too late: no green on letters that it would have changed, no alarm taken back."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

@@ -1,7 +1,5 @@
 """What is told in other portions, or later, changes nothing that was decided."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

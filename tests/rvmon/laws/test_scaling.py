@@ -1,7 +1,5 @@
 """The length of a tick is of no account: what is judged goes from event to event."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

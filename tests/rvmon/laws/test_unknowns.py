@@ -1,7 +1,5 @@
 """Knowing more never overturns what was decided while knowing less."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from random import Random
 

@@ -1,7 +1,5 @@
 """`whenever θ then ψ` with a known θ is `upon θ then ψ W !θ`."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 import pytest

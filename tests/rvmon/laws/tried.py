@@ -1,7 +1,5 @@
 """How laws are tried: on the core, which other tests hold to the oracle call by call."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 
 from hypothesis import HealthCheck, settings

@@ -1,7 +1,5 @@
 """Runs in processes that are killed at random points: are their verdicts those of one?"""
 
-from __future__ import annotations
-
 import json
 import os
 import random

@@ -4,8 +4,6 @@
 that names them, objects and functions one a line.
 """
 
-from __future__ import annotations
-
 import re
 from pathlib import Path
 

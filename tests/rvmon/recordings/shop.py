@@ -1,7 +1,5 @@
 """Messages of a shop drawn at random, and all that writes them."""
 
-from __future__ import annotations
-
 import csv
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path

@@ -1,7 +1,5 @@
 """A notation for what the oracle and the core say of a trace drawn as rows of characters."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping, Sequence
 
 import pytest

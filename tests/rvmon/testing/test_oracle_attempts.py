@@ -1,7 +1,5 @@
 """Triggers, episodes, captured values, instances: worked out by hand from SEMANTICS 3."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Any
 

@@ -1,7 +1,5 @@
 """The end of a trace and its policies: worked out by hand from SEMANTICS 3."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

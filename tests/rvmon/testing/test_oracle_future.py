@@ -3,8 +3,6 @@
 A row draws one name, a character per tick from 0. `0 P 3`: triggered at 0, passed at 3.
 """
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

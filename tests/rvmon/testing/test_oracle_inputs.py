@@ -1,7 +1,5 @@
 """Signals, events, payloads, probes and numbers, worked out by hand from SEMANTICS 1 and 2."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """What an outage hides: worked out by hand from SEMANTICS 1."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

@@ -1,7 +1,5 @@
 """Past operators and connectives, each expected value worked out by hand from SEMANTICS 2."""
 
-from __future__ import annotations
-
 from typing import Any
 
 import pytest

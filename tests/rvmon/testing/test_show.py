@@ -1,7 +1,5 @@
 """What is shown of a case can be read back: a counterexample is one's own `.rv` file."""
 
-from __future__ import annotations
-
 import pytest
 from tests.tools.build import e, eventually, p, requirement, spec_of, timeline
 from tests.tools.compare import differences

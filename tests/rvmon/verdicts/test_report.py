@@ -1,7 +1,5 @@
 """Reports: order, counts, fold, JSON and back."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import replace
 

@@ -1,7 +1,5 @@
 """Plans of the native search, for random networks."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator
 
 from tests.tools.timed_generate import random_model

@@ -6,8 +6,6 @@ count on a second graph, whose regions have a timer that begins at 0.
 Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993, section 4.
 """
 
-from __future__ import annotations
-
 import networkx as nx
 from tests.tools.timed_regions import Region, RegionGraph, Steps, truth_of
 

@@ -5,8 +5,6 @@ several (`|`) where any of them is right, `open` where it may be left open, none
 the recording is what the name says.
 """
 
-from __future__ import annotations
-
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field

@@ -1,7 +1,5 @@
 """MCAP files of FlatBuffers with their binary schemas, written byte by byte."""
 
-from __future__ import annotations
-
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from struct import pack

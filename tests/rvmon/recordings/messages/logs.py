@@ -1,7 +1,5 @@
 """Logs of vehicles and measurements that only these tests write; others are in `tests.tools`."""
 
-from __future__ import annotations
-
 import io
 import struct
 from collections.abc import Sequence

@@ -1,7 +1,5 @@
 """What random cases are made of: which operators meet which windows, triggers, ends and times."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product

@@ -1,7 +1,5 @@
 """Random cases: what has to occur in them often enough to find what monitors get wrong."""
 
-from __future__ import annotations
-
 import random
 from collections import Counter
 from collections.abc import Iterable

@@ -1,7 +1,5 @@
 """Numbers of the law, worked out by hand from SEMANTICS 5."""
 
-from __future__ import annotations
-
 from typing import Any
 
 from tests.tools.build import compared, spec_of, x, y

@@ -1,7 +1,5 @@
 """What the oracle remembers from instant to instant changes none of its answers."""
 
-from __future__ import annotations
-
 import pytest
 from tests.tools.differential import case_of
 
