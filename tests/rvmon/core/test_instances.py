@@ -65,6 +65,50 @@ def test_what_is_over_changes_no_record(name, time):
         assert disagreements(case, Maker(form, compiler)) == []
 
 
+COMPARED = {
+    "a limit": "within 9 ns y > v + 1",
+    "the limit first": "(v * 2 >= y) U[0 ns, 9 ns] n > w",
+    "equal, unequal": "for 4 ns (y != v and n != w)",
+    "two limits of one signal": "within 9 ns (y > v and y < v + 1)",
+    "a limit that moves": "within 9 ns (y > v + x or abs(y - v) > 1)",
+    "a limit and a constant": "for 9 ns (y <= v or y > 2)",
+    "before": "within 9 ns (y < 1 and once[0 ns, 5 ns] (y > v))",
+}
+
+
+def values(rng, count):
+    """Samples whose numbers meet each other often; some are not known."""
+    t = 0
+    for _ in range(count):
+        t += rng.choice([1, 2, 5])
+        numbers = {name: rng.choice([0.0, 0.5, 1.0, 1.5, 2.0, 3.0, None]) for name in "xy"}
+        held = {name: value for name, value in numbers.items() if rng.random() < 0.6}
+        found = {**held, "n": rng.randrange(4)} if rng.random() < 0.4 else held
+        yield Sample(t, {**found, "e": True} if rng.random() < 0.3 else found)
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("each", ["upon e", "upon rise(y > 1)", "whenever x > 1"])
+@pytest.mark.parametrize("required", COMPARED)
+def test_attempts_compare_with_what_they_captured(required, each):
+    """A sample calls only attempts in which it may change a comparison."""
+    text = f"""signal x, y : real
+signal n : int
+event e
+requirement R
+  {each}
+  let v = x
+  let w = n
+  then {COMPARED[required]}
+"""
+    checked = rvmon.loads(text).checked
+    compiler = Compiler()
+    for seed in range(6):
+        case = Case(checked, tuple(values(random.Random(seed), 25)), None)
+        for form in ("c", "c+interrupt"):
+            assert disagreements(case, Maker(form, compiler)) == []
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("time", ["", "time sampled every 10 ms\n"])
 @pytest.mark.parametrize("name", ["another event with the key", "what was before", "stretches"])

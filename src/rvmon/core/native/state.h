@@ -160,6 +160,7 @@ struct run {
     bool watched;              /* its parent has to check whether the captured values remain known */
     bool blurs;                /* they can still become unknown */
     bool touched_now;          /* it did something in this call, and is in the home's `touched` */
+    bool is_spare;             /* released, for reuse */
     bool doubted;              /* it is unknown whether there is such an instance */
     bool stays_busy;           /* visit the next position, for captured values or watches */
     /* Arrays whose size depends on the part, laid out by cut_block. */
@@ -276,6 +277,8 @@ struct home {
     run *last_captured;        /* tail of that list */
     run *spare;                /* released runs, for reuse */
     run **runs;                /* by id, released ones among them */
+    rv_number *values;         /* by run and signal, where values are captured: `value` of the runs */
+    span *spans;               /* the same, `spans` of the runs */
     run **touched;             /* runs that did something in this call */
     int32_t *called;           /* scratch: ids of the runs that a call concerns */
     timers alarms;             /* timers, by id of the run */

@@ -115,8 +115,8 @@ bool find_quick(arena *a, const plan *all, part *p)
         int32_t k;
         p->quick[local].is_sorted[0] = are_sorted(all, p, p->signals[local].on_change[0]);
         p->quick[local].is_sorted[1] = are_sorted(all, p, atoms);
-        if (kind == RV_UNKNOWN) {
-            continue;
+        if ((kind == RV_UNKNOWN) || (p->plan->captured > 0)) {
+            continue; /* by its spans a run with captured values is known not to be concerned */
         }
         made = arena_take(a, (size_t)atoms.count * sizeof *made);
         if (made == NULL) {

@@ -38,13 +38,16 @@ void keep_payload(run *r, int32_t local, bool known, const rv_number *fields);
 rv_number number_said(const rv_update *u);
 void apply_update(run *r, int64_t t, const incoming *in);
 
+/* ---- spans.c */
+bool compares_with(const run *r, const atom_plan *a, int32_t local, rv_number *constant);
+void learn_span(run *r, int32_t local);
+
 /* Whether no comparison of a signal comes out otherwise by a value, so that only the held value has to
  * be replaced. Most samples of most signals end here. */
-static inline bool stays_in_span(const run *r, int32_t local, const rv_number *value)
+static inline bool stays_in_span(const span *s, const rv_number *held, const rv_number *value)
 {
-    const span *s = &r->spans[local];
     const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
-    return (value->kind == r->value[local].kind) && (s->low < x) && (x < s->high);
+    return (value->kind == held->kind) && (s->low < x) && (x < s->high);
 }
 
 void margins_mark_changed(run *r, int32_t what);
@@ -116,7 +119,8 @@ static inline void take_update(run *r, int64_t t, const incoming *in)
     if (r->margins != NULL) {
         margins_mark_changed(r, in->event ? r->part->plan->signals.count + in->local : in->local);
     }
-    if (!in->event && (u->says == RV_SAYS_YES) && stays_in_span(r, in->local, &u->value)) {
+    if (!in->event && (u->says == RV_SAYS_YES)
+        && stays_in_span(&r->spans[in->local], &r->value[in->local], &u->value)) {
         r->value[in->local] = u->value;
     } else {
         apply_update(r, t, in);

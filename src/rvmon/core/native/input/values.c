@@ -13,9 +13,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Below that a whole number and both its neighbours are distinct doubles: a span of one integer. */
-#define EXACT (INT64_C(1) << 52)
-
 /* List a name as one of which something is to be forgotten once this position is over. */
 void mark(run *r, int32_t name)
 {
@@ -62,47 +59,6 @@ uint8_t remember(history *h, int64_t t, const rv_number *value)
         return IS_UNKNOWN;
     }
     return truth_if(!same_number(value, &h->before));
-}
-
-/* Set the span of a signal: the open interval around its value, between the nearest constants that it
- * is compared with, in which no comparison changes. Empty if anything else hangs on the value (another
- * kind of atom, staleness, history, births still to come). */
-static void learn_span(run *r, int32_t local)
-{
-    const signal_plan *s = &r->part->signals[local];
-    const rv_number *value = &r->value[local];
-    span *found = &r->spans[local];
-    const bool may_be_quick = (r->margins == NULL) && (r->part->quick[local].kind != RV_UNKNOWN);
-    int32_t i;
-    *found = NO_SPAN;
-    /* A signal of take_quickly() has no span: that way replaces the value and would not update it. */
-    if (may_be_quick || (s->flags != 0) || (s->perishable >= 0) || (r->births[local] < s->births)) {
-        return;
-    }
-    if (value->kind == RV_WHOLE) {
-        if ((value->as.whole > -EXACT) && (value->as.whole < EXACT)) {
-            found->low = (double)(value->as.whole - 1);
-            found->high = (double)(value->as.whole + 1);
-        }
-    } else if (value->kind == RV_REAL) {
-        const list atoms = comparisons_between(r, local, value, value);
-        const int32_t *place = LIST(PLAN(r), atoms);
-        found->low = -HUGE_VAL;
-        found->high = HUGE_VAL;
-        for (i = 0; i < atoms.count; i++) {
-            const atom_plan *a = &r->part->atoms[place[i]];
-            if ((a->op == ATOM_REAL) && (value->as.real < a->constant)) {
-                found->high = (a->constant < found->high) ? a->constant : found->high;
-            } else if ((a->op == ATOM_REAL) && (value->as.real > a->constant)) {
-                found->low = (a->constant > found->low) ? a->constant : found->low;
-            } else {
-                *found = NO_SPAN;
-                return;
-            }
-        }
-    } else {
-        /* Unknown: no interval of numbers. */
-    }
 }
 
 /* Hold a value from `t` on; if it is another one, the atoms that read it are read again. */
@@ -168,7 +124,7 @@ static void take_signal(run *r, int64_t t, int32_t local, const rv_number *value
     if (!known && ((s->flags & SIGNAL_IGNORES_NAN) != 0)) {
         return;
     }
-    if ((s->flags & SIGNAL_CAPTURED) != 0) {
+    if (((s->flags & SIGNAL_CAPTURED) != 0) && (r->parent == NULL)) {
         r->at.dirty = true; /* another value may be captured */
     }
     if (s->perishable >= 0) {

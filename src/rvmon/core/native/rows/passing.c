@@ -193,43 +193,6 @@ void note_judged(batch *s, int64_t end)
 
 /* Which updates of a name can change something, and the interval of values that compare alike. */
 
-/* Whether a program is just a constant, and which. */
-static bool is_number(const plan *p, int32_t place, rv_number *number)
-{
-    const int32_t *word = &p->code[place];
-    const number_plan *own = &p->numbers[word[0] >> 8];
-    if (((word[0] & 255) != CODE_NUMBER) || ((word[1] & 255) != CODE_END)) {
-        return false;
-    }
-    number->kind = (int32_t)own->kind;
-    if (number->kind == RV_REAL) {
-        number->as.real = own->as.real;
-    } else {
-        number->as.whole = own->as.whole;
-    }
-    return true;
-}
-
-static bool is_signal(const plan *p, int32_t place, int32_t local)
-{
-    const int32_t *word = &p->code[place];
-    return ((word[0] & 255) == CODE_SIGNAL) && (word[0] >> 8 == local) && ((word[1] & 255) == CODE_END);
-}
-
-/* The constant that an atom compares a signal with; false: it does something else. */
-static bool compares_with(const run *r, const atom_plan *a, int32_t local, rv_number *constant)
-{
-    const plan *p = PLAN(r);
-    if (a->op == ATOM_REAL) {
-        constant->kind = RV_REAL;
-        constant->as.real = a->constant;
-        return true;
-    }
-    return (a->op == ATOM_COMPARE)
-           && ((is_signal(p, a->left, local) && is_number(p, a->right, constant))
-               || (is_number(p, a->left, constant) && is_signal(p, a->right, local)));
-}
-
 static bool all_with_constants(const run *r, const signal_plan *s, int32_t local, int32_t kind)
 {
     const list atoms = s->on_change[r->at.phase];
@@ -238,7 +201,7 @@ static bool all_with_constants(const run *r, const signal_plan *s, int32_t local
     int32_t i;
     for (i = 0; i < atoms.count; i++) {
         if (!compares_with(r, &r->part->atoms[place[i]], local, &constant)
-            || ((kind == RV_COLUMN_REAL) && (constant.kind != RV_REAL))) {
+            || (constant.kind == RV_UNKNOWN) || ((kind == RV_COLUMN_REAL) && (constant.kind != RV_REAL))) {
             return false;
         }
     }

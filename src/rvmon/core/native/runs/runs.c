@@ -44,8 +44,10 @@ static size_t cut_block(cutter *c, run *r)
     const int32_t words = (p->nodes.count + 63) / 64;
     size_t copied;
     r->captured = piece(c, p->captured, sizeof *r->captured);
-    r->value = piece(c, signals, sizeof *r->value);
-    r->spans = piece(c, signals, sizeof *r->spans);
+    if (p->captured == 0) { /* else they stand with those of other runs */
+        r->value = piece(c, signals, sizeof *r->value);
+        r->spans = piece(c, signals, sizeof *r->spans);
+    }
     r->history = piece(c, signals, sizeof *r->history);
     r->edges = piece(c, 2 * (int64_t)p->edges, sizeof *r->edges);
     r->tallies = piece(c, p->sums, sizeof *r->tallies);
@@ -313,8 +315,10 @@ run *forked(const run *r)
 {
     home *h = r->home;
     run *made = h->spare;
+    int32_t i;
     if (made != NULL) {
         h->spare = made->next;
+        made->is_spare = false;
     } else {
         made = new_run(h);
         if (made == NULL) {
@@ -348,6 +352,10 @@ run *forked(const run *r)
     made->over = r->over || r->at.gathered;
     made->at.gathered = false;
     made->watched = false;
+    for (i = 0; i < r->part->plan->signals.count; i++) {
+        made->value[i] = r->value[i];
+        made->spans[i] = NO_SPAN; /* it compares with numbers of its own */
+    }
     touch_run(made);
     made->stays_busy = r->stays_busy;
     made->cut = NEVER;

@@ -63,6 +63,7 @@ void carry_judges(carrier *c, run *r);
 /* ---- snapshot_judges.c: networks and chains */
 void carry_networks(carrier *c, const form *f, networks **own);
 void carry_chain(carrier *c, run *r, int32_t index);
+void carry_queue(carrier *c, run *r, int32_t index);
 
 /* ---- snapshot_homes.c: staleness, coverage, truths, moves */
 void carry_stale(carrier *c, rv_monitor *m);

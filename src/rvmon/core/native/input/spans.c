@@ -1,0 +1,105 @@
+/* Spans of signals: the open interval around a value, between the nearest numbers that the signal is
+ * compared with, in which no comparison changes. A value within is only held; a run of its own that
+ * holds it need not be called. */
+#include "input/input.h"
+
+#include <math.h>
+
+/* Whether a program is of constants and captured values alone, which stay as long as a run. */
+static bool is_lasting(const plan *p, int32_t place)
+{
+    const int32_t *word = &p->code[place];
+    for (; (*word & 255) != CODE_END; word++) {
+        const int32_t op = *word & 255;
+        if ((op != CODE_NUMBER) && (op != CODE_CAPTURED) && (arguments_of(op) == 0)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+static bool is_signal(const plan *p, int32_t place, int32_t local)
+{
+    const int32_t *word = &p->code[place];
+    return ((word[0] & 255) == CODE_SIGNAL) && (word[0] >> 8 == local) && ((word[1] & 255) == CODE_END);
+}
+
+/* The number that an atom compares a signal with as long as the run lasts; false: it does something
+ * else. */
+bool compares_with(const run *r, const atom_plan *a, int32_t local, rv_number *constant)
+{
+    const plan *p = PLAN(r);
+    bool found = true;
+    if (a->op == ATOM_REAL) {
+        constant->kind = RV_REAL;
+        constant->as.real = a->constant;
+    } else if ((a->op == ATOM_COMPARE) && is_signal(p, a->left, local) && is_lasting(p, a->right)) {
+        *constant = program_value(r, a->right, NULL);
+    } else if ((a->op == ATOM_COMPARE) && is_signal(p, a->right, local) && is_lasting(p, a->left)) {
+        *constant = program_value(r, a->left, NULL);
+    } else {
+        found = false;
+    }
+    return found;
+}
+
+/* Whether a whole number and both its neighbours are distinct doubles. */
+static bool is_exact(const rv_number *whole)
+{
+    return (whole->as.whole > -(INT64_C(1) << 52)) && (whole->as.whole < (INT64_C(1) << 52));
+}
+
+/* Narrow a span around `x` to one side of a constant; false: it is none of doubles, or `x` itself. */
+static bool bound_span(span *s, double x, const rv_number *constant)
+{
+    const bool whole = constant->kind == RV_WHOLE;
+    const double c = whole ? (double)constant->as.whole : constant->as.real;
+    if ((constant->kind == RV_UNKNOWN) || (whole && !is_exact(constant))) {
+        return false;
+    }
+    if (x < c) {
+        s->high = (c < s->high) ? c : s->high;
+    } else if (x > c) {
+        s->low = (c > s->low) ? c : s->low;
+    } else {
+        return false;
+    }
+    return true;
+}
+
+/* Set the span of a signal: the open interval around its value, between the nearest numbers that it is
+ * compared with, in which no comparison changes. Empty if anything else hangs on the value (another kind
+ * of atom, staleness, history, births still to come). The run of an attempt captures nothing itself. */
+void learn_span(run *r, int32_t local)
+{
+    const signal_plan *s = &r->part->signals[local];
+    const uint32_t flags = (uint32_t)s->flags & ~((r->parent != NULL) ? (uint32_t)SIGNAL_CAPTURED : 0U);
+    const rv_number *value = &r->value[local];
+    const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
+    const bool may_be_quick = (r->margins == NULL) && (r->part->quick[local].kind != RV_UNKNOWN);
+    span found = {-HUGE_VAL, HUGE_VAL};
+    bool bounded = (value->kind == RV_REAL) || ((value->kind == RV_WHOLE) && is_exact(value));
+    list atoms;
+    const int32_t *place;
+    int32_t i;
+    r->spans[local] = NO_SPAN;
+    /* A signal of take_quickly() has no span: that way replaces the value and would not update it. */
+    if (may_be_quick || (flags != 0U) || (s->perishable >= 0) || (r->births[local] < s->births)) {
+        return;
+    }
+    atoms = comparisons_between(r, local, value, value);
+    place = LIST(PLAN(r), atoms);
+    for (i = 0; bounded && (i < atoms.count); i++) {
+        const atom_plan *a = &r->part->atoms[place[i]];
+        rv_number constant;
+        bounded = (a->tells == 0) && compares_with(r, a, local, &constant) && bound_span(&found, x, &constant);
+    }
+    if (bounded) {
+        r->spans[local] = found;
+    } else if ((value->kind == RV_WHOLE) && is_exact(value)) {
+        r->spans[local].low = x - 1.0;
+        r->spans[local].high = x + 1.0;
+    } else {
+        /* Nothing is known of other values. */
+    }
+}

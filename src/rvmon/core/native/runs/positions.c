@@ -1,0 +1,163 @@
+/* At which positions a run can change without a sample, and how many failures time alone brings about are
+ * passed over there. */
+#include "attempts/attempts.h"
+#include "formulas/formulas.h"
+#include "runs/runs.h"
+
+/* The first of start, start + step, ... that is not before `t`. */
+static int64_t position_from(int64_t start, int64_t step, int64_t t)
+{
+    const int64_t ahead = t - start;
+    return start + (ahead + step - 1) / step * step;
+}
+
+/* The first multiple of the gap from `t` on, for t of either sign. */
+int64_t tick_from(int64_t gap, int64_t t)
+{
+    return (t >= 0) ? position_from(0, gap, t) : -((-t) / gap) * gap;
+}
+
+/* Whether the episode's attempt has failed, and its obligations would not fail again at once, so that a
+ * new attempt may start. */
+bool may_go_on(const run *r, int32_t index)
+{
+    const int32_t again = r->part->judges[index].again;
+    return (again >= 0) && (r->judges[index].failed_at < NEVER) && (r->truth[again] != IS_FALSE);
+}
+
+/* Drop judges whose episode is over from `failing`. */
+void tidy_failing(run *r)
+{
+    int32_t kept = 0;
+    int32_t i;
+    for (i = 0; i < r->failing_count; i++) {
+        const int32_t index = r->failing[i];
+        if (r->judges[index].failed_at < NEVER) {
+            r->failing[kept] = index;
+            kept++;
+        } else {
+            r->judges[index].is_failing_listed = false;
+        }
+    }
+    r->failing_count = kept;
+}
+
+/* Bounds on how many failures that only time brings about, one after the other, are reported singly
+ * while no input comes; the rest of them, but for the last two, is only counted. That bounds the cost
+ * of a stamp that leaps by years: `always within 3 s e` fails 500 million times in fifty years.
+ * COUNTS_LEFT keeps counts clear of 32 bits. */
+enum { REPEATS_TOLD = 1000, REPEATS_LEFT = 2, COUNTS_LEFT = 65536 };
+
+/* Whether what the attempts of a run read stays the same without input, except by timers. */
+static bool is_silent(const run *r)
+{
+    return (GAP(r) > 0) && (r->part->plan->captured == 0) && (r->margins == NULL)
+           && (r->at.presence == ARE_THERE) && (r->at.fading_count + r->at.fresh_count == 0)
+           && !r->opening && !r->stays_busy;
+}
+
+/* If an episode would fail and restart very often before the next input, count that instead of doing
+ * it; false if another attempt has to begin at `t`.
+ *
+ * The attempt that would begin at `t` finds what the last one found, which began in the same
+ * silence: no attempt is open, and nothing that it reads changes before the next timer. So it fails
+ * after the same time, and so do all others up to there. Numbers have 32 bits, so the count is
+ * capped below that. */
+bool passes_repeats_over(run *r, int32_t index, int64_t t)
+{
+    judge *j = &r->judges[index];
+    const int64_t before = j->again_at;
+    const int64_t period = t - before;
+    const int64_t silent = r->at.quiet_from;
+    int64_t until = least(r->at.quiet_until, least(timers_next(&r->wake), r->at.ends_at) - 1);
+    int64_t many;
+    int64_t counted;
+    j->again_at = t;
+    if ((before <= silent) || has_attempts(j) || needs_every_position(r, index) || !is_sure(r, index)
+        || !is_silent(r)) {
+        return false;
+    }
+    until = (r->cut < NEVER) ? t : until;
+    many = (until > t) ? (until - t) / period - REPEATS_LEFT : 0;
+    if ((many <= REPEATS_TOLD) || ((t - silent) / period < REPEATS_TOLD)) {
+        return false;
+    }
+    counted = least(many, (int64_t)(UINT32_MAX - COUNTS_LEFT) - (int64_t)j->count);
+    counted = (counted > 0) ? counted : 0;
+    j->count += (uint32_t)counted;
+    j->failed += (uint32_t)counted;
+    j->failed_at += many * period;
+    j->again_at = t + (many - 1) * period;
+    return true;
+}
+
+/* The next position at which an attempt may follow a failure though nothing changes. */
+int64_t next_start(const run *r)
+{
+    const int64_t step = step_of(r);
+    int64_t found = NEVER;
+    int32_t i;
+    for (i = 0; (GAP(r) > 0) && (i < r->failing_count); i++) {
+        const int32_t index = r->failing[i];
+        if (may_go_on(r, index)) {
+            const int64_t ahead = (r->judges[index].failed_at - r->at.position) / step + 1;
+            found = least(found, r->at.position + ((ahead > 1) ? ahead : 1) * step);
+        }
+    }
+    return found;
+}
+
+/* The next position at which something can change without a sample; NEVER. In sampled time only an
+ * outage makes one. */
+int64_t next_position(const run *r)
+{
+    const int64_t gap = GAP(r);
+    int64_t found = (gap > 0) ? least(r->at.awaited, r->at.ends_at) : NEVER;
+    if (r->at.presence != ARE_THERE) {
+        return (r->at.started && (r->at.presence == MAY_BE_THERE)) ? NEVER : r->at.awaited;
+    }
+    if ((gap > 0) && r->at.started) {
+        int64_t change = timers_next(&r->wake);
+        if ((r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy) {
+            change = least(change, r->at.position + gap);
+        }
+        if (change < NEVER) {
+            found = least(found, position_from(r->at.position, gap, change));
+        }
+        if (r->failing_count > 0) {
+            found = least(found, next_start(r));
+        }
+        if ((r->cut < NEVER) && (r->cut > r->at.position)) {
+            found = least(found, r->cut);
+        }
+    }
+    return found;
+}
+
+static bool is_restless(const run *r)
+{
+    int32_t i;
+    for (i = 0; i < r->restless_count; i++) {
+        if (r->judges[r->restless[i]].restless) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Set the alarm of a run, given the next position. In sampled time every sample is a position, so
+ * whatever is momentary or moves at each position keeps the alarm in the past. */
+void set_alarm(run *r, int64_t position)
+{
+    if (!r->at.started) {
+        return;
+    }
+    r->at.alarm = least(position, timers_next(&r->rules));
+    if (GAP(r) == 0) {
+        const bool busy = (r->at.fading_count > 0) || (r->repeating_count > 0) || r->stays_busy
+                          || (r->part->plan->stateful.count > 0) || is_restless(r)
+                          || (r->failing_count > 0) || (r->at.presence != ARE_THERE)
+                          || ((r->cut < NEVER) && (r->cut > r->at.position));
+        r->at.alarm = busy ? -LIMIT : least(r->at.alarm, timers_next(&r->wake));
+    }
+}
