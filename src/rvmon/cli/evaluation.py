@@ -13,12 +13,12 @@ from msgspec import Struct, field, structs
 from rvmon.cli.options import asked_ids, constants_of
 from rvmon.cli.output import bar, shown_while_reading, warn
 from rvmon.cli.post_analysis import Remembered, post_analysis
-from rvmon.cli.reading import allowed_names, opened, reading_spec, shown_name
+from rvmon.cli.reading import allowed_names, opened, reading_spec
 from rvmon.errors import TraceError, WorkerLostError
 from rvmon.execute.parallel import execute
 from rvmon.monitor.missing_names import expect_names
 from rvmon.monitor.records import give_plan
-from rvmon.recordings.places import JOINT, without_copies
+from rvmon.recordings.places import JOINT, name_of, without_copies
 from rvmon.recordings.recording import FileRecording
 from rvmon.recordings.source import Source, pieces_up_to
 from rvmon.session import Spec, load
@@ -231,7 +231,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
 
 def as_known(judged: Judged, case: Case) -> Judged:
     """The judged reproducer, with the name by which people know its recording."""
-    name = shown_name(case.recording)
+    name = name_of(case.recording)  # it is unpacked only for a moment
     report = None if judged.report is None else replace(judged.report, trace=name)
     return structs.replace(
         judged, trace=name, report=report, error=judged.error.replace(case.recording, name)

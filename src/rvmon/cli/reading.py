@@ -6,7 +6,6 @@ import argparse
 import re
 from collections.abc import Collection, Iterator, Sequence
 from contextlib import contextmanager
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.options import named_values, names_in
@@ -207,8 +206,3 @@ def unpacked(arguments: argparse.Namespace) -> Iterator[Case | None]:
         arguments.binding, arguments.clock = case.binding, case.clock
         arguments.allow_missing = case.allow_missing
         yield case
-
-
-def shown_name(path: str) -> str:
-    """The name by which people know a file of a reproducer, which is unpacked only for a moment."""
-    return Path(path).name

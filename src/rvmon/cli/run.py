@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 from rvmon.cli import evaluation
 from rvmon.cli.options import ids_of, refuse_over
 from rvmon.cli.output import rendered, say_json, warn
-from rvmon.cli.reading import reading_words, refuse_empty, shown_name, unpacked
+from rvmon.cli.reading import reading_words, refuse_empty, unpacked
 from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
 from rvmon.execute import shards_beside
 from rvmon.files import refuse_no_file
-from rvmon.recordings.places import JOINT, files_of, found_recordings
+from rvmon.recordings.places import JOINT, files_of, found_recordings, name_of
 from rvmon.session import Spec
 from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict
@@ -43,9 +43,8 @@ def run_run(arguments: argparse.Namespace) -> int:
 
 
 def _run(arguments: argparse.Namespace, case: Case | None, given: str) -> int:
-    spec, options = evaluation.spec_and_options(
-        arguments, None if case is None else shown_name(case.spec)
-    )
+    known_as = None if case is None else name_of(case.spec)
+    spec, options = evaluation.spec_and_options(arguments, known_as)
     _show_warnings(spec)
     refuse_empty(spec)
     traces = list(found_recordings(arguments.traces))

@@ -16,6 +16,7 @@ from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.print import format_window
 from rvmon.monitor.missing_names import expect_names
 from rvmon.recordings.batch import Batch
+from rvmon.recordings.places import name_of
 from rvmon.recordings.source import HeldRecording, Source, pieces_up_to
 from rvmon.report.changes import changes_of
 from rvmon.report.printer import Printer
@@ -37,7 +38,7 @@ def run_why(arguments: argparse.Namespace) -> int:
                 raise RvmonError("a reproducer brings its recording along: name only an attempt")
             arguments.attempt = arguments.trace or case.attempt
             arguments.trace = case.recording
-        return _explain(arguments, None if case is None else reading.shown_name(case.spec))
+        return _explain(arguments, None if case is None else name_of(case.spec))
 
 
 def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:

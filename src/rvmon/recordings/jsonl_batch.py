@@ -17,7 +17,6 @@ from rvmon.recordings import places
 from rvmon.recordings.batch import Batch, NotPlainError, Occurrences
 from rvmon.recordings.cells import cells_of_values, occurrences
 from rvmon.recordings.jsonl_rows import bound, count_of_names, jsonl_samples, names_in
-from rvmon.recordings.places import bounded_lines, whole_pieces
 from rvmon.recordings.rows import Row
 from rvmon.recordings.table_recording import ticks_of_column
 from rvmon.trace.schema import Kind, Schema, Stamps
@@ -39,14 +38,14 @@ def jsonl_batches(
 ) -> Iterator[Batch | Iterator[Row]]:
     """The rows of a text, in order; `found_stamps` is told what its stamps are."""
     line = 0
-    for text in whole_pieces(file, places.BLOCK):
+    for text in places.whole_pieces(file, places.BLOCK):
         if not line and schema.stamps is None:
             first = text.partition(b"\n")[0]
             found_stamps(stamps_of("t_ns" if b'"t_ns"' in first else "t"))
         try:
             batch = _batch(text.removeprefix(b"" if line else _MARK), schema, ignored)
         except NotPlainError:
-            lines = bounded_lines(io.StringIO(text.decode(), newline=""))
+            lines = places.bounded_lines(io.StringIO(text.decode(), newline=""))
             yield _numbered(jsonl_samples(lines, schema, ignored), line)
         else:
             yield replace(batch, first=line + 1)

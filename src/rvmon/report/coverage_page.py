@@ -281,7 +281,7 @@ def listed_tests(summary: Summary) -> Collection[int]:
 def _columns(summary: Summary, listed: Collection[int]) -> list[str]:
     """The columns of tests that are known and differ."""
     shown = {
-        "campaign": len(summary.campaigns) > 1,
+        "campaign": len(summary.coverage.campaigns) > 1,
         "strategy": any(summary.strategies),
         "seed": any(summary.record(place).seed is not None for place in listed),
         "recording": any(summary.record(place).recording for place in listed),

@@ -125,11 +125,6 @@ class Summary(Answers):
         return self.hitters(LISTED)
 
     @cached_property
-    def campaigns(self) -> Sequence[str]:
-        """The names of the campaigns, in order."""
-        return self.coverage.campaigns
-
-    @cached_property
     def alone(self) -> Mapping[str, Sequence[Step]]:
         """The growth of coverage by the tests of each strategy alone."""
         return {name: self.growth(order) for name, order in self.strategies.items()}
@@ -219,8 +214,8 @@ class Summary(Answers):
         endings = Counter(entry.record.ending for entry in self.coverage.entries)
         ended = ", ".join(f"{endings[ending]:,} {ending}" for ending in Ending if endings[ending])
         parts = [counted(len(self.coverage.entries), "test")]
-        if len(self.campaigns) > 1:
-            parts.append(f"of {len(self.campaigns)} campaigns")
+        if (campaigns := len(self.coverage.campaigns)) > 1:
+            parts.append(f"of {campaigns} campaigns")
         return " ".join(parts) + (f": {ended}" if ended else "")
 
 

@@ -33,7 +33,7 @@ def coverage_ucis(summary: Summary, version: str) -> str:
     # The schema demands at least one history node.
     for number, record in enumerate(records or [TestRecord("no test")]):
         ET.SubElement(root, "historyNodes", _history(number, record, version))
-    name = ", ".join(summary.campaigns) or summary.name
+    name = ", ".join(summary.coverage.campaigns) or summary.name
     instance = ET.SubElement(root, "instanceCoverages", name=shown(name), key="0")
     ET.SubElement(instance, "id", _PLACE)
     covered = ET.SubElement(instance, "covergroupCoverage")

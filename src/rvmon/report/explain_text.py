@@ -56,11 +56,9 @@ def picture_of(example: Example, spec: CheckedSpec, read: Collection[str]) -> li
 
 
 def _instants(example: Example) -> list[int]:
-    instants = {sample.t for sample in example.samples} | {example.end}
-    for attempt in example.attempts:
-        instants |= {attempt.triggered}
-        instants |= set() if attempt.decided is None else {attempt.decided}
-    return sorted(instants)
+    ends = [end for attempt in example.attempts if (end := attempt.decided) is not None]
+    triggers = [attempt.triggered for attempt in example.attempts]
+    return sorted({example.end, *ends, *triggers, *(sample.t for sample in example.samples)})
 
 
 def _cells(name: str, example: Example, spec: CheckedSpec, instants: Sequence[int]) -> list[str]:

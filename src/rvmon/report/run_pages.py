@@ -164,15 +164,13 @@ def write_run_pages(
     names = _file_names([report.trace for report in reports])
     written = []
     for report, name in zip(reports, names, strict=True):
+        law = f"law {report.law}"
         content = RunPage(
             run=_judged(report, read),
             spec=spec,
             command=command(report.trace),
             others=[other for other in others if other.report is not report],
-            facts=(
-                ("recording", _shown(report.trace)),
-                ("specification", f"{spec.name}, law {report.law}"),
-            ),
+            facts=[("recording", _shown(report.trace)), ("specification", f"{spec.name}, {law}")],
             back=INDEX if several else "",
             back_to="all recordings",
         )

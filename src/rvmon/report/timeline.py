@@ -220,10 +220,8 @@ def timeline(
         rows.append(_obligation(attempt, view, origin, end, late))
     for track in tracks:
         offending = _offending(attempt) if track.name in blamed else ()
-        other = references.get(track.name)
-        rows.append(
-            track_row(track, view, end, offending, other, reference.end if reference else end)
-        )
+        other, other_end = references.get(track.name), reference.end if reference else end
+        rows.append(track_row(track, view, end, offending, other, other_end))
     rows.append(axis_row(view, origin))
     guides = [] if attempt is None else guides_of(attempt, view, end, late)
     overlay = e("div", {"class": "overlay"}, *guides, e("div", {"class": "cursor"}))
