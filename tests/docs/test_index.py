@@ -16,7 +16,6 @@ SPEC = "signal speed : real [m/s]\nrequirement B1\n  always speed <= 1 m/s\n"
 ROWS = [(0, 0.25, 1), (1_000_000, 0.5, 1), (2_000_000, 0.0, 2)]
 TABLE = (ROOT / "docs" / "index.md").read_text().partition("## Your data")[2].partition("\n## ")[0]
 TYPED = [text.replace(r"\|", "|") for text in re.findall(r"`([^`]+)`", TABLE)]
-COMMANDS = [text for text in TYPED if text.startswith(("rvmon ", "./"))]
 
 
 @pytest.fixture
@@ -52,7 +51,7 @@ def folder(tmp_path, monkeypatch):
 def test_what_is_to_be_typed_for_recordings_works(folder, capsys):
     """All recordings pass; of what is live the options are those that there are."""
     seen = []
-    for command in COMMANDS:
+    for command in [text for text in TYPED if text.startswith(("rvmon ", "./"))]:
         words = shlex.split(command.rpartition("| ")[2])[1:]
         to_file = words[words.index(">") + 1] if ">" in words else None
         if "watch" in words:

@@ -11,7 +11,6 @@ import rvmon
 from rvmon import reproducer
 from rvmon.cli import main
 
-COMMON = "signal speed : real\nevent go\nconst T = 2 s\n"
 SPEC = """
 spec base
 import "../common.rv"
@@ -38,7 +37,7 @@ def base(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / ".git").mkdir()
     (tmp_path / "specs").mkdir()
-    (tmp_path / "common.rv").write_text(COMMON)
+    (tmp_path / "common.rv").write_text("signal speed : real\nevent go\nconst T = 2 s\n")
     (tmp_path / "specs" / "base.rv").write_text(SPEC)
     (tmp_path / "a.csv").write_text("stamp,v,go\n0,2,\n9000,3,1\n11500,0.5,\n15000,,\n")
     return tmp_path

@@ -6,8 +6,6 @@ import pytest
 
 from rvmon.cli import main
 
-ROWS = "t,x,go\n0,1,\n1,4,1\n2,2.5,1\n3,0.5,1\n4,3,\n5,3,1\n9,3,1\n"
-
 
 @pytest.fixture
 def files(tmp_path):
@@ -17,7 +15,7 @@ def files(tmp_path):
         spec, rows = tmp_path / "s.rv", tmp_path / "s.csv"
         head = f"time {time}\nsignal x : real [m]\nevent go\n"
         spec.write_text(f"{head}requirement R\n  {requirement}\n")
-        rows.write_text(ROWS)
+        rows.write_text("t,x,go\n0,1,\n1,4,1\n2,2.5,1\n3,0.5,1\n4,3,\n5,3,1\n9,3,1\n")
         return [str(spec), str(rows)]
 
     return written

@@ -30,7 +30,6 @@ cross both = person, arm
   illegal person == yes and arm == moving
 cover parked = near and state == idle
 """
-CALM = "t,near,state\n0,false,moving\n1,,idle\n2,true,\n3,false,\n"
 WILD = "t,near,state\n0,false,idle\n1,true,moving\n1.5,,idle\n4,,moving\n"
 
 
@@ -38,7 +37,7 @@ WILD = "t,near,state\n0,false,idle\n1,true,moving\n1.5,,idle\n4,,moving\n"
 def files(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "arm.rv").write_text(SPEC)
-    (tmp_path / "calm.csv").write_text(CALM)
+    (tmp_path / "calm.csv").write_text("t,near,state\n0,false,moving\n1,,idle\n2,true,\n3,false,\n")
     (tmp_path / "wild.csv").write_text(WILD)
     return tmp_path
 

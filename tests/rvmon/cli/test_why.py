@@ -14,14 +14,13 @@ requirement D2
   upon fall(closed)
   then immediately not knock
 """
-TRACE = "t,closed,knock\n0,1,\n1,,1\n2,0,\n3,1,\n4,,1\n8,,1\n9,,\n"
 
 
 @pytest.fixture
 def door(door):
     """With a recording: D1 passes, fails, stays open."""
     (door / "door.rv").write_text(SPEC)
-    (door / "a.csv").write_text(TRACE)
+    (door / "a.csv").write_text("t,closed,knock\n0,1,\n1,,1\n2,0,\n3,1,\n4,,1\n8,,1\n9,,\n")
     return door
 
 

@@ -49,7 +49,6 @@ WRITTEN = [
 
 STRICT = ("-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic")
 
-MANY = Profile(many=20)
 
 EVERYTHING = """
 spec everything
@@ -97,7 +96,7 @@ def packed(text: str, *, measured: bool = False) -> Packed:
 def drawn(seed: int) -> Planned | None:
     """The plan of a random specification, measured or not; `None` if it is refused."""
     try:
-        compiled = CompiledSpec(random_spec(random.Random(seed), MANY))
+        compiled = CompiledSpec(random_spec(random.Random(seed), Profile(many=20)))
         return plan_alone(compiled, measured=seed % 2 == 1)
     except RvmonError:
         return None

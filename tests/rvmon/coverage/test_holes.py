@@ -20,8 +20,6 @@ requirement R1 "It stops in time"
   then within 10 s stop
 """
 IDLE = {"t": [0, 1, 20], "level": [1.0, 1.0, 1.0], "calm": [True, True, True]}
-SOON = {**IDLE, "go": [None, True, None], "stop": [None, None, True], "t": [0, 1, 2]}
-HIGH = {**IDLE, "level": [7.0, 1.0, 1.0]}
 
 
 @pytest.mark.parametrize(
@@ -29,7 +27,7 @@ HIGH = {**IDLE, "level": [7.0, 1.0, 1.0]}
     [
         ([IDLE], ("height", "high"), "`level >= 5`. No run has shown it; needs a run in which it "),
         (
-            [IDLE, HIGH],
+            [IDLE, {**IDLE, "level": [7.0, 1.0, 1.0]}],
             ("both", "high × wild"),
             "at one instant height high, mood wild. No run has shown mood wild; needs a run in "
             "which all of them meet. Nearest: 1.",
@@ -40,7 +38,7 @@ HIGH = {**IDLE, "level": [7.0, 1.0, 1.0]}
             "R1, “It stops in time”: it is triggered. Its trigger never came; needs a run in which",
         ),
         (
-            [IDLE, SOON],
+            [IDLE, {**IDLE, "go": [None, True, None], "stop": [None, None, True], "t": [0, 1, 2]}],
             ("R1", "at the deadline"),
             "R1, “It stops in time”: the response comes at the deadline. It was triggered once, "
             "but never like this; needs a response as late as is allowed. Nearest: 1.",

@@ -93,13 +93,12 @@ def test_without_requirements_there_is_nothing_to_measure():
 
 
 TEXT = "spec s\ntime {}\nsignal x : real{}\nrequirement R\n  upon start then immediately x > 1\n"
-INFINITE = float("inf")
 
 
 def test_what_becomes_stale_is_measured_sample_by_sample():
     spec = rvmon.loads(TEXT.format("held", " stale after 2 ns").replace("immed", "for 5 ns immed"))
     [figure] = spec.robustness(arrays_of([0, 9], {"x": [3.0, 4.0]})).attempts.values()
-    assert (figure.low, figure.high) == (-INFINITE, 2.0)
+    assert (figure.low, figure.high) == (-float("inf"), 2.0)
 
 
 def test_a_stream_of_arrays_is_a_sequence():

@@ -60,12 +60,11 @@ requirement R2
 requirement R3
   always age(beat) <= 1 s
 """
-CHANGES = "requirement R4\n  always not changed(beat)\n"
 
 
 def test_updates_of_a_missing_name_are_not_known():
     """That a column is missing says neither that something came nor that nothing did."""
-    spec = rvmon.loads(UPDATES + CHANGES)
+    spec = rvmon.loads(UPDATES + "requirement R4\n  always not changed(beat)\n")
     columns = {"t": np.array([0.0, 1.0, 3.0]), "p": np.array([False, True, False])}
     report = spec.evaluate(columns, allow_missing=True)
     assert {*report.verdicts.values()} == {"I"}

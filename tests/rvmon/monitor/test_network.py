@@ -15,7 +15,6 @@ from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
 
 SECOND = 10**9
-RESPAWNED = "whenever a then F[2 s, 5 s] b"
 
 
 def spec_of(requirement, time="held"):
@@ -36,7 +35,7 @@ def outcomes(spec, samples, end=None):
     ("requirement", "judge"),
     [
         ("upon e then within 3 s b", "automaton"),
-        (RESPAWNED, "windows: as an automaton it would have"),
+        ("whenever a then F[2 s, 5 s] b", "windows: as an automaton it would have"),
         ("whenever a then within 3 s b", "automaton"),
         ("upon e then (a and within 3 s b) or (not a and within 2 s b)", "delay network: its"),
         ("upon e then within 5 s for 3 s b", "windows: its automaton would step"),

@@ -23,7 +23,6 @@ event stop(id: int, part: {arm, hand})
 requirement R1 "a"
   always (count < 5)
 """)
-SPEC_OF_DATES = "spec s\nsignal p : bool\nrequirement R\n  always p\n"
 HEADER = ["t", "p", "speed", "count", "mode", "stop", "stop.id", "stop.part", "note"]
 ODD = ["", " ", "nan", "NaN", "-1", "7.0", "1e3", "x", '"', 'a"b', "\xa0", "\xa05", "é", "\x1f3"]
 ENDS = ["\n"] * 6 + ["\r\n", "\r", "\n\n", "\n \n", "\r\n\r\n"]
@@ -183,7 +182,7 @@ def test_dates_are_exact(tmp_path):
         zone = rng.choice(["", "Z", "z", " Z", " ", "+02:00", "-23:59", "+24:00", "+0100", "+1"])
         texts.append(f"{year}-{month:02d}-{day:02d}{rng.choice('T tx')}{clock}{part}{zone}")
     texts += ["2024-02-29T00:00:00", "1900-02-29T00:00:00", "0000-01-01T00:00:00", "2024-05-01"]
-    spec = rvmon.loads(SPEC_OF_DATES).reading(time="t:iso")
+    spec = rvmon.loads("spec s\nsignal p : bool\nrequirement R\n  always p\n").reading(time="t:iso")
     path = tmp_path / "a.csv"
     for text in texts:
         path.write_text(f"t,p\n{text},1\n")

@@ -29,7 +29,6 @@ pytestmark = [
 
 
 DOOR = 'told.append(("door", True))'
-REFUSED = 'told.append(("refused", True))'
 TOLD = 'told.append(("floor", floor))'
 
 
@@ -91,7 +90,7 @@ def test_what_waits_long_does_not_hang(campaign, changed, monkeypatch):
 
 
 def test_a_mutant_that_no_test_runs_is_not_played(tried, changed):
-    mutant = changed("Lift.ride", REFUSED, "pass")
+    mutant = changed("Lift.ride", 'told.append(("refused", True))', "pass")
     (unreached,) = tried([mutant])
     assert missing(unreached) is Missing.STIMULUS
     assert unreached.played == 0

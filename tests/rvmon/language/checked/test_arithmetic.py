@@ -8,7 +8,6 @@ from tests.tools.each import each
 import rvmon
 from rvmon.language.checked.arithmetic import NumericOp, UnitRule
 
-FUNCTIONS = [op for op in NumericOp if op.is_function]
 ANGLES = (UnitRule.OF_ANGLE, UnitRule.TURN, UnitRule.PLACES)
 
 
@@ -29,7 +28,7 @@ def wanted_unit(op):
     }.get(op.entry.unit, "")
 
 
-@each("op", FUNCTIONS)
+@each("op", [op for op in NumericOp if op.is_function])
 def test_a_wrong_number_of_arguments_is_refused(op):
     for count in range(1, 6):
         called = f"{op}({', '.join('x' * count)})"

@@ -27,8 +27,6 @@ BASIS = {
     *(BinaryOp.AND, BinaryOp.OR, BinaryOp.UNTIL, BinaryOp.SINCE),
 }
 SIGNALS = (SignalAtom("p"), SignalAtom("q"))
-PLAIN = [op for op in OPERATORS if not op.entry.called]
-DUALS = [op for op in OPERATORS if op.entry.dual]
 
 
 def formula_of(op, operands=SIGNALS):
@@ -41,7 +39,7 @@ def formula_of(op, operands=SIGNALS):
 
 def test_operators_stand_in_the_reference():
     """The reference has their rows: the words, the signs, what they mean."""
-    for op in PLAIN:
+    for op in [op for op in OPERATORS if not op.entry.called]:
         word, *others = op.spellings
         form = f"{word} φ" if isinstance(op, UnaryOp) else f"φ {word} ψ"
         signs = ", ".join(f"`{other}`" for other in others).replace("|", "\\|")
@@ -86,7 +84,7 @@ def test_what_an_operator_is_told_in_means_the_same(op):
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("op", DUALS, ids=lambda op: op.name)
+@pytest.mark.parametrize("op", [op for op in OPERATORS if op.entry.dual], ids=lambda op: op.name)
 def test_duals_are_negations(op):
     denied = tuple(Unary(UnaryOp.NOT, signal) for signal in SIGNALS)
     dual = type(op).of(op.entry.dual)
