@@ -62,7 +62,7 @@ class Names:
         self.network = network
         # in order, arrays as one thing; locals are those of functions
         self.clocks = self._things([clock.name for clock in network.clocks])
-        self.variables = self._things([variable.name for variable in network.variables])  # likewise
+        self.variables = self._things([variable.name for variable in network.variables])
         self.channels = self._things([channel.name for channel in network.channels])
         self.locals = self._things([variable.name for variable in network.locals])
         # the functions named so far, callees first

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from struct import Struct
 
 import msgspec
@@ -16,6 +17,17 @@ from rvmon.monitor.network_reasons import NetworkRuns
 _IN_WORD = 32
 
 
+@lru_cache(maxsize=1024)
+def truths(words: tuple[int, ...], count: int) -> tuple[int, ...]:
+    """Unpack truth values, two bits each; cached, as few words differ in a recording."""
+    return tuple(words[place // _IN_WORD] >> 2 * (place % _IN_WORD) & 3 for place in range(count))
+
+
+def words_for(count: int) -> int:
+    """The number of words that `count` packed truth values take."""
+    return -(-count // _IN_WORD)
+
+
 class Letters(msgspec.Struct, frozen=True):
     """The recorded truth values of propositions, position by position."""
 
@@ -24,16 +36,10 @@ class Letters(msgspec.Struct, frozen=True):
 
     def read(self, count: int) -> Iterator[tuple[int, tuple[int, ...]]]:
         """Iterate over positions, each with the truth values of `count` propositions."""
-        stride = Struct(f"={1 + -(-count // _IN_WORD)}q")
+        stride = Struct(f"={1 + words_for(count)}q")
         for piece in self.pieces:
             for position, *words in stride.iter_unpack(piece):
-                yield (
-                    position,
-                    tuple(
-                        words[place // _IN_WORD] >> 2 * (place % _IN_WORD) & 3
-                        for place in range(count)
-                    ),
-                )
+                yield position, truths(tuple(words), count)
 
 
 def _truth(sense: Sense, value: int, *, better: bool) -> bool:

@@ -11,25 +11,13 @@ from typing import Any, NamedTuple
 from rvmon.logic.automaton import Token
 from rvmon.logic.state_formula import UNKNOWN
 from rvmon.logic.state_graph import names_of
+from rvmon.monitor import explanation as explain
 from rvmon.monitor.automaton_reasons import MachineRuns, Reasons, explained
 from rvmon.monitor.cause import NEVER, TruthValues
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.monitor.explanation import (
-    Doubt,
-    Explanation,
-    Judged,
-    Outage,
-    Undecided,
-    forecast_of,
-    truths_shown,
-    unborn_of,
-    why_nothing,
-    why_open,
-    why_settled,
-)
 from rvmon.monitor.network_reasons import explained_by_network
-from rvmon.monitor.network_replay import Letters, at_decision, at_moment
+from rvmon.monitor.network_replay import Letters, at_decision, at_moment, truths, words_for
 from rvmon.trace.sample import HealthKind
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt, Decision
@@ -39,7 +27,6 @@ _NETWORK, _CUT, _PARTED, _HOLLOW, _SURE = 1, 2, 4, 8, 16
 _HEAD = 7  # words of a note before those of the leaves
 _NOT_YET = (1 << 63) - 1
 _SPAN = (1 << 31) - 1
-_IN_WORD = 32
 _WHY = (
     *(HealthKind.NONE, HealthKind.NAN, HealthKind.STALE),
     *(HealthKind.MISSING, HealthKind.ABSENT),
@@ -110,20 +97,9 @@ def _words(count: int) -> Callable[..., tuple[int, ...]]:
 
 
 @lru_cache(maxsize=1024)
-def truths(words: tuple[int, ...], count: int) -> tuple[int, ...]:
-    """Unpack truth values, two bits each; cached, as few words differ in a recording."""
-    return tuple(words[place // _IN_WORD] >> 2 * (place % _IN_WORD) & 3 for place in range(count))
-
-
-@lru_cache(maxsize=1024)
 def _by_text(texts: tuple[str, ...], then: tuple[int, ...]) -> Mapping[str, int]:
     """By text the truth at the trigger; most attempts have it in common."""
     return dict(zip(texts, then, strict=True))
-
-
-def words_for(count: int) -> int:
-    """The number of words that `count` packed truth values take."""
-    return -(-count // _IN_WORD)
 
 
 class NoteExplainer:
@@ -174,18 +150,20 @@ class NoteExplainer:
         seen: Mapping[str, Any] = {}
         forecast: Callable[[], Verdict | None] | None = None
         if note.kind == _NOTHING:
-            why = why_nothing(cut=bool(note.flags & _CUT))
+            why = explain.why_nothing(cut=bool(note.flags & _CUT))
         elif note.kind == _DECIDED:
             why, leaves = self._decided(attempt, note)
-            seen = dict(truths_shown(self._texts, leaves))
+            seen = dict(explain.truths_shown(self._texts, leaves))
         else:
             why, forecast = self._open(attempt, note)
             if attempt.decided is not None:
-                seen = dict(truths_shown(self._texts, self._truth_values(note, attempt.origin)[0]))
+                seen = dict(
+                    explain.truths_shown(self._texts, self._truth_values(note, attempt.origin)[0])
+                )
         fields = {
             "reason": why.reason,
             "deadline": why.deadline,
-            "at_trigger": dict(truths_shown(self._texts, self._then(note))),
+            "at_trigger": dict(explain.truths_shown(self._texts, self._then(note))),
             "at_decision": seen,
             "required": why.required,
             "blame": why.blame,
@@ -194,7 +172,7 @@ class NoteExplainer:
             return fields | {"forecast": forecast and forecast()}
         return fields | {"_details": lambda *_: {"forecast": forecast()}}
 
-    def _decided(self, attempt: Attempt, note: Note) -> tuple[Explanation, tuple[int, ...]]:
+    def _decided(self, attempt: Attempt, note: Note) -> tuple[explain.Explanation, tuple[int, ...]]:
         leaves, values, flow = self._truth_values(note, attempt.origin)
         passed = attempt.verdict is Verdict.PASS
         if note.flags & _NETWORK:
@@ -214,17 +192,17 @@ class NoteExplainer:
 
     def _open(
         self, attempt: Attempt, note: Note
-    ) -> tuple[Explanation, Callable[[], Verdict | None] | None]:
+    ) -> tuple[explain.Explanation, Callable[[], Verdict | None] | None]:
         """Why an attempt is open, and what gives its forecast; none once it was settled."""
         now = note.at
         judged, token = self._undecided(attempt, note)
-        why = why_open(judged, token, now, _instant(note.words[5]))
+        why = explain.why_open(judged, token, now, _instant(note.words[5]))
         if attempt.decision is not Decision.OPEN:
             policy = self.compiled.requirement.at_end
-            return why._replace(reason=why_settled(attempt.decision, policy)), None
-        return why, partial(forecast_of, judged, token, now)
+            return why._replace(reason=explain.why_settled(attempt.decision, policy)), None
+        return why, partial(explain.forecast_of, judged, token, now)
 
-    def _undecided(self, attempt: Attempt, note: Note) -> tuple[Judged, Undecided]:
+    def _undecided(self, attempt: Attempt, note: Note) -> tuple[explain.Judged, explain.Undecided]:
         words, flags, at = note.words, note.flags, _HEAD + self._leaf_words
         leaves: Sequence[int] = ()
         if words[4] != NEVER:
@@ -236,12 +214,13 @@ class NoteExplainer:
         known = {outage.name: outage for outage in outages if outage.until is None}
         doubt = self._doubt(attempt.origin, words[4], leaves, outages)
         names = frozenset().union(*self._reads)
-        return judged, Undecided(
+        return judged, explain.Undecided(
             self.compiled, attempt.origin, attempt.triggered, worse, better, doubt,
-            unborn_of(names, known, doubt), *(bool(flags & f) for f in (_SURE, _HOLLOW, _CUT)),
+            explain.unborn_of(names, known, doubt),
+            *(bool(flags & f) for f in (_SURE, _HOLLOW, _CUT)),
         )  # fmt: skip
 
-    def _networks(self, note: Note, at: int) -> tuple[Judged, Token, Token, int]:
+    def _networks(self, note: Note, at: int) -> tuple[explain.Judged, Token, Token, int]:
         """The networks of an open attempt, the tokens of both runs, and the index after these."""
         words = note.words
         position = (words[6],)
@@ -251,7 +230,7 @@ class NoteExplainer:
         worse, better = judged.met((words[at], position), (words[at + 1], position))
         return judged, worse, better, at + 2
 
-    def _machines(self, note: Note, at: int) -> tuple[Judged, Token, Token, int]:
+    def _machines(self, note: Note, at: int) -> tuple[explain.Judged, Token, Token, int]:
         """The same for an automaton."""
         words = note.words
         reached, gap = (note.at - 1) // 2, self._gap or 1
@@ -264,7 +243,7 @@ class NoteExplainer:
             at,
         )
 
-    def _outages(self, words: Sequence[int]) -> Sequence[Outage]:
+    def _outages(self, words: Sequence[int]) -> Sequence[explain.Outage]:
         """Decode the outages of a note."""
         spec = self.compiled.spec
         names = (*spec.signals, *spec.events)
@@ -276,12 +255,12 @@ class NoteExplainer:
             signal = spec.signals.get(name)
             bound = 0 if signal is None else signal.stale_after or 0
             since = 0 if words[at + 1] == NEVER else words[at + 1]
-            outages.append(Outage(name, why, since, until, bound))
+            outages.append(explain.Outage(name, why, since, until, bound))
         return outages
 
     def _doubt(
-        self, origin: int, position: int, leaves: Sequence[int], outages: Sequence[Outage]
-    ) -> Doubt | None:
+        self, origin: int, position: int, leaves: Sequence[int], outages: Sequence[explain.Outage]
+    ) -> explain.Doubt | None:
         """Why the runs of an attempt diverged at `position`; `None` if they have not."""
         if position == NEVER:
             return None
@@ -291,14 +270,14 @@ class NoteExplainer:
             if outage.why in (HealthKind.MISSING, HealthKind.ABSENT) or outage.since <= position
             if outage.until is None or outage.until > position
         }
-        unknown: dict[str, Outage] = {}
+        unknown: dict[str, explain.Outage] = {}
         texts = []
         for names, text, truth in zip(self._reads, self._texts, leaves, strict=True):
             if truth == UNKNOWN:
                 outages_of_text = {name: lost[name] for name in sorted(names & lost.keys())}
                 unknown |= outages_of_text
                 texts += [] if outages_of_text else [text]
-        return Doubt(origin, position, tuple(unknown.values()), tuple(texts))
+        return explain.Doubt(origin, position, tuple(unknown.values()), tuple(texts))
 
     @cached_property
     def _reads(self) -> Sequence[frozenset[str]]:
