@@ -4,7 +4,7 @@ Random formulas with windows of up to some hundred ticks, required from the star
 in held and in sampled time; nothing is unknown. When a formula is decided at a position follows
 from when its operands are, as the law has it of prefixes: that is worked out for all positions at
 once, and has nothing in common with the core, neither automata, queues, networks nor the core form
-of formulas. Compared are, of every attempt, trigger, verdict and instant of what the prefix
+of rv. Compared are, of every attempt, trigger, verdict and instant of what the prefix
 decides, stepped and by rows.
 """
 
@@ -23,7 +23,7 @@ from tests.tools.drive import drive
 from tests.tools.forms import FORMS, Compiler, Maker
 from tests.tools.random_specs import random_mtl
 
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.specification import TimeModel
 from rvmon.language.print import format_formula
 from rvmon.testing.generate import BOOLS
@@ -69,31 +69,31 @@ class Decisions:
         self._row_at = np.searchsorted(stamps, self.times, "right") - 1
         self._samples = case.samples
 
-    def of(self, formula: formulas.Formula) -> Decided:
+    def of(self, formula: rv.Formula) -> Decided:
         """Of a formula in the operators of `to_core`."""
         match formula:
-            case formulas.SignalAtom(name=name):
+            case rv.SignalAtom(name=name):
                 told = np.array([one.values[name] for one in self._samples], bool)[self._row_at]
                 return np.where(told, self.times, NEVER), np.where(told, NEVER, self.times)
-            case formulas.Unary(op=formulas.UnaryOp.NOT, operand=operand):
+            case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
                 true, false = self.of(operand)
                 return false, true
-            case formulas.Unary(op=formulas.UnaryOp.ALWAYS, operand=operand, interval=interval):
+            case rv.Unary(op=rv.UnaryOp.ALWAYS, operand=operand, interval=interval):
                 true, false = self.of(operand)
                 failed, kept = self._until(None, (false, true), interval or EVER)
                 return kept, failed
-            case formulas.Unary(op=formulas.UnaryOp.EVENTUALLY, operand=operand, interval=interval):
+            case rv.Unary(op=rv.UnaryOp.EVENTUALLY, operand=operand, interval=interval):
                 return self._until(None, self.of(operand), interval or EVER)
-            case formulas.Binary(op=op, left=left, right=right, interval=interval):
+            case rv.Binary(op=op, left=left, right=right, interval=interval):
                 one, other = self.of(left), self.of(right)
-                if op is formulas.BinaryOp.UNTIL:
+                if op is rv.BinaryOp.UNTIL:
                     return self._until(one, other, interval or EVER)
                 joins = [np.maximum, np.minimum]
-                first, second = joins if op is formulas.BinaryOp.AND else joins[::-1]
+                first, second = joins if op is rv.BinaryOp.AND else joins[::-1]
                 return first(one[0], other[0]), second(one[1], other[1])
         raise AssertionError(f"no such formula is drawn: {formula}")
 
-    def _until(self, left: Decided | None, right: Decided, window: formulas.Interval) -> Decided:
+    def _until(self, left: Decided | None, right: Decided, window: rv.Interval) -> Decided:
         """Of `left U right`; without `left`, of `F right`.
 
         It is true when at some place of the window `right` is, and `left` at all before it; and

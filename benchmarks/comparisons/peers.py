@@ -16,7 +16,7 @@ from tests.tools.common_fragment import UntranslatableError
 from tests.tools.differential import Campaign
 
 from rvmon.errors import RvmonError
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.names_read import names_read
 from rvmon.language.print import format_formula
 from rvmon.session import Spec
@@ -25,8 +25,8 @@ from rvmon.testing.generate.formula import formula
 from rvmon.trace.sample import Sample, Trace
 from rvmon.trace.schema import Kind
 
-ORDERS = tuple(map(formulas.CompareOp, ("<", "<=", ">=", ">")))
-PLAIN = formulas.SignalAtom | formulas.Constant | formulas.BoundAtom
+ORDERS = tuple(map(rv.CompareOp, ("<", "<=", ">=", ">")))
+PLAIN = rv.SignalAtom | rv.Constant | rv.BoundAtom
 Values = Sequence[float | None]
 Both = Callable[[Way, Peer, Question], tuple[Values, Values]]
 """What we and the peer say at every tick."""
@@ -103,11 +103,11 @@ def random_question(rng: random.Random, way: Way, compared: int) -> Question:
     return Question(asked, columns, way.time)
 
 
-def _with_numbers(rng: random.Random, asked: formulas.Formula, compared: int) -> formulas.Formula:
+def _with_numbers(rng: random.Random, asked: rv.Formula, compared: int) -> rv.Formula:
     """Some of the propositions replaced by comparisons that no value meets exactly."""
     if isinstance(asked, PLAIN) and chance(rng, compared):
-        bound = formulas.Literal(rng.randint(-1, 2) + 0.5)
-        return formulas.Compare(pick(rng, ORDERS), formulas.SignalValue(pick(rng, NUMBERS)), bound)
+        bound = rv.Literal(rng.randint(-1, 2) + 0.5)
+        return rv.Compare(pick(rng, ORDERS), rv.SignalValue(pick(rng, NUMBERS)), bound)
     return with_operands(asked, lambda operand: _with_numbers(rng, operand, compared))
 
 

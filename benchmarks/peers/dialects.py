@@ -15,22 +15,7 @@ from pathlib import Path
 from msgspec import structs
 from tests.tools.common_fragment import EVER, UntranslatableError, both, either, to_core
 
-from rvmon.language.checked.formula import (
-    Binary,
-    BinaryOp,
-    BoundAtom,
-    Compare,
-    CompareOp,
-    Constant,
-    EventAtom,
-    Formula,
-    Interval,
-    Literal,
-    SignalAtom,
-    SignalValue,
-    Unary,
-    UnaryOp,
-)
+from rvmon.language.checked import formula as rv
 
 ALWAYS_ONE = "one"
 """The column that is 1 at every row."""
@@ -42,7 +27,7 @@ class Dialect:
 
     name: str  # of the peer and its time model
     # by operator its template, `{0}` and `{1}` for operands, `{bound}` for the window
-    operators: Mapping[UnaryOp | BinaryOp, str]
+    operators: Mapping[rv.UnaryOp | rv.BinaryOp, str]
     proposition: str = "({} > 0.5)"  # how a Boolean column is read
     # how a numeric column is compared with a number; empty: it is not
     comparison: str = "({} {} {})"
@@ -57,7 +42,7 @@ class Dialect:
     weakened: bool = False
 
 
-def translate(formula: Formula, dialect: str) -> str:
+def translate(formula: rv.Formula, dialect: str) -> str:
     """The formula as text of a dialect of `dialects.toml`.
 
     Raises:
@@ -71,36 +56,38 @@ def spelling(name: str) -> str:
     return f"v_{name}"
 
 
-def _say(formula: Formula, dialect: Dialect) -> str:
+def _say(formula: rv.Formula, dialect: Dialect) -> str:
     match formula:
-        case Constant(value=value):
+        case rv.Constant(value=value):
             one = dialect.proposition.format(spelling(ALWAYS_ONE))
-            return one if value else dialect.operators[UnaryOp.NOT].format(one)
-        case SignalAtom(name=name) | EventAtom(name=name):
+            return one if value else dialect.operators[rv.UnaryOp.NOT].format(one)
+        case rv.SignalAtom(name=name) | rv.EventAtom(name=name):
             return dialect.proposition.format(spelling(name))
-        case BoundAtom(bound=bound):
+        case rv.BoundAtom(bound=bound):
             return dialect.proposition.format(spelling(bound.value))
-        case Compare(op=op, left=SignalValue(name=name), right=Literal(value=int() | float() as x)):
+        case rv.Compare(
+            op=op, left=rv.SignalValue(name=name), right=rv.Literal(value=int() | float() as x)
+        ):
             if not dialect.comparison:
                 raise UntranslatableError(f"{dialect.name} knows no numbers")
-            if op in (CompareOp.EQ, CompareOp.NE):
+            if op in (rv.CompareOp.EQ, rv.CompareOp.NE):
                 raise UntranslatableError("equality has no robustness above 0")
             return dialect.comparison.format(spelling(name), op.value, x)
-        case Unary() | Binary():
+        case rv.Unary() | rv.Binary():
             return _operator(formula, dialect)
         case _:
             raise UntranslatableError(f"{dialect.name} compares signals with numbers only")
 
 
-def _operator(formula: Unary | Binary, dialect: Dialect) -> str:
+def _operator(formula: rv.Unary | rv.Binary, dialect: Dialect) -> str:
     template = dialect.operators.get(formula.op)
     if template is None:
         raise UntranslatableError(f"{dialect.name} has no {formula.op.name.lower()}")
-    operands = [formula.operand] if isinstance(formula, Unary) else [formula.left, formula.right]
+    operands = [formula.operand] if isinstance(formula, rv.Unary) else [formula.left, formula.right]
     bound = ""
     if "{bound}" in template:
         window = formula.interval or EVER
-        if window == Interval(0, 0) and not dialect.point:
+        if window == rv.Interval(0, 0) and not dialect.point:
             return _say(operands[-1], dialect)
         is_endless = window.high is None and dialect.endless is None
         if window.low > 0 and (is_endless or (dialect.split and len(operands) == 2)):
@@ -116,21 +103,21 @@ def _operator(formula: Unary | Binary, dialect: Dialect) -> str:
     return template.format(*(_say(one, dialect) for one in operands), bound=bound)
 
 
-def _opened(formula: Unary | Binary, window: Interval) -> Formula:
+def _opened(formula: rv.Unary | rv.Binary, window: rv.Interval) -> rv.Formula:
     """A window from a on as one from 0 on, a ticks away.
 
     `φ U[a,b] ψ` is φ on the first a ticks, then `φ U[0,b-a] ψ`; `S` is the mirror image.
     """
-    rest = Interval(0, None if window.high is None else window.high - window.low)
-    at, before = Interval(window.low, window.low), Interval(0, window.low - 1)
+    rest = rv.Interval(0, None if window.high is None else window.high - window.low)
+    at, before = rv.Interval(window.low, window.low), rv.Interval(0, window.low - 1)
     inner = structs.replace(formula, interval=rest)
-    if isinstance(formula, Unary):
-        return Unary(formula.op, inner, at)
-    if formula.op is BinaryOp.UNTIL:
-        always, eventually = UnaryOp.ALWAYS, UnaryOp.EVENTUALLY
+    if isinstance(formula, rv.Unary):
+        return rv.Unary(formula.op, inner, at)
+    if formula.op is rv.BinaryOp.UNTIL:
+        always, eventually = rv.UnaryOp.ALWAYS, rv.UnaryOp.EVENTUALLY
     else:
-        always, eventually = UnaryOp.HISTORICALLY, UnaryOp.ONCE
-    return both(Unary(always, formula.left, before), Unary(eventually, inner, at))
+        always, eventually = rv.UnaryOp.HISTORICALLY, rv.UnaryOp.ONCE
+    return both(rv.Unary(always, formula.left, before), rv.Unary(eventually, inner, at))
 
 
 def _dialects() -> Iterator[tuple[str, Dialect]]:
@@ -142,7 +129,7 @@ def _dialects() -> Iterator[tuple[str, Dialect]]:
         if "name" in table:
             words = {word.upper(): text for word, text in table.items() if word not in own}
             operators = {
-                (UnaryOp if word in UnaryOp.__members__ else BinaryOp)[word]: text
+                (rv.UnaryOp if word in rv.UnaryOp.__members__ else rv.BinaryOp)[word]: text
                 for word, text in words.items()
             }
             told = {name: one for name, one in table.items() if name in own}

@@ -6,15 +6,9 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 
-from rvmon.cdv import campaign_summary
+from rvmon.cdv import campaign_summary, code_coverage
 from rvmon.cdv.campaign import unreachable_items
 from rvmon.cdv.campaign_plan import Outcome, Played, Results
-from rvmon.cdv.code_coverage import (
-    branches_name,
-    measured_groups,
-    source_and_target,
-    statements_name,
-)
 from rvmon.cdv.sequential_test import decide
 from rvmon.coverage import STATES, TRANSITIONS, Ending, Group, model_of, without
 from rvmon.language.checked.properties import BinKind
@@ -27,7 +21,7 @@ from rvmon.verdicts import Verdict
 def summarise(results: Results, specs: Mapping[str, Spec]) -> campaign_summary.CampaignSummary:
     """Count verdicts, statements, branches, states and transitions; without a spec no verdicts."""
     campaign = results.plan.campaign
-    measured = model_of(measured_groups(campaign))
+    measured = model_of(code_coverage.measured_groups(campaign))
     blocks = [] if campaign.code is None else [block.name for block in campaign.code.blocks]
     robots = {}
     for name, robot in campaign.robots.items():
@@ -100,11 +94,13 @@ def _strategy(
     blocks: Sequence[str],
 ) -> campaign_summary.StrategySummary:
     outcomes = [test_run.outcome for test_run in played]
-    statements = {block: _coverage(groups[statements_name(block)], outcomes) for block in blocks}
+    statements = {
+        block: _coverage(groups[code_coverage.statements_name(block)], outcomes) for block in blocks
+    }
     branches = {
-        block: _coverage(groups[branches_name(block)], outcomes)
+        block: _coverage(groups[code_coverage.branches_name(block)], outcomes)
         for block in blocks
-        if branches_name(block) in groups
+        if code_coverage.branches_name(block) in groups
     }
     return campaign_summary.StrategySummary(
         tests=len(outcomes),
@@ -113,7 +109,7 @@ def _strategy(
         branches=branches,
         states=_counted(groups[STATES], outcomes),
         transitions={
-            source_and_target(name): tests
+            code_coverage.source_and_target(name): tests
             for name, tests in _counted(groups[TRANSITIONS], outcomes).items()
         },
         errors={

@@ -15,15 +15,7 @@ from rvmon import native
 from rvmon.analysis.graph import Graph, graph_of
 from rvmon.coverage import Group, Hit, Item, Subject, group_of
 from rvmon.coverage.decisive_operands import Variant, variants_of
-from rvmon.language.checked.formula import (
-    Binary,
-    BinaryOp,
-    Bound,
-    BoundAtom,
-    Formula,
-    Unary,
-    UnaryOp,
-)
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.monitor.compile import CompiledRequirement
@@ -79,7 +71,9 @@ def passages_of(ids: Sequence[str], run: native.Monitor) -> dict[str, Passages]:
 def goals_as_requirements(spec: CheckedSpec) -> CheckedSpec:
     """A specification whose requirements are the cover goals of another; samples in order only."""
     requirements = {
-        name: Requirement(name, Mode.UPON, BoundAtom(Bound.START), cover.formula, span=cover.span)
+        name: Requirement(
+            name, Mode.UPON, rv.BoundAtom(rv.Bound.START), cover.formula, span=cover.span
+        )
         for name, cover in spec.covers.items()
     }
     return structs.replace(
@@ -191,12 +185,12 @@ class WatchedRequirement:
             yield group_of(edges_of(name), Subject.TRANSITIONS, steps, title=title)
 
 
-def deadline_of(required: Formula) -> int | None:
+def deadline_of(required: rv.Formula) -> int | None:
     """The deadline in ticks of a consequent `F[0,b]` or `U[0,b]`; else `None`."""
     match required:
-        case Unary(op=UnaryOp.EVENTUALLY, interval=interval):
+        case rv.Unary(op=rv.UnaryOp.EVENTUALLY, interval=interval):
             return None if interval is None else interval.high
-        case Binary(op=BinaryOp.UNTIL, interval=interval):
+        case rv.Binary(op=rv.BinaryOp.UNTIL, interval=interval):
             return None if interval is None else interval.high
         case _:
             return None

@@ -23,7 +23,7 @@ from rvmon.cdv.mutation.python_mutants import third_of
 from rvmon.cdv.mutation.python_operators import either_way
 from rvmon.cdv.mutation.survivors import Score
 from rvmon.cdv.system import Checker
-from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.classify import is_pulse
 from rvmon.language.checked.specification import CheckedSpec, Requirement
 from rvmon.language.print import format_duration, format_formula
@@ -34,44 +34,44 @@ from rvmon.trace.time import TICKS_PER_UNIT
 from rvmon.verdicts import Verdict
 
 _CONNECTIVES = {
-    formulas.BinaryOp.AND: formulas.BinaryOp.OR,
-    formulas.BinaryOp.OR: formulas.BinaryOp.AND,
-    formulas.BinaryOp.IMPLIES: formulas.BinaryOp.AND,
+    rv.BinaryOp.AND: rv.BinaryOp.OR,
+    rv.BinaryOp.OR: rv.BinaryOp.AND,
+    rv.BinaryOp.IMPLIES: rv.BinaryOp.AND,
 }
 _TEMPORAL = either_way(
-    (formulas.UnaryOp.EVENTUALLY, formulas.UnaryOp.ALWAYS),
-    (formulas.UnaryOp.ONCE, formulas.UnaryOp.HISTORICALLY),
+    (rv.UnaryOp.EVENTUALLY, rv.UnaryOp.ALWAYS),
+    (rv.UnaryOp.ONCE, rv.UnaryOp.HISTORICALLY),
 )
-_EQUALITIES = (formulas.CompareOp.EQ, formulas.CompareOp.NE)
+_EQUALITIES = (rv.CompareOp.EQ, rv.CompareOp.NE)
 _BOUNDARIES = either_way(
-    (formulas.CompareOp.LT, formulas.CompareOp.LE),
-    (formulas.CompareOp.GT, formulas.CompareOp.GE),
+    (rv.CompareOp.LT, rv.CompareOp.LE),
+    (rv.CompareOp.GT, rv.CompareOp.GE),
     _EQUALITIES,
 )
 
 
-def _own_changes(formula: formulas.Formula) -> Iterator[tuple[str, formulas.Formula]]:
+def _own_changes(formula: rv.Formula) -> Iterator[tuple[str, rv.Formula]]:
     """The changes of a formula's own operator, in the order of `SPEC_OPERATORS`."""
     match formula:
-        case formulas.Binary(op=op, left=left, right=right):
+        case rv.Binary(op=op, left=left, right=right):
             if op in _CONNECTIVES:
                 yield "connective", structs.replace(formula, op=_CONNECTIVES[op])
                 yield "dropped operand", left
                 yield "dropped operand", right
             yield from (("bound", other) for other in _bounds_moved(formula))
-        case formulas.Unary(op=formulas.UnaryOp.NOT, operand=operand):
+        case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
             yield "dropped not", operand
-        case formulas.Unary(op=op, interval=interval):
+        case rv.Unary(op=op, interval=interval):
             if op in _TEMPORAL:
                 yield "temporal operator", structs.replace(formula, op=_TEMPORAL[op])
             yield from (("bound", other) for other in _bounds_moved(formula))
             if op in _TEMPORAL and interval is not None and interval.high is not None:
-                unbounded = structs.replace(formula, interval=formulas.Interval(interval.low))
+                unbounded = structs.replace(formula, interval=rv.Interval(interval.low))
                 yield "no deadline", unbounded
-        case formulas.SignalAtom() | formulas.EventAtom() | formulas.ProbeAtom():
-            yield "negated", formulas.Unary(formulas.UnaryOp.NOT, formula)
-        case formulas.Compare(op=op, left=left, right=right):
-            is_label = isinstance(right, formulas.Literal) and isinstance(right.value, bool | str)
+        case rv.SignalAtom() | rv.EventAtom() | rv.ProbeAtom():
+            yield "negated", rv.Unary(rv.UnaryOp.NOT, formula)
+        case rv.Compare(op=op, left=left, right=right):
+            is_label = isinstance(right, rv.Literal) and isinstance(right.value, bool | str)
             if not is_label or op in _EQUALITIES:
                 yield "comparison", structs.replace(formula, op=_BOUNDARIES[op])
             for moved in _moved(right):
@@ -80,20 +80,20 @@ def _own_changes(formula: formulas.Formula) -> Iterator[tuple[str, formulas.Form
                 yield "threshold", structs.replace(formula, left=moved)
 
 
-def _moved(numeric: formulas.Numeric) -> Iterator[formulas.Numeric]:
+def _moved(numeric: rv.Numeric) -> Iterator[rv.Numeric]:
     match numeric:
-        case formulas.Literal(value=bool() | str()):
+        case rv.Literal(value=bool() | str()):
             return
-        case formulas.Literal(value=int() as value):
+        case rv.Literal(value=int() as value):
             yield replace(numeric, value=value + 1)
             yield replace(numeric, value=value - 1)
-        case formulas.Literal(value=float() as value):
+        case rv.Literal(value=float() as value):
             step = abs(value) / 10 or 0.1
             yield replace(numeric, value=float(f"{value + step:.12g}"))
             yield replace(numeric, value=float(f"{value - step:.12g}"))
 
 
-def _bounds_moved(formula: formulas.Unary | formulas.Binary) -> Iterator[formulas.Formula]:
+def _bounds_moved(formula: rv.Unary | rv.Binary) -> Iterator[rv.Formula]:
     """One unit more and less: of that in which the bound is a whole number."""
     if formula.interval is None:
         return
@@ -101,11 +101,11 @@ def _bounds_moved(formula: formulas.Unary | formulas.Binary) -> Iterator[formula
     if high is not None:
         for other in (high + _unit(high), high - _unit(high)):
             if other >= low:
-                yield structs.replace(formula, interval=formulas.Interval(low, other))
+                yield structs.replace(formula, interval=rv.Interval(low, other))
     if low:
         for other in (low + _unit(low), low - _unit(low)):
             if high is None or other <= high:
-                yield structs.replace(formula, interval=formulas.Interval(other, high))
+                yield structs.replace(formula, interval=rv.Interval(other, high))
 
 
 def _unit(ticks: int) -> int:
@@ -126,24 +126,24 @@ SPEC_OPERATORS = (
 """In the order in which they are applied."""
 
 
-def changes(formula: formulas.Formula) -> Iterator[tuple[str, formulas.Formula]]:
+def changes(formula: rv.Formula) -> Iterator[tuple[str, rv.Formula]]:
     """All changes of a formula: the operator's name, and the whole formula with it.
 
     >>> from rvmon.language.print import format_formula
-    >>> gone = formulas.EventAtom("released")
-    >>> within = formulas.Unary(formulas.UnaryOp.EVENTUALLY, gone, formulas.Interval(0, 3 * 10**9))
+    >>> gone = rv.EventAtom("released")
+    >>> within = rv.Unary(rv.UnaryOp.EVENTUALLY, gone, rv.Interval(0, 3 * 10**9))
     >>> [format_formula(changed) for name, changed in changes(within) if name == "bound"]
     ['within 4 s released', 'within 2 s released']
     """
     yield from _own_changes(formula)
     match formula:
-        case formulas.Unary(operand=operand):
+        case rv.Unary(operand=operand):
             for name, changed in changes(operand):
                 yield name, structs.replace(formula, operand=changed)
-        case formulas.Amount(of=formulas.WindowValue(value=None, operand=operand) as window):
+        case rv.Amount(of=rv.WindowValue(value=None, operand=operand) as window):
             for name, changed in changes(operand):
                 yield name, structs.replace(formula, of=structs.replace(window, operand=changed))
-        case formulas.Binary(left=left, right=right):
+        case rv.Binary(left=left, right=right):
             for name, changed in changes(left):
                 yield name, structs.replace(formula, left=changed)
             for name, changed in changes(right):
@@ -230,7 +230,7 @@ def _of_requirement(requirement: Requirement) -> Iterator[SpecMutant]:
 
 
 def _changed(requirement: Requirement) -> Iterator[tuple[str, Requirement]]:
-    if not isinstance(requirement.trigger, formulas.BoundAtom):
+    if not isinstance(requirement.trigger, rv.BoundAtom):
         for kind, trigger in changes(requirement.trigger):
             yield kind, replace(requirement, trigger=trigger, pulse=is_pulse(trigger))
     for kind, consequent in changes(requirement.consequent):
