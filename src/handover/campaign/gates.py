@@ -46,8 +46,7 @@ _SELDOM = ("T54", "T55", "T65", *_NEEDS["a human who does not come"])
 def gates(robots: Collection[str]) -> dict[str, Gate]:
     """The gate of each strategy that need not trigger all.
 
-    Args:
-        robots: the tested robots; R1 to R5 are all that the legacy one is judged by.
+    R1 to R5 are all that the legacy robot is judged by.
 
     >>> gates(["legacy"])["constrained"].untriggered
     ('R1',)

@@ -134,8 +134,7 @@ def _path() -> Path:
 def check_model(requirements: tuple[str, ...]) -> dict[str, bool | None]:
     """Ask the model checker for a run that shows each requirement, as the paper did.
 
-    Args:
-        requirements: ids; one that the model has no query for cannot be expressed: `None`.
+    What the model has no query for cannot be expressed: `None`.
     """
     from handover.model import handover_network
     from rvmon.models.search.verify import verify

@@ -73,11 +73,7 @@ class Arm:
     def follow(
         self, path: Trajectory, *, minds_people: bool = False
     ) -> Generator[float, None, bool]:
-        """Move along a path; returns when it is over.
-
-        Args:
-            path: the way to go.
-            minds_people: stop, for good, where a part of a person comes close.
+        """Move along a path to its end; if it minds people, it stops for good where one is close.
 
         Returns:
             Whether the arm got to its end.

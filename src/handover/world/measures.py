@@ -48,9 +48,7 @@ def gaze_is_ok(scene: Scene, error: Callable[[], float] = exactly) -> bool:
     Offset is the head's height over the piece, distance is along x, and the angle is that
     between the line of sight and the direction from head to piece.
 
-    Args:
-        scene: the scene of the bodies.
-        error: the offset of each measured length, m.
+    `error` gives the offset of each measured length, m.
     """
     head, piece = scene.head.position, scene.piece.position
     return (

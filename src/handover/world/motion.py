@@ -25,11 +25,7 @@ def grip_point(joints: Joints) -> tuple[float, float]:
 
 
 def joints_for(x: float, z: float) -> Joints | None:
-    """The joint angles that bring the grip to a point, gripper down and elbow up.
-
-    Args:
-        x: metres.
-        z: metres.
+    """The joint angles that bring the grip to a point (metres), gripper down and elbow up.
 
     Returns:
         `None` if the point is out of reach.

@@ -146,14 +146,10 @@ PROLOGUE = 10
 
 
 def begin_of(lines: Iterable[bytes], schema: Schema) -> tuple[list[bytes], int | None]:
-    """The first lines of a stream, up to the one that says whether its lines have stamps.
+    """The first lines of a stream, up to the one that says whether its lines have stamps; not more.
 
     Programs greet before they report: a line that cannot be read, or that has neither a stamp nor a
     declared name, does not say it.
-
-    Args:
-        lines: an object each; as many are taken as are returned.
-        schema: the declared names.
 
     Returns:
         The lines, and the stamp of the last one, ns; `None`: it has none, or `PROLOGUE` lines said
@@ -197,10 +193,7 @@ def feed_lines(objects: JsonObjects, lines: Iterable[bytes], robot: str | None =
     Lines with a time wait for room in the queue, so that a pipe faster than the monitors is slowed
     down and nothing is lost.
 
-    Args:
-        objects: receives the objects.
-        lines: an object each.
-        robot: the field with the name of the robot; `None`: there is only one robot.
+    `robot` is the field with the name of the robot; `None`: there is only one.
     """
     with suppress(RvmonError):  # the driver was closed
         for number, line in enumerate(lines, 1):

@@ -282,13 +282,9 @@ def unreachable_items(
 ) -> dict[tuple[str, str], str]:
     """The items of a model that a campaign calls unreachable, each with the reason.
 
-    Args:
-        campaign: the campaign.
-        robot: its robot in question.
-        model: the coverage model.
-        closing: the model has all that is ever measured: what it lacks there is not. Of any other,
-            such as one without the edges that closing measures, that is passed over. What is to be
-            proved is left out: that is for closing to ask.
+    When `closing`, the model has all that is ever measured: what it lacks there is not; and what is
+    to be proved is left out, as closing asks for that. Any other, such as one without the edges
+    that closing measures, may lack what is named.
 
     Raises:
         UnknownNameError: nothing in the model is called so.

@@ -41,10 +41,7 @@ def choose_examples(
 
     A test that hung, or ended its process, has no page: it cannot be played again here.
 
-    Args:
-        played: of the campaign.
-        also: names of tests that get a page whatever became of them.
-        every: whether all others are shown as well.
+    Tests named in `also` get a page whatever became of them; with `every`, all others do as well.
     """
     playable = [
         test_run for test_run in played if test_run.outcome.ending not in (Ending.HUNG, Ending.LOST)

@@ -132,12 +132,8 @@ def judge_test(
 ) -> TestJudgement:
     """Compare one test with what was expected of it, as `judge_campaign` does with all.
 
-    Args:
-        played: the test.
-        expected: failures that its campaign expects.
-        shared: requirements of which not this test decides, but all together.
-        gate: verdicts that are inconclusive are wrong, unless it or the test knows them; default:
-            none is.
+    Of `shared` requirements not this test decides, but all together. With a gate, verdicts that are
+    inconclusive are wrong, unless it or the test knows them.
     """
     test, outcome = played.job.test, played.outcome
     wrong: list[str] = []

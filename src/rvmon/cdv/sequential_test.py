@@ -50,9 +50,7 @@ def decide(share: RunShare, verdicts: Iterable[Verdict]) -> Decision:
     its pass would favour, and as passed for what its failure would: the errors are kept however it
     would have ended. The limits are those that keep them whenever one stops, 1/α and β.
 
-    Args:
-        share: above 0, below 1.
-        verdicts: of tests that are drawn independently of each other, in the order of the plan.
+    The share is above 0 and below 1; the tests are drawn independently, in the order of the plan.
 
     Source: Wald, Sequential Tests of Statistical Hypotheses, Annals of Mathematical Statistics
     16(2), 1945, sections 3 and 5.3.

@@ -120,13 +120,7 @@ class Hole(Struct, frozen=True):
 
 
 def hole_of(goal: Goal, model: Model, hits: Hits, nearest: str = "") -> Hole:
-    """Explain a hole.
-
-    Args:
-        goal: an item that has not reached its goal.
-        model: the model.
-        hits: of all tests together.
-        nearest: the test that came nearest to it.
+    """Explain a hole: an item that has not reached its goal, by the hits of all tests together.
 
     >>> from rvmon.coverage import Item, group_of, model_of
     >>> from rvmon.coverage import Hit

@@ -31,9 +31,7 @@ from rvmon.files import contents, place_whole
 def entries(path: Path, *, all_of_them: bool = False) -> list[bytes] | None:
     """The entries of a journal, up to the first that is not whole; `None` if there is no file.
 
-    Args:
-        path: of the journal.
-        all_of_them: whether an entry that is not whole may only be the last, which was torn.
+    With `all_of_them`, an entry that is not whole may only be the last, which was torn.
 
     Raises:
         OSError: it cannot be read.

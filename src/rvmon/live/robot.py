@@ -118,12 +118,6 @@ class Robot:
         watch: the options of its monitors.
         judged: called with each decided attempt; must not raise.
         ended: called with the name and the report of each run that ended; must not raise.
-
-    Attributes:
-        run: the number of the present run, from 1.
-        last: the instant of the latest sample, ns; `None` before the first.
-        floor: samples before this instant (ns) are too late; `None` before the first sample.
-        reports: the reports of the latest runs that have ended.
     """
 
     KEPT_REPORTS = 10
@@ -136,7 +130,8 @@ class Robot:
         ended: Callable[[str, Report], None],
     ) -> None:
         self.name = name
-        self.run = 0
+        self.run = 0  # the number of the present run, from 1
+        # of the latest runs that have ended
         self.reports: deque[Report] = deque(maxlen=self.KEPT_REPORTS)
         self._judged = judged
         self._ended = ended
@@ -156,10 +151,10 @@ class Robot:
         self._monitor = watch.monitor()
         self._monitor.on_decided(self._hear)
         self.run += 1
-        self.floor: int | None = None
+        self.floor: int | None = None  # samples before this instant, ns, are too late
         self._is_held_back = False
         self._since: int | None = None
-        self.last: int | None = None
+        self.last: int | None = None  # the instant of the latest sample, ns
         self._why: Health | None = None
         self._is_to_lose_again = bool(self._down)
 
