@@ -81,8 +81,9 @@ def _required(requirement: Requirement) -> str:
 def in_words(formula: formulas.Formula, *, positive: bool = True) -> str:
     """A formula, or its negation, as an English clause.
 
-    >>> released = EventAtom("released")
-    >>> in_words(Unary(UnaryOp.ALWAYS, Unary(UnaryOp.NOT, released), Interval(0, 2 * 10**9)))
+    >>> never = formulas.Unary(formulas.UnaryOp.NOT, formulas.EventAtom("released"))
+    >>> window = formulas.Interval(0, 2 * 10**9)
+    >>> in_words(formulas.Unary(formulas.UnaryOp.ALWAYS, never, window))
     'for 2 s, released does not occur'
     """
     match formula:

@@ -25,7 +25,8 @@ _ARITHMETIC = {
 def format_formula(formula: rv.Formula) -> str:
     """A checked formula in the words of the language.
 
-    >>> format_formula(Unary(UnaryOp.EVENTUALLY, EventAtom("released"), Interval(0, 3 * 10**9)))
+    >>> released, window = rv.EventAtom("released"), rv.Interval(0, 3 * 10**9)
+    >>> format_formula(rv.Unary(rv.UnaryOp.EVENTUALLY, released, window))
     'within 3 s released'
     """
     return _formula(formula, 0)
@@ -34,7 +35,8 @@ def format_formula(formula: rv.Formula) -> str:
 def format_numeric(numeric: rv.Numeric) -> str:
     """A checked number or label in the words of the language.
 
-    >>> format_numeric(Arithmetic(NumericOp.SUB, (SignalValue("x"), Literal(0.5, "m"))))
+    >>> parts = rv.SignalValue("x"), rv.Literal(0.5, "m")
+    >>> format_numeric(rv.Arithmetic(NumericOp.SUB, parts))
     'x - 0.5 m'
     """
     return _numeric(numeric, _SUM)
@@ -127,8 +129,7 @@ def _amount(formula: rv.Amount, *, denied: bool) -> str:
 def format_window(formula: rv.WindowValue) -> str:
     """A window in the words of the language.
 
-    >>> from rvmon.language.checked.formula import EventAtom
-    >>> format_window(WindowValue(Measured.COUNT, EventAtom("e"), 5 * 10**9))
+    >>> format_window(rv.WindowValue(rv.Measured.COUNT, rv.EventAtom("e"), 5 * 10**9))
     'count(e, 5 s)'
     """
     word, what = str(formula.measured), ""

@@ -33,6 +33,8 @@ def together(several: Sequence[Sequence[CoveredGroup]]) -> list[CoveredGroup]:
 def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:
     """Per group, a line with the hits of its bins, and one with its holes if it has any.
 
+    >>> from rvmon.language.checked.properties import BinKind
+    >>> from rvmon.verdicts.run_coverage import CoveredBin
     >>> low = CoveredBin("low", BinKind.GOAL, 1, 4)
     >>> high = CoveredBin("high", BinKind.GOAL, 3, 1)
     >>> for line in coverage_lines([CoveredGroup("size", "coverpoint", (low, high))]):

@@ -95,10 +95,10 @@ def is_timeless(formula: rv.Formula) -> bool:
 def is_pulse(formula: rv.Formula) -> bool:
     """Whether the negation normal form of a trigger is a pulse.
 
-    >>> from rvmon.language.checked.formula import BinaryOp, UnaryOp
-    >>> is_pulse(Binary(BinaryOp.AND, EventAtom("sensed"), SignalAtom("ready")))
+    >>> sensed, ready = rv.EventAtom("sensed"), rv.SignalAtom("ready")
+    >>> is_pulse(rv.Binary(rv.BinaryOp.AND, sensed, ready))
     True
-    >>> is_pulse(Unary(UnaryOp.NOT, EventAtom("sensed")))
+    >>> is_pulse(rv.Unary(rv.UnaryOp.NOT, sensed))
     False
     """
     return _pulses(formula)[0]
@@ -169,8 +169,8 @@ FIRST: Facts = {rv.Bound.START: True}
 def facts_of(formula: rv.Formula) -> dict[Hashable, bool]:
     """The facts that hold wherever a formula of the present and past is true.
 
-    >>> from rvmon.language.checked.formula import BinaryOp
-    >>> facts_of(Binary(BinaryOp.AND, EventAtom("e"), Unary(UnaryOp.NOT, SignalAtom("p"))))
+    >>> no_p = rv.Unary(rv.UnaryOp.NOT, rv.SignalAtom("p"))
+    >>> facts_of(rv.Binary(rv.BinaryOp.AND, rv.EventAtom("e"), no_p))
     {'e': True, 'p': False}
     """
     return dict(_both_facts(formula)[0])

@@ -21,10 +21,10 @@ def is_pulse(formula: rv.Formula, *, negated: bool = False) -> bool:
 
     Source: SEMANTICS, section 3 (Requirements, `upon`).
 
-    >>> sensed, ready = formulas.EventAtom("sensed"), formulas.SignalAtom("ready")
-    >>> is_pulse(formulas.Binary(formulas.BinaryOp.AND, sensed, ready))
+    >>> sensed, ready = rv.EventAtom("sensed"), rv.SignalAtom("ready")
+    >>> is_pulse(rv.Binary(rv.BinaryOp.AND, sensed, ready))
     True
-    >>> is_pulse(formulas.Unary(formulas.UnaryOp.NOT, sensed))
+    >>> is_pulse(rv.Unary(rv.UnaryOp.NOT, sensed))
     False
     """
     match formula:
