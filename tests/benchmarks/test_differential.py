@@ -39,7 +39,10 @@ def counts(printed: str) -> dict[str, int]:
 
 @pytest.mark.law
 @pytest.mark.parametrize("name", FEW)
-def test_a_few_of_each(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_few_of_each(
+    name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("RVMON_CACHE", "on")  # `damage` switches it off in its process, for good
     count, given, what, least = FEW[name]
     assert main([name], count=count, set_=given) == 0
     found = counts(capsys.readouterr().out)
