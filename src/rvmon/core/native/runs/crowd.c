@@ -254,6 +254,27 @@ static int32_t called_by_value(home *h, int32_t count, int32_t local, const rv_n
     return found;
 }
 
+/* Put the called instances in the order of their list, behind the runs of attempts: attempts that they
+ * begin are listed in it. */
+static void put_in_order(home *h, int32_t count)
+{
+    int32_t kept = 0;
+    int32_t i;
+    const run *one;
+    for (i = 0; i < count; i++) {
+        if (is_of_attempt(h->runs[h->called[i]])) {
+            h->called[kept] = h->called[i];
+            kept++;
+        }
+    }
+    for (one = h->root; one != NULL; one = one->next) {
+        if (one->call == h->call) {
+            h->called[kept] = one->id;
+            kept++;
+        }
+    }
+}
+
 /* Put the ids of the runs that the sample or an alarm concerns into `called`; returns how many, -1:
  * all. A key's instance is called with the runs of its attempts; the root always, as others are forked
  * from it; and each run in which a signal may change a comparison. */
@@ -289,6 +310,9 @@ int32_t call_concerned(home *h, int64_t t)
         if (!h->inbox[i].event) {
             count = called_by_value(h, count, h->inbox[i].local, &h->inbox[i].update->value);
         }
+    }
+    if ((h->part->plan->each != 0) && (keyed < h->inbox_count)) {
+        put_in_order(h, count);
     }
     return count;
 }
