@@ -18,13 +18,11 @@ if TYPE_CHECKING:
 _DEPTH = 10_000
 """The most messages of a topic queued in DDS; further ones are rejected, and reported as lost."""
 
-_AT_ONCE = 1_000
-"""The most messages of a topic taken before the next topic has its turn."""
+_AT_ONCE = 1_000  # the most messages of a topic taken before the next topic has its turn
 
 _LONG_NS = 3_600_000_000_000
 
-_PREFIX = "rt/"
-"""The prefix of the names of ROS 2 topics in DDS."""
+_PREFIX = "rt/"  # the prefix of the names of ROS 2 topics in DDS
 
 
 _MAKING = Lock()
@@ -242,5 +240,4 @@ def _idl_type(name: str, definitions: tuple[tuple[str, str], ...]) -> Any:
     return make_idl_struct(short, wire, fields)
 
 
-_PLAIN = {"bool": bool, "string": str}
-"""ROS types with another name in cyclonedds."""
+_PLAIN = {"bool": bool, "string": str}  # ROS types with another name in cyclonedds

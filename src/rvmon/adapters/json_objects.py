@@ -141,8 +141,7 @@ def decoded_object(text: bytes) -> Any:
         raise TraceError(f"{error}{wanted}") from None
 
 
-PROLOGUE = 10
-"""The most lines that are looked at for the first one that says what the stream is of."""
+PROLOGUE = 10  # the most lines that are looked at for the first one that says what the stream is of
 
 
 def begin_of(lines: Iterable[bytes], schema: Schema) -> tuple[list[bytes], int | None]:
@@ -183,8 +182,7 @@ def _read(
         raise TraceError(TOO_DEEP) from None
 
 
-_PIECE = 1 << 16
-"""The most bytes read at once."""
+_PIECE = 1 << 16  # the most bytes read at once
 
 
 def feed_lines(objects: JsonObjects, lines: Iterable[bytes], robot: str | None = None) -> None:

@@ -15,13 +15,11 @@ from rvmon.recordings.messages.topic_matching import matched
 from rvmon.trace.schema import Clock, Schema
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 
-CLOCK = "/clock"
-"""The topic with the simulated time, where robots `use_sim_time`."""
+CLOCK = "/clock"  # the topic with the simulated time, where robots `use_sim_time`
 
 _log = logging.getLogger("rvmon.live.input")
 
-_NOW = 1 - TIME_LIMIT
-"""Stands for the instant at which a message arrives."""
+_NOW = 1 - TIME_LIMIT  # stands for the instant at which a message arrives
 
 
 class MessageFeed:

@@ -18,8 +18,7 @@ _PORT = 1883
 _DROPPED = "$SYS/broker/publish/messages/dropped"
 """The topic on which mosquitto publishes, every ten seconds, the number of dropped messages."""
 
-_PATIENCE_S = 10.0
-"""Seconds in which a broker has to answer."""
+_PATIENCE_S = 10.0  # seconds in which a broker has to answer
 
 
 @dataclass(frozen=True, slots=True)

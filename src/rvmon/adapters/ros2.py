@@ -17,11 +17,8 @@ from rvmon.live.robot import Judgement
 from rvmon.recordings.messages import Topic
 from rvmon.trace.schema import Kind
 
-_DEPTH = 1_000
-"""The most messages of a topic queued in the middleware."""
-
-_TURN_S = 0.2
-"""Seconds between two searches for newly published topics."""
+_DEPTH = 1_000  # the most messages of a topic queued in the middleware
+_TURN_S = 0.2  # seconds between two searches for newly published topics
 
 _ARRAY = re.compile(r"sequence<(?P<of>.+?)(, \d+)?>|(?P<of_fixed>.+)\[\d+\]")
 """`sequence<double>`, `sequence<double, 3>`, `double[9]`."""

@@ -41,8 +41,7 @@ from rvmon.logic.state_formula import Leaf, events_of, inputs_of, operands
 from rvmon.logic.state_graph import captured_names
 from rvmon.trace.schema import Kind
 
-DEPTH = 32
-"""The size of the stack machine's stack, in numbers."""
+DEPTH = 32  # the size of the stack machine's stack, in numbers
 
 _WHOLE, _REAL = 1, 2
 _INT64 = 1 << 63
@@ -64,11 +63,8 @@ class Code(IntEnum):
 OPERATIONS = {op: number for number, op in enumerate(NumericOp, len(Code))}
 """The code of each operation: they follow the operand codes, in the order of `NumericOp`."""
 
-NOW = len(Code) + len(OPERATIONS)
-"""The code of `now`, after all operations."""
-
-WINDOW = NOW + 1
-"""The code of the value of a window."""
+NOW = len(Code) + len(OPERATIONS)  # the code of `now`, after all operations
+WINDOW = NOW + 1  # the code of the value of a window
 
 _UPDATES = {
     UpdateFunction.PREV: Code.PREV,
@@ -203,8 +199,7 @@ def _word(code: int, argument: int) -> int:
     return code + 256 * argument
 
 
-MOST_EVENTS = 8
-"""The most events whose fields one comparison may read."""
+MOST_EVENTS = 8  # the most events whose fields one comparison may read
 
 _COMPARISONS = {op: number for number, op in enumerate(CompareOp)}
 
@@ -226,33 +221,20 @@ class AtomOp(IntEnum):
 
 
 class Atom(Struct, frozen=True):
-    """An atom; names are given by their numbers in the part.
+    """An atom; names are given by their numbers in the part."""
 
-    Attributes:
-        op: its kind.
-        constant: of `REAL`, the constant that the signal is compared with.
-        compare: the number of the comparison operator.
-        input: the signal or event; −1 if there is none, or several.
-        left: index of the program of the left side.
-        right: index of the program of the right side.
-        events: the events whose fields it reads.
-        values: the signals whose values it reads.
-        updates: the signals any update of which may change it, even to an equal value.
-        occurrences: the events that it reads, with or without fields.
-        captured: whether it reads captured values.
-    """
-
-    op: AtomOp
-    constant: float = 0.0
-    compare: int = 0
-    input: int = -1
-    left: int = -1
-    right: int = -1
-    events: tuple[int, ...] = ()
-    values: tuple[int, ...] = ()
+    op: AtomOp  # its kind
+    constant: float = 0.0  # of `REAL`, the constant that the signal is compared with
+    compare: int = 0  # the number of the comparison operator
+    input: int = -1  # the signal or event; −1 if there is none, or several
+    left: int = -1  # index of the program of the left side
+    right: int = -1  # index of the program of the right side
+    events: tuple[int, ...] = ()  # the events whose fields it reads
+    values: tuple[int, ...] = ()  # the signals whose values it reads
+    # the signals any update of which may change it, even to an equal value
     updates: tuple[int, ...] = ()
-    occurrences: tuple[int, ...] = ()
-    captured: bool = False
+    occurrences: tuple[int, ...] = ()  # the events that it reads, with or without fields
+    captured: bool = False  # whether it reads captured values
 
     @property
     def lone_signals(self) -> tuple[int, ...]:

@@ -19,8 +19,7 @@ from rvmon.native import memory_of, sources
 from rvmon.trace.schema import Kind
 from rvmon.version import __version__
 
-_CORES = "rv"
-"""The prefix of the core's own identifiers."""
+_CORES = "rv"  # the prefix of the core's own identifiers
 _PLAIN = frozenset(range(0x20, 0x7F)) - frozenset(map(ord, '"?\\'))
 """The bytes that mean themselves within a string; a `?` may begin a trigraph."""
 
@@ -82,10 +81,8 @@ def comment(text: str) -> str:
     return text
 
 
-CORE = "rvmon_core"
-"""The name of the core's files."""
-ALIGNMENT = 16
-"""The most that is lost where a block begins."""
+CORE = "rvmon_core"  # the name of the core's files
+ALIGNMENT = 16  # the most that is lost where a block begins
 FEWEST, MOST = 4, 64
 """For so many open attempts it is measured what memory they take."""
 

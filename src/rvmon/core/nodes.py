@@ -36,8 +36,7 @@ from rvmon.logic.state_formula import (
 )
 from rvmon.logic.state_graph import begun_by, lasting
 
-NEVER = (1 << 63) - 1
-"""No instant, or no bound."""
+NEVER = (1 << 63) - 1  # no instant, or no bound
 
 
 class NodeOp(IntEnum):
@@ -62,11 +61,8 @@ class NodeOp(IntEnum):
     COMPARED = auto()
 
 
-SEEN = (NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EVER)
-"""The nodes that remember a truth value."""
-
-STRETCHED = (NodeOp.STRETCH, NodeOp.WINDOW)
-"""The nodes that remember stretches of time."""
+SEEN = (NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EVER)  # the nodes that remember a truth value
+STRETCHED = (NodeOp.STRETCH, NodeOp.WINDOW)  # the nodes that remember stretches of time
 
 TIMED = (
     *(NodeOp.ELAPSED, NodeOp.PREVIOUS, NodeOp.DOUBT, NodeOp.EDGE),
@@ -89,34 +85,24 @@ _PLAIN = {
 
 
 class Node(Struct):
-    """A state formula; see `node_plan` in plan.h.
+    """A state formula; see `node_plan` in plan.h."""
 
-    Attributes:
-        op: its kind.
-        operands: indices of nodes; for leaves and births, 2 × signal, plus 1 if an update after the
-            first value is required.
-        slot: index of its memory among nodes of the same sort of memory; −1 if it has none.
-        timer: index of its timer; −1 if time alone cannot change it.
-        tally: of a window that adds numbers, the index of its exact sum; −1 of any other window.
-        most: of a window over the last n updates, n; 0 for any number.
-        chosen: of a window, the first operand that is evaluated per occurrence.
-        since: of a window, the index of the captured instant at which it begins; −1 if none.
-        reads: the atoms whose numbers, not only truth values, it reads.
-    """
-
-    op: NodeOp
+    op: NodeOp  # its kind
     a: int = 0
     b: int = 0
     low: int = 0
     high: int = 0
+    # indices of nodes; for leaves and births, 2 × signal, plus 1 if an update after the first value
+    # is required
     operands: Sequence[int] = ()
-    slot: int = -1
-    timer: int = -1
+    slot: int = -1  # index of its memory among nodes of the same sort of memory; −1 if it has none
+    timer: int = -1  # index of its timer; −1 if time alone cannot change it
+    # of a window that adds numbers, the index of its exact sum; −1 of any other window
     tally: int = 0
-    most: int = 0
-    chosen: int = 0
-    since: int = -1
-    reads: tuple[int, ...] = ()
+    most: int = 0  # of a window over the last n updates, n; 0 for any number
+    chosen: int = 0  # of a window, the first operand that is evaluated per occurrence
+    since: int = -1  # of a window, the index of the captured instant at which it begins; −1 if none
+    reads: tuple[int, ...] = ()  # the atoms whose numbers, not only truth values, it reads
 
 
 class Nodes:

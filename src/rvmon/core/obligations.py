@@ -39,8 +39,7 @@ _FARTHEST = (1 << 62) - 2
 
 _NEVER = (1 << 63) - 1
 
-_PAST = -1
-"""The deadline field of a window of the past."""
+_PAST = -1  # the deadline field of a window of the past
 
 _WORSE, _BETTER = 1, 2
 

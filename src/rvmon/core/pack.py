@@ -23,11 +23,8 @@ from rvmon.logic.state_graph import keys_of
 _IGNORES_NAN, _MARKS, _HISTORY, _CAPTURED = 1, 2, 4, 8
 _EVENT_MARKS, _EVENT_FIELDS, _EVENT_KEY = 1, 2, 4
 
-_WATCH = 8
-"""The kind of a link that notifies a watch, not a judge."""
-
-_ITEMS_MOST = 1 << 22
-"""The most bins and combinations that one part may count."""
+_WATCH = 8  # the kind of a link that notifies a watch, not a judge
+_ITEMS_MOST = 1 << 22  # the most bins and combinations that one part may count
 
 _UNUSED = Uses()
 

@@ -18,25 +18,16 @@ from rvmon.trace.schema import Kind
 
 
 class Packed(Struct, frozen=True):
-    """A plan as bytes, with the names that its numbers stand for.
+    """A plan as bytes, with the names that its numbers stand for."""
 
-    Attributes:
-        data: the bytes.
-        signals: kind of value by name, in the order of their numbers.
-        events: names, numbered after the signals.
-        fields: kind of value by (event, field), in the order of their numbers.
-        labels: by label, its number in the core.
-        ids: the ids of the requirements, by number.
-        numbers: by id, the number of the requirement.
-    """
-
-    data: bytes
-    signals: Mapping[str, Kind]
-    events: tuple[str, ...]
+    data: bytes  # the bytes
+    signals: Mapping[str, Kind]  # kind of value by name, in the order of their numbers
+    events: tuple[str, ...]  # names, numbered after the signals
+    # kind of value by (event, field), in the order of their numbers
     fields: Mapping[tuple[str, str], Kind]
-    labels: Mapping[str, int]
-    ids: tuple[str, ...]
-    numbers: Mapping[str, int]
+    labels: Mapping[str, int]  # by label, its number in the core
+    ids: tuple[str, ...]  # the ids of the requirements, by number
+    numbers: Mapping[str, int]  # by id, the number of the requirement
 
 
 def packed(spec: CheckedSpec, ids: tuple[str, ...], data: bytes) -> Packed:
@@ -75,12 +66,10 @@ def numbered(names: Sequence[str]) -> dict[str, int]:
 
 
 MAGIC = b"rvmonpl1"
-ORDER = 0x01020304
-"""A byte order mark: a reader of the other byte order sees another number."""
+ORDER = 0x01020304  # a byte order mark: a reader of the other byte order sees another number
 
 HEADER = struct.Struct("=8sIiqQq6i")
-_ENTRY = struct.Struct("=2q")
-"""The byte offset of a section, and its number of records."""
+_ENTRY = struct.Struct("=2q")  # the byte offset of a section, and its number of records
 
 
 class Section(IntEnum):

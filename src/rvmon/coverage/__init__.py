@@ -252,41 +252,27 @@ class Ending(StrEnum):
 
 
 class TestRecord(Struct, frozen=True):
-    """A test of a campaign with its result, without its hits.
-
-    Attributes:
-        name: its display name; need not be unique.
-        campaign: the name of its campaign.
-        strategy: the strategy that generated it; "" for none, as of a recording from the field.
-        recording: path of the recording; "" if it was not kept.
-        seed: the seed to replay it with.
-        system: the system under test, such as a robot and its version.
-        verdicts: by requirement.
-        ending: of the test.
-        error: the error, if it did not complete.
-        number: its position in the campaign; equal ones are ordered by `when`.
-        seconds: its duration in seconds.
-        when: the instant of recording, ns since 1970 UTC; `None`: when it is written.
-        expected: the requirements known to fail, each with the reason.
-        origin: the first instant of its run, ticks, which is shown as 0 s.
-    """
+    """A test of a campaign with its result, without its hits."""
 
     __test__: ClassVar[bool] = False  # keeps pytest from collecting it by its name
 
-    name: str
-    campaign: str = ""
+    name: str  # its display name; need not be unique
+    campaign: str = ""  # the name of its campaign
+    # the strategy that generated it; "" for none, as of a recording from the field
     strategy: str = ""
-    recording: str = ""
-    seed: int | None = None
-    system: str = ""
-    verdicts: Mapping[str, Verdict] = field(default_factory=dict)
-    ending: Ending = Ending.COMPLETED
-    error: str = ""
-    number: int = 0
-    seconds: float = 0.0
+    recording: str = ""  # path of the recording; "" if it was not kept
+    seed: int | None = None  # the seed to replay it with
+    system: str = ""  # the system under test, such as a robot and its version
+    verdicts: Mapping[str, Verdict] = field(default_factory=dict)  # by requirement
+    ending: Ending = Ending.COMPLETED  # of the test
+    error: str = ""  # the error, if it did not complete
+    number: int = 0  # its position in the campaign; equal ones are ordered by `when`
+    seconds: float = 0.0  # its duration in seconds
+    # the instant of recording, ns since 1970 UTC; `None`: when it is written
     when: int | None = None
+    # the requirements known to fail, each with the reason
     expected: Mapping[str, str] = field(default_factory=dict)
-    origin: int = 0
+    origin: int = 0  # the first instant of its run, ticks, which is shown as 0 s
 
     @property
     def failed(self) -> tuple[str, ...]:
@@ -311,8 +297,7 @@ class Row(Struct, frozen=True, eq=False):
     firsts: NDArray[np.int64]  # int64[n], instants of the first hits in ticks, or `UNKNOWN`
 
 
-UNKNOWN = -(1 << 63)
-"""Stands for an unknown instant; earlier than all instants."""
+UNKNOWN = -(1 << 63)  # stands for an unknown instant; earlier than all instants
 
 
 class Entry(Struct, frozen=True):

@@ -67,8 +67,7 @@ class Comparison(Struct, frozen=True):
     verdicts: Sequence[VerdictChange]  # the changed verdicts
 
 
-_MOST = 1 << 62
-"""The bound at which sums of hits saturate."""
+_MOST = 1 << 62  # the bound at which sums of hits saturate
 
 
 class Answers:

@@ -11,11 +11,8 @@ from pathlib import Path
 
 from rvmon.errors import CoverageError
 
-APPLICATION = 0x72766376
-"""The `application_id` in the header of the file: "rvcv"."""
-
-VERSION = 4
-"""The version of the tables; raised with each change of them."""
+APPLICATION = 0x72766376  # the `application_id` in the header of the file: "rvcv"
+VERSION = 4  # the version of the tables; raised with each change of them
 
 TABLES = (
     "CREATE TABLE groups (id INTEGER PRIMARY KEY, name TEXT NOT NULL UNIQUE, "
@@ -37,11 +34,8 @@ TABLES = (
 )
 """The exact schema; a file with more is refused, as foreign views or triggers would run our SQL."""
 
-PATIENCE_S = 60.0
-"""Seconds that a process waits for others that write."""
-
-_LONGEST = 100_000_000
-"""The most bytes of a text, or of the hits of one test, that are accepted."""
+PATIENCE_S = 60.0  # seconds that a process waits for others that write
+_LONGEST = 100_000_000  # the most bytes of a text, or of the hits of one test, that are accepted
 
 
 def connect(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
@@ -124,8 +118,7 @@ def damaged(path: str | Path | None, what: str) -> CoverageError:
     return CoverageError(f"error: {name_of(path)} is damaged: {what}: {_ANEW}")
 
 
-_ANEW = "restore a copy of it, or delete it and record again"
-"""The advice for a damaged file."""
+_ANEW = "restore a copy of it, or delete it and record again"  # the advice for a damaged file
 
 _WORDS = {
     sqlite3.SQLITE_NOTADB: "this is no database: give one that `rvmon run --coverage` wrote",

@@ -11,8 +11,7 @@ from msgspec import Struct
 from rvmon.coverage import PAIRS, STATES, TRANSITIONS, Group, Hits, Model, Subject, count_of
 from rvmon.coverage.requirements import AT, JUST_BEFORE, PASSED, TRIGGERED, locations_of
 
-Goal = tuple[str, str]
-"""An item of the model, by its group and name."""
+Goal = tuple[str, str]  # an item of the model, by its group and name
 
 _ARROW = " → "
 _PART = re.compile(r"(?:^| × )(?:`([^`]*)`|([^`×]*?))(?= × |$)")

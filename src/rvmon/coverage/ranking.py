@@ -13,11 +13,8 @@ from numpy.typing import NDArray
 from rvmon.coverage import Coverage
 from rvmon.coverage.analysis import Answers, Step
 
-MOST_NODES = 20_000
-"""The most nodes of the search tree, about a second's worth."""
-
-MOST_COMPARED = 500
-"""The most tests for which all pairs are compared for dominance."""
+MOST_NODES = 20_000  # the most nodes of the search tree, about a second's worth
+MOST_COMPARED = 500  # the most tests for which all pairs are compared for dominance
 
 
 class Smallest(Struct, frozen=True):
@@ -192,8 +189,7 @@ def _without(needed: Mapping[int, int], row: Mapping[int, int]) -> dict[int, int
     return {item: left for item, count in needed.items() if (left := count - row.get(item, 0)) > 0}
 
 
-MOST_TESTS = 1000
-"""The most tests for which a smallest set is searched."""
+MOST_TESTS = 1000  # the most tests for which a smallest set is searched
 
 
 def fewest(answers: Answers) -> Smallest:

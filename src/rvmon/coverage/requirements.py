@@ -95,20 +95,14 @@ def goal_verdicts(report: Report) -> Mapping[str, Verdict]:
     return verdicts
 
 
-SHOWN = "shown"
-"""The only item of a cover goal."""
+SHOWN = "shown"  # the only item of a cover goal
 
 TRIGGERED, PASSED = "triggered", "passed"
 JUST_BEFORE, AT, AFTER = "just before the deadline", "at the deadline", "after the deadline"
 
-FAILURE = "F"
-"""The location of an automaton in which an attempt has failed."""
-
-TENTH = 10
-"""A response within 1/TENTH of the time before its deadline counts as just before it."""
-
-MOST_LOCATIONS = 50
-"""The size of the largest automata that become coverage groups."""
+FAILURE = "F"  # the location of an automaton in which an attempt has failed
+TENTH = 10  # a response within 1/TENTH of the time before its deadline counts as just before it
+MOST_LOCATIONS = 50  # the size of the largest automata that become coverage groups
 
 
 def _item(name: str, text: str = "", *, by_failure: bool = False) -> Item:

@@ -40,8 +40,7 @@ class StoredGroup(Struct, frozen=True):
     items: Mapping[str, StoredItem]
 
 
-Stored = Mapping[str, StoredGroup]
-"""The groups by name, unordered."""
+Stored = Mapping[str, StoredGroup]  # the groups by name, unordered
 
 
 def stored_of(model: Model) -> Stored:

@@ -20,8 +20,7 @@ from rvmon.coverage.database_file import damaged
 from rvmon.errors import CoverageError
 from rvmon.verdicts import Verdict
 
-_BYTES = 20
-"""Bytes per item hit: four for its id, eight for the count, eight for the first instant."""
+_BYTES = 20  # bytes per item hit: four for its id, eight for the count, eight for the first instant
 
 _COLUMNS = (
     "digest, campaign, name, strategy, recording, seed, system, verdicts, ending, error, "

@@ -100,8 +100,7 @@ def checksum(*inputs: object) -> str:
     return hashlib.sha256(json.dumps([*inputs, own, sys.version]).encode()).hexdigest()
 
 
-_WIDTH = 9
-"""Characters of a line before its entry."""
+_WIDTH = 9  # characters of a line before its entry
 
 
 def _line(entry: bytes) -> bytes:

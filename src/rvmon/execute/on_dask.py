@@ -24,17 +24,10 @@ from rvmon.execute import Ended, Work
 from rvmon.execute.journal import checksum
 from rvmon.execute.worker import answer, packed_error
 
-CONNECT_S = 10
-"""Seconds in which a scheduler has to answer."""
-
-NO_WORKERS_S = 60.0
-"""Seconds for which one waits for a worker where there is none."""
-
-LEFT_S = 5.0
-"""Seconds after its time in which a worker ends by itself that was not begun anew."""
-
-_POLL_S = 0.5
-"""Seconds after which one looks again for what takes too long."""
+CONNECT_S = 10  # seconds in which a scheduler has to answer
+NO_WORKERS_S = 60.0  # seconds for which one waits for a worker where there is none
+LEFT_S = 5.0  # seconds after its time in which a worker ends by itself that was not begun anew
+_POLL_S = 0.5  # seconds after which one looks again for what takes too long
 
 
 def execute_on_dask(work: Work, address: str) -> Iterator[Any]:
@@ -185,8 +178,7 @@ class _Pool:
         self._done[number] = (False, pickle.dumps(result))
 
 
-program = cache(checksum)
-"""A checksum of the program: only results of equal programs can be mixed."""
+program = cache(checksum)  # a checksum of the program: only results of equal programs can be mixed
 
 _ONE_AT_A_TIME = threading.Lock()
 _WORK: dict[str, Callable[[Any], Any]] = {}

@@ -28,11 +28,8 @@ if TYPE_CHECKING:
 _Task = TypeVar("_Task")
 _Result = TypeVar("_Result")
 
-MOST_TASKS = 256
-"""Tasks that a worker is given at a time, at most."""
-
-BEGIN_S = 60.0
-"""Seconds that a worker may take to begin, beside those for a task."""
+MOST_TASKS = 256  # tasks that a worker is given at a time, at most
+BEGIN_S = 60.0  # seconds that a worker may take to begin, beside those for a task
 
 
 def execute(

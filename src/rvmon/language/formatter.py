@@ -256,8 +256,7 @@ def _canonical(kind: str, text: str) -> str:
     return words
 
 
-WIDTH = 100
-"""Longer lines are broken where operators or commas allow it."""
+WIDTH = 100  # longer lines are broken where operators or commas allow it
 
 _OPERATORS = ("LEADS_TO", "IFF", "IMPLIES", "OR", "XOR", "AND", "INFIX")
 """The operators at which long formulas are broken, the loosest first."""

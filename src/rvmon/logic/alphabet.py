@@ -138,8 +138,7 @@ class LetterDiagram(Struct, frozen=True, eq=False):
         return LetterDiagram(rename(self.root))
 
 
-LetterClasses: TypeAlias = "array[int] | LetterDiagram"
-"""The class of each letter."""
+LetterClasses: TypeAlias = "array[int] | LetterDiagram"  # the class of each letter
 
 
 def joined(stride: int, children: tuple[Tree, ...]) -> Tree:
@@ -148,11 +147,8 @@ def joined(stride: int, children: tuple[Tree, ...]) -> Tree:
     return first if all(child == first for child in children[1:]) else (stride, children)
 
 
-Edge = tuple[int, tuple[int, ...]]
-"""Target location and the sources of its clocks."""
-
-MOST_TABLED = 1 << 16
-"""Letters of which the classes stand in a table; of more, in a diagram."""
+Edge = tuple[int, tuple[int, ...]]  # target location and the sources of its clocks
+MOST_TABLED = 1 << 16  # letters of which the classes stand in a table; of more, in a diagram
 
 
 class Node(Struct, frozen=True, eq=False):

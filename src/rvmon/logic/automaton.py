@@ -19,8 +19,7 @@ from rvmon.logic.residual import NO_CLOCK, Residual
 FAILED, PASSED = 0, 1
 """The locations in which an attempt is decided: the first two of every automaton."""
 
-NOW = -1
-"""The source of a clock that is started at the position of the step."""
+NOW = -1  # the source of a clock that is started at the position of the step
 
 Token = tuple[int, tuple[int, ...]]
 """The state of an attempt: its location, and the start instant (ticks) of each of its clocks."""

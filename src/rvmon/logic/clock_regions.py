@@ -9,8 +9,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Sequence
 
-NEVER = 1 << 62
-"""No bound."""
+NEVER = 1 << 62  # no bound
 
 _NARROW = 8  # regions with fewer ages keep exact ages; in wider ones only differences are kept
 
@@ -18,8 +17,7 @@ Ages = tuple[tuple[int, ...], ...]
 """A closed difference bound matrix: entry (i, j) is the most by which clock i is older than j.
 Clock 0 is the reference clock of age 0; the real clocks are numbered from 1."""
 
-Cuts = Sequence[Sequence[int]]
-"""Per clock, the ages, ascending, at which it enters its next region."""
+Cuts = Sequence[Sequence[int]]  # per clock, the ages, ascending, at which it enters its next region
 
 
 def point_zone(ages: Sequence[int]) -> Ages:

@@ -38,8 +38,7 @@ from rvmon.logic.progress import Duals, step
 from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Clause, Residual, TooManyClausesError
 from rvmon.logic.state_formula import Elapsed, State
 
-MOST_CLAUSES = 60
-"""The most clauses of a residual, and of its negation."""
+MOST_CLAUSES = 60  # the most clauses of a residual, and of its negation
 
 _MOST_KNOWN = 10_000  # the cache is emptied when it exceeds this many answers
 
@@ -119,8 +118,7 @@ _MOST_APART = 100  # the same when differences of clocks are kept, which disting
 _FEW_ATOMS = 8
 """A step of a clause with `n` times this many atoms counts `n`² more: progression is quadratic."""
 
-MOST_OF_A_STEP = 100
-"""The most clauses of one step of a clause."""
+MOST_OF_A_STEP = 100  # the most clauses of one step of a clause
 
 
 class TooLargeError(Exception):

@@ -10,8 +10,7 @@ from functools import lru_cache
 
 from rvmon.logic.formula import Core, Literal, Next, Release, Until
 
-NO_CLOCK = -1
-"""The clock of an atom that does not depend on when it was instantiated."""
+NO_CLOCK = -1  # the clock of an atom that does not depend on when it was instantiated
 
 Atom = tuple[Literal | Next | Until | Release, int]
 """A subformula and the clock of its age; clocks are numbered from 0, oldest first.

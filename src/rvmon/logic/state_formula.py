@@ -108,8 +108,7 @@ class StateOp(Enum):
     PASSED = "passed"
     COMPARED = "compared"
     """A comparison between windows; operands: `known` of the other sides, then the windows."""
-    SURE = "sure"
-    """Two-valued: the operand is TRUE."""
+    SURE = "sure"  # two-valued: the operand is TRUE
     DOUBT = "doubt"
     """Whether a trigger may have been hidden: UNKNOWN where it is uncertain whether an attempt
     starts, TRUE at the other positions of that stretch from its first such one, else FALSE."""

@@ -31,54 +31,36 @@ from rvmon.models.search.search_plan import Seek, Sought
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import TICKS_PER_UNIT
 
-RESOLUTION = TICKS_PER_UNIT["ms"]
-"""Instants of recordings are rounded to this, outwards."""
+RESOLUTION = TICKS_PER_UNIT["ms"]  # instants of recordings are rounded to this, outwards
 
 
 @dataclass(frozen=True, slots=True)
 class Allowed:
-    """An action that the network would have allowed instead.
+    """An action that the network would have allowed instead."""
 
-    Attributes:
-        label: of an action; empty: nothing more until the end of the recording.
-        earliest: ticks since the start.
-        latest: ticks; `None` if it has no end.
-    """
-
-    label: str
-    earliest: int
-    latest: int | None
+    label: str  # of an action; empty: nothing more until the end of the recording
+    earliest: int  # ticks since the start
+    latest: int | None  # ticks; `None` if it has no end
 
 
 @dataclass(frozen=True, slots=True)
 class Divergence:
-    """The point at which a recording stops being a run of the network.
+    """The point at which a recording stops being a run of the network."""
 
-    Attributes:
-        at: ticks since the start.
-        label: the action that no run can do then; empty: the recording ends, but every run would
-            have done something before.
-        allowed: the actions possible after those before.
-    """
-
-    at: int
+    at: int  # ticks since the start
+    # the action that no run can do then; empty: the recording ends, but every run would have done
+    # something before
     label: str
-    allowed: tuple[Allowed, ...]
+    allowed: tuple[Allowed, ...]  # the actions possible after those before
 
 
 @dataclass(frozen=True, slots=True)
 class Conformance:
-    """The answer for one recording.
+    """The answer for one recording."""
 
-    Attributes:
-        explained: actions that some run of the network does at these instants.
-        divergence: the first that none does; `None` if the recording conforms.
-        undecided: the budget that ended the search; empty if it was done.
-    """
-
-    explained: int
-    divergence: Divergence | None
-    undecided: str = ""
+    explained: int  # actions that some run of the network does at these instants
+    divergence: Divergence | None  # the first that none does; `None` if the recording conforms
+    undecided: str = ""  # the budget that ended the search; empty if it was done
 
     @property
     def conforms(self) -> bool | None:

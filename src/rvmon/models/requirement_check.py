@@ -37,30 +37,20 @@ UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such a
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """A requirement on all runs of a network.
+    """A requirement on all runs of a network."""
 
-    Attributes:
-        requirement: its id.
-        text: the requirement in words.
-        holds: whether no attempt of any run fails; `None` if the budget ended first, or if the
-            network cannot express it.
-        triggered: a run with an attempt; `None`: there is none, so that the claim is vacuous.
-        passing: a run with an attempt that passes.
-        failing: a run with an attempt that fails.
-        network: in whose unit the runs are.
-        statistics: its cost.
-        remark: the reason why it is not decided, or what the answer does not cover.
-    """
-
-    requirement: str
-    text: str
+    requirement: str  # its id
+    text: str  # the requirement in words
+    # whether no attempt of any run fails; `None` if the budget ended first, or if the network
+    # cannot express it
     holds: bool | None
+    # a run with an attempt; `None`: there is none, so that the claim is vacuous
     triggered: Run | None
-    passing: Run | None
-    failing: Run | None
-    network: Network
-    statistics: Statistics
-    remark: str = ""
+    passing: Run | None  # a run with an attempt that passes
+    failing: Run | None  # a run with an attempt that fails
+    network: Network  # in whose unit the runs are
+    statistics: Statistics  # its cost
+    remark: str = ""  # the reason why it is not decided, or what the answer does not cover
 
 
 def observe(

@@ -103,8 +103,7 @@ class Labelling:
         return self._signals[name]
 
 
-MOST_CONDITIONS = 14
-"""Conditions that a requirement may read."""
+MOST_CONDITIONS = 14  # conditions that a requirement may read
 
 
 class _Cut(NamedTuple):
@@ -120,8 +119,7 @@ _Tree = int | tuple[int, "_Tree", "_Tree"]
 Edge = tuple[int, tuple[int, ...]]
 """The target location of the monitor, and for each of its clocks the source."""
 
-Region = tuple[int, ...]
-"""For each clock the number of bounds that its age has passed."""
+Region = tuple[int, ...]  # for each clock the number of bounds that its age has passed
 
 Ages = Mapping[int, tuple[int, float]]
 """By clock, its least age, and a bound that it has not reached."""

@@ -125,14 +125,9 @@ class CauseFinder:
 class Base(Enum):
     """The reference point of an instant or duration in a sentence."""
 
-    DECISION = 0
-    """The instant of the decision."""
-
-    START = 1
-    """The instant at which the deciding obligation was instantiated."""
-
-    AGE = 2
-    """A duration: the time from `START` to `DECISION`."""
+    DECISION = 0  # the instant of the decision
+    START = 1  # the instant at which the deciding obligation was instantiated
+    AGE = 2  # a duration: the time from `START` to `DECISION`
 
 
 class Place(Struct, frozen=True):
@@ -210,13 +205,11 @@ class TruthValues(NamedTuple):
         return None if before == NEVER else before
 
 
-NEVER = -(1 << 63)
-"""Stands for an instant that there was not."""
+NEVER = -(1 << 63)  # stands for an instant that there was not
 
 Part = str | Place | Turned | AfterTrigger | LastWith
 
-Sentence = tuple[Part, ...]
-"""A sentence template: text and placeholders in order."""
+Sentence = tuple[Part, ...]  # a sentence template: text and placeholders in order
 
 
 def rendered(

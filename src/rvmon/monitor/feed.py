@@ -148,8 +148,7 @@ class Feed:
         self.losses.restore_state(state["losses"])
 
 
-T = TypeVar("T")
-"""The results of a call: decided attempts, or final robustness figures."""
+T = TypeVar("T")  # the results of a call: decided attempts, or final robustness figures
 
 
 class FedMonitor(ABC, Generic[T]):
@@ -157,21 +156,19 @@ class FedMonitor(ABC, Generic[T]):
 
     Times are seconds in `step`, `advance` and so on, integer ticks of a nanosecond in the methods
     that end in `_ns`.
-
-    Attributes:
-        step: a function that takes one sample: its time in seconds, and values by name; otherwise
-            as `step_ns`.
-        step_ns: the same at ticks, later than all samples before; it returns what the sample
-            decided; more than 4,096 attempts come as a sequence that makes each on access. The
-            values are the updates and occurrences: of a signal its value, `None` or NaN if it
-            became unknown; of an event `True`, or its payload. As in recordings, 0 and 1 are truth
-            values where these are declared, and 3.0 a whole number. It raises `TimeOrderError` if
-            the time is not later or was excluded by `advance`; `TraceError` for a name or value
-            unknown to the specification, or a time that is no whole number; `OverlapError` if
-            another call is in progress. In all cases the monitor is unchanged.
     """
 
+    # a function that takes one sample: its time in seconds, and values by name; otherwise as
+    # `step_ns`
     step: Callable[[float, Mapping[str, Any]], Sequence[T]]
+    # the same at ticks, later than all samples before; it returns what the sample decided; more
+    # than 4,096 attempts come as a sequence that makes each on access. The values are the updates
+    # and occurrences: of a signal its value, `None` or NaN if it became unknown; of an event
+    # `True`, or its payload. As in recordings, 0 and 1 are truth values where these are declared,
+    # and 3.0 a whole number. It raises `TimeOrderError` if the time is not later or was excluded by
+    # `advance`; `TraceError` for a name or value unknown to the specification, or a time that is no
+    # whole number; `OverlapError` if another call is in progress. In all cases the monitor is
+    # unchanged
     step_ns: Callable[[int, Mapping[str, Any]], Sequence[T]]
     _feed: Feed
 

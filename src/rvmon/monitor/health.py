@@ -166,8 +166,7 @@ def health_of_run(
     return log.entries(planned, run, absent, first, further)
 
 
-ANY = "samples"
-"""The name of an entry where the lost names are not known."""
+ANY = "samples"  # the name of an entry where the lost names are not known
 
 _UNREAD = ""
 """Stands for all names that no requirement reads: in sampled time, losing one loses a position."""

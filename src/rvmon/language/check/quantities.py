@@ -19,8 +19,7 @@ from rvmon.language.rules import types as rules
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
 from rvmon.units import PLAIN, Unit, base_unit, parse_unit, product, quotient, root
 
-Placed = tuple[Quantity, Span]
-"""A quantity with the place of its expression."""
+Placed = tuple[Quantity, Span]  # a quantity with the place of its expression
 
 _RADIAN = parse_unit("rad")
 _OF_ANGLES = {UnitRule.OF_ANGLE: PLAIN, UnitRule.PLACES: parse_unit("m")}
@@ -222,8 +221,7 @@ def _node(value: Quantity, unit: Unit, whole: bool, place: Span) -> rv.Numeric:
         raise Refusal(rules.out_of_range(place)) from None
 
 
-MOST_OUTCOMES = 64
-"""Between so many numbers an expression may choose."""
+MOST_OUTCOMES = 64  # between so many numbers an expression may choose
 
 
 def spread(values: Sequence[Value], span: Span, make: Callable[[Sequence[Value]], Value]) -> Value:

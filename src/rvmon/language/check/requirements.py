@@ -38,8 +38,7 @@ from rvmon.units import PLAIN
 
 _C = TypeVar("_C", bound=items.Clause)
 
-Parts = tuple[spec.Mode, rv.Formula, rv.Formula]
-"""Mode, trigger and consequent."""
+Parts = tuple[spec.Mode, rv.Formula, rv.Formula]  # mode, trigger and consequent
 
 
 def checked_requirement(checker: Checker, item: items.RequirementItem) -> spec.Requirement:

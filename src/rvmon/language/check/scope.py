@@ -122,8 +122,7 @@ class Scope(Struct, frozen=True):
         return Scope(names, self.trigger, self.at_once)
 
 
-EVERYWHERE = Scope()
-"""Only the names of the file."""
+EVERYWHERE = Scope()  # only the names of the file
 
 Declaration = Signal | Event | DefineItem | ConstItem
 

@@ -29,8 +29,7 @@ from rvmon.units import PLAIN, Unit, parse_unit, product
 TRIGGER = "trigger"
 """The word after `since` in a window that begins at the trigger: `x since trigger`."""
 _SECONDS = parse_unit("s")
-MOST_LAST = 1_000_000
-"""The most updates that a window may hold."""
+MOST_LAST = 1_000_000  # the most updates that a window may hold
 
 
 class _Window(Struct, frozen=True):

@@ -17,8 +17,7 @@ EARTH = 6_371_008.8
 
 Source: Moritz, Geodetic Reference System 1980, Journal of Geodesy 74, 2000.
 """
-MOST_SHIFT = 63
-"""By so many bits a whole number can be shifted."""
+MOST_SHIFT = 63  # by so many bits a whole number can be shifted
 
 
 def nearest_whole(x: float) -> float:

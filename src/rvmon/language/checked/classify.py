@@ -104,8 +104,7 @@ def is_pulse(formula: rv.Formula) -> bool:
     return _pulses(formula)[0]
 
 
-Pulses = tuple[bool, bool]
-"""Whether a formula is a pulse, and whether its negation is."""
+Pulses = tuple[bool, bool]  # whether a formula is a pulse, and whether its negation is
 
 
 class _Pulsing(Connectives[Pulses]):
@@ -159,11 +158,8 @@ def mixed_disjunction(trigger: rv.Formula) -> tuple[rv.Formula, rv.Formula] | No
     return None
 
 
-Facts = Mapping[Hashable, bool]
-"""The known truth values of propositions at an instant."""
-
-FIRST: Facts = {rv.Bound.START: True}
-"""The facts of the first instant of a run."""
+Facts = Mapping[Hashable, bool]  # the known truth values of propositions at an instant
+FIRST: Facts = {rv.Bound.START: True}  # the facts of the first instant of a run
 
 
 def facts_of(formula: rv.Formula) -> dict[Hashable, bool]:

@@ -59,8 +59,7 @@ _OF_UPDATES = (
     Function("rate", UpdateFunction.RATE, (Argument.SIGNAL,), "that difference per second"),
 )
 
-LAST = "last"
-"""The function that only stands in windows: `last(n, x)`."""
+LAST = "last"  # the function that only stands in windows: `last(n, x)`
 _COUNTED = (Argument.FORMULA, Argument.DURATION)
 _ADDED = (Argument.NUMBER, Argument.DURATION)
 
@@ -100,5 +99,4 @@ def _all() -> Iterator[Function]:
             yield Function(operation.value, operation, numbers, entry.doc, many, int(many))
 
 
-FUNCTIONS = {function.name: function for function in _all()}
-"""All of them, by name."""
+FUNCTIONS = {function.name: function for function in _all()}  # all of them, by name

@@ -70,10 +70,8 @@ class Window(Enum):
 
     NONE = auto()
     ANY = auto()
-    FROM_NOW = auto()
-    """From 0 on: the usual definitions differ for others."""
-    LENGTH = auto()
-    """`[0, D]`, written as an argument D."""
+    FROM_NOW = auto()  # from 0 on: the usual definitions differ for others
+    LENGTH = auto()  # `[0, D]`, written as an argument D
 
 
 PREFIXED, CALLED = 6, 7
@@ -278,5 +276,4 @@ class BinaryOp(_Sign):
     )  # fmt: skip
 
 
-OPERATORS: tuple[UnaryOp | BinaryOp, ...] = (*UnaryOp, *BinaryOp)
-"""All of them."""
+OPERATORS: tuple[UnaryOp | BinaryOp, ...] = (*UnaryOp, *BinaryOp)  # all of them

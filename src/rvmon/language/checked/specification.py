@@ -33,23 +33,15 @@ class Type(Struct, frozen=True):
 
 
 class Signal(Struct, frozen=True):
-    """A declared signal.
+    """A declared signal."""
 
-    Attributes:
-        name: of the signal.
-        type: of its values.
-        role: the side that sets it.
-        stale_after: the ticks after its last update from which on it is unknown.
-        ignores_nan: whether NaN and null are no update of it, instead of an unknown value.
-        span: the place of its declaration.
-    """
-
-    name: str
-    type: Type
-    role: Role | None = None
-    stale_after: int | None = None
+    name: str  # of the signal
+    type: Type  # of its values
+    role: Role | None = None  # the side that sets it
+    stale_after: int | None = None  # the ticks after its last update from which on it is unknown
+    # whether NaN and null are no update of it, instead of an unknown value
     ignores_nan: bool = False
-    span: Span | None = None
+    span: Span | None = None  # the place of its declaration
 
 
 class Event(Struct, frozen=True):
@@ -94,15 +86,10 @@ class ForEach(Struct, frozen=True):
 
 
 class RunShare(Struct, frozen=True):
-    """`in at least 95 % of runs`: single runs are judged as always, campaigns decide by all.
+    """`in at least 95 % of runs`: single runs are judged as always, campaigns decide by all."""
 
-    Attributes:
-        at_least: whether the requirement is to hold in so many runs, or in so many at most.
-        percent: above 0, below 100.
-    """
-
-    at_least: bool
-    percent: float
+    at_least: bool  # whether the requirement is to hold in so many runs, or in so many at most
+    percent: float  # above 0, below 100
 
     def __str__(self) -> str:
         """As it is written."""
@@ -155,17 +142,7 @@ class TimeModel(StrEnum):
 
 
 class CheckedSpec(Struct, frozen=True):
-    """A whole specification, ready for lowering.
-
-    Attributes:
-        period: the D of `sampled every D`, ticks; `None` in the other time models.
-        max_delay: the watermark of `max delay D`, ticks.
-        source: the text it came from.
-        properties: the CTL properties, of requirements (under their id) and alone.
-        covers: the cover goals by id.
-        coverpoints: by name.
-        crosses: by name.
-    """
+    """A whole specification, ready for lowering."""
 
     name: str
     title: str
@@ -173,13 +150,14 @@ class CheckedSpec(Struct, frozen=True):
     signals: Mapping[str, Signal]
     events: Mapping[str, Event]
     requirements: Mapping[str, Requirement]
-    period: int | None = None
-    max_delay: int | None = None
-    source: Source | None = None
+    period: int | None = None  # the D of `sampled every D`, ticks; `None` in the other time models
+    max_delay: int | None = None  # the watermark of `max delay D`, ticks
+    source: Source | None = None  # the text it came from
+    # the CTL properties, of requirements (under their id) and alone
     properties: Mapping[str, Property] = field(default_factory=dict)
-    covers: Mapping[str, Cover] = field(default_factory=dict)
-    coverpoints: Mapping[str, Coverpoint] = field(default_factory=dict)
-    crosses: Mapping[str, Cross] = field(default_factory=dict)
+    covers: Mapping[str, Cover] = field(default_factory=dict)  # the cover goals by id
+    coverpoints: Mapping[str, Coverpoint] = field(default_factory=dict)  # by name
+    crosses: Mapping[str, Cross] = field(default_factory=dict)  # by name
 
     @property
     def gap(self) -> int | None:

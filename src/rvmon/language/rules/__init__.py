@@ -64,8 +64,7 @@ class Breach(Struct, frozen=True):
         return finding(self.rule, message, place, *labels, fix=fix)
 
 
-MOST = 100
-"""After so many errors nothing more is looked at; of warnings no more are kept."""
+MOST = 100  # after so many errors nothing more is looked at; of warnings no more are kept
 
 
 class Enough(Exception):  # noqa: N818 - never leaves this package

@@ -8,8 +8,7 @@ from rvmon.diagnostics import Diagnostic, Severity, Span
 from rvmon.language.rules import Breach, Rule, finding
 from rvmon.texts import did_you_mean
 
-DEEPEST = 20
-"""Longer chains of imports are refused."""
+DEEPEST = 20  # longer chains of imports are refused
 
 IMPORT = Rule("RV016", "import", Severity.ERROR)
 

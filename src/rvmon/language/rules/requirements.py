@@ -113,8 +113,7 @@ never_read = Breach(
 )
 """A declared name that nothing reads: `signal` or `event`, and the name."""
 
-MOST_COMBINATIONS = 10_000
-"""Crosses with more combinations are refused."""
+MOST_COMBINATIONS = 10_000  # crosses with more combinations are refused
 
 BIN = Rule("RV060", "bin", Severity.ERROR)
 CROSS = Rule("RV061", "cross", Severity.ERROR)

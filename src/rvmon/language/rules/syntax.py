@@ -97,11 +97,8 @@ def too_many(most: int, *, broken: bool) -> Diagnostic:
     return breach if broken else replace(breach, severity=Severity.WARNING)
 
 
-DEEPEST = 100
-"""Deeper nesting is refused."""
-
-LARGEST = 5_000
-"""Formulas with more operators are refused."""
+DEEPEST = 100  # deeper nesting is refused
+LARGEST = 5_000  # formulas with more operators are refused
 
 BUDGET = 20_000
 """A file may expand to this and `PER_CHARACTER` operators for each of its characters."""

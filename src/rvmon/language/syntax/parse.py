@@ -30,14 +30,12 @@ from rvmon.language.syntax.tree_builder import Builder
 from rvmon.texts import ImportTree, nearest, text_of_file, tree_of
 from rvmon.units import compound_pattern
 
-DEEPEST = 100
-"""Expressions nested more deeply are refused."""
+DEEPEST = 100  # expressions nested more deeply are refused
 
 MOST_ENCLOSED = 200
 """The same with brackets that only enclose, which are no levels but take as much to read."""
 
-KEPT = 4_000
-"""Trees of items that are kept for the next time that the same text is read."""
+KEPT = 4_000  # trees of items that are kept for the next time that the same text is read
 
 _NO_CODE = re.compile(r'"[^"\n]*"|`[^`\n]*`|#[^\n]*')
 _OPERATOR = re.compile(r"(?<![\w.])(?:and|or|xor|implies|iff)(?![\w.])|&&?|\|\|?|[+*]")

@@ -18,20 +18,14 @@ from rvmon.models.network import Channel, Clock
 from rvmon.models.network import scope as sc
 from rvmon.models.network.expressions import BaseType, Constant, Slot, Variable
 
-MAX_FINDINGS = 100
-"""Behind so many, nothing more is looked for."""
-
-MOST_SHOWN = 2
-"""Further places that are shown of a finding that stands at many."""
-
-MAX_CLOCKS = 4_999
-"""The most clocks of a network: a zone has the square of it in numbers."""
+MAX_FINDINGS = 100  # behind so many, nothing more is looked for
+MOST_SHOWN = 2  # further places that are shown of a finding that stands at many
+MAX_CLOCKS = 4_999  # the most clocks of a network: a zone has the square of it in numbers
 
 MAX_PARTS = 100_000
 """The most variables, and the most channels, of a network with all elements of its arrays."""
 
-WIDE = 1 << 16
-"""A variable with more values gets a warning; UPPAAL's `int` has so many."""
+WIDE = 1 << 16  # a variable with more values gets a warning; UPPAAL's `int` has so many
 
 Part = TypeVar("Part", Clock, Variable, Channel)
 Read = TypeVar("Read")

@@ -28,8 +28,7 @@ from rvmon.texts import did_you_mean
 MAX_EDGES = 100_000
 """The most edges that a network may have once templates and selections are unrolled."""
 
-MOST_RUNS = 10_000_000
-"""The most runs that a query may ask to simulate."""
+MOST_RUNS = 10_000_000  # the most runs that a query may ask to simulate
 
 
 def elaborate(document: Document, constants: Mapping[str, int] | None = None) -> nta.Network:

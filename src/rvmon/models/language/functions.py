@@ -15,8 +15,7 @@ from rvmon.models.network import expressions as ex
 from rvmon.models.network import scope as sc
 from rvmon.models.network.guards import parts_in
 
-MAX_LOCALS = 100_000
-"""The most parameters and local variables of all functions together."""
+MAX_LOCALS = 100_000  # the most parameters and local variables of all functions together
 
 _NOTHING = sc.ResolvedType(ex.BaseType.INT, 0, 0)
 """The result type of a function that returns nothing."""

@@ -152,8 +152,7 @@ def _argument(
     return symbol
 
 
-MAX_CASES = 16
-"""The most cases of a guard in which clocks stand under `or`: each is an edge."""
+MAX_CASES = 16  # the most cases of a guard in which clocks stand under `or`: each is an edge
 
 
 def location_names(template: automaton_syntax.Template, findings: Findings) -> dict[str, int]:

@@ -122,8 +122,7 @@ def whole_compare(
     return same if op is ex.BinaryOp.EQ else unary(ex.UnaryOp.NOT, same, span, calls)
 
 
-LINEAR_WORDS = "AEGFX"
-"""Path quantifiers and temporal operators, which look like calls."""
+LINEAR_WORDS = "AEGFX"  # path quantifiers and temporal operators, which look like calls
 
 _OF_CTL = {
     ("A", ex.PathOp.FINALLY): ex.PathOp.EVENTUALLY,

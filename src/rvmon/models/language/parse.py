@@ -23,8 +23,7 @@ STARTS = (
     *("updates", "instances", "system", "query"),
 )
 
-MAX_CHARACTERS = 2_000_000
-"""Longer texts are refused: no model for people is that long."""
+MAX_CHARACTERS = 2_000_000  # longer texts are refused: no model for people is that long
 
 
 def parse_document(source: Source) -> Document:
@@ -147,8 +146,7 @@ def _word(terminal: str) -> str:
 Place = Callable[[int, int], Span]
 """From the characters `[start, end)` of a text to their line and column in the file."""
 
-MOST = 20
-"""Behind so many, nothing more is looked for: the text is read again for each."""
+MOST = 20  # behind so many, nothing more is looked for: the text is read again for each
 
 LONGEST = 100_000
 """In a longer text only the first mistake is reported, as each further one needs another parse."""

@@ -19,8 +19,7 @@ from rvmon.models.network.fractions import FUNCTIONS, literal
 from rvmon.models.network.guards import is_fixed, refuse_changes
 from rvmon.texts import did_you_mean
 
-MAX_UNROLLED = 100_000
-"""The most conditions that the quantifiers of a model may stand for together."""
+MAX_UNROLLED = 100_000  # the most conditions that the quantifiers of a model may stand for together
 
 
 @dataclass(slots=True)

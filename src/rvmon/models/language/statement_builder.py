@@ -16,8 +16,7 @@ from rvmon.models.network.expressions import BinaryOp, PathOp, UnaryOp
 # ruff: noqa: ARG002, D102 - the methods are the grammar's rules, called with one signature
 
 
-Maker = Callable[[Sequence[Any], Span], Any]
-"""Makes what a rule reads, of its parts and its place."""
+Maker = Callable[[Sequence[Any], Span], Any]  # makes what a rule reads, of its parts and its place
 
 
 @v_args(meta=True)

@@ -18,14 +18,9 @@ from rvmon.texts import counted, did_you_mean
 MAX_VALUES = 10_000
 """The most values that a quantifier, a `select`, a parameter or an array may range over."""
 
-INT16 = (-32768, 32767)
-"""UPPAAL's `int` without a range."""
-
-INT32 = (-(1 << 31), (1 << 31) - 1)
-"""The range of a constant that is declared without one."""
-
-Extents = tuple[range, ...]
-"""The indices of each dimension of an array, the outermost first."""
+INT16 = (-32768, 32767)  # UPPAAL's `int` without a range
+INT32 = (-(1 << 31), (1 << 31) - 1)  # the range of a constant that is declared without one
+Extents = tuple[range, ...]  # the indices of each dimension of an array, the outermost first
 
 Value = sc.ConstantValue | None
 """An initial value: of an array or record one for each part, in order; `None` without one."""

@@ -20,8 +20,7 @@ from rvmon.models.language.syntax import TypeText
 from rvmon.models.network.expressions import BaseType, BinaryOp, LocationKind, UnaryOp
 from rvmon.trace.time import TICKS_PER_UNIT
 
-LARGEST = (1 << 31) - 1
-"""The largest number that a model may contain, as in UPPAAL."""
+LARGEST = (1 << 31) - 1  # the largest number that a model may contain, as in UPPAAL
 
 
 @v_args(meta=True)

@@ -7,8 +7,7 @@ import re
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
 
-Reason = tuple[str, str]
-"""An unsupported construct, and the way to do without it."""
+Reason = tuple[str, str]  # an unsupported construct, and the way to do without it
 
 _STATEMENTS: Reason = (
     "statements stand in functions only",

@@ -34,8 +34,7 @@ from rvmon.models.language.unsupported import without_comments
 from rvmon.models.network.expressions import LocationKind
 from rvmon.trace.time import TICKS_PER_UNIT
 
-MAX_DEPTH = 20
-"""A model's elements are nested no deeper than this."""
+MAX_DEPTH = 20  # a model's elements are nested no deeper than this
 
 
 @dataclass(slots=True)

@@ -81,11 +81,8 @@ def check_time(number: int, span: Span | None) -> int:
     return number
 
 
-Locations = Sequence[int]
-"""The location of each automaton."""
-
-Values = Sequence[int]
-"""The value of each variable."""
+Locations = Sequence[int]  # the location of each automaton
+Values = Sequence[int]  # the value of each variable
 
 Evaluator = Callable[[Locations, Values], int]
 

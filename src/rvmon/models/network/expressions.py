@@ -14,8 +14,7 @@ from math import prod
 
 from rvmon.diagnostics import Span
 
-MAX_TIME = (1 << 31) - 1
-"""Numbers of units of time must be smaller."""
+MAX_TIME = (1 << 31) - 1  # numbers of units of time must be smaller
 
 
 class UnaryOp(StrEnum):
@@ -61,16 +60,13 @@ class PathOp(StrEnum):
     POTENTIALLY_ALWAYS = "E[]"
     SOME_NEXT = "EX"
     EVERY_NEXT = "AX"
-    FINALLY = "F"
-    """On one run: the body in the end, and `left` until then."""
-    GLOBALLY = "G"
-    """Its dual on one run: not `left` until the body is false."""
+    FINALLY = "F"  # on one run: the body in the end, and `left` until then
+    GLOBALLY = "G"  # its dual on one run: not `left` until the body is false
     EVERY_RUN = "A"
     SOME_RUN = "E"
 
 
-OUTERMOST = tuple(PathOp)[:4]
-"""Those that UPPAAL has."""
+OUTERMOST = tuple(PathOp)[:4]  # those that UPPAAL has
 
 
 class BaseType(StrEnum):
@@ -310,8 +306,7 @@ class Missing:
 
 Statement = Assignment | Reset | Perform | If | While | Return | Missing
 
-MOST_ROUNDS = 1_000_000
-"""Rounds that the loops of one computation may go together."""
+MOST_ROUNDS = 1_000_000  # rounds that the loops of one computation may go together
 
 
 @dataclass(frozen=True, slots=True)

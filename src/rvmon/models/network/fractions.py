@@ -13,8 +13,7 @@ from rvmon.diagnostics import Span
 from rvmon.models import model_error
 from rvmon.models.network.expressions import Constant, Expression, Fractional
 
-GRID = 1_000
-"""Steps of simulated time in one unit: all times are whole numbers of them."""
+GRID = 1_000  # steps of simulated time in one unit: all times are whole numbers of them
 
 OPERATIONS: dict[str, Callable[..., float]] = {
     "=": lambda a: a, "<": lambda a, b: a < b, "<=": lambda a, b: a <= b, "==": lambda a, b: a == b,
@@ -29,8 +28,7 @@ OPERATIONS: dict[str, Callable[..., float]] = {
 """By sign or name: `=` is the number itself, `grid` are steps of the grid, `double` that of an
 integer."""
 
-WHOLE = {"<", "<=", "==", "!=", ">=", ">", "grid", "fint"}
-"""The operations with an integer result."""
+WHOLE = {"<", "<=", "==", "!=", ">=", ">", "grid", "fint"}  # the operations with an integer result
 
 FUNCTIONS = {name: 1 + (name in ("fmod", "pow", "hypot")) for name in [*OPERATIONS][15:]}
 """The operations that a model calls by name, with the number of their arguments."""

@@ -222,11 +222,8 @@ def guards_of(expression: ex.Expression) -> Iterator[Guard]:
         yield Guard(data, tuple(part for part in parts if isinstance(part, ex.ClockCompare)))
 
 
-MOST_PARTS = 100_000
-"""Of a condition in normal form."""
-
-MOST_PIECES = 4000
-"""Alternatives of a formula that are taken apart."""
+MOST_PARTS = 100_000  # of a condition in normal form
+MOST_PIECES = 4000  # alternatives of a formula that are taken apart
 
 
 def together(parts: Iterable[ex.Expression]) -> ex.Expression:

@@ -9,8 +9,7 @@ from typing import Any
 from rvmon.diagnostics import Span
 from rvmon.models.network.expressions import BaseType, Slot
 
-ConstantValue = int | tuple["ConstantValue", ...]
-"""A number, or an array of them."""
+ConstantValue = int | tuple["ConstantValue", ...]  # a number, or an array of them
 
 
 @dataclass(frozen=True, slots=True)

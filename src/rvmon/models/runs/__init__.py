@@ -64,60 +64,36 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class RunStep:
-    """A wait, and the action behind it.
+    """A wait, and the action behind it."""
 
-    Attributes:
-        window: the bounds of the wait, over all runs along this path.
-        delay: the wait in the concrete run.
-        action: taken then; `None` at the end of a run, or where nothing is done but the
-            query's formula changes its truth.
-        position: the state after the action.
-    """
-
-    window: Window
-    delay: Fraction
+    window: Window  # the bounds of the wait, over all runs along this path
+    delay: Fraction  # the wait in the concrete run
+    # taken then; `None` at the end of a run, or where nothing is done but the query's formula
+    # changes its truth
     action: Action | None
-    position: Position
+    position: Position  # the state after the action
 
 
 class Ending(StrEnum):
     """The ways in which a run ends."""
 
-    REACHED = "reached"
-    """The run reaches the goal of the search."""
-
-    DEADLOCK = "deadlock"
-    """No edge can be taken any more; time can pass for ever."""
-
-    TIME_LOCK = "time-lock"
-    """No edge can be taken any more, and time stops."""
-
-    IDLE = "idle"
-    """The run can stay in its last state for ever."""
-
-    LOOP = "loop"
-    """The run can repeat its loop for ever, and time diverges."""
-
-    ZENO_LOOP = "zeno loop"
-    """The run can repeat its loop for ever, but time converges."""
+    REACHED = "reached"  # the run reaches the goal of the search
+    DEADLOCK = "deadlock"  # no edge can be taken any more; time can pass for ever
+    TIME_LOCK = "time-lock"  # no edge can be taken any more, and time stops
+    IDLE = "idle"  # the run can stay in its last state for ever
+    LOOP = "loop"  # the run can repeat its loop for ever, and time diverges
+    ZENO_LOOP = "zeno loop"  # the run can repeat its loop for ever, but time converges
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A path of the network and one way to run along it.
+    """A path of the network and one way to run along it."""
 
-    Attributes:
-        start: its initial state.
-        steps: in order.
-        ending: the way it ends.
-        loop: for loops the number of the first step that is repeated.
-        timing: all timed runs along the path, if it is known.
-    """
-
-    start: Position
-    steps: tuple[RunStep, ...]
-    ending: Ending = Ending.REACHED
-    loop: int | None = None
+    start: Position  # its initial state
+    steps: tuple[RunStep, ...]  # in order
+    ending: Ending = Ending.REACHED  # the way it ends
+    loop: int | None = None  # for loops the number of the first step that is repeated
+    # all timed runs along the path, if it is known
     timing: Timing | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -129,8 +105,7 @@ class Run:
 Atom = tuple[int, int, float]
 """`(x, y, bound)`: clock y − clock x is at most the bound; clock 0 is always 0."""
 
-STRICT = 2.0**-12
-"""The difference between a strict bound and the number it is written with."""
+STRICT = 2.0**-12  # the difference between a strict bound and the number it is written with
 
 Zone = list[float]
 """Clock valuations by their bounds: of `dim` clocks `dim²`, as an atom's at `x * dim + y`."""
@@ -146,8 +121,7 @@ def universe(dim: int) -> Zone:
     return [0.0 if x == y or y == 0 else inf for x in range(dim) for y in range(dim)]
 
 
-Constraint = tuple[int, int, float]
-"""`(p, q, bound)`: `t[q] − t[p] <= bound`, in grid steps."""
+Constraint = tuple[int, int, float]  # `(p, q, bound)`: `t[q] − t[p] <= bound`, in grid steps
 
 
 @dataclass(frozen=True, slots=True)

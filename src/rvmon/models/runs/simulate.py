@@ -29,14 +29,9 @@ from rvmon.models.network.fractions import GRID, number_in
 from rvmon.models.runs import Atom
 from rvmon.models.runs.moves import Move, Space, State, pieces_of
 
-CHECK_EVERY = 256
-"""Moves between two looks at the clock."""
-
-SLACK = 1e-6
-"""Steps by which a clock may miss a bound, where rates with a fraction are rounded."""
-
-MOST_MOVES = 100_000
-"""A run with more moves before its end is taken for a Zeno loop."""
+CHECK_EVERY = 256  # moves between two looks at the clock
+SLACK = 1e-6  # steps by which a clock may miss a bound, where rates with a fraction are rounded
+MOST_MOVES = 100_000  # a run with more moves before its end is taken for a Zeno loop
 
 
 class CutShortError(Exception):

@@ -28,21 +28,15 @@ from rvmon.models.network.guards import has_paths, normal_form, speaks_of_deadlo
 from rvmon.models.runs.moves import Space, State, check_start
 from rvmon.models.runs.simulate import CutShortError, stretches, trial_of
 
-RUNS = 1_000
-"""Runs of an estimate that does not say how many."""
+RUNS = 1_000  # runs of an estimate that does not say how many
 
 MARGIN = 0.01
 """A test need not tell a probability from the level that is nearer to it; near 0 and 1 half of what
 is left is the margin."""
 
-ERROR = 0.05
-"""The probability of a wrong test, either way; estimates have the confidence 1 − ERROR."""
-
-MOST_TRIALS = 1_000_000
-"""After so many runs a test gives up."""
-
-MEAN_WAIT = 10.0
-"""Units of time by which a wait without end exceeds its beginning on average."""
+ERROR = 0.05  # the probability of a wrong test, either way; estimates have the confidence 1 − ERROR
+MOST_TRIALS = 1_000_000  # after so many runs a test gives up
+MEAN_WAIT = 10.0  # units of time by which a wait without end exceeds its beginning on average
 
 Drawn = TypeVar("Drawn")
 

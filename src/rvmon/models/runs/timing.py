@@ -115,8 +115,7 @@ def earliest(timing: runs.Timing) -> list[Fraction]:
     return [Fraction(int(later - before), timing.scale) for before, later in pairwise(times)]
 
 
-Piece = tuple[runs.Atom, ...]
-"""Bounds that hold together; without any they hold everywhere."""
+Piece = tuple[runs.Atom, ...]  # bounds that hold together; without any they hold everywhere
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,17 +17,11 @@ from rvmon.models.runs import Run
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """The limits at which a search gives up; `None`: no limit.
+    """The limits at which a search gives up; `None`: no limit."""
 
-    Attributes:
-        states: symbolic states visited.
-        seconds: of wall-clock time.
-        megabytes: of memory that the whole process holds.
-    """
-
-    states: int | None = None
-    seconds: float | None = None
-    megabytes: int | None = None
+    states: int | None = None  # symbolic states visited
+    seconds: float | None = None  # of wall-clock time
+    megabytes: int | None = None  # of memory that the whole process holds
 
 
 UNLIMITED = Budget()
@@ -47,51 +41,31 @@ Watch = Callable[[Progress], None]
 
 @dataclass(frozen=True, slots=True)
 class Statistics:
-    """The cost of a search.
+    """The cost of a search."""
 
-    Attributes:
-        visited: symbolic states that were kept when they were met.
-        stored: the states that were not dropped later for a larger one.
-        seconds: of wall-clock time.
-    """
-
-    visited: int
-    stored: int
-    seconds: float
+    visited: int  # symbolic states that were kept when they were met
+    stored: int  # the states that were not dropped later for a larger one
+    seconds: float  # of wall-clock time
 
 
 class Policy(StrEnum):
     """Which run shows that a state can be reached, if several do."""
 
-    SHORTEST = "shortest"
-    """One with the fewest actions."""
-
-    FASTEST = "fastest"
-    """One that takes the least time."""
-
-    LIKELIEST = "likely"
-    """One with the largest product of edge weights."""
+    SHORTEST = "shortest"  # one with the fewest actions
+    FASTEST = "fastest"  # one that takes the least time
+    LIKELIEST = "likely"  # one with the largest product of edge weights
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Whether a query holds, and a run that shows why or why not.
+    """Whether a query holds, and a run that shows why or why not."""
 
-    Attributes:
-        query: the question.
-        holds: `None` if the budget ended first.
-        run: a witness where `E` holds, a counterexample where `A` or `-->` does not.
-        policy: the choice of the run; `None` where there is no choice.
-        statistics: its cost.
-        remark: for people: the reason why it is not decided, or that time stops.
-    """
-
-    query: Query
-    holds: bool | None
-    run: Run | None
-    policy: Policy | None
-    statistics: Statistics
-    remark: str = ""
+    query: Query  # the question
+    holds: bool | None  # `None` if the budget ended first
+    run: Run | None  # a witness where `E` holds, a counterexample where `A` or `-->` does not
+    policy: Policy | None  # the choice of the run; `None` where there is no choice
+    statistics: Statistics  # its cost
+    remark: str = ""  # for people: the reason why it is not decided, or that time stops
 
 
 class Meter:

@@ -17,8 +17,7 @@ _BINARY = {op: number for number, op in enumerate([*ex.BinaryOp][3:], start=16)}
 INVERT, SET, STORE, CLOCK, CALL, DROP, HEAD, BACK, FAIL = range(34, 43)
 _UNARY = {ex.UnaryOp.NOT: NOT, ex.UnaryOp.NEGATE: NEGATE, ex.UnaryOp.INVERT: INVERT}
 STACK = 256
-MOST_NEST = 60
-"""Calls in calls."""
+MOST_NEST = 60  # calls in calls
 _HALF = 1 << 31
 
 

@@ -30,30 +30,19 @@ FARTHEST = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Extreme:
-    """An end of the values of a term.
+    """An end of the values of a term."""
 
-    Attributes:
-        query: the question.
-        term: of which it is an end, as written.
-        largest: whether it is the largest value, or the least.
-        value: in units of time, if of a clock; `None`: it grows without bound, or no state was
-            found that counts.
-        attained: whether some state has it; a clock may only come near it.
-        exact: whether no state goes further; else that was not decided.
-        run: to a state that has the value, or comes near it.
-        statistics: its cost.
-        remark: the reason why it is not exact, or has no value.
-    """
-
-    query: Query
-    term: str
-    largest: bool
+    query: Query  # the question
+    term: str  # of which it is an end, as written
+    largest: bool  # whether it is the largest value, or the least
+    # in units of time, if of a clock; `None`: it grows without bound, or no state was found that
+    # counts
     value: int | None
-    attained: bool
-    exact: bool
-    run: Run | None
-    statistics: Statistics
-    remark: str = ""
+    attained: bool  # whether some state has it; a clock may only come near it
+    exact: bool  # whether no state goes further; else that was not decided
+    run: Run | None  # to a state that has the value, or comes near it
+    statistics: Statistics  # its cost
+    remark: str = ""  # the reason why it is not exact, or has no value
 
 
 def extremes(

@@ -28,8 +28,7 @@ class Criterion(StrEnum):
 
     LOCATIONS = "locations"
     EDGES = "edges"
-    EDGE_PAIRS = "edge-pairs"
-    """An edge of an automaton, and the one that the automaton takes next."""
+    EDGE_PAIRS = "edge-pairs"  # an edge of an automaton, and the one that the automaton takes next
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,20 +41,14 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Suite:
-    """Runs that cover what can be covered.
+    """Runs that cover what can be covered."""
 
-    Attributes:
-        criterion: the coverage criterion.
-        runs: each with the items that it adds to those before.
-        missing: items that no run goes through.
-        statistics: the cost of the search.
-        stopped: the budget that ended the search early, so that `missing` may say too much, or "".
-    """
-
-    criterion: Criterion
+    criterion: Criterion  # the coverage criterion
+    # each with the items that it adds to those before
     runs: tuple[tuple[Run, tuple[Item, ...]], ...]
-    missing: tuple[Item, ...]
-    statistics: Statistics
+    missing: tuple[Item, ...]  # items that no run goes through
+    statistics: Statistics  # the cost of the search
+    # the budget that ended the search early, so that `missing` may say too much, or ""
     stopped: str
 
     @property

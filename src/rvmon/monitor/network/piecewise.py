@@ -21,17 +21,10 @@ from collections.abc import Callable, Iterable, Sequence
 from operator import itemgetter
 
 Piece = tuple[int, int, int, int]
-Pieces = Sequence[Piece]
-"""In order of position, none touching another."""
-
-FAR = 1 << 80
-"""Greater than all positions; `-FAR` is less than all."""
-
-PAST = -(1 << 90)
-"""A stamp before all others."""
-
-EVER: Pieces = ((-FAR, FAR, PAST, 0),)
-"""Known at every position from the beginning."""
+Pieces = Sequence[Piece]  # in order of position, none touching another
+FAR = 1 << 80  # greater than all positions; `-FAR` is less than all
+PAST = -(1 << 90)  # a stamp before all others
+EVER: Pieces = ((-FAR, FAR, PAST, 0),)  # known at every position from the beginning
 
 _left = itemgetter(0)
 
@@ -136,8 +129,7 @@ def latest(pieces: Pieces, other: Pieces) -> Pieces:
     return made
 
 
-Line = tuple[int, int]
-"""Stamp at position 0, and slope."""
+Line = tuple[int, int]  # stamp at position 0, and slope
 
 
 def _choose(

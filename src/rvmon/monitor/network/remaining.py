@@ -16,8 +16,7 @@ from rvmon.logic.residual import FAILS, HOLDS, NO_CLOCK, Atom, Residual, both, e
 from rvmon.monitor.network import Network
 from rvmon.monitor.network.piecewise import FAR, unchanged_until
 
-MOST_POSITIONS = 60
-"""The most undecided positions examined, over all subformulas together."""
+MOST_POSITIONS = 60  # the most undecided positions examined, over all subformulas together
 
 MOST_CLAUSES = 60
 
