@@ -11,6 +11,7 @@ import re
 import stat
 import sys
 import unicodedata
+from codecs import BOM_UTF16_BE, BOM_UTF16_LE
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from itertools import islice, takewhile
@@ -80,9 +81,11 @@ def cannot_read(path: str | Path, error: OSError | UnicodeDecodeError) -> str:
     'nowhere/base.csv: No such file or directory'
     """
     if isinstance(error, UnicodeDecodeError):
+        is_wide = error.object[:2] in (BOM_UTF16_LE, BOM_UTF16_BE)
         return (
             f"{path}: not UTF-8 text ({error.reason} at byte {error.start}): is this a binary file?"
-            " A text in another encoding has to be translated: `iconv -f latin1 -t utf-8`"
+            " A text in another encoding has to be translated: "
+            f"`iconv -f {'utf-16' if is_wide else 'latin1'} -t utf-8`"
         )
     why = f"{path}: {error.strerror or error}"
     if isinstance(error, FileNotFoundError):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from os import PathLike, fspath
 from threading import Condition, Lock, RLock
 from typing import TYPE_CHECKING
 
@@ -26,11 +27,8 @@ if TYPE_CHECKING:
 _log = logging.getLogger("rvmon.live")
 _input_log = logging.getLogger("rvmon.live.input")
 
-_BATCH = 1_000
-"""The most entries judged in one call of `work`: for so long `status` may wait."""
-
-_PATIENCE_NS = 2_000_000
-"""Time is advanced only after a silence of this length, as a next sample advances it anyway."""
+_BATCH = 1_000  # the most entries judged in one call of `work`: for so long `status` may wait
+_PATIENCE_NS = 2_000_000  # time is advanced after so long a silence: a next sample does it anyway
 
 
 class Driver:
@@ -94,6 +92,8 @@ class Driver:
         for name, count in (("room", room), ("most_robots", most_robots)):
             if type(count) is not int or count < 1:
                 raise RvmonError(f"{name}={count!r}: expected a whole number from 1 on")
+        if isinstance(spec, str | PathLike):
+            raise RvmonError(f"a file, not a specification: use `rvmon.load({fspath(spec)!r})`")
         for callback in filter(None, (on_judged, on_failure, on_report)):
             checked(callback, "a judgement, or a robot's name and its report")
         self._clock = WallClock() if clock is None else clock

@@ -119,6 +119,7 @@ BAD = {
     "very long number": ("a.csv", f"t,n\n0,-{'9' * 5000}\n", "has more than 4300 digits"),
     "very late time": ("a.csv", f"t,n\n{'9' * 5000},1\n", "999...999"),
     "blanks and cells": ("a.csv", "t,n\n   \n0,x\n", "line 3: column `n`: `x`"),
+    "UTF-16": ("a.jsonl", '{"t": 0, "n": 1}\n'.encode("utf-16"), "iconv -f utf-16 -t utf-8"),
     "Latin-1": ("a.csv", "t,n\n0,1\n1,\xfc\n".encode("latin1"), "iconv -f latin1 -t utf-8"),
     "binary file": ("a.csv", b"\x7fELF\x02\x01\xff\xfe\x00" * 40, "is this a binary file?"),
     "a cell cut off": (
