@@ -30,7 +30,7 @@ from rvmon.texts import counted, shown
 from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_stamped
 from rvmon.verdicts import Verdict, fold
-from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.attempt import Attempt, Decision
 
 _LOSSES = (HealthKind.DROPPED, HealthKind.LATE)
 _TOLD = 5
@@ -313,7 +313,16 @@ def watch_kept(
     lost = [health for health in at_end.health if health.kind in _LOSSES and health.requirements]
     for names, fact in health_facts(lost, at_end.origin):
         warn(f"{names}: {fact}")
-    return int(bool(lost) or Verdict.FAIL in monitor.monitor.verdicts.values())
+    told = {name for name, verdict in monitor.monitor.verdicts.items() if verdict is Verdict.FAIL}
+    failed = {
+        attempt.requirement
+        for attempt in at_end.attempts
+        if attempt.verdict is Verdict.FAIL and attempt.decision is Decision.PREFIX
+    }
+    if untold := sorted(failed - told):
+        # Another line may have the same stamp.
+        warn(f"{', '.join(untold)}: fails by the last line, reported when a later stamp comes")
+    return int(bool(lost or told or failed))
 
 
 def _behind_taken(

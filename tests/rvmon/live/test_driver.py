@@ -382,7 +382,7 @@ def test_closing_judges_what_waits_and_is_the_end():
 def test_wrong_arguments_are_told_when_it_is_made():
     with pytest.raises(RvmonError, match="room"):
         Door(room=0)
-    with pytest.raises(RvmonError, match="use `rvmon.load.'door.rv'.`"):
+    with pytest.raises(RvmonError, match=r"use `rvmon.load.'door.rv'.`"):
         Driver("door.rv")
     with pytest.raises(UnknownNameError):
         Door(only=["D9"])

@@ -147,6 +147,19 @@ def test_a_watch_that_is_killed_goes_on(tmp_path):
     assert found == expected
 
 
+def test_what_fails_by_the_last_line_is_no_success(tmp_path, says):
+    """Its verdict waits for a line with a later stamp, as another may have the same."""
+    (tmp_path / "s.rv").write_text("signal x : real\nrequirement R\n  always x < 5\n")
+    lines = tmp_path / "a.jsonl"
+    lines.write_text('{"t": 0, "x": 1}\n{"t": 1, "x": 9}\n')
+    command = ["watch", str(tmp_path / "s.rv"), str(lines), "--state", str(tmp_path / "run")]
+    told = says(1, *command)
+    assert (told.out, "R: fails by the last line" in told.err) == ("", True)
+    with lines.open("a") as more:
+        more.write('{"t": 2, "x": 1}\n')
+    assert "R#1 F" in says(1, *command).out
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
