@@ -20,7 +20,7 @@ demo: $(VENV)/.demo  ## Table 1: hundreds of simulated handovers, judged; result
 core: | $(BIN)/python  ## compile the native code in place, 6 seconds; warnings are errors
 	@CFLAGS="$(WARNINGS) $$CFLAGS" $(BIN)/python hatch_build.py
 
-test: $(VENV)/.dev  ## run all tests, 6 minutes on 2 cores; ends with the seconds of each folder
+test: $(VENV)/.dev  ## run all tests, 5 minutes on 2 cores; ends with the seconds of each folder
 	@$(TESTED)
 
 quick: $(VENV)/.dev  ## run the tests that need no compiler, browser, robot or patience, 25 seconds on 2 cores
