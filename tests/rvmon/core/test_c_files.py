@@ -291,6 +291,16 @@ def test_the_stated_memory_is_enough(tmp_path, core_object, text):
     assert memory_of(data, FEWEST) > memory_of(data, 0)
 
 
+def test_attempts_that_are_reserved_take_no_more_memory(exported):
+    """They stand where that was reserved, not in queues."""
+    text = "signal q : bool\nevent e\nrequirement R\n  upon e\n  then within 9 ns q\n"
+    checked = rvmon.loads(text).checked
+    case = Case(checked, tuple(Sample(t, {"e": True, "q": False}) for t in range(8)))
+    size = memory_of(pack(plan_alone(compile_spec(checked))).data, len(case.samples))
+    found, large = exported([case]).judge([(0, size), (0, LARGE)], len(case.samples))
+    assert found == large != ["none"]
+
+
 FACE = """
 #include "rvmon_core.hpp"
 #include "door_plan.h"
