@@ -17,7 +17,7 @@ from rvmon.adapters.json_objects import JsonObjects, begin_of, feed_lines, read_
 from rvmon.cli.options import asked_ids, constants_of
 from rvmon.cli.output import warn
 from rvmon.cli.reading import mapped_names, refuse_empty
-from rvmon.cli.watch_output import Output, output_named, refuse_others, watch_kept
+from rvmon.cli.watch_output import Output, no_line, output_named, refuse_others, watch_kept
 from rvmon.errors import RvmonError, SpecError
 from rvmon.live import Clock, Judgement, Live, SimulatedClock, WallClock
 from rvmon.recordings import FORMATS, form_of_folder
@@ -72,7 +72,7 @@ def _watch_lines(arguments: argparse.Namespace, spec: Spec, shown: Output) -> Li
         lines = read_lines(file.fileno())
         first, began = begin_of(lines, spec.schema)
         if not any(line.strip() for line in first):
-            raise RvmonError(f"error: {arguments.source}: there is no line: nothing was evaluated")
+            raise no_line(arguments.source)
         followed = None
         clock = _own_clock()
         is_stamped = began is not None or arguments.time is not None

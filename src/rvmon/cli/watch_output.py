@@ -307,6 +307,8 @@ def watch_kept(
         raise RvmonError(f"--state {arguments.state}: {error.strerror}") from None
     except KeyboardInterrupt:
         warn("ended; the same command continues the run")
+    if not monitor.taken:
+        raise no_line(arguments.source)
     # Also what earlier processes of the run lost; what it goes on to is not known yet.
     # A copy is finished, so that the run can be continued.
     at_end = spec.restore(monitor.monitor.snapshot()).finish_ns()
@@ -323,6 +325,11 @@ def watch_kept(
         # Another line may have the same stamp.
         warn(f"{', '.join(untold)}: fails by the last line, reported when a later stamp comes")
     return int(bool(lost or told or failed))
+
+
+def no_line(source: str) -> RvmonError:
+    """Nothing came: that is no success."""
+    return RvmonError(f"error: {source}: there is no line: nothing was evaluated")
 
 
 def _behind_taken(

@@ -177,8 +177,8 @@ def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkP
     nested = chain is not None and len(chain.windows) > 1
     # Episodes do not overlap, so that their clocks ascend: automata step them together. An outage
     # may hold any number of samples: automata read its letter at each instant.
-    apart = rule.requirement.mode is Mode.WHENEVER
-    if rule.automaton is not None and (apart or gap is None) and not nested:
+    episodic = rule.requirement.mode is Mode.WHENEVER
+    if rule.automaton is not None and (episodic or gap is None) and not nested:
         return rule.automaton
     return network, chain
 

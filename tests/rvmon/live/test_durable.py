@@ -147,6 +147,13 @@ def test_a_watch_that_is_killed_goes_on(tmp_path):
     assert found == expected
 
 
+def test_a_watch_without_a_line_is_no_success(tmp_path, says):
+    (tmp_path / "s.rv").write_text("signal x : real\nrequirement R\n  always x < 5\n")
+    (tmp_path / "a.jsonl").write_text("\n")
+    command = ["watch", str(tmp_path / "s.rv"), str(tmp_path / "a.jsonl")]
+    assert "there is no line" in says(2, *command, "--state", str(tmp_path / "run")).err
+
+
 def test_what_fails_by_the_last_line_is_no_success(tmp_path, says):
     """Its verdict waits for a line with a later stamp, as another may have the same."""
     (tmp_path / "s.rv").write_text("signal x : real\nrequirement R\n  always x < 5\n")

@@ -124,7 +124,7 @@ static bool widen_queue(rv_monitor *m, const machine *a, queue *q)
     if (q->head > 0) { /* the youngest, in front of the oldest, come behind the others */
         (void)memcpy(&made[was], made, (size_t)q->head * sizeof *made);
         if (own != NULL) {
-            (void)memcpy(&own[was * a->clocks], own, (size_t)q->head * each);
+            (void)memcpy(&own[(size_t)was * (size_t)a->clocks], own, (size_t)q->head * each);
         }
     }
     return true;
