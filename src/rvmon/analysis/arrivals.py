@@ -4,27 +4,24 @@ from __future__ import annotations
 
 from bisect import insort
 from collections.abc import Sequence
-from itertools import islice
 from typing import TYPE_CHECKING
 
-from rvmon.analysis.late_arrival import first_after, may_be_awaited
+from rvmon.analysis.late_arrival import awaitable, first_after, missed
 from rvmon.analysis.truths import Plans, Question, Truth, look_through
 from rvmon.language.checked import formula as formulas
 from rvmon.language.checked.classify import subformulas
 from rvmon.language.checked.operators import Tense
 from rvmon.language.checked.specification import CheckedSpec, TimeModel
 from rvmon.language.print import format_formula
-from rvmon.recordings.last_updates import LastUpdates, first_of, last_of
+from rvmon.recordings.last_updates import LastUpdates, last_of
 from rvmon.trace.sample import Sample, Value
 
 if TYPE_CHECKING:
     from rvmon.analysis.truths import Positions
     from rvmon.recordings.batch import Batch
+    from rvmon.verdicts.attempt import Attempt
 
 Key = tuple[str, int]  # the requirement and number of an attempt
-
-_FEW = 256
-"""Rows that are looked through at first, for each formula: mostly what was awaited comes soon."""
 
 
 class Arrivals:
@@ -39,80 +36,71 @@ class Arrivals:
         self.found: dict[Key, int | None] = {}
         self._spec = spec
         self._names = names
-        awaited = {
-            format_formula(formula): formula
-            for requirement in spec.requirements.values()
-            if not (requirement.for_each or requirement.captures)
-            for formula in may_be_awaited(requirement)
-            if is_of_moment(formula, spec.time)
-        }
-        self._question = Question(tuple(awaited.values()))
-        self._texts = set(awaited)
+        # by requirement and text of what awaits, the text of what is awaited
+        self._awaited: dict[str, dict[str, str]] = {}
+        awaited: dict[str, formulas.Formula] = {}
+        for name, requirement in spec.requirements.items():
+            if not (requirement.for_each or requirement.captures):
+                parts = awaitable(requirement)
+                self._awaited[name] = {text: format_formula(part) for text, part in parts.items()}
+                awaited |= zip(self._awaited[name].values(), parts.values(), strict=True)
+        of_moment = [one for one in awaited.values() if is_of_moment(one, spec.time)]
+        self._question = Question(tuple(of_moment))
         self._plans: Plans = {}
         signals = self._question.names & spec.signals.keys()
         self._updates = LastUpdates(signals, spec.ignoring)
         self._open: dict[str, list[tuple[int, Key]]] = {}
         self._since: int | None = None
-        self._first = self._rows = _FEW * len(awaited)
 
-    def ask(self, key: Key, formula: formulas.Formula | None, deadline: int) -> None:
-        """Look out for a formula from a deadline (ticks) on; `None`: nothing was awaited.
+    def ask(self, attempt: Attempt) -> None:
+        """Look out for what a failed attempt awaited, from its deadline on, if it awaited anything.
 
-        Where the deadline is in what was taken, or the formula is none for this, `found` lacks it.
+        Where that is in what was taken, or what it awaited is none for this, `found` lacks it; so
+        it does for an instance of `for each`, and where values were captured.
         """
-        text = "" if formula is None else format_formula(formula)
-        if formula is None:
+        if attempt.requirement not in self._awaited:
+            return
+        key = attempt.requirement, attempt.number
+        text = self._awaited[attempt.requirement].get(missed(attempt))
+        if text is None:
             self.found[key] = None
-        elif text in self._texts and (self._since is None or deadline >= self._since):
+            return
+        assert attempt.blame is not None, "it missed a deadline"
+        deadline = attempt.blame.window[1] or 0
+        if text in self._question.texts and (self._since is None or deadline >= self._since):
             self.found[key] = None
             insort(self._open.setdefault(text, []), (deadline, key), key=lambda wait: wait[0])
 
     def take(self, pieces: Sequence[Batch | Sample], until: int) -> None:
         """Take the next pieces of the recording, which tell all up to an instant (ticks)."""
-        place = 0
-        while self._open:
+        if self._open:
             at = min(waits[0][0] for waits in self._open.values())
             at = at if self._since is None else max(at, self._since)
-            if at >= until:
-                break
-            passed = place
-            while place < len(pieces) and last_of(pieces[place]) <= at:
-                place += 1
-            self._updates.add(pieces[passed:place])
-            self._look(pieces, place, at, until)
-        self._updates.add(pieces[place:])
+            if at < until:
+                passed = sum(last_of(piece) <= at for piece in pieces)
+                self._updates.add(pieces[:passed])
+                pieces = pieces[passed:]
+                self._look(pieces, at, until)
+        self._updates.add(pieces)
         self._since = until
 
-    def _look(self, pieces: Sequence[Batch | Sample], place: int, at: int, until: int) -> None:
-        """Look through some rows behind an instant, in pieces from a place on."""
-        ahead = self._before(at, pieces[place] if place < len(pieces) else None)
-        left = self._rows
-        for piece in islice(pieces, place, None):
-            if left <= 0:
-                until = first_of(piece) - 1
-                break
+    def _look(self, pieces: Sequence[Batch | Sample], at: int, until: int) -> None:
+        """Look through pieces, of which the first may begin before an instant, behind that."""
+        ahead = self._before(at, pieces[0] if pieces else None)
+        for piece in pieces:
             if isinstance(piece, Sample):
                 ahead.append(piece)
-                left -= 1
-                continue
-            times = piece.times
-            first = int(times.searchsorted(at, "right"))
-            stop = min(first + left, len(times))
-            stop = int(times.searchsorted(times[stop - 1], "right"))  # an instant is not divided
-            ahead.append(piece.cut(first, stop))
-            left -= stop - first
-            if stop < len(times):
-                until = int(times[stop]) - 1
-                break
+            else:
+                first = int(piece.times.searchsorted(at, "right"))
+                ahead.append(piece.cut(first, len(piece.times)))
         question = self._question
         seen = look_through(self._spec, [question], ahead, until, self._names, self._plans)
         truths = dict(zip(question.texts, seen.truths(question), strict=True))
-        came = [self._answer(text, truths[text], at, seen.positions) for text in tuple(self._open)]
-        self._rows = self._first if any(came) else 4 * self._rows
-        self._since = until
+        for text in tuple(self._open):
+            self._answer(text, truths[text], at, seen.positions)
 
-    def _answer(self, text: str, truth: Truth, at: int, positions: Positions) -> bool:
-        """Note what came of a formula that was true then; returns whether anything did."""
+    def _answer(self, text: str, truth: Truth, at: int, positions: Positions) -> None:
+        """Note what came of a formula that was true then."""
         waits = self._open[text]
         answered = 0
         for deadline, key in waits:
@@ -124,7 +112,6 @@ class Arrivals:
         del waits[:answered]
         if not waits:
             del self._open[text]
-        return answered > 0
 
     def _before(self, at: int, piece: Batch | Sample | None) -> list[Batch | Sample]:
         """Samples with the last update of each signal up to an instant, and one at that."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -21,44 +21,36 @@ if TYPE_CHECKING:
     from rvmon.analysis.truths import Positions
 
 
-def awaited(requirement: Requirement, attempt: Attempt) -> Formula | None:
-    """The formula that a failed attempt awaited when its window closed.
+def awaitable(requirement: Requirement) -> dict[str, Formula]:
+    """By text of each subformula of the consequent that awaits something, what that is.
 
-    Returns:
-        `None` if it did not fail by a closed window, or if the formula has a future operator.
+    What has future operators itself is left out.
     """
-    blame = attempt.blame
-    if blame is None or blame.window[1] is None or attempt.decided is None:
-        return None
-    if attempt.decided <= blame.window[1]:
-        return None
-    for formula, part in _waits_in(requirement):
-        if format_formula(formula) == blame.subformula:
-            return None if has_future(part) else part
-    return None
-
-
-def may_be_awaited(requirement: Requirement) -> Iterator[Formula]:
-    """The formulas that `awaited` may give for attempts of a requirement."""
-    return (part for _, part in _waits_in(requirement) if not has_future(part))
-
-
-def _waits_in(requirement: Requirement) -> Iterator[tuple[Formula, Formula]]:
-    """The subformulas of its consequent that await something, each with that."""
+    found: dict[str, Formula] = {}
     for _, formula in subformulas(requirement.consequent, 0):
         match formula:
-            case Unary(op=UnaryOp.EVENTUALLY, operand=part):
-                yield formula, part
-            case Binary(op=BinaryOp.UNTIL, right=part):
-                yield formula, part
+            case (
+                Unary(op=UnaryOp.EVENTUALLY, operand=part) | Binary(op=BinaryOp.UNTIL, right=part)
+            ) if not has_future(part):
+                found[format_formula(formula)] = part
+    return found
+
+
+def missed(attempt: Attempt) -> str:
+    """The text of the subformula of which the window closed; empty if it did not fail so."""
+    blame = attempt.blame
+    if blame is None or blame.window[1] is None or attempt.decided is None:
+        return ""
+    return blame.subformula if attempt.decided > blame.window[1] else ""
 
 
 def waits_of(requirement: Requirement, attempts: Iterable[Attempt]) -> dict[int, Question]:
-    """By number of the attempt, the formula it awaited in vain; see `awaited`."""
+    """By number of the attempt, what it awaited when its window closed; see `awaitable`."""
+    formulas = awaitable(requirement)
     return {
         attempt.number: Question((formula,), requirement.for_each, attempt.captured)
         for attempt in attempts
-        if (formula := awaited(requirement, attempt)) is not None
+        if (formula := formulas.get(missed(attempt))) is not None
     }
 
 

@@ -7,7 +7,6 @@ from collections.abc import Sequence, Set
 from typing import TYPE_CHECKING
 
 from rvmon.analysis.arrivals import Arrivals
-from rvmon.analysis.late_arrival import awaited
 from rvmon.language.checked.classify import subformulas
 from rvmon.language.checked.formula import Amount, Compare, windows_in
 from rvmon.language.checked.names_read import names_in, names_read
@@ -83,13 +82,10 @@ class FailureNotes:
         if self._failed[name] > looked_up(requirement, len(self._failed)):
             self._wanted[self._numbers[name]] = 0
             return
-        blame, decided = attempt.blame, attempt.decided
-        if self._failed[name] <= SHOWN_PER_REQUIREMENT and blame is not None:
-            self.values.ask(decided or 0, names_blamed(self._spec, attempt))
-        if self._arrivals is not None and not (requirement.for_each or requirement.captures):
-            deadline = 0 if blame is None else blame.window[1] or 0
-            key = name, attempt.number
-            self._arrivals.ask(key, awaited(requirement, attempt), deadline)
+        if self._failed[name] <= SHOWN_PER_REQUIREMENT and attempt.blame is not None:
+            self.values.ask(attempt.decided or 0, names_blamed(self._spec, attempt))
+        if self._arrivals is not None:
+            self._arrivals.ask(attempt)
 
 
 def values_at(spec: Spec) -> ValuesAt:

@@ -37,12 +37,10 @@ def batch_of(
     columns: Mapping[Column, Cells],
     first: int = 0,
     lines: NDArray[np.int64] | None = None,
-    *,
-    is_last: bool = False,
 ) -> Batch:
     """Rows of columns, read as rows are: see `rvmon.recordings.csv_rows.row_values`.
 
-    `first`, `lines` and `is_last` are those of `Batch`.
+    `first` and `lines` are those of `Batch`.
     """
     signals = {signal.name: columns[signal] for signal in layout.signals}
     payloads: dict[str, dict[str, Cells]] = {}
@@ -58,7 +56,7 @@ def batch_of(
         says = occurrences(own.get(name), fields.values(), len(times))
         heard = {field: _where(cells, says != NO) for field, cells in fields.items()}
         events[name] = Occurrences(says, heard)
-    return Batch(times, signals, events, first, lines, is_last)
+    return Batch(times, signals, events, first, lines)
 
 
 def _where(cells: Cells, heard: NDArray[np.bool_]) -> Cells:

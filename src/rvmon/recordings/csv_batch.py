@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from rvmon.errors import TraceError
 from rvmon.recordings.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells
@@ -66,15 +67,16 @@ def csv_batches(
 
 
 class Found(Struct, frozen=True):
-    """The results of a call on a text: see `csv.h`; the arrays have room for more."""
+    """Rows of a text that were found together, and how far that came: see `csv.h`."""
 
-    numbers: NDArray[np.int64]
-    says: NDArray[np.uint8]
-    lines: NDArray[np.int64]
-    odd: NDArray[np.int64]
-    labels: NDArray[np.int64]
-    # the way it ended, rows, the start of the rest, the end of an odd row, lines, odd cells, labels
-    counts: tuple[int, ...]
+    batch: Batch | None  # with lines as if the text began with line 0; `None`: there is no row
+    fault: tuple[int, TraceError] | None  # what is wrong in the row behind it; its line, so counted
+    ended: int  # the way it ended
+    at: int  # the start of the rest
+    end: int  # the end of an odd row
+    lines: int  # those that were passed
+    labels: int  # those that were told apart
+    room: int  # the most labels that could be
 
 
 class _Reader:
@@ -97,54 +99,56 @@ class _Reader:
         odd = np.empty((max(_ODD, columns), 4), np.int64)
         labels = np.empty((self._labels, 3), np.int64)
         table = np.zeros(2 * len(labels), np.int32)
-        counts = native_csv.read(
+        ended, rows, at, end, passed, odd_count, label_count = native_csv.read(
             text, start, is_ended, csv.field_size_limit(), *self.layout.numbers, self._absent,
             numbers, says, lines, odd, labels, table,
         )  # fmt: skip
-        return Found(numbers, says, lines, odd, labels, counts)
+        fault = None
+        # Cells that C does not read (other notations, quotes) go the way of single rows, so there
+        # is one meaning.
+        for row, place, *ends in odd[:odd_count].tolist():
+            try:
+                self._read_odd(_cell(text, *ends), place, row, numbers, says)
+            except TraceError as error:
+                rows, fault = row, (lines.item(row), error)
+                break
+        batch = None
+        if rows:
+            words = [(of, _cell(text, *ends)) for of, *ends in labels[:label_count].tolist()]
+            cells = {
+                column: self._cells(column, numbers[place, :rows], says[place, :rows], words, place)
+                for place, column in enumerate(self.layout.columns, 1)
+            }
+            first = lines.item(0)
+            own = None if lines.item(rows - 1) - first == rows - 1 else lines[:rows]
+            batch = batch_of(numbers[0, :rows], self.layout, cells, first, own)
+        return Found(batch, fault, ended, at, end, passed, label_count, len(labels))
 
     def batch(self, text: CsvText[Found]) -> Generator[Batch, None, tuple[int, int]]:
         """Take what can be read at once; gives how that ended, and where an odd row ends."""
-        source = text.rest
+        source, before = text.rest, text.line
         if text.start == len(source):
             return _ALL, 0
         if text.found is not None:
             found, text.found = text.found(), None
         else:
             found = self.read(source, text.start, is_ended=text.is_ended)
-        numbers, says, lines = found.numbers, found.says, found.lines
-        ended, rows, at, end, count, odd, labels = found.counts
-        lines += text.line
-        fault = None
-        # Cells that C does not read (other notations, quotes) go the way of single rows, so there
-        # is one meaning.
-        for row, place, start, stop in found.odd[:odd].tolist():
-            try:
-                self._read_odd(_cell(source, start, stop), place, row, numbers, says)
-            except TraceError as error:
-                rows, fault = row, TraceError(f"line {lines[row]}: {error}")
-                break
-        if rows:
-            words = [(of, _cell(source, *ends)) for of, *ends in found.labels[:labels].tolist()]
-            cells = {
-                column: self._cells(column, numbers[place, :rows], says[place, :rows], words, place)
-                for place, column in enumerate(self.layout.columns, 1)
-            }
-            line = lines.item(0)
-            own = None if lines.item(rows - 1) - line == rows - 1 else lines[:rows]
-            times = numbers[0, :rows]
-            is_last = text.is_whole and at == len(source) and fault is None
-            yield batch_of(times, self.layout, cells, line, own, is_last=is_last)
+        batch, fault = found.batch, found.fault
+        if batch is not None:
+            lines = None if batch.lines is None else before + batch.lines
+            is_last = text.is_whole and found.at == len(source) and fault is None
+            yield replace(batch, first=before + batch.first, lines=lines, is_last=is_last)
         if fault is not None:
-            raise fault
-        if rows:
+            line, error = fault
+            raise TraceError(f"line {before + line}: {error}")
+        if batch is not None:
             # The next call makes room for as many rows as it will find, with a tenth to spare.
-            self._row_bytes = (at - text.start) / rows
-        if labels == len(found.labels) and labels < _MOST_LABELS:
-            self._labels = 4 * labels
-        text.start = at
-        text.line += count
-        return ended, end
+            self._row_bytes = (found.at - text.start) / len(batch.times)
+        if found.labels == found.room < _MOST_LABELS:
+            self._labels = 4 * found.labels
+        text.start = found.at
+        text.line += found.lines
+        return found.ended, found.end
 
     def _read_odd(
         self, text: str, place: int, row: int, numbers: NDArray[Any], says: NDArray[Any]
@@ -193,7 +197,9 @@ class _Reader:
             if gaps.nan:
                 says[says == UNKNOWN] = NO_UPDATE
             says[~kept(made, gaps) & (says == YES)] = NO_UPDATE
-        return Cells(made, None if native_csv.all_are(says, YES) else says)
+        cells = Cells(made, None if native_csv.all_are(says, YES) else says)
+        _ = cells.unknown  # kept, found by the thread that has just written the values
+        return cells
 
 
 def _cell(text: bytes, start: int, end: int) -> str:

@@ -16,7 +16,7 @@ from rvmon.recordings import places
 from rvmon.recordings.csv_rows import split_lines
 
 if TYPE_CHECKING:
-    from concurrent.futures import Future, ThreadPoolExecutor
+    from concurrent.futures import Future
 
     from rvmon.native import _csv
 
@@ -156,41 +156,32 @@ def read_ahead(
     """Stretches, each with what gives what another thread read in it; of one without end nothing.
 
     Args:
-        found: are taken in order, some before they are asked for; so is what goes wrong then.
+        found: are taken in order, some before they are asked for, by one thread at a time.
         read: may run in several threads at once.
     """
-    pool: ThreadPoolExecutor | None = None
-    threads = 0
+    from concurrent.futures import ThreadPoolExecutor  # a small file needs none
+
+    threads = min(MOST_THREADS, os.cpu_count() or 1)
+    pool = ThreadPoolExecutor(threads, "rvmon-reads")
     waiting: deque[tuple[bytes, Future[_Read] | None]] = deque()
-    fault: Exception | None = None
-    is_over = False
+    further = pool.submit(next, found, None)
     try:
         while True:
-            while not is_over and len(waiting) <= threads:
-                try:
-                    stretch = next(found, None)
-                except Exception as error:  # noqa: BLE001 - raised in its turn
-                    stretch, fault = None, error
-                is_over = stretch is None
-                if stretch is not None and stretch.endswith(b"\n"):
-                    if pool is None:  # a small file has no such stretch
-                        from concurrent.futures import ThreadPoolExecutor
-
-                        threads = min(MOST_THREADS, os.cpu_count() or 1)
-                        pool = ThreadPoolExecutor(threads, "rvmon-reads")
-                    waiting.append((stretch, pool.submit(read, stretch)))
-                elif stretch is not None:
-                    waiting.append((stretch, None))
+            # What goes wrong as a stretch is taken waits for those before it.
+            while not waiting or (len(waiting) <= threads and further.exception() is None):
+                stretch = further.result()
+                if stretch is None:
+                    break
+                further = pool.submit(next, found, None)
+                is_ended = stretch.endswith(b"\n")
+                waiting.append((stretch, pool.submit(read, stretch) if is_ended else None))
             if not waiting:
-                break
+                return
             stretch, one = waiting.popleft()
             yield stretch, None if one is None else one.result
-        if fault is not None:
-            raise fault
     finally:
-        del fault  # its traceback holds this frame
+        del further  # the traceback of its error holds this frame
         for _, one in waiting:
             if one is not None:
                 one.cancel()
-        if pool is not None:
-            pool.shutdown()
+        pool.shutdown()
