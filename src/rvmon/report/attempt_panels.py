@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
-from typing import TypeGuard
+from operator import ne
+from typing import Any
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -19,7 +20,7 @@ from rvmon.report.html import Child
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt
 from rvmon.report.tracks import Scene, Track, TrackKind, tracks_of
-from rvmon.trace.sample import Sample, Scalar
+from rvmon.trace.sample import Sample
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.report import Report
@@ -110,7 +111,8 @@ def nearest_passing(
             if mine.kind is TrackKind.EVENT:
                 distance += abs(_first(mine, view, 0) - _first(other, view, shift))
             else:
-                distance += _distance(values, other.changes.values_at(moved))
+                is_number = mine.kind is TrackKind.NUMBER
+                distance += _distance(values, other.changes.values_at(moved), numbers=is_number)
         if best is None or distance < best[0]:
             best = (distance, candidate, passed)
     return None if best is None else _laid_over(best[1], best[2], attempt)
@@ -129,15 +131,16 @@ def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> Refere
     )
 
 
-def _distance(mine: Sequence[Scalar], other: Sequence[Scalar]) -> float:
-    pairs = list(zip(mine, other, strict=True))
-    numbers = [abs(value) for value in (*mine, *other) if _is_number(value)]
-    scale = max(numbers, default=0.0) or 1.0
+def _distance(mine: Sequence[Any], other: Sequence[Any], *, numbers: bool) -> float:
+    """The distance of the values of two tracks at the same instants; `None` is unknown."""
+    if not numbers:
+        return sum(map(ne, mine, other)) / len(mine)
+    scale = max((abs(value) for value in (*mine, *other) if value is not None), default=0) or 1.0
     differences = (
-        min(abs(a - b) / scale, 1.0) if _is_number(a) and _is_number(b) else float(a != b)
-        for a, b in pairs
+        float(a is not b) if a is None or b is None else min(abs(a - b) / scale, 1.0)
+        for a, b in zip(mine, other, strict=True)
     )
-    return sum(differences) / len(pairs)
+    return sum(differences) / len(mine)
 
 
 def _first(track: Track, view: View, shift: int) -> float:
@@ -146,10 +149,6 @@ def _first(track: Track, view: View, shift: int) -> float:
     if index == len(track.changes):
         return 1.0
     return min(view.fraction(track.changes[index][0] + shift), 1.0)
-
-
-def _is_number(value: object) -> TypeGuard[float]:
-    return isinstance(value, int | float) and not isinstance(value, bool)
 
 
 MOST_DISSECTED = 50_000
