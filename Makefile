@@ -50,7 +50,7 @@ format: $(VENV)/.dev  ## lay the code out and sort imports
 bench: $(VENV)/.dev  ## time monitors against peers, 17 minutes; writes benchmarks/RESULTS.md; R2U2=FOLDER: a clone
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check -e '.[dev,arrow]' \
 	  || echo "rvmon: pyarrow does not install here: Parquet is not measured"
-	@$(BIN)/python -m benchmarks.results $(if $(R2U2),--r2u2 $(R2U2))
+	@$(BIN)/python -m benchmarks.results --out benchmarks/RESULTS.md $(if $(R2U2),--r2u2 $(R2U2))
 
 claims: $(VENV)/.dev  ## run what docs/claims.md claims, 3 minutes; LONG=1: all of it
 	@$(BIN)/python -m benchmarks.claims $(if $(LONG),--long)

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 BENCHMARKS = {
-    "online": "what a sample costs, beside all peers: forms, inputs, many monitors, robustness",
-    "recordings": "what a file costs: columns, whole processes, large, many and odd files",
-    "growth": "how cost grows: hard streams, open attempts, tests, automata",
+    "results": "the page of results: samples, columns, files, robustness, beside all peers; cliffs",
     "differential": "ours against something independent, on random cases",
     "peers": "what other monitors say of the same formulas, and of the same faults",
     "core_mutants": "does the core's C hold a line that no test needs?",
@@ -14,7 +12,6 @@ BENCHMARKS = {
     "testbench": "faults that are seen, holes that are closed, failures that are shrunk",
     "endurance": "a monitor that lives long, and processes that are killed",
     "claims": "do the claims of docs/claims.md hold?",
-    "results": "the page of results: online, recordings, hard streams",
 }
 
 if __name__ == "__main__":

@@ -2,7 +2,12 @@
 
     python -m benchmarks.results [--quick] [--only SECTION …] [--r2u2 FOLDER] [--out FILE]
 
-Runs `online`, `recordings`, the cliffs of `growth`, and the table of where peers read otherwise.
+All contenders pass over formulas with rows, one after the other or in columns: `batch` has 10^5
+beside 10^6. `files` are whole processes: families of formulas beside reelay's C++, which is built
+where g++ and Boost are, and a robot's files, one large beside DuckDB, the same as other programs
+write it, many, a tiny one; a ratio is of the first of a group over the one, where both find the
+same failures. `cliffs` are hard streams beside their quiet neighbours, `differences` where peers
+read otherwise. The page is printed, or written to the file; `--quick` takes a few minutes.
 """
 
 from __future__ import annotations
@@ -24,21 +29,16 @@ from typing import Any
 import jinja2
 import msgspec
 from benchmarks.peers import differences
-from benchmarks.peers.client import Peer
 from benchmarks.peers.environment import Environment, prepare
 from benchmarks.program import program, table
 from benchmarks.timing import cliffs, files
-from benchmarks.timing.agreement import Agreement, by_peer, compare, margins_alike, peers_in
+from benchmarks.timing.agreement import Agreement, by_peer, compare, margins_alike
 from benchmarks.timing.r2u2 import R2u2
-from benchmarks.timing.race import Figure, Result, contenders, measure, say
+from benchmarks.timing.race import Figure, Result, Theirs, Worker, contenders, measure, say
 from benchmarks.timing.workload import FORMS, QUICK, SECTIONS, Size
 
 HERE = Path(__file__).parent
-OUT = HERE / "RESULTS.md"
 TEMPLATE = HERE / "results.md.j2"
-ONLINE = tuple(one for one in SECTIONS if one != "batch")
-RECORDINGS = ("batch", "files")
-EVERY = (*ONLINE, *RECORDINGS, "cliffs", "differences")
 BUILT_FOR = ("many", "bound")
 """Sections that R2U2 takes part in: it is built anew for each workload."""
 
@@ -81,23 +81,30 @@ def _goals() -> list[Goal]:
 def run(size: Size, sections: Sequence[str], r2u2: Path | None) -> dict[str, Any]:
     """Measure the chosen sections, reporting what is under way; what the page says."""
     began, environment = time.monotonic(), prepare()
-    results, agreements = list[Result](), list[Agreement]()
-    peers = peers_in(environment)
+    results, agreements, tables = list[Result](), list[Agreement](), dict[str, str]()
     for section in sections:
-        for result, found in _measured(section, size, environment, peers, r2u2):
+        if section not in SECTIONS:
+            tables[TITLES[section]] = "\n".join(_told(section, size, environment))
+            continue
+        racing = [*contenders(environment, section)]
+        if r2u2 is not None and section in BUILT_FOR:
+            racing.append(R2u2(r2u2))
+        for workload in SECTIONS[section](size):
+            say(f"{section}: {workload.name}, {workload.form}")
+            result = measure(workload, racing, size.repeats, size.pass_seconds)
             results.append(result)
-            agreements += found
-    for peer in peers.values():
-        peer.close()
-    tables = {
-        TITLES[one]: "\n".join(_told(one, size, environment))
-        for one in sections
-        if one in EVERY[-3:]
-    }
+            if section == "margins":
+                sentil = [one for one in racing if isinstance(one, Theirs)]
+                agreements += [margins_alike(workload, one) for one in sentil[:1]]
+            else:
+                agreements += compare(workload, result.figures, racing, size.step_seconds)
+        for one in racing:
+            if isinstance(one, Worker):
+                one.close()
     absent = dict(environment.missing)
     if r2u2 is None:
         absent["R2U2"] = "the package index has none; `--r2u2` with a clone of its repository"
-    if left := [TITLES[one] for one in EVERY if one not in sections]:
+    if left := [title for one, title in TITLES.items() if one not in sections]:
         absent["sections"] = "; ".join(left)
     said = content(results, agreements)
     return said | {
@@ -119,27 +126,6 @@ def _told(section: str, size: Size, environment: Environment) -> Iterator[str]:
         yield from cliffs.lines(2 * size.rows // 5, size.repeats)
     else:
         yield from differences.lines(environment)
-
-
-def _measured(
-    section: str, size: Size, environment: Environment, peers: dict[str, Peer], r2u2: Path | None
-) -> Iterator[tuple[Result, list[Agreement]]]:
-    """The results of a section, each with whether both sides judge alike."""
-    taking_part = [*contenders(environment, section)] if section in SECTIONS else []
-    built = R2u2(r2u2) if r2u2 is not None and section in BUILT_FOR else None
-    for workload in SECTIONS[section](size) if section in SECTIONS else ():
-        say(f"{section}: {workload.name}, {workload.form}")
-        everyone = [*taking_part, built] if built is not None else taking_part
-        result = measure(workload, everyone, size.repeats, size.pass_seconds)
-        if section == "margins":
-            found = [*margins_alike(workload, environment)]
-        else:
-            found = [*compare(workload, result.figures, peers, size)]
-        if built is not None and built.built_for == workload.name and workload.form == "future":
-            found.append(built.agreement(workload))
-        yield result, found
-    for contender in taking_part:
-        contender.close()
 
 
 def machine() -> str:
@@ -294,20 +280,18 @@ def _agreed(compared: Sequence[Agreement]) -> Iterator[Sequence[str]]:
 def main(
     *,
     quick: bool = False,
-    only: Sequence[str] = EVERY,
+    only: Sequence[str] = (*TITLES,),
     r2u2: Path | None = None,
-    out: Path | None = OUT,
+    out: Path | None = None,
 ) -> None:
-    """Measure some sections, or all, and write the page, or print it."""
-    name, *words = sys.argv
-    shown = ["FOLDER" if Path(one) == r2u2 else one for one in words]
-    command = " ".join([f"python -m benchmarks.{Path(name).stem}", *shown])
+    """Measure some sections, or all, and print the page, or write it."""
+    shown = ["FOLDER" if Path(one) == r2u2 else one for one in sys.argv[1:]]
+    command = " ".join(["python -m benchmarks.results", *shown])
     text = page({"command": command, **run(QUICK if quick else Size(), only, r2u2)})
     if out is None:
         print(text)
     else:
         out.write_text(text, encoding="utf-8")
-        say(f"wrote {out}")
 
 
 if __name__ == "__main__":

@@ -46,10 +46,10 @@ class Adapter(ABC):
     def ready(self, formula: str, kind: str, laid: Any) -> Pass:
         """A monitor that is to pass over rows."""
 
-    def load(self, formulas: list[str], kind: str, columns: Columns, rows: int) -> dict[str, Any]:
+    def load(self, formulas: list[str], kind: str, columns: Columns) -> dict[str, Any]:
         """Keep what is to be passed over."""
         self._loaded = formulas, kind, self.laid(columns)
-        return {"rows": rows}
+        return {}
 
     def run(self) -> dict[str, Any]:
         """One pass over the rows for each formula; of the loops alone the time is taken."""

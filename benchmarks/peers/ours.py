@@ -21,7 +21,7 @@ class Rvmon:
         self._period = self._end = 1
 
     def load(
-        self, spec: str, kind: str, columns: Columns, rows: int, period: int = 1
+        self, spec: str, kind: str, columns: Columns, rows: int, period: int
     ) -> dict[str, Any]:
         """Compile the specification and lay the rows out.
 
@@ -44,7 +44,7 @@ class Rvmon:
             self._laid = {name: column[:2] for name, column in own.items()}
             self._ready()()
             self._laid = own
-            return {"rows": rows}
+            return {}
         cells = zip(*columns.values(), strict=True)
         whole = [dict(zip(columns, row, strict=True)) for row in cells]
         self._laid = [(t * period, row) for t, row in enumerate(whole)]
@@ -54,7 +54,7 @@ class Rvmon:
                 for (t, row), before in zip(self._laid[1:], whole, strict=False)
             ]
         self._spec.monitor()
-        return {"rows": rows}
+        return {}
 
     def run(self) -> dict[str, Any]:
         """One pass over the rows; the first row at which each requirement had failed."""

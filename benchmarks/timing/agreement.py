@@ -2,31 +2,26 @@
 
 The first formula of a workload is judged at every row of its last rows, where the Timescales
 families are violated, and with each column held for half of them: ours by the monitor that is
-measured, the peer by its own, on as many rows as it judges in a given time. rtamt, which is timed
-on the past, is stepped for that. On random formulas and traces they are compared by
-`benchmarks.differential peers`.
+measured, the peer by its own, on as many rows as it judges in a given time. On random formulas and
+traces they are compared by `benchmarks.differential peers`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from benchmarks.peers.client import Peer, PeerError
-from benchmarks.peers.environment import Environment
-from benchmarks.peers.ways import RTAMT_STEPPED, WAYS, Columns, Question, answers, ask_monitor
-from benchmarks.timing.race import PEERS, Figure, margin_text
-from benchmarks.timing.workload import Size, Workload
+from benchmarks.peers.client import PeerError
+from benchmarks.peers.ways import Columns, Question, answers, ask_monitor
+from benchmarks.timing.race import Contender, Figure, Theirs, margin_text
+from benchmarks.timing.workload import Workload
 from tests.tools.common_fragment import UntranslatableError
 
 from rvmon import loads
 from rvmon.errors import RvmonError
 from rvmon.language.checked.names_read import names_read
 from rvmon.testing.law.syntax import intervals
-
-WAYS_OF = {entry.label: entry.way for entry in PEERS} | {"rtamt": RTAMT_STEPPED}
-"""Who is asked for the verdicts of which contender; the native reelay is the same program."""
 
 MOST_ROWS = 4000
 MEASURED_ROWS = 2_000
@@ -37,7 +32,7 @@ MEASURED_ROWS = 2_000
 class Agreement:
     """Rows at which both sides had a verdict."""
 
-    label: str  # the contender
+    label: str  # the peer
     name: str  # of the workload
     form: str  # of the workload
     equal: int = 0  # so many were the same
@@ -51,32 +46,22 @@ def by_peer(label: str) -> str:
     return label.split()[0].rstrip(",")
 
 
-def peers_in(environment: Environment) -> dict[str, Peer]:
-    """Who can be asked, by the label under which it is timed."""
-    return {
-        label: Peer(environment.python, way.adapter)
-        for label, way in WAYS_OF.items()
-        if way.package in environment.versions
-    }
-
-
 def compare(
-    workload: Workload, timed: Sequence[Figure], peers: Mapping[str, Peer], size: Size
+    workload: Workload, timed: Sequence[Figure], racing: Sequence[Contender], seconds: float
 ) -> Iterator[Agreement]:
     """Compare ours on the workload's first formula with each peer that was timed.
 
-    Each gets as many of the rows as it judges in the time that the size allows.
+    Each gets as many of the rows as it judges in so many seconds.
     """
-    about = Agreement("rvmon", workload.name, workload.form)
     formula = workload.formulas[0]
     bound = max((max(i.low, i.high or 0) for i in intervals(formula)), default=0)
-    costs = {by_peer(figure.label): figure.median for figure in timed}
-    for label in [one for one in peers if one in costs]:
-        about = replace(about, label=label)
-        fitting = int(size.step_seconds * 1e9 / costs[label])
+    costs = {figure.label: figure.median for figure in timed}
+    for one in [one for one in racing if one.is_asked and one.label in costs]:
+        about = Agreement(by_peer(one.label), workload.name, workload.form)
+        fitting = int(seconds * 1e9 / costs[one.label])
         rows = min(max(300, 3 * bound), MOST_ROWS, workload.rows, fitting)
         if rows <= bound:
-            text = f"no bound fails on the rows that it judges in {size.step_seconds:g} s"
+            text = f"no bound fails on the rows that it judges in {seconds:g} s"
             yield replace(about, remark=f"{workload.form}: {text}")
             continue
         columns = {name: workload.columns[name][-rows:] for name in sorted({*names_read(formula)})}
@@ -84,13 +69,13 @@ def compare(
         try:
             for own in _with_stretches(columns):
                 question = Question(formula, own)
-                theirs = WAYS_OF[label].truths(peers[label], question)
+                theirs = one.truths(question)
                 both += zip(answers(question, ask_monitor), theirs, strict=True)
         except (PeerError, UntranslatableError, RvmonError) as error:
             yield replace(about, remark=str(error).splitlines()[0])
             continue
         both = [pair for pair in both if None not in pair]
-        equal, false = sum(one is its for one, its in both), sum(not one for one, _ in both)
+        equal, false = sum(ours is its for ours, its in both), sum(not ours for ours, _ in both)
         yield replace(about, equal=equal, compared=len(both), false=false)
 
 
@@ -102,17 +87,13 @@ def _with_stretches(columns: Columns) -> Iterator[Columns]:
         yield {**columns, name: [*column[:half], *[column[half]] * (len(column) - half)]}
 
 
-def margins_alike(workload: Workload, environment: Environment) -> Iterator[Agreement]:
+def margins_alike(workload: Workload, sentil: Theirs) -> Agreement:
     """Whether SENTIL's figures are ours: by arrays, a sample at a time, and as it is required.
 
     It counts a window that the trace cuts short as it is; ours is then no single number.
     """
-    way = WAYS["sentil"]
-    if way.package not in environment.versions:
-        return
     columns = {name: list(column[:MEASURED_ROWS]) for name, column in workload.columns.items()}
-    with Peer(environment.python, way.adapter) as peer:
-        theirs = way.says(peer, Question(workload.formulas[0], columns))
+    theirs = sentil.way.says(sentil.peer, Question(workload.formulas[0], columns))
     spec = loads(margin_text(workload))
     arrays = {name: np.array(column) for name, column in columns.items()}
     offline = spec.robustness({"t_ns": np.arange(MEASURED_ROWS), **arrays}, time="t_ns")
@@ -125,4 +106,4 @@ def margins_alike(workload: Workload, environment: Environment) -> Iterator[Agre
             ours += [(one.t, one.robustness.low) for one in found]
     pairs = [(low, theirs[t]) for t, low in ours if t in sure]
     equal, false = sum(own == its for own, its in pairs), sum(own < 0 for own, _ in pairs)
-    yield Agreement("sentil", workload.name, workload.form, equal, len(pairs), false)
+    return Agreement("sentil", workload.name, workload.form, equal, len(pairs), false)

@@ -126,12 +126,6 @@ def _counted(count: int) -> list[Row]:
     return [{"a": n % 2 == 0, "x": float(n % 7), "e": n % 3 == 0} for n in range(count)]
 
 
-def cliffs(*, rows: int = 20_000, repeats: int = 5) -> None:
-    """Hard streams beside their quiet neighbours."""
-    for line in lines(rows, repeats):
-        print(line, flush=True)
-
-
 def lines(count: int, repeats: int) -> Iterator[str]:
     """The table: medians of passes in turn."""
     head = ("stream", "CPU per sample", "neighbour", "CPU per sample", "ratio", "wanted", "met")

@@ -1,8 +1,8 @@
 """R2U2's C monitor, built from a clone of its repository for the formulas of each workload.
 
 C2PO compiles the formulas as it does by itself, and R2U2's C gets the sizes that C2PO writes, and
--O3. Its loop goes over bytes in memory. Each formula's verdict at each row is compared with ours:
-R2U2 says that one is false at the last row of its window, ours when it is over, one row later.
+-O3. Its loop goes over bytes in memory. R2U2 says that a formula is false at the last row of its
+window, ours when it is over, one row later.
 """
 
 from __future__ import annotations
@@ -11,30 +11,31 @@ import re
 import subprocess
 import sys
 import tempfile
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from benchmarks.peers.client import PeerError
 from benchmarks.peers.dialects import spelling, translate
-from benchmarks.peers.ways import Question, answers, ask_monitor
-from benchmarks.timing.agreement import Agreement
-from benchmarks.timing.race import Pass, passed
+from benchmarks.peers.ways import Question
+from benchmarks.timing.race import Contender, Pass, passed
 from benchmarks.timing.workload import Workload
 from tests.tools.common_fragment import UntranslatableError
 
 LOOP = Path(__file__).parents[1] / "peers" / "r2u2_native" / "loop.c"
-COMPARED_ROWS = 2_000
 
 
-@dataclass(slots=True)
-class R2u2:
+@dataclass
+class R2u2(Contender):
     """A contender; what is built for one workload serves until there is another."""
 
     source: Path  # the clone
     label: str = "R2U2 C, memory"
     folder: Path = field(default_factory=lambda: Path(tempfile.mkdtemp()))  # for what is built
     built_for: str = ""  # the name of the workload
+    names: Sequence[str] = ()  # of its columns
     sizes: tuple[str, ...] = ()
+    is_asked = True
 
     def prepare(self, workload: Workload, rows: int) -> None:
         """Build it unless that is done, and write the rows.
@@ -50,7 +51,7 @@ class R2u2:
                 self._build(workload)
             except subprocess.CalledProcessError as error:
                 raise PeerError((error.stderr or "it does not compile").splitlines()[-1]) from None
-            self.built_for = workload.name
+            self.built_for, self.names = workload.name, list(workload.columns)
         columns = [column[:rows] for column in workload.columns.values()]
         self.sizes = str(len(columns)), str(len(workload.formulas))
         (self.folder / "rows").write_bytes(
@@ -61,29 +62,22 @@ class R2u2:
         own = self.folder
         return passed([own / "loop", own / "spec.bin", own / "rows", *self.sizes], later=1)
 
-    def close(self) -> None:
-        """Nothing is held."""
-
-    def agreement(self, workload: Workload) -> Agreement:
-        """Whether all formulas have the same verdict at each of some rows."""
-        columns = {name: column[:COMPARED_ROWS] for name, column in workload.columns.items()}
+    def truths(self, question: Question) -> Sequence[bool | None]:
+        """The verdicts of the first formula."""
+        nothing = [False] * question.ticks
+        columns = [question.columns.get(name, nothing) for name in self.names]
         path = self.folder / "rows.csv"
-        cells = zip(*columns.values(), strict=True)
-        path.write_text("".join(",".join(str(int(cell)) for cell in row) + "\n" for row in cells))
-        theirs: list[list[bool]] = [[] for _ in workload.formulas]
+        rows = zip(*columns, strict=True)
+        path.write_text(
+            "".join(",".join(str(int(bool(cell))) for cell in row) + "\n" for row in rows)
+        )
+        found: list[bool | None] = []
         for line in _run(self.folder / "r2u2", self.folder / "spec.bin", path).splitlines():
             number, _, said = line.partition(":")
             row, _, truth = said.partition(",")
-            own = theirs[int(number)]  # of rows that are alike the last one is printed
-            own += [truth == "T"] * (int(row) + 1 - len(own))
-        equal = count = false = 0
-        for formula, other in zip(workload.formulas, theirs, strict=True):
-            question = Question(formula, columns)
-            for answer, verdict in zip(answers(question, ask_monitor), other, strict=False):
-                count += answer is not None
-                equal += answer is verdict
-                false += answer is False
-        return Agreement("R2U2", workload.name, workload.form, equal, count, false)
+            if number == "0":  # of rows that are alike the last one is printed
+                found += [truth == "T"] * (int(row) + 1 - len(found))
+        return found + [None] * (question.ticks - len(found))
 
     def _build(self, workload: Workload) -> None:
         names = list(workload.columns)

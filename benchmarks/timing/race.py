@@ -6,16 +6,16 @@ import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from benchmarks.peers.client import ADAPTERS, Peer, PeerError
 from benchmarks.peers.dialects import spelling, translate
 from benchmarks.peers.environment import HOME, LETTERS, Environment, packed
-from benchmarks.peers.ways import WAYS, Way
+from benchmarks.peers.ways import RTAMT_STEPPED, WAYS, Question, Way
 from benchmarks.program import in_turn
 from benchmarks.timing.workload import Workload, always_text, specification
 from tests.tools.build import scaled
@@ -66,31 +66,29 @@ class Result:
     refusals: tuple[tuple[str, str], ...] = ()  # of the others, the reason by label
 
 
-class Contender(Protocol):
+class Contender(ABC):
     """Someone who can be given a workload and passes over it again and again."""
 
     label: str
+    is_asked = False  # whether it says its verdicts, too
 
+    @abstractmethod
     def prepare(self, workload: Workload, rows: int) -> None:
         """Take the first so many rows; raise `UntranslatableError` if that cannot be done."""
 
+    @abstractmethod
     def run(self) -> Pass:
         """One pass."""
 
-    def close(self) -> None:
-        """Free what was taken."""
+    def truths(self, question: Question) -> Sequence[bool | None]:
+        """The verdict at each row, if it is asked."""
+        raise NotImplementedError
 
 
-@dataclass(slots=True)
-class Worker:
-    """A contender in a process of its own, which holds the rows and measures itself."""
+class Worker(Contender):
+    """In a process of its own, which holds the rows and measures itself."""
 
-    label: str
     peer: Peer
-    request: Callable[[Workload, int], dict[str, Any]]
-
-    def prepare(self, workload: Workload, rows: int) -> None:
-        self.peer.ask("load", **self.request(workload, rows))
 
     def run(self) -> Pass:
         answer = self.peer.ask("run")
@@ -100,6 +98,60 @@ class Worker:
         self.peer.close()
 
 
+@dataclass
+class Ours(Worker):
+    """Our monitor."""
+
+    peer: Peer
+    label: str
+    kind: str  # how it is stepped, see `ours.py`
+
+    def prepare(self, workload: Workload, rows: int) -> None:
+        columns = {name: list(column[:rows]) for name, column in workload.columns.items()}
+        if workload.section == "margins":
+            spec, period = margin_text(workload), 1
+        else:
+            period = workload.period
+            texts = [always_text(scaled(formula, period)) for formula in workload.formulas]
+            spec = specification(texts, columns)
+        asked = {"spec": spec, "kind": self.kind, "columns": columns}
+        self.peer.ask("load", rows=rows, period=period, **asked)
+
+
+def margin_text(workload: Workload) -> str:
+    """A formula as it is required from the first sample on, a tick between two samples."""
+    required = f"upon start\n  then {format_formula(workload.formulas[0])}"
+    return specification([required], workload.columns).replace("time held", "time sampled")
+
+
+@dataclass
+class Theirs(Worker):
+    """A peer."""
+
+    peer: Peer
+    label: str  # as it stands in the tables
+    way: Way  # how it is asked
+    form: str = ""  # the only form of formulas that is measured; empty: both
+    required: str = "{}"  # how a formula is demanded at every row
+    # with more formulas, passing over a few rows, or making the monitors, takes too long
+    most: int = 1_000
+    is_asked = True
+
+    def prepare(self, workload: Workload, rows: int) -> None:
+        if self.form not in ("", workload.form):
+            raise UntranslatableError(f"only {self.form} forms are measured")
+        formulas = [translate(formula, self.way.dialect) for formula in workload.formulas]
+        if len(formulas) > self.most:
+            text = f"too slow to be measured with more than {self.most} formulas"
+            raise UntranslatableError(text)
+        columns = {spelling(name): list(one[:rows]) for name, one in workload.columns.items()}
+        required = [self.required.format(one) for one in formulas]
+        self.peer.ask("load", formulas=required, kind=self.way.kind, columns=columns)
+
+    def truths(self, question: Question) -> Sequence[bool | None]:
+        return self.way.truths(self.peer, question)
+
+
 def passed(command: Sequence[str | Path], later: int = 0) -> Pass:
     """One pass of a program that measures its loop alone; it tells rows so much later than ours."""
     done = subprocess.run(command, capture_output=True, text=True, check=True)
@@ -107,8 +159,8 @@ def passed(command: Sequence[str | Path], later: int = 0) -> Pass:
     return Pass(spent, tuple(None if row < 0 else row + later for row in violated))
 
 
-@dataclass(slots=True)
-class NativeReelay:
+@dataclass
+class NativeReelay(Contender):
     """reelay's C++ monitor over bytes in memory, a process for each pass."""
 
     binary: Path
@@ -127,44 +179,15 @@ class NativeReelay:
     def run(self) -> Pass:
         return passed([self.binary, "memory", HOME / "rows.bin", *self.patterns])
 
-    def close(self) -> None:
-        """Nothing is held."""
 
-
-@dataclass(frozen=True, slots=True)
-class Entry:
-    """A peer that takes part."""
-
-    label: str  # as it stands in the tables
-    way: Way  # how it is asked
-    form: str = ""  # the only form of formulas that is measured; empty: both
-    required: str = "{}"  # how a formula is demanded at every row
-    # with more formulas, passing over a few rows, or making the monitors, takes too long
-    most: int = 1_000
-
-    def request(self, workload: Workload, rows: int) -> dict[str, Any]:
-        """What its process is asked to load."""
-        if self.form not in ("", workload.form):
-            raise UntranslatableError(f"only {self.form} forms are measured")
-        formulas = [translate(formula, self.way.dialect) for formula in workload.formulas]
-        if len(formulas) > self.most:
-            text = f"too slow to be measured with more than {self.most} formulas"
-            raise UntranslatableError(text)
-        columns = {spelling(name): list(one[:rows]) for name, one in workload.columns.items()}
-        required = [self.required.format(one) for one in formulas]
-        return {"formulas": required, "kind": self.way.kind, "columns": columns, "rows": rows}
-
-
-PEERS = (
-    Entry("reelay", WAYS["reelay-discrete"], "past", "historically({})", 100),
-    Entry("rtamt", WAYS["rtamt-discrete"], "past", "historically({})", 10),
-    Entry("mstlo", WAYS["mstlo-delayed"], "future", most=100),
-    Entry("sentil", WAYS["sentil"], required="always[0, inf]({})"),
+_SENTIL = WAYS["sentil"]
+PEERS: Sequence[tuple[Any, ...]] = (
+    ("reelay", WAYS["reelay-discrete"], "past", "historically({})", 100),
+    ("rtamt", RTAMT_STEPPED, "past", "historically({})", 10),
+    ("mstlo", WAYS["mstlo-delayed"], "future", "{}", 100),
+    ("sentil", _SENTIL, "", "always[0, inf]({})"),
 )
-MEASURED = (
-    Entry("sentil", WAYS["sentil"]),
-    Entry("sentil offline", replace(WAYS["sentil"], kind="discrete offline")),
-)
+MEASURED = (("sentil", _SENTIL), ("sentil offline", replace(_SENTIL, kind="discrete offline")))
 """Of robustness."""
 
 OURS = {
@@ -184,27 +207,12 @@ def contenders(environment: Environment, section: str) -> Iterator[Contender]:
     """All that take part in a section, ours first: with columns in memory, or row by row."""
     own = ADAPTERS.with_name("ours.py")
     for label, kind in OURS.get(section, STEPPED).items():
-        yield Worker(label, Peer(Path(sys.executable), "Rvmon", own), partial(_ours, kind))
-    for entry in MEASURED if section == "margins" else PEERS:
-        if entry.way.package in environment.versions:
-            yield Worker(entry.label, Peer(environment.python, entry.way.adapter), entry.request)
+        yield Ours(Peer(Path(sys.executable), "Rvmon", own), label, kind)
+    for label, way, *more in MEASURED if section == "margins" else PEERS:
+        if way.package in environment.versions:
+            yield Theirs(Peer(environment.python, way.adapter), label, way, *more)
     if environment.reelay is not None and section == "batch":
         yield NativeReelay(environment.reelay)
-
-
-def _ours(kind: str, workload: Workload, rows: int) -> dict[str, Any]:
-    columns = {name: list(column[:rows]) for name, column in workload.columns.items()}
-    if workload.section == "margins":
-        return {"spec": margin_text(workload), "kind": kind, "columns": columns, "rows": rows}
-    texts = [always_text(scaled(formula, workload.period)) for formula in workload.formulas]
-    spec, period = specification(texts, columns), workload.period
-    return {"spec": spec, "kind": kind, "columns": columns, "rows": rows, "period": period}
-
-
-def margin_text(workload: Workload) -> str:
-    """A formula as it is required from the first sample on, a tick between two samples."""
-    required = f"upon start\n  then {format_formula(workload.formulas[0])}"
-    return specification([required], workload.columns).replace("time held", "time sampled")
 
 
 def measure(

@@ -5,9 +5,10 @@ from typing import Any
 
 import pytest
 from benchmarks.peers.client import Peer
+from benchmarks.peers.ways import RTAMT_STEPPED
 from benchmarks.timing.agreement import Agreement, compare
-from benchmarks.timing.race import Figure
-from benchmarks.timing.workload import Size, Workload
+from benchmarks.timing.race import Figure, Theirs
+from benchmarks.timing.workload import Workload
 from tests.tools.build import once, p
 
 BOUND = 500
@@ -41,7 +42,7 @@ def check(peer: Played, ns_per_row: float) -> Agreement:
     """What is found on `once` within a bound above what is asked offline."""
     workload = Workload("online", "Recur", "past", (once(p, 0, BOUND),), {"p": COLUMN})
     timed = Figure("rtamt", ROWS, ns_per_row, ns_per_row, ns_per_row, (None,))
-    (found,) = compare(workload, [timed], {"rtamt": peer}, Size(step_seconds=SECONDS))
+    (found,) = compare(workload, [timed], [Theirs(peer, "rtamt", RTAMT_STEPPED)], SECONDS)
     return found
 
 

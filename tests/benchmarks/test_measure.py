@@ -29,9 +29,6 @@ class Fake:
         self.calls.append(self.label)
         return Pass(self.per_row * self.rows, (2,))
 
-    def close(self) -> None:
-        self.calls.append(f"{self.label} closed")
-
 
 def test_turns() -> None:
     calls: list[str] = []
