@@ -134,7 +134,7 @@ def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> Refere
 def _distance(mine: Sequence[Any], other: Sequence[Any], *, numbers: bool) -> float:
     """The distance of the values of two tracks at the same instants; `None` is unknown."""
     if not numbers:
-        return sum(map(ne, mine, other)) / len(mine)
+        return float(sum(map(ne, mine, other)) / len(mine))
     scale = max((abs(value) for value in (*mine, *other) if value is not None), default=0) or 1.0
     differences = (
         float(a is not b) if a is None or b is None else min(abs(a - b) / scale, 1.0)
