@@ -5,7 +5,6 @@ from __future__ import annotations
 BENCHMARKS = {
     "results": "the page of results: samples, columns, files, robustness, beside all peers; cliffs",
     "differential": "ours against something independent, on random cases",
-    "peers": "what other monitors say of the same formulas, and of the same faults",
     "core_mutants": "does the core's C hold a line that no test needs?",
     "models": "the model checker: states and time, beside TChecker",
     "table1": "Table 1 over many seeds, and whether runs conform to the model",

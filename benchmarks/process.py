@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import os
 import resource
 import signal
@@ -16,10 +15,6 @@ from typing import NamedTuple
 
 POLL_S = 0.005
 """Between two looks at a process; what it is told to have used includes who began it."""
-
-
-_PARENT_DEATH_SIGNAL = 1
-"""`PR_SET_PDEATHSIG` of Linux."""
 
 
 class Cost(NamedTuple):
@@ -47,24 +42,8 @@ def measured(
     environment: Mapping[str, str] | None = None,
     folder: Path | None = None,
 ) -> Cost:
-    """Run a program, at most so many seconds, in at most so many bytes.
-
-    It ends with who began it, however that ends; what it has begun itself, and nobody ends, when it
-    has computed as long as all cores could have in that time.
-    """
-    parent, library = os.getpid(), ctypes.CDLL(None)
-    cpu = int(limit * (os.cpu_count() or 1)) + 1
-
-    def bounded() -> None:
-        library.prctl(_PARENT_DEATH_SIGNAL, signal.SIGKILL)
-        if os.getppid() != parent:  # it has ended before it was asked for
-            os._exit(1)
-        resource.setrlimit(resource.RLIMIT_CPU, (cpu, cpu))
-        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-        if memory is not None:
-            resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
-
-    began = time.monotonic()
+    """Run a program, at most so many seconds, in at most so many bytes; it ends with this one."""
+    began, ended, peak = time.monotonic(), 0, 0.0
     with tempfile.TemporaryFile() as output, tempfile.TemporaryFile() as errors:
         process = subprocess.Popen(
             command,
@@ -73,16 +52,20 @@ def measured(
             stderr=errors,
             env=environment,
             cwd=folder,
-            preexec_fn=bounded,
             start_new_session=True,
         )
-        ended, peak = 0, 0.0
-        while not ended:
-            peak = max(peak, _mebibytes(process.pid))
-            if time.monotonic() > began + limit:
+        try:
+            if memory is not None:
+                resource.prlimit(process.pid, resource.RLIMIT_AS, (memory, memory))
+            while not ended:
+                peak = max(peak, _mebibytes(process.pid))
+                if time.monotonic() > began + limit:
+                    os.killpg(process.pid, signal.SIGKILL)
+                time.sleep(POLL_S)
+                ended, status, usage = os.wait4(process.pid, os.WNOHANG)
+        finally:
+            if not ended:
                 os.killpg(process.pid, signal.SIGKILL)
-            time.sleep(POLL_S)
-            ended, status, usage = os.wait4(process.pid, os.WNOHANG)
         seconds = time.monotonic() - began
         process.returncode = os.waitstatus_to_exitcode(status)
         texts = []

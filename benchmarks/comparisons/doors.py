@@ -1,14 +1,13 @@
-"""Recordings through every door, doors that lose something, and damage to all that is read."""
+"""Recordings through every door, and damage to all that is read."""
 
 from __future__ import annotations
 
-import logging
 import os
 import random
 import tempfile
 import traceback
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,7 +15,6 @@ from typing import Any
 from benchmarks.comparisons.comparison import Comparison
 from fuzz.damage import damaged
 from fuzz.targets import TARGETS, run, seeds
-from tests.rvmon.laws.lossy_doors import DOORS, outcomes
 from tests.tools.differential import Campaign, cases_of
 from tests.tools.doors import Content, content_of, doors, whole
 
@@ -64,27 +62,6 @@ def _told(spec: Spec, trace: object, arguments: dict[str, Any]) -> str:
         return type(error).__name__
 
 
-@dataclass(frozen=True, slots=True)
-class Lossy:
-    """Settings of `lost`: which doors, with commas; empty: all."""
-
-    doors: str = ""
-
-
-def judge_lost(found: Campaign, seed: int, own: Lossy, numbers: range) -> None:
-    """Doors that lose samples: no filling of what was lost may turn a green verdict."""
-    logging.disable(logging.ERROR)
-    for door in own.doors.split(",") if own.doors else DOORS:
-        with tempfile.TemporaryDirectory() as folder:
-            place, how = f"{seed}/{numbers.start}", DOORS[door]
-            for one in outcomes(door, how, len(numbers), place, Path(folder)):
-                found.counts[f"{door}: runs"] += 1
-                found.counts[f"{door}: turned by a filling that may"] += one.is_split
-                if one.overturned:
-                    found.disagreements.append(f"{one.name} overturns {', '.join(one.overturned)}")
-    logging.disable(logging.NOTSET)
-
-
 def judge_damage(found: Campaign, seed: int, numbers: range) -> None:
     """Damaged specifications, bindings, models, recordings, snapshots are read or refused."""
     os.environ["RVMON_CACHE"] = "off"
@@ -108,5 +85,4 @@ def _kept(name: str) -> list[bytes]:
 COMPARISONS = {
     "damage": Comparison(judge_damage, "inputs", part=500),
     "doors": Comparison(judge_doors, f"specifications of up to {EACH} recordings"),
-    "lost": Comparison(judge_lost, "runs through each door", Lossy(), part=500),
 }

@@ -1,8 +1,8 @@
 """How each peer is asked: a class for each, in a process of its own.
 
-A class says how it judges a formula at every tick (`judge`), what it says at each sample
-(`online`), and how it passes over rows that are laid out as it takes them (`ready`). It runs in an
-environment of the peers' own, and so imports nothing of this package.
+A class says how it judges a formula at every tick (`judge`), and how it passes over rows that are
+laid out as it takes them (`ready`). It runs in an environment of the peers' own, and so imports
+nothing of this package.
 """
 
 from __future__ import annotations
@@ -16,8 +16,6 @@ from importlib import import_module
 from typing import Any
 
 Columns = Mapping[str, list[Any]]
-Row = Mapping[str, float]
-Update = Callable[[float, Row], Any]
 Pass = Callable[[], float | None]
 """A pass over all rows: the first at which the formula was false."""
 
@@ -33,10 +31,6 @@ class Adapter(ABC):
     @abstractmethod
     def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
         """The verdict or the robustness at every tick."""
-
-    @abstractmethod
-    def online(self, formula: str, kind: str, names: Iterable[str]) -> Update:
-        """A monitor that is told a sample, and answers."""
 
     @abstractmethod
     def laid(self, columns: Columns) -> Any:
@@ -61,17 +55,6 @@ class Adapter(ABC):
             violated.append(passed())
             spent += time.process_time_ns() - began
         return {"cpu_ns": spent, "violated": violated}
-
-    def feed(self, formula: str, kind: str, samples: list[tuple[float, Row]]) -> dict[str, Any]:
-        """What the peer says at each sample, or the error that it raises."""
-        update = self.online(formula, kind, {name for _, row in samples for name in row})
-        said = []
-        for t, row in samples:
-            try:
-                said.append(update(t, row))
-            except Exception as error:  # noqa: BLE001 - whatever a peer raises is its answer
-                said.append(f"{type(error).__name__}: {error}".splitlines()[0][:160])
-        return {"said": said}
 
 
 def rows_of(columns: Columns, number: Callable[[Any], Any] = lambda cell: cell) -> list[Any]:
@@ -110,13 +93,6 @@ class Reelay(Adapter):
             if semantics != "sparse" or row != rows[tick - 1] or tick in (0, ticks):
                 changes += monitor.update({"time": tick, **row})
         return {"values": per_tick(((one["time"], one["value"]) for one in changes), ticks)}
-
-    def online(self, formula: str, kind: str, names: Iterable[str]) -> Update:
-        """In dense time: the changes."""
-        monitor = self.peer.dense_timed_monitor(pattern=formula)
-        return lambda t, row: [
-            [one["time"], one["value"]] for one in monitor.update({"time": t, **row})
-        ]
 
     def laid(self, columns: Columns) -> list[Any]:
         return rows_of(columns)
@@ -157,12 +133,14 @@ class Rtamt(Adapter):
     def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
         """The robustness at every tick; offline, or sample by sample."""
         ticks = len(next(iter(columns.values())))
-        if kind.endswith("online"):
-            update = self.online(formula, kind, columns)
-            said = [update(tick, row) for tick, row in enumerate(rows_of(columns, float))]
-            if kind.startswith("dense"):
-                said = per_tick([one for changes in said for one in changes], ticks)
-            return {"values": said}
+        if kind == "discrete online":
+            update = self._specified("DiscreteTimeOnline", formula, columns).update
+            return {"values": [update(tick, row) for tick, row in self.laid(columns)]}
+        if kind == "dense online":
+            update = self._specified("DenseTimeOnline", formula, columns).update
+            rows = self.laid(columns)
+            said = [update(*([name, [[tick, x]]] for name, x in row)) for tick, row in rows]
+            return {"values": per_tick([one for changes in said for one in changes], ticks)}
         if kind == "discrete":
             spec = self._specified("DiscreteTime", formula, columns)
             numbers = {name: [*map(float, column)] for name, column in columns.items()}
@@ -178,14 +156,6 @@ class Rtamt(Adapter):
             for name, column in columns.items()
         ]  # fmt: skip
         return {"values": per_tick(spec.evaluate(*changes), ticks)}
-
-    def online(self, formula: str, kind: str, names: Iterable[str]) -> Update:
-        """A number in discrete time, changes in dense time."""
-        if kind == "discrete online":
-            spec = self._specified("DiscreteTimeOnline", formula, names)
-            return lambda t, row: spec.update(t, list(row.items()))
-        spec = self._specified("DenseTimeOnline", formula, names)
-        return lambda t, row: spec.update(*([name, [[t, value]]] for name, value in row.items()))
 
     def laid(self, columns: Columns) -> list[Any]:
         return [(t, list(row.items())) for t, row in enumerate(rows_of(columns, float))]
@@ -216,25 +186,16 @@ class Mstlo(Adapter):
 
     def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
         """The verdict at every tick up to the last one, in the semantics that `kind` names."""
-        update, rows = self.online(formula, kind, columns), rows_of(columns)
+        monitor, rows = self._monitor(formula, kind), rows_of(columns, float)
+        known = monitor.get_signal_identifiers()
         verdicts: dict[float, Any] = {}
         for tick, row in enumerate(rows):
             is_whole = tick in (0, len(rows) - 1)
-            new = {n: v for n, v in row.items() if is_whole or v != rows[tick - 1][n]}
-            verdicts.update(update(tick, new))
+            for name, value in row.items():
+                if name in known and (is_whole or value != rows[tick - 1][name]):
+                    verdicts.update(monitor.update(name, value, float(tick)).verdicts())
         last = int(max(verdicts, default=-1)) + 1
         return {"values": per_tick(sorted(verdicts.items()), last) + [None] * (len(rows) - last)}
-
-    def online(self, formula: str, kind: str, names: Iterable[str]) -> Update:
-        """Instants with their verdicts."""
-        monitor = self._monitor(formula, kind)
-        known = monitor.get_signal_identifiers()
-        return lambda t, row: [
-            list(one)
-            for name, value in row.items()
-            if name in known
-            for one in monitor.update(name, float(value), float(t)).verdicts()
-        ]
 
     def laid(self, columns: Columns) -> list[Any]:
         """One call for each signal and row."""
@@ -274,22 +235,6 @@ class Sentil(Adapter):
         named = {name: [*map(float, column)] for name, column in columns.items()}
         return self.peer.Trace([*map(float, ticks)], named)
 
-    def _monitor(self, formula: str) -> tuple[Any, list[str]]:
-        """A monitor, and the names that it reads in its order."""
-        monitor = self.peer.OnlineMonitor(self.peer.parse(formula))
-        named = {monitor.symbol_index(name): name for name in set(re.findall(r"v_\w+", formula))}
-        return monitor.update_packed, [named[k] for k in range(monitor.variable_count)]
-
-    def online(self, formula: str, kind: str, names: Iterable[str]) -> Update:
-        """The least and the greatest that the robustness can be."""
-        update, order = self._monitor(formula)
-
-        def told(t: float, row: Row) -> dict[str, float]:
-            found = update(t, [row[name] for name in order])
-            return {"from": found.lower, "to": found.upper}
-
-        return told
-
     def laid(self, columns: Columns) -> Columns:
         return columns
 
@@ -304,8 +249,10 @@ class Sentil(Adapter):
                 signal(trace)
 
             return measured
-        update, order = self._monitor(formula)
-        cells = zip(*(map(float, laid[name]) for name in order), strict=True)
+        monitor = self.peer.OnlineMonitor(self.peer.parse(formula))
+        named = {monitor.symbol_index(name): name for name in set(re.findall(r"v_\w+", formula))}
+        order, update = sorted(named), monitor.update_packed
+        cells = zip(*(map(float, laid[named[k]]) for k in order), strict=True)
         rows = [(float(t), list(row)) for t, row in enumerate(cells)]
 
         def passed() -> float | None:

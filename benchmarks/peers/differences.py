@@ -12,7 +12,7 @@ from pathlib import Path
 
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import spelling
-from benchmarks.peers.environment import Environment, prepare
+from benchmarks.peers.environment import Environment
 from benchmarks.peers.ways import Cell, Question, answers, ask_oracle
 from benchmarks.program import table
 
@@ -66,11 +66,6 @@ def answer(difference: Difference, environment: Environment) -> list[Cell] | str
     if "robustness" in kind or adapter == "Rtamt":
         return [None if not value or value != value else value > 0 for value in values]
     return [None if value is None else bool(value) for value in values]
-
-
-def differences() -> None:
-    """Where peers and the law differ."""
-    print("\n".join(lines(prepare())))
 
 
 def lines(environment: Environment) -> Iterator[str]:

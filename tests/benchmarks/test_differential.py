@@ -19,7 +19,6 @@ FEW = {
     "forecasts": (15, ["words=5"], "formulas", 12),
     "fillings": (20, ["stretches=true", "fillings=3"], "verdict P", 1),
     "doors": (1, [], "CSV", 4),
-    "lost": (8, ["doors=live,stdin"], "stdin: runs", 8),
     "networks": (2, [], "runs checked as concrete runs", 10),
     "logics": (5, [], "CTL: true", 5),
     "damage": (60, [], "spec: refused", 1),
