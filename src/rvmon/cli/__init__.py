@@ -104,7 +104,8 @@ def guarded(parsed: Callable[[], argparse.Namespace]) -> int:
         with interrupted_by_sigterm():
             try:
                 namespace = parsed()
-            except SystemExit as stop:  # argparse has reported what is wrong
+            except SystemExit as stop:  # argparse has reported what is wrong, or given help
+                sys.stdout.flush()
                 return stop.code if isinstance(stop.code, int) else 2
             with at_most(getattr(namespace, "most_megabytes", None)):
                 code = namespace.run(namespace)

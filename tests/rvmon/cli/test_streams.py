@@ -60,9 +60,11 @@ def test_a_reader_that_leaves_is_no_fault_and_no_success(folder):
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/full"), reason="no full device")
-def test_a_full_disk_is_told(folder):
+@pytest.mark.parametrize("words", [("run", "door.rv", "run.jsonl"), ("--help",), ("run", "--help")])
+def test_a_full_disk_is_told(folder, words, monkeypatch):
+    monkeypatch.delenv("PYTHONUNBUFFERED", raising=False)  # argparse heeds no error of its writing
     with open("/dev/full", "w") as full:
-        done = rvmon(folder, "run", "door.rv", "run.jsonl", stdout=full)
+        done = rvmon(folder, *words, stdout=full)
     assert done.returncode == 2
     assert b"error: the output cannot be written" in done.stderr
 
