@@ -174,15 +174,11 @@ def count_of(hits: Hits, group: str, item: str) -> int:
     return 0 if hit is None else hit.count
 
 
-def is_covered(hits: Hits, group: Group, item: Item) -> bool:
-    """Whether an item reached its goal."""
-    return count_of(hits, group.name, item.name) >= item.goal
-
-
 def score(hits: Hits, group: Group) -> Score:
     """The coverage of a group; ignored and illegal items are no goals."""
     wanted = [item for item in group.items.values() if item.kind is BinKind.GOAL]
-    return Score(len(wanted), sum(is_covered(hits, group, item) for item in wanted))
+    covered = sum(count_of(hits, group.name, item.name) >= item.goal for item in wanted)
+    return Score(len(wanted), covered)
 
 
 def share(hits: Hits, model: Model) -> float:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from msgspec import Struct
@@ -14,9 +13,6 @@ from numpy.typing import NDArray
 from rvmon.coverage import UNKNOWN, Coverage, Score, TestRecord, weighted
 from rvmon.language.checked.properties import BinKind
 from rvmon.verdicts import Verdict
-
-if TYPE_CHECKING:
-    import numpy as np
 
 
 class Goals(Struct, frozen=True, eq=False):

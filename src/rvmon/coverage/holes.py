@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
+from operator import eq
 
 from msgspec import Struct
 
@@ -44,14 +45,13 @@ def nearness(goal: Goal, hits: Hits, model: Model) -> float:
     seen = hits.get(group.name, {})
     match group.subject:
         case Subject.CROSS:
-            return _near_cross(group, goal[1], [*seen])
+            return _in_common(cross_parts(goal[1]), seen) / max(1, len(group.axes))
         case Subject.TRANSITIONS:
             return _near_transition(goal, hits)
         case Subject.STATEMENTS | Subject.BRANCHES:
             return _near_code(goal, hits)
         case _:
-            wanted = max(1, len(group.items))
-            return len(seen) / wanted
+            return len(seen) / max(1, len(group.items))
 
 
 def cross_parts(name: str) -> list[str]:
@@ -63,13 +63,10 @@ def cross_parts(name: str) -> list[str]:
     return [quoted or plain for quoted, plain in _PART.findall(name)]
 
 
-def _near_cross(group: Group, wanted: str, seen: list[str]) -> float:
-    bins = cross_parts(wanted)
-    met = [
-        sum(one == other for one, other in zip(bins, cross_parts(name), strict=False))
-        for name in seen
-    ]
-    return max(met, default=0) / max(1, len(group.axes))
+def _in_common(bins: Sequence[str], seen: Iterable[str]) -> int:
+    """The most bins that a combination of some names shares with others."""
+    met = (sum(map(eq, bins, cross_parts(name))) for name in seen)
+    return max(met, default=0)
 
 
 def _near_transition(goal: Goal, hits: Hits) -> float:
@@ -165,13 +162,7 @@ def _of_cross(group: Group, name: str, model: Model, hits: Hits) -> tuple[str, s
         for axis, bin_ in named
         if axis in model.groups and not count_of(hits, axis, bin_)
     ]
-    most = max(
-        (
-            sum(one == other for one, other in zip(bins, cross_parts(seen), strict=True))
-            for seen in hits.get(group.name, {})
-        ),
-        default=0,
-    )
+    most = _in_common(bins, hits.get(group.name, {}))
     why = f"no run has shown {' or '.join(never)}"
     if not never:
         why = f"each of them was seen, {most} of {len(bins)} at one instant"

@@ -16,7 +16,7 @@ from rvmon.core.pack import pack
 from rvmon.coverage import Group, Hit, Hits, Item, Model, Subject, combination, model_of
 from rvmon.language.checked.classify import is_pulse
 from rvmon.language.checked.formula import Formula
-from rvmon.language.checked.properties import BinKind, Coverpoint, Cross
+from rvmon.language.checked.properties import BinKind, Cross
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.print import format_formula
 from rvmon.logic.formula import Factory
@@ -95,17 +95,13 @@ class Bins:
 def bin_groups(spec: CheckedSpec) -> Iterator[Group]:
     """The coverpoints and crosses of a specification as groups of a model."""
     for point in spec.coverpoints.values():
-        yield _of_point(point)
+        items = {
+            bin_.name: Item(bin_.name, bin_.kind, point.goal, format_formula(bin_.formula))
+            for bin_ in point.bins
+        }
+        yield Group(point.name, Subject.COVERPOINT, items, point.weight)
     for cross in spec.crosses.values():
         yield _of_cross(cross, spec)
-
-
-def _of_point(point: Coverpoint) -> Group:
-    items = {
-        bin_.name: Item(bin_.name, bin_.kind, point.goal, format_formula(bin_.formula))
-        for bin_ in point.bins
-    }
-    return Group(point.name, Subject.COVERPOINT, items, point.weight)
 
 
 def _of_cross(cross: Cross, spec: CheckedSpec) -> Group:

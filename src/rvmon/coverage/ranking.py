@@ -8,9 +8,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 from msgspec import Struct
-from numpy.typing import NDArray
 
-from rvmon.coverage import Coverage
 from rvmon.coverage.analysis import Answers, Step
 
 MOST_NODES = 20_000  # the most nodes of the search tree, about a second's worth
@@ -208,15 +206,6 @@ def fewest(answers: Answers) -> Smallest:
     return smallest(rows, {item: int(answers.goals.goal[item]) for item in reached})
 
 
-def _weights(coverage: Coverage, items: NDArray[np.int64]) -> list[float]:
-    """The weight of each group in the total, relative to its subject; see `weighted`."""
-    groups = [*coverage.model.groups.values()]
-    whole: Counter[str] = Counter()
-    for group, count in zip(groups, items, strict=True):
-        whole[group.subject] += group.weight if count else 0
-    return [group.weight / max(1, whole[group.subject]) for group in groups]
-
-
 def ranking(answers: Answers, places: Collection[int] | None = None) -> list[Step]:
     """A greedy order of tests that reaches the coverage of all.
 
@@ -231,8 +220,13 @@ def ranking(answers: Answers, places: Collection[int] | None = None) -> list[Ste
     functions", 1978; Minoux, "Accelerated greedy algorithms", 1978.
     """
     coverage, goals, reached = answers.coverage, answers.goals, answers.covered
-    items = np.bincount(goals.group[goals.wanted], minlength=len(coverage.model.groups))
-    weights = np.array(_weights(coverage, items))
+    groups = [*coverage.model.groups.values()]
+    items = np.bincount(goals.group[goals.wanted], minlength=len(groups))
+    # The weight of each group in the total, relative to its subject; see `weighted`.
+    whole: Counter[str] = Counter()
+    for group, count in zip(groups, items, strict=True):
+        whole[group.subject] += group.weight if count else 0
+    weights = np.array([group.weight / max(1, whole[group.subject]) for group in groups])
     worth = np.where(reached, weights[goals.group] / np.maximum(items[goals.group], 1), 0.0)
     worth /= np.maximum(goals.goal, 1)
     left = np.where(reached, goals.goal, 0)

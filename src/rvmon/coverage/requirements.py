@@ -182,10 +182,11 @@ class WatchedRequirement:
 def deadline_of(required: rv.Formula) -> int | None:
     """The deadline in ticks of a consequent `F[0,b]` or `U[0,b]`; else `None`."""
     match required:
-        case rv.Unary(op=rv.UnaryOp.EVENTUALLY, interval=interval):
-            return None if interval is None else interval.high
-        case rv.Binary(op=rv.BinaryOp.UNTIL, interval=interval):
-            return None if interval is None else interval.high
+        case (
+            rv.Unary(op=rv.UnaryOp.EVENTUALLY, interval=rv.Interval(high=high))
+            | rv.Binary(op=rv.BinaryOp.UNTIL, interval=rv.Interval(high=high))
+        ):
+            return high
         case _:
             return None
 

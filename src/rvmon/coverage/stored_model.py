@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 import msgspec
@@ -50,10 +50,7 @@ def stored_of(model: Model) -> Stored:
             group.subject,
             group.weight,
             position,
-            {
-                axis: {name: place for place, name in enumerate(bins)}
-                for axis, bins in group.axes.items()
-            },
+            {axis: {name: n for n, name in enumerate(bins)} for axis, bins in group.axes.items()},
             group.title,
             {
                 item.name: StoredItem(item.kind, item.goal, place, item.text)
@@ -69,13 +66,12 @@ def model_from(stored: Stored) -> Model:
     groups = {}
     for name in sorted(stored, key=lambda name: (stored[name].position, name)):
         group = stored[name]
-        items = {
-            item: Item(item, stored_item.kind, stored_item.goal, stored_item.text)
-            for item, stored_item in sorted(
-                group.items.items(), key=lambda named: (named[1].position, named[0])
-            )
+        ordered = sorted(group.items.items(), key=lambda named: (named[1].position, named[0]))
+        items = {item: Item(item, one.kind, one.goal, one.text) for item, one in ordered}
+        axes = {
+            axis: sorted(bins, key=lambda name: (bins[name], name))
+            for axis, bins in group.axes.items()
         }
-        axes = {axis: _in_order(bins) for axis, bins in group.axes.items()}
         groups[name] = Group(name, group.subject, items, group.weight, axes, group.title)
     return Model(groups)
 
@@ -132,34 +128,21 @@ def write_groups(
     for name, group in more.items():
         own = known.get(name)
         axes = _united(own.axes, group.axes) if own is not None else group.axes
+        encoded = msgspec.json.encode(list(axes.items()), order="deterministic").decode()
         (number,) = database.execute(
             "INSERT INTO groups (name, subject, weight, axes, position, title) "
             "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (name) DO UPDATE SET axes = excluded.axes, "
             "position = min(position, excluded.position), title = max(title, excluded.title) "
             "RETURNING id",
-            (
-                name,
-                group.subject,
-                group.weight,
-                msgspec.json.encode(list(axes.items()), order="deterministic").decode(),
-                group.position,
-                group.title,
-            ),
+            (name, group.subject, group.weight, encoded, group.position, group.title),
         ).fetchone()
         database.executemany(
             "INSERT INTO items (owner, name, kind, goal, position, text) "
             "VALUES (?, ?, ?, ?, ?, ?) ON CONFLICT (owner, name) DO UPDATE SET "
             "position = min(position, excluded.position), text = max(text, excluded.text)",
             (
-                (
-                    number,
-                    item,
-                    stored_item.kind,
-                    stored_item.goal,
-                    stored_item.position,
-                    stored_item.text,
-                )
-                for item, stored_item in group.items.items()
+                (number, item, one.kind, one.goal, one.position, one.text)
+                for item, one in group.items.items()
             ),
         )
 
@@ -182,7 +165,7 @@ def _refuse_conflict(
     for what, before, after in (
         ("is about", own.subject.value, other.subject.value),
         ("has weight", own.weight, other.weight),
-        ("has the axes", _listed(own.axes), _listed(other.axes)),
+        ("has the axes", *(", ".join(one.axes) or "none" for one in (own, other))),
     ):
         if before != after:
             raise CoverageError(
@@ -201,14 +184,6 @@ def _refuse_conflict(
 def _meaning(item: StoredItem) -> str:
     hits = "1 hit" if item.goal == 1 else f"{item.goal} hits"
     return f"a goal of {hits}" if item.kind is BinKind.GOAL else item.kind.value
-
-
-def _listed(names: Iterable[str]) -> str:
-    return ", ".join(names) or "none"
-
-
-def _in_order(places: Mapping[str, int]) -> Sequence[str]:
-    return sorted(places, key=lambda name: (places[name], name))
 
 
 def _united(

@@ -22,6 +22,7 @@ from rvmon.verdicts import Verdict
 
 _BYTES = 20  # bytes per item hit: four for its id, eight for the count, eight for the first instant
 
+_TEXTS = ("campaign", "name", "strategy", "recording", "system", "error")
 _COLUMNS = (
     "digest, campaign, name, strategy, recording, seed, system, verdicts, ending, error, "
     "number, seconds, recorded, expected, origin, hits"
@@ -70,31 +71,17 @@ def write_entries(
     database: sqlite3.Connection, entries: Iterable[Entry], ids: NDArray[np.int64]
 ) -> None:
     """Write tests; those already stored are not added again."""
-    database.executemany(
-        _WRITE,
-        (
-            (
-                entry.digest,
-                record.campaign,
-                record.name,
-                record.strategy,
-                record.recording,
-                None if record.seed is None else str(record.seed),
-                record.system,
-                _json(record.verdicts),
-                record.ending,
-                record.error,
-                record.number,
-                float(record.seconds),
-                record.when,
-                _json(record.expected),
-                record.origin,
-                _packed(entry.row, ids),
-            )
-            for entry in entries
-            for record in [entry.record]
-        ),
-    )
+    database.executemany(_WRITE, (_stored(entry, ids) for entry in entries))
+
+
+def _stored(entry: Entry, ids: NDArray[np.int64]) -> tuple[object, ...]:
+    """A test in the order of the columns."""
+    test = entry.record
+    return (
+        entry.digest, test.campaign, test.name, test.strategy, test.recording, _seed(test),
+        test.system, _json(test.verdicts), test.ending, test.error, test.number,
+        float(test.seconds), test.when, _json(test.expected), test.origin, _packed(entry.row, ids),
+    )  # fmt: skip
 
 
 def read_entries(
@@ -131,30 +118,22 @@ def read_entries(
 def _digest(test: TestRecord, flat: list[tuple[str, str, int, int | None]]) -> str:
     """The identity of a test: everything but where and when it was recorded, and its duration."""
     content = (
-        test.campaign,
-        test.name,
-        test.strategy,
-        None if test.seed is None else str(test.seed),
-        test.system,
-        test.verdicts,
-        test.ending,
-        test.error,
-        test.expected,
-        flat,
-    )
+        test.campaign, test.name, test.strategy, _seed(test), test.system, test.verdicts,
+        test.ending, test.error, test.expected, flat,
+    )  # fmt: skip
     return hashlib.sha256(msgspec.json.encode(content, order="deterministic")).hexdigest()
+
+
+def _seed(test: TestRecord) -> str | None:
+    """The seed as text, as it may be larger than the numbers of SQLite."""
+    return None if test.seed is None else str(test.seed)
 
 
 def _storable(test: TestRecord) -> TestRecord:
     """The record as it can be stored: with the present time by default, and valid text only."""
     return replace(
         test,
-        name=_text(test.name),
-        campaign=_text(test.campaign),
-        strategy=_text(test.strategy),
-        recording=_text(test.recording),
-        system=_text(test.system),
-        error=_text(test.error),
+        **{name: _text(getattr(test, name)) for name in _TEXTS},
         verdicts={name: Verdict(verdict) for name, verdict in test.verdicts.items()},
         ending=Ending(test.ending),
         when=time.time_ns() if test.when is None else test.when,
@@ -196,21 +175,12 @@ def _entry(columns: tuple[Any, ...], ids: NDArray[np.int64], order: NDArray[np.i
     digest, campaign, name, strategy, recording, seed, system, verdicts, *rest = columns
     ending, error, number, seconds, recorded, expected, origin, hits = rest
     record = TestRecord(
-        str(name),
-        str(campaign),
-        str(strategy),
-        str(recording),
-        None if seed is None else int(seed),
-        str(system),
-        msgspec.json.decode(verdicts, type=dict[str, Verdict]),
-        Ending(ending),
-        str(error),
-        int(number),
-        float(seconds),
-        int(recorded),
-        msgspec.json.decode(expected, type=dict[str, str]),
-        int(origin),
-    )
+        str(name), str(campaign), str(strategy), str(recording),
+        None if seed is None else int(seed), str(system),
+        msgspec.json.decode(verdicts, type=dict[str, Verdict]), Ending(ending), str(error),
+        int(number), float(seconds), int(recorded),
+        msgspec.json.decode(expected, type=dict[str, str]), int(origin),
+    )  # fmt: skip
     return Entry(str(digest), record, _unpacked(hits, ids, order))
 
 
