@@ -14,7 +14,7 @@ from rvmon.cdv.coverage import coverage_model, covered_share
 from rvmon.cdv.sequential_test import Decision
 from rvmon.coverage import Ending
 from rvmon.errors import UnknownNameError
-from rvmon.report.junit import add_suite, as_text
+from rvmon.report.junit import add_suite, as_text, case_of
 from rvmon.texts import counted, shown
 from rvmon.verdicts import Verdict
 
@@ -224,7 +224,7 @@ def _gated(
     for (robot, strategy), tests in groups.items():
         gate = campaign.gates.get(strategy, Gate())
         place = f"{strategy}, {robot}" if strategy else robot
-        count = f"{len(tests)} test{'s' if len(tests) > 1 else ''}"
+        count = counted(len(tests), "test")
         for name in requirements[robot]:
             if name not in gate.untriggered:
                 seen = {test.outcome.verdicts[name] for test in tests}
@@ -280,11 +280,12 @@ def junit_xml(campaign: str, judgement: CampaignJudgement) -> str:
         groups.setdefault(f"{job.robot}.{job.test.strategy}", []).append(test)
     for name, tests in groups.items():
         add_suite(root, f"{campaign}.{name}", [_case(test) for test in tests])
-    together = [_check(check, what) for check, what in judgement.checks.items()]
+    together = [
+        case_of(check, "failure" if what else "", [what])
+        for check, what in judgement.checks.items()
+    ]
     if judgement.cut_short:
-        case = ET.Element("testcase", name="all tests are played")
-        ET.SubElement(case, "error", message=shown(judgement.cut_short))
-        together.append(case)
+        together.append(case_of("all tests are played", "error", [judgement.cut_short]))
     if together:
         add_suite(root, campaign, together)
     return as_text(root)
@@ -292,27 +293,14 @@ def junit_xml(campaign: str, judgement: CampaignJudgement) -> str:
 
 def _case(judgement: TestJudgement) -> ET.Element:
     test, outcome = judgement.played.job.test, judgement.played.outcome
-    case = ET.Element("testcase", name=shown(test.name), time=f"{outcome.seconds:.3f}")
-    properties = ET.SubElement(case, "properties")
     facts = {"seed": str(test.seed), "purpose": test.text, "planted fault": test.mutation or ""}
-    for name, verdict in outcome.verdicts.items():
-        facts[name] = verdict.value
-    for name, value in facts.items():
-        if value:
-            ET.SubElement(properties, "property", name=shown(name), value=shown(value))
+    facts |= {name: verdict.value for name, verdict in outcome.verdicts.items()}
+    kind, reasons = "", [*judgement.wrong[:1], *judgement.wrong]
     if judgement.wrong:
         ended = outcome.ending is not Ending.COMPLETED and test.mutation is None
-        element = ET.SubElement(
-            case, "error" if ended else "failure", message=shown(judgement.wrong[0])
-        )
-        element.text = shown("\n".join(judgement.wrong))
+        kind = "error" if ended else "failure"
     elif judgement.known:
-        ET.SubElement(case, "skipped", message=shown("; ".join(judgement.known)))
-    return case
-
-
-def _check(check: str, what: str) -> ET.Element:
-    case = ET.Element("testcase", name=shown(check))
-    if what:
-        ET.SubElement(case, "failure", message=shown(what))
+        kind, reasons = "skipped", ["; ".join(judgement.known)]
+    case = case_of(test.name, kind, reasons, facts.items())
+    case.set("time", f"{outcome.seconds:.3f}")
     return case

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
 from rvmon.report.wording import full_reason, without_attempts
@@ -34,18 +34,32 @@ def junit_xml(
         failures = known.failures(report)
         cases = []
         for name, verdict in report.verdicts.items():
-            cases.append(_case(report, name, verdict, spec.requirements[name]))
-            if verdict is Verdict.FAIL and name not in failures:
-                _accept(cases[-1], known.expected(report)[name])
-        for hit in report.illegal:
-            cases.append(ET.Element("testcase", name=shown(f"{hit.group}: {hit.item}")))
-            ET.SubElement(cases[-1], "failure", message=shown(hit.sentence(report.origin)))
+            accepted = verdict is Verdict.FAIL and name not in failures
+            why = known.expected(report)[name] if accepted else ""
+            cases.append(_case(report, name, verdict, spec.requirements[name], why))
+        cases += [
+            case_of(f"{hit.group}: {hit.item}", "failure", [hit.sentence(report.origin)])
+            for hit in report.illegal
+        ]
         add_suite(root, report.trace or spec.name, cases)
     for trace, message in broken:
-        case = ET.Element("testcase", name="recording")
-        ET.SubElement(case, "error", message=shown(message))
-        add_suite(root, trace, [case])
+        add_suite(root, trace, [case_of("recording", "error", [message])])
     return as_text(root)
+
+
+def case_of(
+    name: str, kind: str = "", reasons: Sequence[str] = (), facts: Iterable[tuple[str, str]] = ()
+) -> ET.Element:
+    """A case: an `error`, a `failure` or `skipped` for some reasons; with facts but empty ones."""
+    case = ET.Element("testcase", name=shown(name))
+    stated = [(word, fact) for word, fact in facts if fact]
+    properties = ET.SubElement(case, "properties") if stated else case
+    for word, fact in stated:
+        ET.SubElement(properties, "property", name=shown(word), value=shown(fact))
+    if kind:
+        element = ET.SubElement(case, kind, message=shown(reasons[0]))
+        element.text = shown("\n".join(reasons[1:])) or None
+    return case
 
 
 def add_suite(root: ET.Element, name: str, cases: Sequence[ET.Element]) -> None:
@@ -68,35 +82,25 @@ def as_text(root: ET.Element) -> str:
     return ET.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def _case(report: Report, name: str, verdict: Verdict, requirement: Requirement) -> ET.Element:
-    case = ET.Element("testcase", name=shown(name))
-    entries = [("requirement", requirement.text), ("severity", requirement.severity)]
-    entries = [
-        entry for entry in (*entries, *(("tag", tag) for tag in requirement.tags)) if entry[1]
-    ]
-    properties = ET.SubElement(case, "properties") if entries else case
-    for kind, value in entries:
-        ET.SubElement(properties, "property", name=kind, value=shown(value))
+def _case(
+    report: Report, name: str, verdict: Verdict, requirement: Requirement, accepted: str
+) -> ET.Element:
+    """The case of a requirement; `accepted`: why its failure is known, empty: it is not."""
+    tags = (("tag", tag) for tag in requirement.tags)
+    facts = (("requirement", requirement.text), ("severity", requirement.severity), *tags)
     if verdict is Verdict.PASS:
-        return case
+        return case_of(name, facts=facts)
     if report.is_silent(name):
         why = without_attempts(verdict, report.misses.get(name, ""))
-        ET.SubElement(case, "skipped", message=shown(f"{verdict}: {why}"))
-        return case
+        return case_of(name, "skipped", [f"{verdict}: {why}"], facts)
     reasons = []
     for attempt in report.of(name, verdict):
         at = attempt.decided
         when = "undecided" if at is None else format_stamped(at, attempt.origin)
-        reasons.append(shown(f"attempt {attempt.numbered}, {when}: {full_reason(attempt, report)}"))
+        reasons.append(f"attempt {attempt.numbered}, {when}: {full_reason(attempt, report)}")
     reasons = reasons or ["a step was interrupted: what followed was not evaluated in full"]
-    kind = "failure" if verdict is Verdict.FAIL else "skipped"
-    element = ET.SubElement(case, kind, message=f"{verdict.value}: {reasons[0]}")
-    element.text = "\n".join(reasons)
-    return case
-
-
-def _accept(case: ET.Element, why: str) -> None:
-    """Turn a failure into a skipped case with the reason why it is known."""
-    for failure in case.findall("failure"):
-        failure.tag = "skipped"
-        failure.set("message", shown(f"known: {why}; {failure.get('message')}"))
+    message = f"{verdict}: {reasons[0]}"
+    if accepted:
+        message = f"known: {accepted}; {message}"
+    kind = "failure" if verdict is Verdict.FAIL and not accepted else "skipped"
+    return case_of(name, kind, [message, *reasons], facts)
