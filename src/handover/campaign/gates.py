@@ -53,7 +53,12 @@ def gates(robots: Collection[str]) -> dict[str, Gate]:
     """
     found = {
         strategy: Gate(
-            tuple(name for need in lacks for name in _NEEDS[need] if _is_judged(name, robots)),
+            tuple(
+                name
+                for need in lacks
+                for name in _NEEDS[need]
+                if "correct" in robots or name.startswith("R")
+            ),
             # A robot whom nobody calls polls so slowly that the horizon comes first.
             inconclusive=("R4",) if "legacy" in robots else (),
         )
@@ -70,10 +75,6 @@ def gates(robots: Collection[str]) -> dict[str, Gate]:
         for strategy, percent in _COVERAGE.items():
             found[strategy] = replace(found.get(strategy, Gate()), coverage=percent)
     return found
-
-
-def _is_judged(name: str, robots: Collection[str]) -> bool:
-    return "correct" in robots or name.startswith("R")
 
 
 def expected_failures(robots: Collection[str]) -> tuple[ExpectedFailure, ...]:

@@ -73,9 +73,6 @@ AroundRobotStep = Callable[[], AbstractContextManager[object]]
 class Run:
     """A simulated test, not judged yet."""
 
-    test: AbstractTest  # the played test
-    robot: str  # `"correct"` or `"legacy"`
-    mutation: str | None  # the change made to the robot, if any
     # `(t_ns, values)`, strictly increasing, only what changed or occurred; events are `True`, a
     # signal that is unknown is `None`; distances in m, speeds in m/s
     samples: tuple[tuple[int, SampleValues], ...]
@@ -85,11 +82,6 @@ class Run:
     stepped_s: float  # simulated seconds for which the physics was stepped
     error: str | None  # the exception of the robot's code as one text, if it crashed
     scene: Scene | None  # over time, if asked for
-
-    @property
-    def simulated_s(self) -> float:
-        """Simulated seconds, stepped or jumped."""
-        return self.end_ns / 1e9
 
 
 def run_test(test: AbstractTest, **options: Any) -> Run:
@@ -108,9 +100,6 @@ def run_test(test: AbstractTest, **options: Any) -> Run:
     horizon_ns = round(test.horizon_s * TICKS_PER_SECOND)
     played.world.run(horizon_ns)
     return Run(
-        test=test,
-        robot=played.robot,
-        mutation=played.mutation,
         samples=tuple(played.world.recorder.samples),
         states=tuple(played.states),
         end_ns=horizon_ns,
@@ -125,8 +114,6 @@ class Played:
     """A test that is being played."""
 
     world: World  # runs it, as far as it is asked to
-    robot: str  # `"correct"` or `"legacy"`
-    mutation: str | None  # the change made to the robot, if any
     process: Process  # the robot's
     states: list[tuple[int, str]]  # `(t_ns, state)` at each entry of a robot state so far
 
@@ -214,4 +201,4 @@ def begun(
     )
     process = Process(world.schedule, robot_node, machine.run(), around_robot_step or nullcontext)
     Process(world.schedule, human_node, script.run())
-    return Played(world, robot, mutation, process, states)
+    return Played(world, process, states)

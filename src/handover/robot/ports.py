@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping
+from dataclasses import dataclass
 from typing import Any, Protocol, TypeVar
 
 Result = TypeVar("Result")
@@ -13,16 +14,16 @@ Path = TypeVar("Path")
 """A path made by the arm's planner, which the arm follows."""
 
 
-class Message(Protocol):
+Value = bool | float | str | None
+"""The content of a message; `None` if it only reports that something happened."""
+
+
+@dataclass(frozen=True, slots=True)
+class Message:
     """A received message."""
 
-    @property
-    def value(self) -> bool | float | str | None:
-        """The content; `None` if it only reports that something happened."""
-
-    @property
-    def stamp(self) -> float:
-        """The instant of publication, seconds."""
+    value: Value
+    stamp: float  # the instant of publication, seconds
 
 
 class Node(Protocol):
@@ -35,9 +36,7 @@ class Node(Protocol):
     def now(self) -> float:
         """Seconds since the start."""
 
-    def publish(
-        self, topic: str, value: bool | float | str | None = None, *, latched: bool = False
-    ) -> None:
+    def publish(self, topic: str, value: Value = None, *, latched: bool = False) -> None:
         """Publish a message; a latched one can be read later, too."""
 
     def subscribe(self, topic: str) -> None:
@@ -76,20 +75,13 @@ class Gripper(Protocol):
         """Begin to close, and go on pressing."""
 
 
-class Reading(Protocol):
+@dataclass(frozen=True, slots=True)
+class Reading:
     """A reading of the sensors; `None`: no reading of this sensor yet."""
 
-    @property
-    def gaze(self) -> bool | None:
-        """Whether the human looks at the piece."""
-
-    @property
-    def pressure(self) -> bool | None:
-        """Whether robot and human both hold the piece."""
-
-    @property
-    def location(self) -> bool | None:
-        """Whether the human's hand is near the piece."""
+    gaze: bool | None  # whether the human looks at the piece
+    pressure: bool | None  # whether robot and human both hold the piece
+    location: bool | None  # whether the human's hand is near the piece
 
 
 class Sensors(Protocol):

@@ -91,7 +91,11 @@ class Arm:
     def control(self) -> None:
         """Set the motors so that the next control step ends on the path."""
         path = self._path
-        if path is not None and self._minds_people and self._is_blocked():
+        if (
+            path is not None
+            and self._minds_people
+            and (beside_distance(self._scene, *grip_point(self.joints())) < p.CLEARANCE[1])
+        ):
             self._goal, self._stopped = self.joints(), True
             path = self._path = None
         wanted = self._goal
@@ -108,9 +112,6 @@ class Arm:
             if rate != self._rates[index]:
                 self._rates[index] = rate
                 motor.rate = rate
-
-    def _is_blocked(self) -> bool:
-        return beside_distance(self._scene, *grip_point(self.joints())) < p.CLEARANCE[1]
 
     def _start(self) -> Joints:
         """The last goal of the arm, or its present joints while it is still on its way."""

@@ -40,10 +40,14 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
     links, joint_motors = _add_arm(space, pose)
     fingers, finger_motors = _add_fingers(space, links[2])
     piece = _add_piece(space, faults.friction, faults.raised_m)
-    own, other = _arms(faults)
-    rest = p.HAND_REST if own is None else _from(own, p.BESIDE_REST)
+    rest, beside = p.HAND_REST, None
+    if faults.beside_m is not None:  # the x of the taking arm and of the other one
+        arms = (faults.beside_m + arm for arm in p.BESIDE_ARMS)
+        own, other = sorted(arms, reverse=faults.far_hand)
+        rest = _from(own, p.BESIDE_REST)
     hand, hand_target, hand_pull = _add_hand(space, rest, _HAND, _SCENERY, _PIECE)
-    beside = None if own is None or other is None else _add_beside(space, hand, own, other)
+    if faults.beside_m is not None:
+        beside = _add_beside(space, hand, own, other)
     if faults.hand_in_plane:
         _meet((*links[2:], *fingers), _HAND)
         _meet((hand,), _GRIPPER)
@@ -67,14 +71,6 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
         head,
         beside,
     )
-
-
-def _arms(faults: SceneFaults) -> tuple[float, float] | tuple[None, None]:
-    """The x (metres) of the taking arm and of the other arm of a person beside the way."""
-    if faults.beside_m is None:
-        return None, None
-    near, far = (faults.beside_m + arm for arm in p.BESIDE_ARMS)
-    return (far, near) if faults.far_hand else (near, far)
 
 
 def _from(x: float, place: tuple[float, float]) -> tuple[float, float]:
@@ -111,17 +107,14 @@ def _add_scenery(space: pymunk.Space, raised_m: float) -> None:
     floor = pymunk.Segment(space.static_body, (-2.0, p.FLOOR_Z - 0.1), (3.0, p.FLOOR_Z - 0.1), 0.1)
     shapes: list[pymunk.Shape] = [table, floor]
     if raised_m:
-        shapes.append(pymunk.Poly(space.static_body, _block_corners(raised_m)))
+        left, right = p.PIECE_X - p.PIECE_SIZE[0] / 2, p.PIECE_X + p.PIECE_SIZE[0] / 2
+        # A block on the table under the piece, as wide as that.
+        block = ((left, 0.0), (right, 0.0), (right, raised_m), (left, raised_m))
+        shapes.append(pymunk.Poly(space.static_body, block))
     for shape in shapes:
         shape.friction = p.TABLE_FRICTION
         shape.filter = _filter(_SCENERY, _PIECE, _GRIPPER, _HAND)
     space.add(*shapes)
-
-
-def _block_corners(height: float) -> tuple[tuple[float, float], ...]:
-    """A block on the table under the piece, as wide as that."""
-    left, right = p.PIECE_X - p.PIECE_SIZE[0] / 2, p.PIECE_X + p.PIECE_SIZE[0] / 2
-    return (left, 0.0), (right, 0.0), (right, height), (left, height)
 
 
 def _add_arm(

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
+from handover.robot.ports import Message, Value
 from handover.world.parameters import LATCH_LINGER_S, NS
 
 
@@ -33,18 +33,9 @@ class Schedule:
         call()
 
 
-Value = bool | float | str | None
-"""The content of a message; `None` for an event, which only reports that it was published."""
-
 Tap = Callable[[str, Value], None]
 
-
-@dataclass(frozen=True, slots=True)
-class Message:
-    """A message as a node receives it."""
-
-    value: Value  # its content
-    stamp: float  # the instant of publication, seconds
+_LINGER_NS = round(LATCH_LINGER_S * NS)
 
 
 class Bus:
@@ -73,7 +64,9 @@ class Bus:
         if entry is None:
             return None
         publisher, message = entry
-        return message if publisher.hands_out(self.schedule.now_ns) else None
+        ended_ns = publisher.ended_ns
+        is_gone = ended_ns is not None and self.schedule.now_ns > ended_ns + _LINGER_NS
+        return None if is_gone else message
 
 
 class Node:
@@ -85,7 +78,7 @@ class Node:
         self._growth_s = poll_growth_s
         self._subscriptions: dict[str, int] = {}
         self._delay_s = 0.0
-        self._ended_ns: int | None = None
+        self.ended_ns: int | None = None  # when the process ended
 
     def now(self) -> float:
         """Seconds since the start."""
@@ -114,8 +107,4 @@ class Node:
 
     def end(self) -> None:
         """End the process; its latched messages soon vanish."""
-        self._ended_ns = self._bus.schedule.now_ns
-
-    def hands_out(self, now_ns: int) -> bool:
-        """Whether latched messages of this node can be read at an instant."""
-        return self._ended_ns is None or now_ns <= self._ended_ns + round(LATCH_LINGER_S * NS)
+        self.ended_ns = self._bus.schedule.now_ns

@@ -190,10 +190,6 @@ class Human:
         hand = self._arm.is_moving() or self._scene.hand.velocity.length > p.STILL_SPEED
         return self._head.is_moving(), hand
 
-    def holding_force(self) -> float:
-        """N between hand and piece, by grasp and by touch."""
-        return self._grasp_force() + self._touch_force()
-
     def hand_force(self) -> float:
         """N with which one body presses on the hand, the most of the robot's and the piece.
 
@@ -216,7 +212,7 @@ class Human:
 
     def shares_piece(self) -> bool:
         """Whether robot and human both hold the piece, by the forces between them and it."""
-        enough = self.holding_force() >= p.PRESSURE_MIN
+        enough = self._grasp_force() + self._touch_force() >= p.PRESSURE_MIN
         return enough and gripper_force(self._scene) >= p.PRESSURE_MIN
 
     def _touch(self, *_: object) -> None:

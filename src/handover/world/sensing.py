@@ -4,22 +4,13 @@ from __future__ import annotations
 
 import random
 from collections import deque
-from dataclasses import dataclass
 
+from handover.robot.ports import Reading
 from handover.world import measures
 from handover.world import parameters as p
 from handover.world.faults import SensorFaults
 from handover.world.human import Human
 from handover.world.scene import Scene
-
-
-@dataclass(frozen=True, slots=True)
-class Reading:
-    """The readings of the three sensors; `None`: no reading yet."""
-
-    gaze: bool | None
-    pressure: bool | None
-    location: bool | None
 
 
 class Sensors:

@@ -7,16 +7,17 @@ import random
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from handover.robot.ports import Reading, Value
 from handover.world import parameters as p
 from handover.world.arm import Arm, Gripper
 from handover.world.building import AS_PLANNED, build
-from handover.world.bus import Bus, Schedule, Value
+from handover.world.bus import Bus, Schedule
 from handover.world.faults import SceneFaults, SensorFaults
 from handover.world.film import Film
 from handover.world.human import Human
 from handover.world.measures import seen_piece
 from handover.world.recorder import Recorder, SampleValue, Truth
-from handover.world.sensing import Reading, Sensors
+from handover.world.sensing import Sensors
 
 if TYPE_CHECKING:
     from rvmon.report import tracks as shown
@@ -146,12 +147,10 @@ class World:
 
     def _wake(self, seconds: float) -> None:
         """Expect the scene to move for so many seconds."""
-        until = self._now_step() + round((seconds + p.SETTLE_S) * p.NS) // p.STEP_NS
+        now = self.schedule.now_ns // p.STEP_NS
+        until = now + round((seconds + p.SETTLE_S) * p.NS) // p.STEP_NS
         self._planned_until = max(self._planned_until, until)
         self._at_rest = False
-
-    def _now_step(self) -> int:
-        return self.schedule.now_ns // p.STEP_NS
 
     def _after(self, seconds: float, call: Callable[[], None]) -> None:
         self.schedule.at(self.schedule.now_ns + round(seconds * p.NS), call)

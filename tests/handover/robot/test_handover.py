@@ -10,24 +10,12 @@ import pytest
 from handover.collector.code import TRANSITIONS
 from handover.robot.behaviour import CORRECT, LEGACY, Behaviour
 from handover.robot.handover import STATES, HandoverRobot
-
-
-@dataclass
-class Message:
-    value: bool | float | str | None
-    stamp: float
+from handover.robot.ports import Message, Reading
 
 
 @dataclass
 class Path:
     duration: float
-
-
-@dataclass
-class Reading:
-    gaze: bool | None
-    pressure: bool | None
-    location: bool | None
 
 
 @dataclass

@@ -10,11 +10,11 @@ from dataclasses import dataclass, field
 import pymunk
 import pytest
 
+from handover.robot.ports import Reading
 from handover.world import parameters as p
 from handover.world.bus import Node
 from handover.world.faults import SceneFaults, SensorFaults
 from handover.world.process import Process, Program
-from handover.world.sensing import Reading
 from handover.world.world import World
 
 Point = tuple[float, float]
