@@ -88,9 +88,9 @@ def place_whole(path: Path, body: bytes, *, mode: int | None = None, synced: boo
     Raises:
         OSError: it cannot be written; nothing has changed.
     """
-    beside = path.parent / f"{PREFIX}{os.urandom(4).hex()}{SUFFIX}"
+    temporary = path.parent / f"{PREFIX}{os.urandom(4).hex()}{SUFFIX}"
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
-    handle = os.open(beside, flags, 0o666 if mode is None else mode)
+    handle = os.open(temporary, flags, 0o666 if mode is None else mode)
     try:
         with open(handle, "wb") as file:
             if mode is not None and hasattr(os, "fchmod"):
@@ -99,10 +99,10 @@ def place_whole(path: Path, body: bytes, *, mode: int | None = None, synced: boo
             file.flush()
             if synced:
                 os.fsync(handle)
-        os.replace(beside, path)
+        os.replace(temporary, path)
     except BaseException:
         with suppress(OSError):
-            beside.unlink()
+            temporary.unlink()
         raise
     if synced and hasattr(os, "O_DIRECTORY"):
         folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY)

@@ -120,8 +120,8 @@ def rv(request: pytest.FixtureRequest) -> Any:
         def made() -> Judge:
             if isinstance(spec, Spec):
                 return Judge(spec, **wanted)
-            beside = request.path.parent / spec
-            return Judge(load(beside if beside.exists() else spec), **wanted)
+            local = request.path.parent / spec
+            return Judge(load(local if local.exists() else spec), **wanted)
 
         found = _without_frames(made)
         judges.append(found)

@@ -17,7 +17,7 @@ from msgspec import Struct, field
 from rvmon.cdv.campaign import Campaign
 from rvmon.cdv.campaign_plan import Job, Outcome, Plan, Played
 from rvmon.errors import RvmonError
-from rvmon.execute import Shard, journal, shards_beside
+from rvmon.execute import Shard, finished_shards, journal
 from rvmon.files import contents
 from rvmon.language.checked.serialise import to_plain
 from rvmon.session import Spec
@@ -70,7 +70,7 @@ def unfinished(
         RvmonError: what is unfinished there is another campaign.
     """
     path = folder / NAME if shard is None else shard.name(folder / NAME)
-    shards = shards_beside(path) if shard is None else []
+    shards = finished_shards(path) if shard is None else []
     heading = _Heading(_inputs(plan, specs), command)
     jobs = {(job.test.name, job.robot): job for job in plan.jobs()}
     places = {key: place for place, key in enumerate(jobs)}

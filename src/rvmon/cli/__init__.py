@@ -65,7 +65,7 @@ _MODULES = {
 
 COMMANDS = tuple(_MODULES)
 
-_BESIDE = {"format": "check", "init": "look"}
+_WORK_OF = {"format": "check", "init": "look"}
 """The commands whose work stands in the file of another."""
 
 
@@ -204,6 +204,6 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
 
 def _run(command: str, namespace: argparse.Namespace) -> int:
     """Import what the command needs, of which its help needs nothing, and run it."""
-    module = import_module(f"rvmon.cli.{_BESIDE.get(command, command)}")
+    module = import_module(f"rvmon.cli.{_WORK_OF.get(command, command)}")
     code: int = getattr(module, f"run_{command}")(namespace)
     return code

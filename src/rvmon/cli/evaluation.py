@@ -197,7 +197,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             coverage=True,
         )
         end = recording.end if options.until is None else ticks_of_seconds(options.until)
-        beside = RecordingCoverage(spec, options, recording, end)
+        coverage = RecordingCoverage(spec, options, recording, end)
         show = partial(shown_while_reading, recording) if is_alone else iter
         remembered = Remembered(spec, recording, options.only)
         is_noted = options.explains and recording.can_be_read_again
@@ -205,13 +205,13 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
             recording,
             end,
             is_cut=options.until is not None,  # what a recording says of its end may be wrong
-            shown=lambda found: beside.passing(show(found)),
+            shown=lambda found: coverage.passing(show(found)),
             taken=remembered.take if is_noted else None,
         )
         report = spec.judge(
             source, only=options.only, decided=before.extend, robustness=options.robustness
         )
-        covered = beside.finished()
+        covered = coverage.finished()
         if report.end is None:
             raise TraceError(f"no sample up to --until {options.until:g} s: nothing to evaluate")
     except TraceError as error:
@@ -226,7 +226,7 @@ def judge(spec: Spec, trace: str, options: Options, *, is_alone: bool = False) -
     health = (*recording.rows.alternations.remarked(report.health), *recording.health())
     report = replace(report, trace=trace, health=health, **covered, **found)
     seconds = time.monotonic() - began
-    return Judged(trace, report, missing=missing, hits=beside.hits, seconds=seconds)
+    return Judged(trace, report, missing=missing, hits=coverage.hits, seconds=seconds)
 
 
 def as_known(judged: Judged, case: Case) -> Judged:

@@ -16,7 +16,7 @@ from rvmon.coverage import Hit
 from rvmon.errors import RvmonError, writing
 from rvmon.execute import journal
 from rvmon.language.checked.serialise import to_plain
-from rvmon.recordings import databases_beside, form_of_folder
+from rvmon.recordings import form_of_folder, frame_databases
 from rvmon.session import Spec
 from rvmon.verdicts.report import Report
 
@@ -142,7 +142,7 @@ def _stamp(trace: str) -> tuple[int, int] | None:
     """Size and time of the files of a recording; `None` if there are none."""
     try:
         files = list(os.scandir(trace)) if form_of_folder(trace) else [Path(trace)]
-        statuses = [file.stat() for file in [*files, *map(Path, databases_beside(trace))]]
+        statuses = [file.stat() for file in [*files, *map(Path, frame_databases(trace))]]
     except (OSError, ValueError):
         return None
     # A file may be given any time of change; that of its place on the disk is the system's.

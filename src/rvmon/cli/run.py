@@ -16,7 +16,7 @@ from rvmon.cli.output import rendered, say_json, warn
 from rvmon.cli.reading import reading_words, refuse_empty, unpacked
 from rvmon.cli.run_output import write_files, write_results
 from rvmon.errors import RvmonError
-from rvmon.execute import shards_beside
+from rvmon.execute import finished_shards
 from rvmon.files import refuse_no_file
 from rvmon.recordings.places import JOINT, files_of, found_recordings, name_of
 from rvmon.session import Spec
@@ -150,7 +150,7 @@ def _shards(arguments: argparse.Namespace) -> list[Path]:
         return []
     from rvmon.cli.resume import path_of
 
-    return [path_of(str(part)) for part in shards_beside(Path(arguments.out))]
+    return [path_of(str(part)) for part in finished_shards(Path(arguments.out))]
 
 
 def _refuse_places(arguments: argparse.Namespace, traces: Sequence[str], spec: Spec) -> None:

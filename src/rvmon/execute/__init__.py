@@ -84,7 +84,7 @@ class Shard(NamedTuple):
         return path.with_name(f"{path.stem}.shard-{self.number}-of-{self.total}{path.suffix}")
 
 
-def shards_beside(path: Path) -> list[Path]:
+def finished_shards(path: Path) -> list[Path]:
     """The files of all finished shards in place of a file, by name.
 
     Raises:

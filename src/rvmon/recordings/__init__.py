@@ -40,7 +40,7 @@ FORMATS = {
 DATABASES = (".dbc", ".kcd", ".sym", ".arxml")  # endings of files that say what frames of CAN hold
 
 
-def databases_beside(path: str | os.PathLike[str]) -> list[str]:
+def frame_databases(path: str | os.PathLike[str]) -> list[str]:
     """The files beside a log of CAN that say what its frames hold; none beside others."""
     folder, name = os.path.split(path)
     if MESSAGE_FORMATS.get(os.path.splitext(name)[1].lower()) not in ("can", "mdf"):

@@ -211,5 +211,5 @@ def format_stamped(t: int, origin: int) -> str:
     >>> format_stamped(14_250_000_000, 5_000_000_000), format_stamped(14_250_000_000, 0)
     ('9.25 s (stamp 14.25 s)', '14.25 s')
     """
-    beside = f" (stamp {format_stamp(t)})" if origin else ""
-    return f"{format_instant(t, origin)}{beside}"
+    stamp = f" (stamp {format_stamp(t)})" if origin else ""
+    return f"{format_instant(t, origin)}{stamp}"

@@ -224,11 +224,11 @@ def _score(wanted: Wanted, candidate: Candidate) -> float:
     if wanted.type is not None and wanted.type.kind is candidate.kind is Kind.LABEL:
         better += 0.2  # a text names its label, a number does not
     worse = sum(0.02 if word in candidate.own else 0.01 for word in foreign)
-    worse += 0.06 * _is_beside_another(candidate, foreign)
+    worse += 0.06 * _is_of_another_quantity(candidate, foreign)
     return total / len(asked) + better - worse
 
 
-def _is_beside_another(candidate: Candidate, foreign: Iterable[str]) -> bool:
+def _is_of_another_quantity(candidate: Candidate, foreign: Iterable[str]) -> bool:
     """Whether its topic is named after another quantity, as an acceleration among positions."""
     named = {*words_of(candidate.topic.name)} & {*foreign}
     others = [own for word in named if (own := dimensions_of([word]))]

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from rvmon.errors import TraceError, needed
-from rvmon.recordings import DATABASES, databases_beside
+from rvmon.recordings import DATABASES, frame_databases
 from rvmon.recordings.messages import Message, Messages, Topic, errors_as_damage
 from rvmon.recordings.messages.column_topics import path_of
 from rvmon.recordings.values import first_line
@@ -251,14 +251,14 @@ def _messages(path: Path, definitions: Mapping[str, str]) -> Mapping[_Key, Any]:
         from cantools import database
     logging.getLogger("cantools").setLevel(logging.CRITICAL)
     texts = {name: text for name, text in definitions.items() if name.lower().endswith(DATABASES)}
-    beside = databases_beside(path)
-    if not texts and not beside:
+    files = frame_databases(path)
+    if not texts and not files:
         raise TraceError(
             "is read as a log of CAN, and nothing describes its signals: put the database (.dbc) "
             'beside it, or name it in a binding, as `definitions = ["car.dbc"]`'
         )
     found: dict[_Key, Any] = {}
-    for name in texts or beside:
+    for name in texts or files:
         try:
             if texts:
                 form = name.rpartition(".")[2].lower()

@@ -134,17 +134,17 @@ def comments_of(definition: str) -> Mapping[str, Mapping[str, str]]:
 
 
 def _comments_in(part: str) -> Iterator[tuple[str, str]]:
-    above, kind, beside = "", "", ""
+    above, kind, trailing = "", "", ""
     for line in part.splitlines():
         code, _, comment = line.partition("#")
         field = _FIELD.fullmatch(code.strip())
         if field is None:
-            is_more = bool(beside) and line[:1].isspace()
+            is_more = bool(trailing) and line[:1].isspace()
             above, kind = comment if not code.strip() and not is_more else "", ""
             continue
         of_several = kind == field["type"] and re.search(r"\w\ws\b", above)
-        beside = comment.strip()
-        if text := beside or (above.strip() if not kind or of_several else ""):
+        trailing = comment.strip()
+        if text := trailing or (above.strip() if not kind or of_several else ""):
             yield field["name"], text
         kind = kind or field["type"]
 

@@ -51,7 +51,7 @@ static double as_double(const rv_number *x)
 }
 
 /* The sign of a - b, exactly: b is split into an integer and a fraction, as (double)a could round. */
-static int sign_beside(int64_t a, double b)
+static int sign_against(int64_t a, double b)
 {
     int64_t floor_of_b;
     double rest;
@@ -76,10 +76,10 @@ static int order(const rv_number *a, const rv_number *b)
         if (b->kind == RV_REAL) {
             return (a->as.real > b->as.real) - (a->as.real < b->as.real);
         }
-        return -sign_beside(b->as.whole, a->as.real);
+        return -sign_against(b->as.whole, a->as.real);
     }
     if (b->kind == RV_REAL) {
-        return sign_beside(a->as.whole, b->as.real);
+        return sign_against(a->as.whole, b->as.real);
     }
     return (a->as.whole > b->as.whole) - (a->as.whole < b->as.whole);
 }

@@ -278,7 +278,7 @@ static void put_in_order(home *h, int32_t count)
 /* Put the ids of the runs that the sample or an alarm concerns into `called`; returns how many, -1:
  * all. A key's instance is called with the runs of its attempts; the root always, as others are forked
  * from it; and each run in which a signal may change a comparison. */
-int32_t call_concerned(home *h, int64_t t)
+int32_t call_affected(home *h, int64_t t)
 {
     int32_t count;
     int32_t keyed = 0;

@@ -197,7 +197,7 @@ void take_inbox(home *h, int64_t t)
         open_instances(h, t);
     }
     keep_given(h, t);
-    count = call_concerned(h, t);
+    count = call_affected(h, t);
     if (count >= 0) {
         for_called(h, count, t, give_inbox);
     } else {

@@ -103,7 +103,7 @@ void enlist(run *r, bool captured);
 void delist(run *r, bool captured);
 void set_alarms(home *h);
 int32_t call_due(home *h, int64_t t);
-int32_t call_concerned(home *h, int64_t t);
+int32_t call_affected(home *h, int64_t t);
 void for_called(home *h, int32_t count, int64_t t, void (*act)(run *r, int64_t t));
 
 /* ---- homes.c: a part with all its runs */
