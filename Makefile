@@ -62,11 +62,10 @@ extension:  ## package the extension of VS Code, from locked dependencies: dist/
 release: $(VENV)/.dev  ## build wheel and sdist into dist, check them, install each extra alone; uploads nothing
 	@$(BIN)/python .ci/release.py
 
-fuzz: $(VENV)/.dev  ## feed damaged input to all readers, and to the native core, for SECONDS=600 each
+fuzz: $(VENV)/.dev  ## feed damaged input to all readers, and to the native core, for SECONDS=600
 	@$(BIN)/python -m pip install --quiet --disable-pip-version-check 'atheris>=3,<4' \
 	  || echo "rvmon: atheris does not install here"
-	@code=0; for one in fuzz fuzz.native; do \
-	  $(BIN)/python -m $$one --seconds $(or $(SECONDS),600) || code=1; done; exit $$code
+	@$(BIN)/python -m fuzz --seconds $(or $(SECONDS),600)
 
 clean:  ## remove the environment and all output
 	rm -rf $(VENV) out dist .mypy_cache .pytest_cache .ruff_cache .hypothesis src/rvmon/native/_core.*so

@@ -1,9 +1,10 @@
-"""Fuzz rvmon: `python -m fuzz --seconds 60 [--only spec recording …] [--out out/fuzz]`.
+"""Fuzz rvmon: `python -m fuzz --seconds 600 [--only spec plans …] [--out out/fuzz]`.
 
-It needs atheris (`pip install atheris`). Each target has its part of the time, and goes on from
-what it found before, in the folder of `--out`. Prints by target how many inputs it took, how they
-ended, how many places of the code were reached, and which inputs stumbled; exits 1 if one did. Once
-it is fixed, that input is a file more in `fuzz/corpus`, which a test reads.
+What reads is fuzzed by atheris (`pip install atheris`), the native code by AFL++, see `fuzz.native`
+(Debian's packages afl++ and libclang-rt-14-dev). Each target has its part of the time, and goes on
+from what it found before, in the folder of `--out`. Prints by target what it took, how that ended,
+what was reached, and which inputs stumbled; exits 1 if one did. Once it is fixed, an input of what
+reads is a file more in `fuzz/corpus`, which a test reads.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from collections.abc import Sequence
@@ -18,7 +20,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from benchmarks.program import program
-from fuzz.driver import Found, fuzz
+from fuzz import native
 from fuzz.targets import TARGETS, seeds
 
 LONGEST = {"spec": 3000, "recording": 1000, "snapshot": 20_000}
@@ -28,8 +30,8 @@ PATIENCE = 25
 """Seconds that an input may take."""
 
 
-def by_atheris(name: str, folder: Path, seconds: int) -> Found:
-    """Have atheris change inputs of a target for so many seconds."""
+def by_atheris(name: str, folder: Path, seconds: int) -> tuple[str, Sequence[Path]]:
+    """Have atheris change inputs of a target."""
     (folder / "found").mkdir(exist_ok=True)
     before = set(folder.glob("input-*"))
     for number, data in enumerate(seeds(name)):
@@ -46,18 +48,31 @@ def by_atheris(name: str, folder: Path, seconds: int) -> Found:
     ends = json.loads(answers.read_bytes()) if answers.exists() else {}
     ended = ", ".join(f"{end} {count:,}" for end, count in sorted(ends.items()))
     told = f"{max(map(int, inputs), default=0):>9,} inputs, {reached[0]} edges; {ended}"
-    return Found(told, sorted(set(folder.glob("input-*")) - before))
+    return told, sorted(set(folder.glob("input-*")) - before)
 
 
 def main(
-    *, seconds: int = 60, only: Sequence[str] = (*TARGETS,), out: Path = Path("out/fuzz")
+    *,
+    seconds: int = 600,
+    only: Sequence[str] = (*TARGETS, *native.TARGETS),
+    out: Path = Path("out/fuzz"),
 ) -> int:
     """Fuzz for so many seconds in all."""
-    if find_spec("atheris") is None:
-        print("nothing is fuzzed, as atheris is not installed")
-        return 1
     os.environ["RVMON_CACHE"] = "off"
-    return fuzz(only, by_atheris, out, seconds)
+    code = 0
+    for name in only:
+        is_native = name in native.TARGETS
+        if not (shutil.which(native.COMPILER) if is_native else find_spec("atheris")):
+            print(f"{name:12} not fuzzed: {'AFL++' if is_native else 'atheris'} is not installed")
+            code = 1
+            continue
+        folder = out.resolve() / name
+        folder.mkdir(parents=True, exist_ok=True)
+        fuzz = native.by_afl if is_native else by_atheris
+        told, stumbled = fuzz(name, folder, max(1, seconds // len(only)))
+        print("\n  stumbled over ".join([f"{name:12} {told}", *map(str, stumbled)]), flush=True)
+        code |= bool(stumbled)
+    return code
 
 
 if __name__ == "__main__":

@@ -1,29 +1,21 @@
 """The native code under AFL++, each block of its memory watched: plans, samples and snapshots.
 
-    python -m fuzz.native --seconds 3600 --out out/fuzz-native
-
 Bytes of a plan, or a snapshot, get a hash that fits, so that what is fuzzed is what is behind it.
 What is accepted judges some samples. Each run is repeated after a reset and has to say the same, if
 others go on with it from snapshots as well; then with memory that ends somewhere, and must not be
 green. Plans of the search of models are searched by bounds of both sizes, which have to agree.
-Prints what AFL++ counted and the inputs at which the core crashed, hung, or was found out by
-AddressSanitizer or UBSan; exits 1 if there are any.
-Needs the Debian packages afl++ and libclang-rt-14-dev.
+An input stumbles at which the core crashes, hangs, or is found out by AddressSanitizer or UBSan.
 """
 
 from __future__ import annotations
 
 import os
 import random
-import shutil
 import struct
 import subprocess
-import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from benchmarks.program import program
-from fuzz.driver import Found, fuzz
 from fuzz.sanitize import guarded_memory
 from tests.rvmon.core.put_away import HEAD, Twins
 from tests.rvmon.models.search.plans import search_plans
@@ -166,8 +158,8 @@ def begun_with(folder: Path, target: str) -> None:
     (folder / "held").write_bytes(sized)
 
 
-def by_afl(target: str, folder: Path, seconds: int) -> Found:
-    """Fuzz one target for so long; what is found stays in its folder, and is gone on from."""
+def by_afl(target: str, folder: Path, seconds: int) -> tuple[str, Sequence[Path]]:
+    """Fuzz a target; what is found stays in its folder, and is gone on from."""
     made = compiled(folder, target)
     if not (folder / "in").exists():
         begun_with(folder, target)
@@ -194,21 +186,7 @@ def by_afl(target: str, folder: Path, seconds: int) -> Found:
     pairs = (line.partition(":") for line in lines)
     counted = {name.strip(): value.strip() for name, _, value in pairs}
     told = ", ".join(f"{name} {counted.get(name)}" for name in _TOLD)
-    return Found(told, sorted([*out.glob("crashes/id*"), *out.glob("hangs/id*")]))
+    return told, sorted([*out.glob("crashes/id*"), *out.glob("hangs/id*")])
 
 
 _TOLD = ("run_time", "execs_done", "execs_per_sec", "corpus_count", "bitmap_cvg", "stability")
-
-
-def main(
-    *, seconds: int = 600, only: Sequence[str] = (*TARGETS,), out: Path = Path("out/fuzz-native")
-) -> int:
-    """Fuzz for so many seconds in all."""
-    if shutil.which(COMPILER) is None:
-        print(f"nothing is fuzzed: {COMPILER} is not installed (Debian's package afl++)")
-        return 1
-    return fuzz(only, by_afl, out, seconds)
-
-
-if __name__ == "__main__":
-    sys.exit(program(__doc__, main))

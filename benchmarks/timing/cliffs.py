@@ -36,18 +36,18 @@ class Stream:
 
     text: str
     rows: Sequence[Row]
-    period: int = SECOND  # ticks from one to the next
-    before: int = 0  # samples that are not measured
+    period: int  # ticks from one to the next
 
-    def cost(self) -> float:
-        """CPU nanoseconds of a sample, `step` and what it hands out."""
+    def cost(self, count: int) -> float:
+        """CPU nanoseconds of a sample, `step` and what it hands out, of the last so many."""
         step, period = loads(self.text).monitor(keep=100).step_ns, self.period
-        for place, row in enumerate(self.rows[: self.before]):
+        before = len(self.rows) - count
+        for place, row in enumerate(self.rows[:before]):
             step(place * period, row)
-        measured = self.rows[self.before :]
+        measured = self.rows[before:]
         gc.freeze()  # what a collection costs is what the stream leaves, not what the process holds
         began = time.process_time_ns()
-        for place, row in enumerate(measured, self.before):
+        for place, row in enumerate(measured, before):
             step(place * period, row)
         spent = time.process_time_ns() - began
         gc.unfreeze()
@@ -86,44 +86,40 @@ def _pulses(count: int, high: float) -> list[Row]:
     ]
 
 
-def cells(count: int) -> Iterator[tuple[str, Stream, str, Stream, float]]:
-    """What is hard, its quiet neighbour, and the most times that it may cost."""
-    every, rare = drawn(count, events=1), drawn(count, events=0.02)
-    plain, some = drawn(count), drawn(count, events=0.05)
-    for name, texts in FORMS["failing"].items():
-        hard, quiet = (Stream(HEAD + text, plain) for text in texts)
-        yield f"{name} that fails at 30 % of the rows", hard, "it holds", quiet, 3
-    for name, text in FORMS["unknown"].items():
-        hard, quiet = (Stream(HEAD + text, drawn(count, share)) for share in (0.01, 0))
-        yield f"{name}, 1 % NaN", hard, "no NaN", quiet, 3
-    for name, text in FORMS["triggered"].items():
-        hard, quiet = (Stream(HEAD + text, rows, MILLISECOND) for rows in (every, rare))
-        yield f"{name} at 1 kHz, each sample a trigger", hard, "2 % are", quiet, 3
-    for name, texts in FORMS["later"].items():
-        hard, quiet = (Stream(HEAD + text, every, MILLISECOND) for text in texts)
-        yield f"{name}, each sample a trigger", hard, "the window opens at once", quiet, 3
-    for name, text in FORMS["pulses"].items():
-        hard, quiet = (Stream(HEAD + text, _pulses(count, high), MILLISECOND) for high in (10, 0))
-        yield f"{name}, each sample a trigger, pulses that pause", hard, "no pulses", quiet, 3
-    for name, form in FORMS["nested"].items():
-        hard, quiet = (Stream(HEAD + form.format(long=n, short=n // 5), some) for n in (1000, 10))
-        yield f"nested: {name}, 1,000 samples", hard, "10 samples", quiet, 3
-    for name, form in FORMS["amounts"].items():
-        hard, quiet = (
-            Stream(HEAD + form.format(d=window), _counted(window + count), before=window)
-            for window in (100_000, 10)
-        )
-        yield f"{name} of 100,000 samples", hard, "10 samples", quiet, 3
-    hard, quiet = (Stream(KEYED, _keys(count, n), MILLISECOND, n) for n in (1_000, 10))
-    yield "1,000 keys", hard, "10 keys", quiet, 3
-    many, text = min(5 * count, 100_000), f"{HEAD}upon e then within 3600 s x > 11\n"
-    hard, quiet = (Stream(text, _open(many, n), MILLISECOND, n) for n in (many, 1))
-    yield f"{many:,} attempts open", hard, "one open", quiet, 1.2
-
-
 def _counted(count: int) -> list[Row]:
     """Samples whose sums and counts are known."""
     return [{"a": n % 2 == 0, "x": float(n % 7), "e": n % 3 == 0} for n in range(count)]
+
+
+def cells(count: int) -> Iterator[tuple[str, Stream, str, Stream, float]]:
+    """What is hard, its quiet neighbour, and the most times that it may cost."""
+    every, plain, some = (drawn(count, events=share) for share in (1, 0, 0.05))
+    nan, rare = drawn(count, unknown=0.01), drawn(count, events=0.02)
+    pulses, still = _pulses(count, 10), _pulses(count, 0)
+    counted, short = _counted(100_000 + count), _counted(10 + count)
+    kinds = (
+        ("failing", "{} that fails at 30 % of the rows", "it holds", plain, plain, SECOND),
+        ("unknown", "{}, 1 % NaN", "no NaN", nan, plain, SECOND),
+        ("triggered", "{} at 1 kHz, each sample a trigger", "2 % are", every, rare, MILLISECOND),
+        ("later", "{}, each sample a trigger", "it opens at once", every, every, MILLISECOND),
+        ("pulses", "{}, triggers, pulses that pause", "no pulses", pulses, still, MILLISECOND),
+        ("nested", "nested: {}, 1,000 samples", "10 samples", some, some, SECOND),
+        ("amounts", "{} of 100,000 samples", "10 samples", counted, short, SECOND),
+    )
+    for kind, hard, near, *samples, period in kinds:
+        for name, form in FORMS[kind].items():
+            texts = form if isinstance(form, list) else [form] * 2
+            lengths = (100_000 if kind == "amounts" else 1_000, 10)
+            one, other = (
+                Stream(HEAD + text.format(long=n, short=n // 5), rows, period)
+                for text, n, rows in zip(texts, lengths, samples, strict=True)
+            )
+            yield hard.format(name), one, near, other, 3
+    one, other = (Stream(KEYED, _keys(count, n), MILLISECOND) for n in (1_000, 10))
+    yield "1,000 keys", one, "10 keys", other, 3
+    many, text = min(5 * count, 100_000), f"{HEAD}upon e then within 3600 s x > 11\n"
+    one, other = (Stream(text, _open(count, n), MILLISECOND) for n in (many, 1))
+    yield f"{many:,} attempts open", one, "one open", other, 1.2
 
 
 def lines(count: int, repeats: int) -> Iterator[str]:
@@ -134,7 +130,7 @@ def lines(count: int, repeats: int) -> Iterator[str]:
 
 def _rows(count: int, repeats: int) -> Iterator[Sequence[str]]:
     for name, hard, near, quiet, most in cells(count):
-        both = [(hard.cost(), quiet.cost()) for _ in range(repeats)]
+        both = [(hard.cost(count), quiet.cost(count)) for _ in range(repeats)]
         own, its = (statistics.median(column) for column in zip(*both, strict=True))
         ratio = statistics.median(one / other for one, other in both)
         met = "yes" if ratio <= most else "no"
