@@ -4,10 +4,10 @@ r"""Ours against something independent on random cases: one command line, one ta
     python -m benchmarks.differential verdicts --set "forms=c,c rows,c+next" traces=8 outages=100
     python -m benchmarks.differential fillings long --count 1000
 
-Prints what the cases
-were made of, and every disagreement with its seed; exits 1 if there is one. Ranges of numbers of
-one seed hold different cases: runs add up. `--set` gives the settings of a comparison, and fields
-of `Profile` and `TraceProfile` (rvmon.testing.generate) where it draws specifications and traces.
+Prints what the cases were made of, how many disagreements there are, and some of them with their
+seeds; exits 1 if there is one. Cases of different seeds are different: runs add up. `--set` gives
+the settings of a comparison, and fields of `Profile` and `TraceProfile` (rvmon.testing.generate)
+where it draws specifications and traces.
 """
 
 from __future__ import annotations
@@ -16,42 +16,68 @@ import sys
 import time
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import fields, replace
+from dataclasses import is_dataclass, replace
 from functools import partial
+from inspect import signature
 from typing import Any, get_type_hints
 
 import msgspec
-from benchmarks.comparisons import doors, models, monitors, peers
-from benchmarks.comparisons.comparison import Comparison
+from benchmarks.comparisons import coverage, doors, long_traces, models, monitors, peers
 from benchmarks.program import program
 from tests.tools.differential import Campaign
 
+from rvmon.errors import RvmonError
 from rvmon.execute.parallel import execute
 
-COMPARISONS: dict[str, Comparison] = {
-    **monitors.COMPARISONS,
-    **doors.COMPARISONS,
-    **models.COMPARISONS,
-    **peers.COMPARISONS,
+Judge = Callable[..., None]
+"""Given a `Campaign`, a seed, a range of numbers, and settings by name, adds what came of those
+cases; it may run in another process. What it compares is the first line of its docstring."""
+
+_SPECS = "specifications"
+_ASKED = "formulas for each way to ask"
+COMPARISONS: dict[str, tuple[Judge, str, int]] = {
+    "verdicts": (monitors.judge_verdicts, _SPECS, 25),
+    "robustness": (monitors.judge_robustness, f"{_SPECS} of 8 traces", 25),
+    "coverage": (coverage.judge_hits, f"{_SPECS} of {coverage.EACH} traces", 25),
+    "long": (long_traces.judge_long, "traces", 1),
+    "forecasts": (monitors.judge_forecasts, "formulas", 25),
+    "fillings": (monitors.judge_fillings, "runs", 25),
+    "damage": (doors.judge_damage, "inputs", 500),
+    "doors": (doors.judge_doors, f"{_SPECS} of up to {doors.EACH} recordings", 25),
+    "networks": (models.judge_queries, "networks", 25),
+    "logics": (models.judge_logics, "networks", 25),
+    "peers": (peers.judge_verdicts, _ASKED, 250),
+    "peers-robustness": (peers.judge_robustness, _ASKED, 250),
 }
+"""What is counted by numbers, and how many are judged at once."""
+
+SHOWN = 5
+"""Of the disagreements."""
 
 
-def settings_of(comparison: Comparison, given: Sequence[str]) -> list[Any]:
-    """The settings of a comparison with some of their fields changed.
+def settings_of(judge: Judge, given: Sequence[str]) -> dict[str, Any]:
+    """The settings of a comparison, and fields of those that are dataclasses, as they are given.
 
     Raises:
-        ValueError: there is no such field, or no such value.
+        ValueError: there is no such setting, or no such value.
     """
     left = dict(entry.partition("=")[::2] for entry in given)
-    found = []
-    for default in comparison.settings:
-        hints = get_type_hints(type(default))
-        own = {one.name for one in fields(default)} & left.keys()
-        changed = {n: msgspec.convert(left.pop(n), hints[n], strict=False) for n in own}
-        found.append(replace(default, **changed))
+    found: dict[str, Any] = {}
+    known = list[str]()
+
+    def changed(hints: dict[str, Any]) -> dict[str, Any]:
+        known.extend(hints)
+        own = hints.keys() & left.keys()
+        return {name: msgspec.convert(left.pop(name), hints[name], strict=False) for name in own}
+
+    for name, one in signature(judge, eval_str=True).parameters.items():
+        if is_dataclass(one.default) and not isinstance(one.default, type):
+            found[name] = replace(one.default, **changed(get_type_hints(one.annotation)))
+        elif one.kind is one.KEYWORD_ONLY:
+            found |= changed({name: one.annotation})
     if left:
-        known = ", ".join(one.name for default in found for one in fields(default))
-        raise ValueError(f"no setting `{next(iter(left))}`: there are {known or 'none'}")
+        told = ", ".join(known) or "none"
+        raise ValueError(f"no setting `{next(iter(left))}`: there are {told}")
     return found
 
 
@@ -60,47 +86,51 @@ def main(
     *,
     count: int = 100,
     seed: int = 1,
-    from_: int = 0,
     jobs: int = 1,
-    show: int = 5,
     set_: Sequence[str] = (),
 ) -> int:
-    """Compare so many of each, from that number on, in some processes; show some disagreements."""
+    """Compare so many of each, in some processes; show some disagreements."""
     if unknown := {*comparisons} - COMPARISONS.keys():
         raise SystemExit(f"no comparison `{min(unknown)}`: there are {', '.join(COMPARISONS)}")
     try:
-        settings = {name: settings_of(COMPARISONS[name], set_) for name in comparisons}
+        settings = {name: settings_of(COMPARISONS[name][0], set_) for name in comparisons}
     except (ValueError, msgspec.ValidationError) as error:
         raise SystemExit(str(error)) from None
     wrong = 0
     for name in comparisons:
-        one, began = COMPARISONS[name], time.perf_counter()
-        last = from_ + count
-        parts = [range(at, min(at + one.part, last)) for at in range(from_, last, one.part)]
-        begin = partial(partial, _part, one.judge, seed, settings[name])
+        (judge, unit, part), began = COMPARISONS[name], time.perf_counter()
+        parts = [range(at, min(at + part, count)) for at in range(0, count, part)]
+        begin = partial(partial, _part, judge, seed, settings[name])
         counts, texts = Counter[str](), list[str]()
-        for found in execute(parts, begin, jobs=jobs, what="part"):
-            counts += found.counts
-            texts += found.disagreements
+        try:
+            for found in execute(parts, begin, jobs=jobs, what="part"):
+                counts += found.counts
+                texts += found.disagreements
+        except RvmonError as error:
+            raise SystemExit(str(error)) from None
         seconds = time.perf_counter() - began
-        print(f"{name}: {one.about}")
-        print(f"  {count} {one.unit} from {from_} on, seed {seed}, {seconds:.0f} s")
+        print(f"{name}: {_about(judge)}")
+        print(f"  {count} {unit}, seed {seed}, {seconds:.0f} s")
         for what in sorted(counts):
             print(f"  {what:45} {counts[what]:>12,}")
         print(f"  {'disagreements':45} {len(texts):>12,}", flush=True)
-        for text in texts[:show]:
+        for text in texts[:SHOWN]:
             print(f"\n{'=' * 72}\n{text}\n")
         wrong += len(texts)
     return int(wrong > 0)
 
 
-def _part(judge: Callable[..., None], seed: int, settings: list[Any], numbers: range) -> Campaign:
+def _part(judge: Judge, seed: int, settings: dict[str, Any], numbers: range) -> Campaign:
     found = Campaign()
-    judge(found, seed, *settings, numbers)
+    judge(found, seed, numbers, **settings)
     return found
 
 
-LISTED = "\n".join(f"    {name:16} {one.about}" for name, one in COMPARISONS.items())
+def _about(judge: Judge) -> str:
+    return (judge.__doc__ or "").splitlines()[0].rstrip(".")
+
+
+LISTED = "\n".join(f"    {name:16} {_about(one)}" for name, (one, *_) in COMPARISONS.items())
 
 if __name__ == "__main__":
     sys.exit(program(f"{__doc__}\n{LISTED}", main))

@@ -12,7 +12,6 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from benchmarks.comparisons.comparison import Comparison
 from fuzz.damage import damaged
 from fuzz.targets import TARGETS, run, seeds
 from tests.tools.differential import Campaign, cases_of
@@ -80,9 +79,3 @@ def judge_damage(found: Campaign, seed: int, numbers: range) -> None:
 @cache
 def _kept(name: str) -> list[bytes]:
     return [*seeds(name)]
-
-
-COMPARISONS = {
-    "damage": Comparison(judge_damage, "inputs", part=500),
-    "doors": Comparison(judge_doors, f"specifications of up to {EACH} recordings"),
-}

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,13 +43,6 @@ LENGTHS = (1, 7, 40)
 
 Told = Mapping[int, tuple[int, int | None, Verdict | None]]
 """By number of an attempt its trigger, and instant and verdict if the prefix decides it."""
-
-
-@dataclass(frozen=True, slots=True)
-class Long:
-    """Settings of `long`: of how many samples a trace is."""
-
-    samples: int = 10_000
 
 
 class Decisions:
@@ -184,10 +176,10 @@ def _samples(rng: random.Random, count: int) -> Iterator[Sample]:
         t += rng.choice((1, 1, 1, 2, 3, 8, 41))
 
 
-def judge_long(found: Campaign, seed: int, own: Long, numbers: range) -> None:
+def judge_long(found: Campaign, seed: int, numbers: range, *, samples: int = 10_000) -> None:
     """The core against the law on arrays, on traces too long for the oracle."""
     for number in numbers:
-        case = _case(seed, number, own.samples)
+        case = _case(seed, number, samples)
         wanted = by_law(case)
         found.counts.update(traces=1, samples=len(case.samples))
         for _, _, verdict in wanted.values():

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from random import Random
 
-from benchmarks.comparisons.comparison import Comparison
 from benchmarks.comparisons.timed_ltl import LinearTruth, random_linear, satisfied_by
 from tests.rvmon.models.search.timed_ctl import holds_at_start
 from tests.tools.differential import Campaign
@@ -102,12 +101,6 @@ def _agrees(network: Network, text: str, found: Campaign) -> bool:
         found.counts["LTL: only by time that stops"] += stops
         agrees = agrees and stops != LinearTruth(network, denied, True, 6_000).some_run()
     return agrees
-
-
-COMPARISONS = {
-    "networks": Comparison(judge_queries, "networks"),
-    "logics": Comparison(judge_logics, "networks"),
-}
 
 
 def random_formulas(random: Random, states: list[str], count: int) -> Iterator[str]:

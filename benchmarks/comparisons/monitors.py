@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
 import numpy as np
-from benchmarks.comparisons.comparison import Comparison
-from benchmarks.comparisons.coverage import EACH, judge_hits
-from benchmarks.comparisons.long_traces import Long, judge_long
 from tests.tools.build import requirement, spec_over
 from tests.tools.common_fragment import unrolled
 from tests.tools.compare import Key
@@ -25,7 +22,6 @@ from tests.tools.ltl3 import Letter, Tableau
 from tests.tools.random_specs import random_ltl, random_mtl
 from tests.tools.sound import is_spoken_of, narrowed, overturned
 
-from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import TimeModel
 from rvmon.language.print import format_formula
 from rvmon.monitor.robustness import Robustness, RobustnessMonitor
@@ -41,51 +37,50 @@ from rvmon.verdicts import Verdict
 Figures = Mapping[Key, tuple[float, float, float]]
 """Of each attempt the least and the greatest that robustness can be, and what is kept up."""
 
+_MANY, _ALONE = Profile(many=8), Profile(requirements=1)
+_LONG, _USUAL = TraceProfile(long=8), TraceProfile()
+
 TABLEAU_MOST = 8
 """Formulas with more temporal operators have a tableau that takes too long."""
-
-
-@dataclass(frozen=True, slots=True)
-class Verdicts:
-    """Settings of `verdicts`."""
-
-    # of the core, with commas: `c`, `c rows`, `c+next`, `c+interrupt`, `c+next+interrupt`
-    forms: str = "c"
-    traces: int = 1  # for each specification
-    windows: int = 0  # per cent of the specifications that are windows in windows
-    letters: int = 0  # per cent that speak of 17 propositions at once
-    online_every: int = 10  # what each call says is compared in every so many-th case
-
-    def __post_init__(self) -> None:
-        try:
-            self.makers()
-        except RvmonError as error:
-            raise ValueError(str(error)) from None
-
-    def makers(self) -> dict[str, Maker]:
-        """What makes monitors, by form."""
-        compiler = Compiler()
-        return {form: Maker(form, compiler) for form in self.forms.split(",")}
 
 
 def judge_verdicts(
     found: Campaign,
     seed: int,
-    own: Verdicts,
-    profile: Profile,
-    traces: TraceProfile,
     numbers: range,
+    *,
+    forms: str = "c",
+    traces: int = 1,
+    windows: int = 0,
+    letters: int = 0,
+    online_every: int = 10,
+    profile: Profile = _MANY,
+    trace: TraceProfile = _LONG,
 ) -> None:
-    """The core against the oracle: verdicts, instants, records, in all time models."""
+    """The core against the oracle: verdicts, instants, records, in all time models.
+
+    Args:
+        found: takes what came of it.
+        seed: with a number it tells cases apart.
+        numbers: of specifications.
+        forms: of the core, with commas: `c`, `c rows`, `c+next`, `c+interrupt`, …
+        traces: for each specification.
+        windows: per cent of the specifications that are windows in windows.
+        letters: per cent that speak of 17 propositions at once.
+        online_every: what each call says is compared in every so many-th case.
+        profile: of specifications.
+        trace: of traces.
+    """
+    compiler = Compiler()
     own_found = campaign(
-        own.makers(),
+        {form: Maker(form, compiler) for form in forms.split(",")},
         [f"{seed}/{number}" for number in numbers],
         profile,
-        traces,
-        each=own.traces,
-        online_every=own.online_every,
-        windows=own.windows,
-        letters=own.letters,
+        trace,
+        each=traces,
+        online_every=online_every,
+        windows=windows,
+        letters=letters,
     )
     found.counts += own_found.counts
     found.disagreements += own_found.disagreements
@@ -140,7 +135,12 @@ def _figures_differ(ours: Callable[[Case], Figures], case: Case) -> list[str]:
 
 
 def judge_robustness(
-    found: Campaign, seed: int, profile: Profile, traces: TraceProfile, numbers: range
+    found: Campaign,
+    seed: int,
+    numbers: range,
+    *,
+    profile: Profile = _MANY,
+    traces: TraceProfile = _USUAL,
 ) -> None:
     """Robustness, by samples and by arrays, against its oracle."""
 
@@ -154,29 +154,29 @@ def judge_robustness(
         found.compare(drawn, f"margins {seed}/{number}", ways, 1)
 
 
-@dataclass(frozen=True, slots=True)
-class Fillings:
-    """Settings of `fillings`."""
-
-    fillings: int = 8  # so many are tried for each run
-    # whether stretches of time are lost; then every other run lost nothing else
-    stretches: bool = False
-
-
 def judge_fillings(
-    found: Campaign, seed: int, own: Fillings, profile: Profile, numbers: range
+    found: Campaign,
+    seed: int,
+    numbers: range,
+    *,
+    fillings: int = 8,
+    profile: Profile = _ALONE,
 ) -> None:
-    """Green never hides a failure: what was lost is filled in, and no verdict may turn."""
+    """Green never hides a failure: what was lost is filled in, and no verdict may turn.
+
+    So many fillings are tried for each run. Of every other one stretches of time are lost; every
+    fourth one lost nothing else.
+    """
     for number in numbers:
-        alone = own.stretches and number % 2 == 1
-        traces = TraceProfile(unknowns=not alone, outages=100 if own.stretches else 0)
+        stretches, alone = number % 2 == 1, number % 4 == 1
+        traces = TraceProfile(unknowns=not alone, outages=100 if stretches else 0)
         drawn = case_of(f"{seed}/{number}", replace(profile, stale=not alone), traces)
         case = narrowed(drawn)
         if not (alone or is_spoken_of(case.spec)):
             found.counts["not spoken of"] += 1
             continue
         rng = random.Random(f"{seed}/{number}")
-        tried = overturned(rng, case, own.fillings, oracle, whole=not alone)
+        tried = overturned(rng, case, fillings, oracle, whole=not alone)
         found.counts.update(f"verdict {verdict}" for verdict in tried.verdicts.values())
         found.counts["turned by a filling that may"] += tried.is_split
         if tried.overturning is not None:
@@ -184,37 +184,33 @@ def judge_fillings(
             found.disagreements.append("\n".join([*lines, show_case(tried.overturning)]))
 
 
-@dataclass(frozen=True, slots=True)
-class Forecasts:
-    """Settings of `forecasts`."""
+def judge_forecasts(
+    found: Campaign, seed: int, numbers: range, *, words: int = 20, timed: bool = False
+) -> None:
+    """Verdicts and forecasts of open attempts against a tableau.
 
-    words: int = 20  # on which each formula is judged
-    # whether formulas have windows of a few ticks, in held time; the tableau is given them
-    # unrolled, and a forecast that the monitor does not give is counted as missed
-    timed: bool = False
-
-
-def judge_forecasts(found: Campaign, seed: int, own: Forecasts, numbers: range) -> None:
-    """Verdicts and forecasts of open attempts against a tableau."""
+    Each formula is judged on so many words. Timed ones have windows of a few ticks, in held time;
+    the tableau is given them unrolled, and a forecast that the monitor lacks is counted as missed.
+    """
     for number in numbers:
         rng = random.Random(f"{seed}/{number}")
-        formula = (random_mtl if own.timed else random_ltl)(rng, rng.randint(1, 4))
+        formula = (random_mtl if timed else random_ltl)(rng, rng.randint(1, 4))
         tableau = Tableau.of(unrolled(formula), TABLEAU_MOST)
         if tableau is None:
             found.counts[f"passed over: more than {TABLEAU_MOST} temporal operators"] += 1
             continue
         found.counts["formulas"] += 1
-        time = TimeModel.HELD if own.timed else TimeModel.SAMPLED
+        time = TimeModel.HELD if timed else TimeModel.SAMPLED
         kinds = dict.fromkeys(BOOLS, Kind.BOOL)
         spec = Spec(spec_over(kinds, requirement(formula), time))
-        for _ in range(own.words):
+        for _ in range(words):
             places = range(rng.randint(1, 8))
             word = [frozenset(name for name in BOOLS if chance(rng, 50)) for _ in places]
             for length, (decided, ours) in enumerate(_said(spec, word), 1):
                 possible = tableau.possible(word[:length])
                 wanted = next(iter(possible)) if len(possible) == 1 else None
                 found.counts[f"{'decided' if decided else 'forecast'} {_SIGNS[ours]}"] += 1
-                if own.timed and ours is None and wanted is not None:
+                if timed and ours is None and wanted is not None:
                     found.counts["missed"] += 1
                 elif ours is not wanted:
                     letters = " ".join("".join(sorted(x)) or "-" for x in word[:length])
@@ -236,19 +232,3 @@ def _said(spec: Spec, word: Sequence[Letter]) -> Iterator[tuple[bool, bool | Non
             decided = attempt.verdict
         value = monitor.open[0].forecast if decided is None else decided
         yield decided is not None, None if value is None else value is Verdict.PASS
-
-
-_SPECS = "specifications"
-
-COMPARISONS = {
-    "verdicts": Comparison(
-        judge_verdicts, _SPECS, Verdicts(), Profile(many=8), TraceProfile(long=8)
-    ),
-    "robustness": Comparison(
-        judge_robustness, f"{_SPECS} of 8 traces", Profile(many=8), TraceProfile()
-    ),
-    "coverage": Comparison(judge_hits, f"{_SPECS} of {EACH} traces"),
-    "long": Comparison(judge_long, "traces", Long(), part=1),
-    "forecasts": Comparison(judge_forecasts, "formulas", Forecasts()),
-    "fillings": Comparison(judge_fillings, "runs", Fillings(), Profile(requirements=1)),
-}

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
-from benchmarks.comparisons.comparison import Comparison
 from benchmarks.peers.client import Peer, PeerError
 from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import prepare
@@ -28,41 +26,31 @@ from rvmon.trace.schema import Kind
 ORDERS = tuple(map(rv.CompareOp, ("<", "<=", ">=", ">")))
 PLAIN = rv.SignalAtom | rv.Constant | rv.BoundAtom
 Values = Sequence[float | None]
-Both = Callable[[Way, Peer, Question], tuple[Values, Values]]
-"""What we and the peer say at every tick."""
 
 
-@dataclass(frozen=True, slots=True)
-class Asked:
-    """Settings of both: the ways in which peers are asked, with commas."""
-
-    ways: str
-
-
-def judge_verdicts(found: Campaign, seed: int, own: Asked, numbers: range) -> None:
+def judge_verdicts(found: Campaign, seed: int, numbers: range) -> None:
     """Reelay, rtamt, mstlo and SENTIL: verdicts at every tick (made from the package index)."""
-
-    def both(way: Way, peer: Peer, one: Question) -> tuple[Values, Values]:
-        return answers(one, ask_oracle), way.truths(peer, one)
-
-    _judge(found, f"{seed}", own.ways, numbers, 50, both)
+    _judge(found, f"{seed}", [*WAYS], numbers, 50, lambda one: answers(one, ask_oracle), Way.truths)
 
 
-def judge_robustness(found: Campaign, seed: int, own: Asked, numbers: range) -> None:
+def judge_robustness(found: Campaign, seed: int, numbers: range) -> None:
     """Rtamt and SENTIL: robustness at every tick."""
-
-    def both(way: Way, peer: Peer, one: Question) -> tuple[Values, Values]:
-        return _robustness(one), way.says(peer, one)
-
-    _judge(found, f"robustness {seed}", own.ways, numbers, 100, both)
+    ways = ("rtamt-discrete", "rtamt-dense", "sentil")
+    _judge(found, f"robustness {seed}", ways, numbers, 100, _robustness, Way.says)
 
 
 def _judge(
-    found: Campaign, seed: str, ways: str, numbers: range, compared: int, both: Both
+    found: Campaign,
+    seed: str,
+    ways: Sequence[str],
+    numbers: range,
+    compared: int,
+    own: Callable[[Question], Values],
+    its: Callable[[Way, Peer, Question], Values],
 ) -> None:
     """Both on random questions, of whose propositions so many per cent are comparisons."""
     environment = prepare()
-    for name in ways.split(","):
+    for name in ways:
         way = WAYS[name]
         if way.package in environment.missing:
             found.counts[f"{name}: left out, {way.package} is missing"] += 1
@@ -71,7 +59,7 @@ def _judge(
             for number in numbers:
                 question = random_question(random.Random(f"{seed}/{name}/{number}"), way, compared)
                 try:
-                    ours, theirs = both(way, peer, question)
+                    ours, theirs = own(question), its(way, peer, question)
                 except UntranslatableError:
                     found.counts[f"{name}: not to be said to it"] += 1
                     continue
@@ -134,12 +122,3 @@ def _show(way: Way, question: Question, ours: Values, theirs: Values) -> str:
         cells = ["." if value is None else f"{value:g}" for value in column]
         lines.append(f"  {name:6} " + " ".join(cells))
     return "\n".join(lines)
-
-
-_ASKED = "formulas for each way to ask"
-_NUMBERS = Asked("rtamt-discrete,rtamt-dense,sentil")
-
-COMPARISONS = {
-    "peers": Comparison(judge_verdicts, _ASKED, Asked(",".join(WAYS)), part=250),
-    "peers-robustness": Comparison(judge_robustness, _ASKED, _NUMBERS, part=250),
-}

@@ -17,7 +17,7 @@ FEW = {
     "coverage": (6, [], "pairs", 60),
     "long": (24, ["samples=1000"], "samples", 18_000),
     "forecasts": (15, ["words=5"], "formulas", 12),
-    "fillings": (20, ["stretches=true", "fillings=3"], "verdict P", 1),
+    "fillings": (20, ["fillings=3"], "verdict P", 1),
     "doors": (1, [], "CSV", 4),
     "networks": (2, [], "runs checked as concrete runs", 10),
     "logics": (5, [], "CTL: true", 5),
@@ -67,10 +67,10 @@ def test_what_disagrees_is_shown(
 ) -> None:
     """It is counted, shrunk and printed; the exit code is 1."""
     monkeypatch.setattr(monitors, "margins", lambda *_: {})
-    assert main(["robustness"], count=1, show=1) == 1
+    assert main(["robustness"], count=1) == 1
     printed = capsys.readouterr().out
     assert counts(printed)["disagreements"] > 1
-    assert printed.count("=" * 72) == 1
+    assert 1 < printed.count("=" * 72) <= 5
     assert "expected None" in printed
 
 
