@@ -14,8 +14,9 @@ def run_lsp(arguments: argparse.Namespace) -> int:  # noqa: ARG001 - it has one 
     """Serve until the editor ends it, and return the exit code."""
     with needed("the language server", "pygls"):
         from rvmon.cli.lsp.server import Server
-    for ending in (signal.SIGINT, signal.SIGTERM):  # at once: a thread waits for the editor
-        signal.signal(ending, lambda *_: os._exit(130))
+    # At once: while the loop waits for the editor, a handler of Python's may not get to run.
+    for ending in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(ending, signal.SIG_DFL)
     # Standard output is the protocol's alone: what anything else prints there goes to the log.
     with os.fdopen(os.dup(1), "wb") as answers:
         os.dup2(2, 1)

@@ -176,7 +176,7 @@ def test_the_end_of_the_editor(ending):
             server.stdin.close()
         else:
             server.send_signal(ending)
-        assert server.wait(30) == (0 if ending is None else 130)
+        assert server.wait(30) == (0 if ending is None else -ending)
 
 
 def test_without_pygls(monkeypatch, says):
