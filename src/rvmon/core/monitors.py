@@ -20,7 +20,14 @@ from rvmon.logic.automaton import Automaton
 from rvmon.logic.network_plan import NetworkPlan, plan_of
 from rvmon.logic.plan import Plan, PlannedRule
 from rvmon.logic.state_formula import State, StateOp
-from rvmon.logic.state_graph import Reach, begins_with_attempt, graph_of, reach_of, varying
+from rvmon.logic.state_graph import (
+    Reach,
+    begins_with_attempt,
+    graph_of,
+    names_of,
+    reach_of,
+    varying,
+)
 from rvmon.logic.window_chains import Chain, chain_of
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Decision
@@ -85,9 +92,15 @@ class Judges:
     """
 
     def __init__(
-        self, sections: Sections, automata: Automata, plan: Plan, numbers: Sequence[int]
+        self,
+        sections: Sections,
+        automata: Automata,
+        plan: Plan,
+        names: Names,
+        numbers: Sequence[int],
     ) -> None:
         self._sections = sections
+        self._names = names
         self._plan = plan
         self._index = plan.graph.index
         self.networked: list[int] = []
@@ -160,7 +173,18 @@ class Judges:
             *judged_by,
             *self._sections.listed([self._index[state] for state in rule.alphabet.propositions]),
             *self._sections.listed([self._index[state] for state in rule.noted]),
+            *self._sections.listed(self._names_noted(rule)),
             *outcomes(rule.requirement.at_end),
+        )
+
+    def _names_noted(self, rule: PlannedRule) -> list[int]:
+        """The numbers of the names that leaves of notes read; events count behind all signals."""
+        signals, events = self._names.signals, self._names.events
+        leaves = [state.leaf for state in rule.noted if state.leaf is not None]
+        read = {name for leaf in leaves for name in names_of(leaf)}
+        return sorted(
+            [signals[name] for name in read & signals.keys()]
+            + [len(signals) + events[name] for name in read & events.keys()]
         )
 
 

@@ -57,7 +57,7 @@ class Part:
         def added(section: Section) -> Listed:
             return firsts[section], sections.count(section) - firsts[section]
 
-        judges = Judges(sections, automata, plan, numbers)
+        judges = Judges(sections, automata, plan, self.names, numbers)
         watched = self._add_groups()
         truths = -1
         if plan.truths:

@@ -93,7 +93,7 @@ class Section(IntEnum):
     ATOMS = "d12iq"
     NODES = "2q18i"
     LINKS = "8i"
-    JUDGES = "24i"
+    JUDGES = "26i"
     AUTOMATA = "22i"
     FORMS = "q10i"
     OPERATORS = "3q10i"

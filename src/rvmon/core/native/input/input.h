@@ -157,7 +157,7 @@ void resume_episodes(run *r, int64_t t);
 /* ---- unknowns.c: when and why signals were unknown, for notes */
 bool begin_unknowns(home *h);
 void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value);
-int64_t unknowns_count(const run *r, int64_t doubt);
-void put_unknowns(const run *r, int64_t doubt, int64_t *to);
+int64_t unknowns_count(const run *r, int32_t index, int64_t doubt);
+void put_unknowns(const run *r, int32_t index, int64_t doubt, int64_t *to);
 
 #endif

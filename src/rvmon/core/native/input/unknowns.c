@@ -115,51 +115,64 @@ void note_knowledge(run *r, int64_t t, int32_t local, const rv_number *value)
     h->unknown_count++;
 }
 
-/* Whether a stretch lasts still, or covers a doubt. */
-static bool matters_at(const unknown_stretch *one, int64_t doubt)
+/* Whether the notes of a judge tell of a stretch: a leaf reads the signal, which is still unknown, or was
+ * at the doubt. */
+static bool is_told(const run *r, int32_t index, const unknown_stretch *one, int64_t doubt)
 {
-    return (one->until == NEVER)
-           || ((doubt != RV_NO_TIME) && (one->since <= doubt) && (one->until > doubt));
+    const list names = r->part->judges[index].names;
+    const int32_t *name = LIST(PLAN(r), names);
+    int32_t left = names.count;
+    if ((one->until != NEVER) && ((doubt == RV_NO_TIME) || (one->since > doubt) || (one->until <= doubt))) {
+        return false;
+    }
+    while (left > 1) {
+        const int32_t half = left / 2;
+        name += (name[half] <= one->local) ? half : 0;
+        left -= half;
+    }
+    return (left == 1) && (*name == one->local);
 }
 
 /* How many words `put_unknowns` takes. */
-int64_t unknowns_count(const run *r, int64_t doubt)
+int64_t unknowns_count(const run *r, int32_t index, int64_t doubt)
 {
     const home *h = r->home;
-    const int32_t names = r->part->plan->signals.count + r->part->plan->events.count;
+    const list names = r->part->judges[index].names;
     int64_t found = 1;
     int32_t i;
     for (i = 0; i < h->unknown_count; i++) {
-        found += matters_at(&h->unknowns[i], doubt) ? 3 : 0;
+        found += is_told(r, index, &h->unknowns[i], doubt) ? 3 : 0;
     }
-    for (i = 0; i < names; i++) {
-        found += has_no_source(h->root, i) ? 3 : 0;
+    for (i = 0; i < names.count; i++) {
+        found += has_no_source(h->root, LIST(PLAN(r), names)[i]) ? 3 : 0;
     }
     return found;
 }
 
-/* Write the stretches that last still or cover `doubt` (RV_NO_TIME: none), and names without a source:
- * their number; then for each the name with the cause from bit 32 on, since when, until when (NEVER: it
- * lasts). */
-void put_unknowns(const run *r, int64_t doubt, int64_t *to)
+/* Write the stretches of the names that a judge's leaves read that last still or cover `doubt`
+ * (RV_NO_TIME: none), and those names that have no source: their number; then for each the name with the
+ * cause from bit 32 on, since when, until when (NEVER: it lasts). */
+void put_unknowns(const run *r, int32_t index, int64_t doubt, int64_t *to)
 {
     const home *h = r->home;
     const part *p = r->part;
     const int32_t signals = p->plan->signals.count;
+    const list names = p->judges[index].names;
     int64_t *own = &to[1];
     int32_t i;
     for (i = 0; i < h->unknown_count; i++) {
         const unknown_stretch *one = &h->unknowns[i];
-        if (matters_at(one, doubt)) {
+        if (is_told(r, index, one, doubt)) {
             own[0] = p->signals[one->local].name | ((int64_t)one->why << 32);
             own[1] = one->since;
             own[2] = one->until;
             own += 3;
         }
     }
-    for (i = 0; i < signals + p->plan->events.count; i++) {
-        if (has_no_source(h->root, i)) {
-            const int32_t name = (i < signals) ? p->signals[i].name : p->events[i - signals].name;
+    for (i = 0; i < names.count; i++) {
+        const int32_t local = LIST(PLAN(r), names)[i];
+        if (has_no_source(h->root, local)) {
+            const int32_t name = (local < signals) ? p->signals[local].name : p->events[local - signals].name;
             own[0] = name | ((int64_t)HAS_NO_SOURCE << 32);
             own[1] = RV_NO_TIME;
             own[2] = NEVER;

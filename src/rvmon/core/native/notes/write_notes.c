@@ -222,7 +222,7 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool can
     const int64_t state = note_state(r, index, NEVER);
     const int64_t *doubt = doubt_of(r, index, x);
     const int64_t doubted_at = (doubt != NULL) ? doubt[0] : RV_NO_TIME;
-    const int64_t more = words + 2 * ((int64_t)most + 1) + unknowns_count(r, doubted_at);
+    const int64_t more = words + 2 * ((int64_t)most + 1) + unknowns_count(r, index, doubted_at);
     const int64_t note = begin_note(r, index, x, NOTE_OPEN, cannot_pass ? NOTE_CANNOT_PASS : 0, more);
     int64_t *to;
     if ((note < 0) || (state < 0)) {
@@ -252,7 +252,7 @@ int64_t note_open(run *r, int32_t index, const attempt *x, int64_t now, bool can
         m->notes[note + 3] = own | ((int64_t)other << 32);
         to += 2 + own + other;
     }
-    put_unknowns(r, doubted_at, to);
+    put_unknowns(r, index, doubted_at, to);
     return note;
 }
 

@@ -258,6 +258,7 @@ typedef struct {
     int32_t diagram;           /* offset in SEC_INTS of the diagram of letters; -1: a table */
     list propositions;         /* nodes: the propositions of its letters, by digit of the diagram */
     list leaves;               /* leaves below these, for notes */
+    list names;                /* signals and events (behind all signals) that these read, ascending */
     int32_t outcomes[8];       /* verdict + 4 * decision, by the sum of: 1, kept; 2, it cannot pass; 4,
                                 * it cannot fail */
 } judge_plan;

@@ -196,7 +196,8 @@ bool check_judge(const plan *p, const part_plan *x, int32_t number)
         || ((x->captured > 0) && (j->requirement != x->requirement))
         || (((j->flags & (JUDGE_EPISODIC | JUDGE_HIDDEN)) == JUDGE_EPISODIC) && (j->running < 0))
         || ((x->captures.count > 0) && (x->captured > 0) && (j->blurs >= 0) && (j->trigger < 0))
-        || !lists(p, j->propositions, 0, x->nodes.count) || !lists(p, j->leaves, 0, x->nodes.count)) {
+        || !lists(p, j->propositions, 0, x->nodes.count) || !lists(p, j->leaves, 0, x->nodes.count)
+        || !lists(p, j->names, 0, (int64_t)x->signals.count + x->events.count)) {
         return false;
     }
     for (i = 0; i < 8; i++) {
