@@ -116,14 +116,6 @@ def gcc() -> str:
     return _program("gcc")
 
 
-@pytest.fixture(scope="session", autouse=True)
-def unsynced() -> Iterator[None]:
-    """Nobody waits for the disk: no test takes the power away."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("os.fsync", lambda _: None)
-        yield
-
-
 Make = Callable[[Path], object]
 
 

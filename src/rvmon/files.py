@@ -76,14 +76,13 @@ def _mode_if_replaceable(path: Path) -> int | None:
     return stat.S_IMODE(found.st_mode)
 
 
-def place_whole(path: Path, body: bytes, *, mode: int | None = None, synced: bool = False) -> None:
+def place_whole(path: Path, body: bytes, *, mode: int | None = None) -> None:
     """Write a file beside its place, then put it there; a link that is there goes.
 
     Args:
         path: of the file.
         body: its contents.
         mode: its rights; default: those that new files have.
-        synced: whether it is on the disk before it is seen, and still there after a loss of power.
 
     Raises:
         OSError: it cannot be written; nothing has changed.
@@ -96,20 +95,11 @@ def place_whole(path: Path, body: bytes, *, mode: int | None = None, synced: boo
             if mode is not None and hasattr(os, "fchmod"):
                 os.fchmod(handle, mode)  # whatever the umask says
             file.write(body)
-            file.flush()
-            if synced:
-                os.fsync(handle)
         os.replace(temporary, path)
     except BaseException:
         with suppress(OSError):
             temporary.unlink()
         raise
-    if synced and hasattr(os, "O_DIRECTORY"):
-        folder = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)
 
 
 @contextmanager
@@ -236,7 +226,7 @@ def keep(path: Path, body: bytes) -> None:
     """Write a file so that others see it whole or not at all; if that fails, never mind."""
     with suppress(OSError):
         whole = f"{_checksum(body)}\n".encode() + body
-        place_whole(path, whole, mode=0o600, synced=True)
+        place_whole(path, whole, mode=0o600)  # not synced: the checksum tells what is not whole
         _tidy(path.parent)
 
 
