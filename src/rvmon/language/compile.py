@@ -13,7 +13,7 @@ from rvmon.errors import SpecError
 from rvmon.language.check import check
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.names import overridden, resolve, unused_names
-from rvmon.language.rules import MOST, Enough, Findings
+from rvmon.language.rules import Enough, Findings
 from rvmon.language.rules.syntax import empty_file, too_many
 from rvmon.language.syntax.items import ParsedSpec
 from rvmon.language.syntax.parse import load_files
@@ -90,7 +90,7 @@ def compilation(
             findings.add(empty_file(Span(source, 0, 0)))
     ordered = sorted(findings.diagnostics, key=lambda finding: _place(finding, source))
     if findings.more:
-        ordered.append(too_many(MOST, broken=_errors(ordered)))
+        ordered.append(too_many(broken=_errors(ordered)))
     return Compilation(files, checked, tuple(ordered))
 
 

@@ -225,15 +225,11 @@ def unused_names(spec: ResolvedSpec, checked: CheckedSpec) -> Iterator[Diagnosti
 def _never_read(spec: CheckedSpec) -> Iterator[Diagnostic]:
     """Signals and events that nothing reads."""
     read = frozenset(names_of_spec(spec))
-    kinds: tuple[tuple[str, Mapping[str, Signal | Event]], ...] = (
-        ("signal", spec.signals),
-        ("event", spec.events),
-    )
-    for kind, names in kinds:
-        for name, declared in names.items():
-            span = declared.span
-            if name not in read and span is not None and span.source is spec.source:
-                yield trigger_rules.never_read(span, kind, span.text.strip("`"))
+    declared: dict[str, Signal | Event] = {**spec.signals, **spec.events}
+    for name, one in declared.items():
+        if name not in read and one.span is not None and one.span.source is spec.source:
+            kind = "signal" if name in spec.signals else "event"
+            yield trigger_rules.never_read(one.span, kind, one.span.text.strip("`"))
 
 
 def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
@@ -242,10 +238,9 @@ def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
     # Counted in the text, so that uses in unused macros and the declaration itself count, too.
     uses = Counter(name for source in spec.sources for name in _names(source.text))
     for item in spec.declared.values():
-        if isinstance(item, items.DefineItem | items.ConstItem) and item.name.span.source is main:
-            kind = "define" if isinstance(item, items.DefineItem) else "const"
-            if uses[item.name.text] < 2:
-                yield rules.unused(item.name.span, kind, item.name.text)
+        is_own = isinstance(item, items.DefineItem | items.ConstItem)
+        if is_own and item.name.span.source is main and uses[item.name.text] < 2:
+            yield rules.unused(item.name.span, item.word, item.name.text)
     for requirement in spec.requirements.values():
         lets = [clause for clause in requirement.clauses if isinstance(clause, items.LetClause)]
         if lets and requirement.span.source is main:

@@ -208,19 +208,15 @@ def _binary(formula: rv.Binary) -> str:
         texts.append(_formula(operands[-1], level + 1))
         # The parser requires these brackets (RV002), but not around `<->`, which binds loosest.
         if op is not rv.BinaryOp.IFF:
-            pairs = zip(operands, texts, strict=True)
-            texts = [f"({text})" if _is_kin_of_until(one) else text for one, text in pairs]
+            for place, one in enumerate(operands):
+                if isinstance(one, rv.Binary) and one.op.is_kin_of_until:
+                    texts[place] = f"({texts[place]})"
         return f" {op.entry.word} ".join(texts)
     right = formula.right
     same = isinstance(right, rv.Binary) and right.op is op
     right_level = level if same else level + 1
     left = _left(formula.left, level + 1)
     return f"{left} {op.entry.word}{_window(formula.interval)} {_formula(right, right_level)}"
-
-
-def _is_kin_of_until(formula: rv.Formula) -> bool:
-    level = rv.BinaryOp.UNTIL.entry.level
-    return isinstance(formula, rv.Binary) and formula.op.entry.level == level
 
 
 def _left(formula: rv.Formula, level: int) -> str:

@@ -17,7 +17,7 @@ from rvmon.language.checked.specification import TimeModel
 from rvmon.language.rules import Refusal
 from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import types as rules
-from rvmon.language.syntax.expressions import Comparison, Expression, Name
+from rvmon.language.syntax.expressions import Comparison, Name
 from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.units import Unit, parse_unit
 
@@ -81,7 +81,9 @@ def _sides(operands: sc.Operands, node: Comparison, scope: sc.Scope) -> list[sc.
     for first, second in ((node.left, node.right), (node.right, node.left)):
         name, place = operands.peeled(second, scope)
         other, _ = operands.peeled(first, scope)
-        if not isinstance(name, Name) or not _may_be_signal(operands, other, scope):
+        # Else it is not worth while to evaluate the other side in search of a signal with labels.
+        may_be_signal = not isinstance(other, Name) or operands.known(other.text, scope)
+        if not isinstance(name, Name) or not may_be_signal:
             continue
         value = operands.values((first,), scope)[0]
         if not isinstance(value, sc.Quantity) or not value.labels:
@@ -92,11 +94,6 @@ def _sides(operands: sc.Operands, node: Comparison, scope: sc.Scope) -> list[sc.
         if not operands.known(name.text, place):
             raise Refusal(name_rules.unknown_label(name.span, name.text, value.labels))
     return operands.values((node.left, node.right), scope)
-
-
-def _may_be_signal(operands: sc.Operands, expression: Expression, scope: sc.Scope) -> bool:
-    """Whether evaluating it is worth while in search of a signal with labels."""
-    return not isinstance(expression, Name) or operands.known(expression.text, scope)
 
 
 def _amount(
@@ -270,17 +267,14 @@ def _now(now: sc.Now, op: rv.CompareOp, limit: sc.Value, place: Span, span: Span
         raise Refusal(rules.limit_of_event(place))
     if _windows_of((value, place)) or op in _EQUALITY:
         raise Refusal(rules.now_alone(span))
-    # `now <= D` is the negation of `now > D`, and that is `now >= D + 1 tick`.
-    strict = op in (rv.CompareOp.GT, rv.CompareOp.LE)
-    late = op in (rv.CompareOp.GT, rv.CompareOp.GE)
-    if now.since is None and value.constant is not None:
-        ticks = quantities.ticks_of(value, place) + strict
-        begun: rv.Formula = rv.Unary(
-            rv.UnaryOp.ONCE, rv.Constant(True, span), rv.Interval(ticks), span
-        )
-    else:
-        begun = rv.passed(now.since, quantities.seconds_of((value, place)), strict, span)
-    return begun if late else rv.Unary(rv.UnaryOp.NOT, begun, None, span)
+
+    def late(strict: bool) -> rv.Formula:
+        if now.since is None and value.constant is not None:
+            ticks = quantities.ticks_of(value, place) + strict
+            return rv.Unary(rv.UnaryOp.ONCE, rv.Constant(True, span), rv.Interval(ticks), span)
+        return rv.passed(now.since, quantities.seconds_of((value, place)), strict, span)
+
+    return by_limits(op, late, span)
 
 
 def _age(age: sc.Age, op: rv.CompareOp, limit: quantities.Placed, span: Span) -> rv.Formula:

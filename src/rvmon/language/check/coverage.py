@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from itertools import pairwise, product
 from math import ceil, floor, inf, prod
 
@@ -14,10 +14,9 @@ from rvmon.language.check.comparisons import compared
 from rvmon.language.check.expressions import Checker
 from rvmon.language.check.scope import EVERYWHERE, Quantity, Scope, Value
 from rvmon.language.checked import formula as rv
-from rvmon.language.checked.classify import end_part, future_part
-from rvmon.language.checked.operators import Connectives, Tense
+from rvmon.language.checked.classify import end_part, future_part, subformulas, truth_at
+from rvmon.language.checked.operators import Tense
 from rvmon.language.checked.properties import Bin, BinKind, Cover, Coverpoint, Cross
-from rvmon.language.checked.rewrite import read
 from rvmon.language.print import format_formula
 from rvmon.language.rules import Refusal, Reported
 from rvmon.language.rules import names as name_rules
@@ -269,19 +268,14 @@ def _clauses(
                 if upon is None:
                     return None
             case items.CountClause(word=word, count=count):
-                if not _is_count(count, least=int(word == "goal")):
+                number, least = count.value, int(word == "goal")
+                whole = number is not None and not count.unit and number.denominator == 1
+                if number is None or not whole or not least <= number <= _MOST:
                     wrong = rules.bad_goal if word == "goal" else rules.bad_weight
                     checker.report(wrong(count.span))
                     return None
-                counts[word] = int(count.value or 0)
+                counts[word] = int(number)
     return upon, counts["goal"], counts["weight"]
-
-
-def _is_count(number: expressions.Number, least: int) -> bool:
-    value = number.value
-    return (
-        value is not None and not number.unit and value.denominator == 1 and least <= value <= _MOST
-    )
 
 
 def _combinations(
@@ -306,51 +300,33 @@ def _combinations(
     )
 
 
-class _Booleans(Connectives[bool]):
-    """Connectives of what is known."""
-
-    def constant(self, value: bool) -> bool:
-        return value
-
-    def no(self, operand: bool) -> bool:
-        return not operand
-
-    def both(self, left: bool, right: bool) -> bool:
-        return left and right
-
-
 def _about_bins(formula: rv.Formula, bins: Mapping[str, Sequence[str]]) -> bool:
     """Whether it is made of comparisons of coverpoints with bins, and connectives."""
-    match formula:
-        case rv.Constant():
-            return True
-        case rv.Compare(left=left, right=right):
-            return all(
+    for part in subformulas(formula):
+        match part:
+            case rv.Constant():
+                pass
+            case rv.Unary(op=op) | rv.Binary(op=op) if op.entry.tense is Tense.PRESENT:
+                pass
+            case rv.Compare(left=left, right=right) if all(
                 isinstance(side, rv.Literal)
                 or (isinstance(side, rv.SignalValue) and side.name in bins)
                 for side in (left, right)
-            )
-        case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
-            return _about_bins(operand, bins)
-        case rv.Binary(op=op, left=left, right=right):
-            present = op.entry.tense is Tense.PRESENT
-            return present and _about_bins(left, bins) and _about_bins(right, bins)
-        case _:
-            return False
+            ):
+                pass
+            case _:
+                return False
+    return True
 
 
 def _holds(formula: rv.Formula, combination: Mapping[str, str]) -> bool:
-    match formula:
-        case rv.Constant(value=value):
-            return value
-        case rv.Compare(op=op, left=left, right=right):
-            names = [
-                combination[side.name] if isinstance(side, rv.SignalValue) else side
-                for side in (left, right)
-            ]
-            first, second = (n.value if isinstance(n, rv.Literal) else n for n in names)
-            return (first == second) is (op is rv.CompareOp.EQ)
-        case rv.Unary() | rv.Binary():
-            return read(formula, lambda part: _holds(part, combination), _Booleans())
-        case _:
-            return False
+    """Whether a formula that is about bins holds for a combination of these."""
+    facts: dict[Hashable, bool] = {}
+    for part in subformulas(formula):
+        if isinstance(part, rv.Compare):
+            left, right = (
+                rv.Literal(combination[side.name]) if isinstance(side, rv.SignalValue) else side
+                for side in (part.left, part.right)
+            )
+            facts[rv.CompareOp.EQ, part.left, part.right] = left == right
+    return truth_at(formula, facts) is True

@@ -77,21 +77,7 @@ class Checker:
             Refusal: it is a number or label.
             Reported: it is wrong.
         """
-        return self.formulas((expression,), scope)[0]
-
-    def formulas(
-        self, expressions: tuple[ast.Expression, ...], scope: sc.Scope
-    ) -> list[rv.Formula]:
-        """As `formula`, for several operands."""
-        values = self.values(expressions, scope)
-        return [formula_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
-
-    def quantities(
-        self, expressions: tuple[ast.Expression, ...], scope: sc.Scope
-    ) -> list[sc.Quantity]:
-        """The quantities that the expressions stand for."""
-        values = self.values(expressions, scope)
-        return [number_of(v, e.span) for v, e in zip(values, expressions, strict=True)]
+        return formula_of(self.values((expression,), scope)[0], expression.span)
 
     def calculated(
         self, op: NumericOp, args: tuple[ast.Expression, ...], scope: sc.Scope, span: Span

@@ -25,18 +25,13 @@ from rvmon.language.syntax.expressions import Window
 
 def by_limits(op: rv.CompareOp, make: Callable[[bool], rv.Formula], span: Span) -> rv.Formula:
     """A comparison made of `>= c` and, strict, `> c`."""
-    match op:
-        case rv.CompareOp.GE:
-            return make(False)
-        case rv.CompareOp.GT:
-            return make(True)
-        case rv.CompareOp.LT:
-            return rv.Unary(rv.UnaryOp.NOT, make(False), None, span)
-        case rv.CompareOp.LE:
-            return rv.Unary(rv.UnaryOp.NOT, make(True), None, span)
-    above = rv.Unary(rv.UnaryOp.NOT, make(True), None, span)
-    same = rv.Binary(rv.BinaryOp.AND, make(False), above, None, span)
-    return same if op is rv.CompareOp.EQ else rv.Unary(rv.UnaryOp.NOT, same, None, span)
+    if op in (rv.CompareOp.EQ, rv.CompareOp.NE):
+        above = rv.Unary(rv.UnaryOp.NOT, make(True), None, span)
+        made: rv.Formula = rv.Binary(rv.BinaryOp.AND, make(False), above, None, span)
+    else:
+        made = make(op in (rv.CompareOp.GT, rv.CompareOp.LE))
+    positive = op in (rv.CompareOp.EQ, rv.CompareOp.GE, rv.CompareOp.GT)
+    return made if positive else rv.Unary(rv.UnaryOp.NOT, made, None, span)
 
 
 def above(of: rv.WindowValue, limit: rv.Numeric, strict: bool, span: Span) -> rv.Amount:

@@ -78,16 +78,13 @@ def _refuse_fields_in_sums(formulas: Iterable[rv.Formula], place: Span) -> None:
         events = {value.event for value in rv.fields_in(window.value)} if window.value else None
         if not events:
             continue
-        for subformula in classify.subformulas(window.operand):
-            read = (
-                {*names_read(subformula)} & events if isinstance(subformula, rv.Compare) else set()
-            )
-            is_itself = (
-                isinstance(subformula, rv.Compare)
-                and subformula.left == subformula.right == window.value
-            )
-            if len(events) > 1 or (read and not is_itself):
-                raise Refusal(type_rules.sum_of_instances(window.operand.span or place))
+        others = (
+            part
+            for part in classify.subformulas(window.operand)
+            if isinstance(part, rv.Compare) and not part.left == part.right == window.value
+        )
+        if len(events) > 1 or any(not events.isdisjoint(names_read(part)) for part in others):
+            raise Refusal(type_rules.sum_of_instances(window.operand.span or place))
 
 
 def check_clauses(checker: Checker, item: items.RequirementItem) -> None:

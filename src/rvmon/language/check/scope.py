@@ -15,7 +15,6 @@ from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.specification import Capture, Event, Signal, TimeModel, Type
 from rvmon.language.names import Declared
 from rvmon.language.syntax.expressions import Expression
-from rvmon.language.syntax.items import ConstItem, DefineItem, EventSyntax, SignalSyntax
 from rvmon.texts import nearest
 from rvmon.units import PLAIN, Unit, unit_table
 
@@ -124,8 +123,6 @@ class Scope(Struct, frozen=True):
 
 EVERYWHERE = Scope()  # only the names of the file
 
-Declaration = Signal | Event | DefineItem | ConstItem
-
 
 class FieldOf(Struct, frozen=True):
     """A payload field that a dotted name stands for."""
@@ -180,15 +177,10 @@ def close_name(table: Table, name: str, local: tuple[str, ...] = ()) -> str:
 
 def _described(table: Table, name: str) -> str:
     declared = table.declared.get(name)
-    match declared:
-        case SignalSyntax(role=role) | EventSyntax(role=role):
-            kind = "event" if isinstance(declared, EventSyntax) else "signal"
-            parts = [kind, *([str(role)] if role else []), f"line {declared.name.span.line}"]
-        case DefineItem() | ConstItem():
-            kind = "define" if isinstance(declared, DefineItem) else "const"
-            parts = [kind, f"line {declared.name.span.line}"]
-        case None:
-            return ""
+    if declared is None:
+        return ""
+    role = getattr(declared, "role", None)
+    parts = [declared.word, *([str(role)] if role else []), f"line {declared.name.span.line}"]
     return f"  ({', '.join(parts)})"
 
 
@@ -212,9 +204,6 @@ class Operands(Protocol):
         self, op: NumericOp, args: tuple[Expression, ...], scope: Scope, span: Span
     ) -> Value:
         """An operation on numbers, or on choices between them."""
-
-    def quantities(self, expressions: tuple[Expression, ...], scope: Scope) -> list[Quantity]:
-        """The same, which have to be numbers."""
 
     def formula(self, expression: Expression, scope: Scope) -> rv.Formula:
         """The formula that an operand stands for."""

@@ -75,14 +75,10 @@ def _window(operands: Operands, call: Call, scope: Scope) -> _Window:
 
 
 def _count(operands: Operands, expression: Expression, scope: Scope) -> int:
-    (count,) = operands.quantities((expression,), scope)
+    count = number_of(operands.values((expression,), scope)[0], expression.span)
     number = count.constant
-    if (
-        number is None
-        or count.unit.symbol
-        or not 1 <= number <= MOST_LAST
-        or number.denominator > 1
-    ):
+    whole = number is not None and number.denominator == 1 and not count.unit.symbol
+    if number is None or not whole or not 1 <= number <= MOST_LAST:
         raise Refusal(rules.last_count(expression.span, MOST_LAST))
     return int(number)
 

@@ -275,5 +275,10 @@ class BinaryOp(_Sign):
         "{right} {ago}and since then {left}", "", "ψ at some instant up to now, φ at all after it",
     )  # fmt: skip
 
+    @property
+    def is_kin_of_until(self) -> bool:
+        """Whether it is one of time: all bind as `until` does."""
+        return self.entry.level == BinaryOp.UNTIL.entry.level
+
 
 OPERATORS: tuple[UnaryOp | BinaryOp, ...] = (*UnaryOp, *BinaryOp)  # all of them

@@ -39,10 +39,10 @@ def finding(rule: Rule, message: str, *places: Span | Label, fix: str = "") -> D
     return Diagnostic(rule.code, rule.name, rule.severity, message, labels, fix)
 
 
-def short(text: str, most: int = 60) -> str:
+def short(text: str) -> str:
     """A piece of the file on one line, its middle left out if it is long."""
     line = " ".join(text.split())
-    return line if len(line) <= most else f"{line[: most - 12]} … {line[-9:]}"
+    return line if len(line) <= 60 else f"{line[:48]} … {line[-9:]}"
 
 
 class Breach(Struct, frozen=True):

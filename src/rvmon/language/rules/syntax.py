@@ -10,7 +10,7 @@ from dataclasses import replace
 from msgspec import Struct
 
 from rvmon.diagnostics import Diagnostic, Severity, Span
-from rvmon.language.rules import Breach, Refusal, Reported, Rule, finding, short
+from rvmon.language.rules import MOST, Breach, Refusal, Reported, Rule, finding, short
 
 SYNTAX = Rule("RV001", "syntax", Severity.ERROR)
 REACH = Rule("RV002", "reach-of-operator", Severity.ERROR)
@@ -90,9 +90,9 @@ empty_file = Breach(
 )
 
 
-def too_many(most: int, *, broken: bool) -> Diagnostic:
+def too_many(*, broken: bool) -> Diagnostic:
     """The end of a long list of findings: an error where one of them is."""
-    message = f"only the first {most} findings are shown"
+    message = f"only the first {MOST} findings are shown"
     breach = finding(TOO_MANY, message, fix="fix these first")
     return breach if broken else replace(breach, severity=Severity.WARNING)
 

@@ -18,7 +18,7 @@ from lark.lexer import TerminalDef
 
 from rvmon.files import cache_folder, keep, read_kept
 
-_FORMAT = 1
+_FORMAT = 2
 
 
 def parser_of(grammar: str, options: Mapping[str, Any]) -> lark.Lark:
@@ -32,7 +32,9 @@ def parser_of(grammar: str, options: Mapping[str, Any]) -> lark.Lark:
     if known is not None:
         return known
     parser = lark.Lark(grammar, **options)
-    _write(path, parser)
+    data, memo = parser.memo_serialize([TerminalDef, Rule])
+    tables = {"data": data, "memo": memo}
+    keep(path, json.dumps(tables, default=list, separators=(",", ":")).encode())
     return parser
 
 
@@ -41,7 +43,7 @@ def _read(path: Path) -> lark.Lark | None:
     if body is None:
         return None
     try:
-        known: lark.Lark = lark.Lark.load(_thawed(json.loads(body)))
+        known: lark.Lark = lark.Lark.load(json.loads(body, object_hook=_with_numbers))
         # Lark's `load` does not set it; tests read all terminals.
         known.ignore_tokens = list(known.lexer_conf.ignore)
     except Exception:  # noqa: BLE001 - whatever is wrong with a cache, it can be done without
@@ -49,27 +51,6 @@ def _read(path: Path) -> lark.Lark | None:
     return known
 
 
-def _write(path: Path, parser: lark.Lark) -> None:
-    data, memo = parser.memo_serialize([TerminalDef, Rule])
-    keep(path, json.dumps(_frozen({"data": data, "memo": memo}), separators=(",", ":")).encode())
-
-
-def _frozen(value: Any) -> Any:
-    """JSON has no numbers as keys: such mappings become lists of pairs."""
-    if isinstance(value, dict):
-        if all(isinstance(key, str) for key in value):
-            return {key: _frozen(one) for key, one in value.items()}
-        return {"": [[key, _frozen(one)] for key, one in value.items()]}
-    if isinstance(value, list | tuple | set | frozenset):
-        return [_frozen(one) for one in value]
-    return value
-
-
-def _thawed(value: Any) -> Any:
-    if isinstance(value, dict):
-        if list(value) == [""]:
-            return {key: _thawed(one) for key, one in value[""]}
-        return {key: _thawed(one) for key, one in value.items()}
-    if isinstance(value, list):
-        return [_thawed(one) for one in value]
-    return value
+def _with_numbers(tables: dict[str, Any]) -> dict[str | int, Any]:
+    """JSON has no numbers as keys: those of lark, such as states, came as texts of digits."""
+    return {int(key) if key.isdecimal() else key: value for key, value in tables.items()}

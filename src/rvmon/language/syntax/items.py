@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from msgspec import Struct
 
 from rvmon.diagnostics import Source, Span
@@ -53,6 +55,7 @@ class ImportItem(Struct, frozen=True):
 class SignalSyntax(Struct, frozen=True):
     """One signal, declared with its neighbours; `ignored` is the place of `ignore NaN`."""
 
+    word: ClassVar = "signal"
     name: Ident
     type: TypeSyntax
     role: Role | None
@@ -70,6 +73,7 @@ class FieldSyntax(Struct, frozen=True):
 class EventSyntax(Struct, frozen=True):
     """One event, declared with its neighbours, with its payload's fields."""
 
+    word: ClassVar = "event"
     name: Ident
     fields: tuple[FieldSyntax, ...]
     role: Role | None
@@ -85,6 +89,7 @@ class Declarations(Struct, frozen=True):
 class DefineItem(Struct, frozen=True):
     """`define name = body`, `define name(p, d) = body`; no parameters is `None`."""
 
+    word: ClassVar = "define"
     name: Ident
     parameters: tuple[Ident, ...] | None
     body: Expression
@@ -94,6 +99,7 @@ class DefineItem(Struct, frozen=True):
 class ConstItem(Struct, frozen=True):
     """`const NAME = value`."""
 
+    word: ClassVar = "const"
     name: Ident
     value: Expression
     span: Span

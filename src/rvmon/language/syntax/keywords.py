@@ -14,7 +14,7 @@ ITEM_WORDS = (
 """Words that start an item; besides, `max delay` does."""
 
 _PREFIXES = [op for op in UnaryOp if op.entry.level == PREFIXED and op is not UnaryOp.NOT]
-_INFIXES = [op for op in BinaryOp if op.entry.level == BinaryOp.UNTIL.entry.level]
+_INFIXES = [op for op in BinaryOp if op.is_kin_of_until]
 OPERATOR_TERMINALS = {
     **{op.name: op.spellings for op in BinaryOp if op not in _INFIXES},
     "TEMPORAL": tuple(text for op in _PREFIXES for text in op.spellings),

@@ -80,13 +80,13 @@ def parse_expression(source: Source) -> tuple[Expression | None, list[Diagnostic
 
 
 def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
-    # Checked before parsing, which takes memory and time for each operator.
-    if _operators(source.text[start:end]) > LARGEST:
-        place = Span(source, start, start + len(source.text[start:end].rstrip()))
-        return None, [rules.too_large(place, LARGEST)]
+    text = source.text[start:end]
+    # A lower bound, checked before parsing, which takes memory and time for each operator.
+    if len(text) >= LARGEST and len(_OPERATOR.findall(_NO_CODE.sub("", text))) > LARGEST:
+        return None, [rules.too_large(Span(source, start, start + len(text.rstrip())), LARGEST)]
     builder = Builder(source, start)
     try:
-        tree = _tree(source.text[start:end], rule)
+        tree = _tree(text, rule)
         if (part := _too_deep(tree)) is not None:
             place = Span(source, start + part.meta.start_pos, start + part.meta.end_pos)
             return None, [rules.too_deep(place, DEEPEST)]
@@ -101,11 +101,6 @@ def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
 def _tree(text: str, rule: str) -> lark.Tree[Any]:
     """The parser's tree; those of items that stay as they are while a file is edited are kept."""
     return grammar().parse(text, start=rule)
-
-
-def _operators(text: str) -> int:
-    """A lower bound on the operators in chains of a text, counted before it is parsed."""
-    return 0 if len(text) < LARGEST else len(_OPERATOR.findall(_NO_CODE.sub("", text)))
 
 
 @cache

@@ -87,14 +87,14 @@ class Builder:
         *window, right = rest
         op = BinaryOp.of(" ".join(word.text.split()))
         self._check_reach(left, right)
-        if _is_kin_of_until(op) and isinstance(right, ast.Infix) and right.op is not op:
+        if op.is_kin_of_until and isinstance(right, ast.Infix) and right.op is not op:
             self.findings.append(rules.mixed_chain(right.op_span, word.span, short(word.span.text)))
         return ast.Infix(op, left, first_of(window), right, word.span, span)
 
     def _check_sides(self, operands: Sequence[ast.Expression], words: Sequence[ast.Ident]) -> None:
         """Between `until` or its kin and a connective a reader may see the other bracket first."""
         for number, operand in enumerate(operands):
-            if isinstance(operand, ast.Infix) and _is_kin_of_until(operand.op):
+            if isinstance(operand, ast.Infix) and operand.op.is_kin_of_until:
                 word = words[min(number, len(words) - 1)]
                 near = operand.right if number < len(words) else operand.left
                 self.findings.append(
@@ -122,10 +122,6 @@ def _are_alike(operands: Sequence[ast.Expression]) -> bool:
     """Whether all begin with the same operator of time, which nobody takes for one in the other."""
     firsts = {operand.op if isinstance(operand, ast.Prefix) else None for operand in operands}
     return len(firsts) == 1 and not firsts & {None, UnaryOp.NOT}
-
-
-def _is_kin_of_until(op: BinaryOp) -> bool:
-    return op.entry.level == BinaryOp.UNTIL.entry.level
 
 
 def _balanced(operands: Sequence[Any], words: Sequence[ast.Ident]) -> Any:
