@@ -13,7 +13,8 @@ from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from functools import reduce
 from itertools import product
-from typing import Generic, TypeVar, assert_never
+from math import prod
+from typing import Generic, TypeVar
 
 import numpy as np
 from msgspec import Struct
@@ -65,9 +66,7 @@ class Letters:
         nodes = _nodes(states)
         leaves = _leaves_by_source(nodes, self.spec)
         shown = [self._shown(source, cases) for source, cases in leaves.items()]
-        size = 1
-        for cases in shown:
-            size *= len(cases)
+        size = prod(map(len, shown))
         if size > MOST_COMBINATIONS:
             return None
         # Per formula, its truth value in every row.
@@ -224,14 +223,7 @@ def _nodes(states: Iterable[State]) -> list[State]:
 
 def _is_free(node: State) -> bool:
     """Whether a node is a leaf, has memory, or compares measured windows."""
-    return node.op in (
-        StateOp.LEAF,
-        StateOp.PREVIOUS,
-        StateOp.SINCE,
-        StateOp.AMOUNT,
-        StateOp.COMPARED,
-        StateOp.PASSED,
-    )
+    return node.op not in (StateOp.NOT, StateOp.AND, StateOp.OR, StateOp.SURE)
 
 
 def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
@@ -265,19 +257,9 @@ def _value(node: State, args: Sequence[NDArray[np.bool_]]) -> NDArray[np.bool_]:
             return ~args[0]
         case StateOp.AND:
             return reduce(operator.and_, args)
-        case StateOp.SURE:  # nothing is unknown
-            return args[0]
         case StateOp.OR:
             return reduce(operator.or_, args)
-        case (
-            StateOp.LEAF
-            | StateOp.PREVIOUS
-            | StateOp.SINCE
-            | StateOp.AMOUNT
-            | StateOp.COMPARED
-            | StateOp.PASSED
-            | StateOp.DOUBT
-        ):
-            raise AssertionError("leaves and operators with memory have a value already")
+        case StateOp.SURE:  # nothing is unknown
+            return args[0]
         case _:
-            assert_never(node.op)
+            raise AssertionError("leaves and operators with memory have a value already")

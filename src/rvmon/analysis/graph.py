@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence, Set
 from itertools import product
+from math import prod
 
 from msgspec import Struct
 
@@ -267,10 +268,8 @@ def _negated(text: str) -> str:
 def _when(rows: Sequence[tuple[int, ...]], cuts: tuple[tuple[int, ...], ...]) -> str:
     """The guard of some rows: one conjunction if they form a box, else one per row."""
     spans = [sorted({row[clock] for row in rows}) for clock in range(len(cuts))]
-    size = 1
-    for span in spans:
-        size *= len(span)
-    boxes = [spans] if size == len(rows) else [[[region] for region in row] for row in rows]
+    is_box = prod(map(len, spans)) == len(rows)
+    boxes = [spans] if is_box else [[[region] for region in row] for row in rows]
     texts = [" and ".join(filter(None, map(_between, CLOCKS, box, cuts))) for box in boxes]
     return " or ".join(filter(None, dict.fromkeys(texts)))
 

@@ -5,12 +5,13 @@ Source: Babiak et al., The Hanoi Omega-Automata Format, CAV 2015; version 1.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
+from collections.abc import Iterator, Mapping, Sequence, Set
 
 from rvmon.analysis.graph import ANY, Cube, graph_of, inputs_of, letters_of, proposition_texts
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.logic.automaton import FAILED, PASSED, Automaton
+from rvmon.logic.reduce import refined
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.texts import quoted
 from rvmon.verdicts import Verdict
@@ -125,9 +126,10 @@ class _Machine:
     def least(self, first: Set[Cube]) -> list[tuple[str, Edges]]:
         """The states that are reached, that at the trigger first: what is said there, its edges.
 
-        Source: partition refinement, Moore 1956; of letters that cannot be nothing is asked.
+        Of letters that cannot be nothing is asked.
         """
-        blocks = self._blocks()
+        edges_of = self.edges
+        blocks = refined(self.words, lambda at, of: tuple(of[to] for to in edges_of[at].values()))
         initial = self.automaton.initial
         is_open = self.words[initial] == "?"
         begun = self._edges(initial, first) if is_open else self.edges[initial]
@@ -149,24 +151,9 @@ class _Machine:
         number = {block: n for n, block in enumerate(dict.fromkeys((begin, *order)))}
         return [(states[block][0], _renamed(states[block][1], number)) for block in number]
 
-    def _blocks(self) -> list[int]:
-        """The block of each location: those of one are alike."""
-        blocks = _numbered(self.words)
-        while True:
-            looks = zip(blocks, self.edges, strict=True)
-            finer = _numbered([(block, *(blocks[to] for to in e.values())) for block, e in looks])
-            if max(finer) == max(blocks):
-                return blocks
-            blocks = finer
-
 
 def _renamed(edges: Edges, names: Sequence[int] | Mapping[int, int]) -> Edges:
     return {cube: names[target] for cube, target in edges.items()}
-
-
-def _numbered(looks: Sequence[Hashable]) -> list[int]:
-    numbers: dict[Hashable, int] = {}
-    return [numbers.setdefault(look, len(numbers)) for look in looks]
 
 
 def _disjoint(edges: Edges, places: Sequence[int]) -> Iterator[tuple[Cube, int]]:

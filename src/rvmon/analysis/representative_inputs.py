@@ -93,7 +93,7 @@ def _tidy(value: float) -> float:
 
 
 def _reads(leaf: Compare, variable: Variable) -> bool:
-    parts = (*operands(leaf.left), *operands(leaf.right))
+    parts = [*operands(leaf.left, leaf.right)]
     windows = [part for part in parts if isinstance(part, WindowValue) and _adds(part, variable)]
     same = (
         part.name
@@ -263,7 +263,7 @@ def _remembered(spec: CheckedSpec, leaves: Iterable[Leaf]) -> Iterator[str]:
         if isinstance(leaf, ProbeAtom) and leaf.probe is not Probe.KNOWN:
             yield leaf.name
         elif isinstance(leaf, Compare):
-            parts = (*operands(leaf.left), *operands(leaf.right))
+            parts = operands(leaf.left, leaf.right)
             yield from (part.name for part in parts if isinstance(part, UpdateValue))
 
 

@@ -31,7 +31,6 @@ from rvmon.language.checked.formula import (
     ProbeAtom,
     SignalAtom,
     SignalValue,
-    UpdateFunction,
     UpdateValue,
     WindowValue,
 )
@@ -65,12 +64,6 @@ OPERATIONS = {op: number for number, op in enumerate(NumericOp, len(Code))}
 
 NOW = len(Code) + len(OPERATIONS)  # the code of `now`, after all operations
 WINDOW = NOW + 1  # the code of the value of a window
-
-_UPDATES = {
-    UpdateFunction.PREV: Code.PREV,
-    UpdateFunction.DELTA: Code.DELTA,
-    UpdateFunction.RATE: Code.RATE,
-}
 
 
 _UNKNOWN = Arithmetic(NumericOp.DIV, (Literal(0), Literal(0)))
@@ -143,7 +136,7 @@ class Programs:
             case FieldValue(event=event, field=field):
                 words += [_word(Code.FIELD, names.events[event]), names.field(event, field)]
             case UpdateValue(function=function, name=name):
-                words.append(_word(_UPDATES[function], names.signals[name]))
+                words.append(_word(Code[function.name], names.signals[name]))
             case Captured(name=name) if name in names.constants:
                 known = names.constants[name]
                 return self._emit(_UNKNOWN if known is None else Literal(known), words)
@@ -324,9 +317,7 @@ class Atoms:
         events = tuple(names.events[event] for event in events_of(*sides))
         if len(events) > MOST_EVENTS:
             raise RvmonError(f"a comparison reads fields of more than {MOST_EVENTS} events")
-        updated = [
-            part.name for side in sides for part in operands(side) if isinstance(part, UpdateValue)
-        ]
+        updated = [part.name for part in operands(*sides) if isinstance(part, UpdateValue)]
         left, right = map(self._programs.place, sides)
         return Atom(
             AtomOp.PAYLOAD if events else AtomOp.COMPARE,

@@ -75,14 +75,6 @@ _FOLDS = {measured: number for number, measured in enumerate(Measured)}
 _TALLIED = (Measured.SUM, Measured.MEAN, Measured.INTEGRAL, Measured.VARIANCE)
 _STRICT, _COUNTED, _NUMBER = 16, 32, 64
 
-_PLAIN = {
-    StateOp.NOT: NodeOp.NOT,
-    StateOp.AND: NodeOp.AND,
-    StateOp.OR: NodeOp.OR,
-    StateOp.SURE: NodeOp.SURE,
-    StateOp.PREVIOUS: NodeOp.PREVIOUS,
-}
-
 
 class Node(Struct):
     """A state formula; see `node_plan` in plan.h."""
@@ -131,19 +123,22 @@ class Nodes:
             self._node(state, operands)
             for state, operands in zip(plan.graph.nodes, plan.graph.operands, strict=True)
         ]
-        self.seen = _count_slots(self.all, SEEN)
-        self.edges = _count_slots(self.all, [NodeOp.EDGE])
-        self.stretches = _count_slots(self.all, STRETCHED)
-        tallied = [node for node in self.all if node.op is NodeOp.WINDOW and not node.tally]
-        for number, node in enumerate(tallied):
-            # Until here `tally` marks the windows that add numbers (0) and the others (−1).
-            node.tally = number
-        self.tallies = len(tallied)
-        timed = [node for node in self.all if node.op in TIMED]
-        for number, node in enumerate(timed):
-            node.timer = number
-        self.timers = len(timed)
+        self.seen = self._numbered(SEEN, "slot")
+        self.edges = self._numbered([NodeOp.EDGE], "slot")
+        self.stretches = self._numbered(STRETCHED, "slot")
+        # Until here `tally` marks the windows that add numbers (0) and the others (−1).
+        self.tallies = self._numbered([NodeOp.WINDOW], "tally", but=-1)
+        self.timers = self._numbered(TIMED, "timer")
         self.needed = _needed(plan)
+
+    def _numbered(self, kinds: Sequence[NodeOp], index: str, but: int | None = None) -> int:
+        """Number the nodes of some kinds, except those whose index is `but`; returns how many."""
+        count = 0
+        for node in self.all:
+            if node.op in kinds and getattr(node, index) != but:
+                setattr(node, index, count)
+                count += 1
+        return count
 
     def leaves(self, live: bool) -> list[list[int]]:
         """Per atom, the places of the nodes that read its truth value or its number.
@@ -205,7 +200,7 @@ class Nodes:
             case StateOp.PASSED if state.passed is not None:
                 return self._passed(state.passed, operands)
             case _:
-                return Node(_PLAIN[state.op], operands=operands)
+                return Node(NodeOp[state.op.name], operands=operands)
 
     def _window(self, state: State, operands: Sequence[int]) -> Node:
         amount = state.amount
@@ -272,16 +267,6 @@ def _since(state: State) -> NodeOp:
     if state.low == 0:
         return NodeOp.EVER if state.high is None else NodeOp.EDGE
     return NodeOp.EDGE if state.high is None else NodeOp.STRETCH
-
-
-def _count_slots(nodes: Iterable[Node], kinds: Sequence[NodeOp]) -> int:
-    """Assign memory slots to the nodes of some kinds; returns how many there are."""
-    count = 0
-    for node in nodes:
-        if node.op in kinds:
-            node.slot = count
-            count += 1
-    return count
 
 
 def _needed(plan: Plan) -> frozenset[int]:

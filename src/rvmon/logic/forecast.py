@@ -12,6 +12,7 @@ components for emptiness, after Couvreur 1999.
 from __future__ import annotations
 
 from bisect import bisect_right
+from collections import defaultdict
 from collections.abc import Hashable, Iterator, Sequence
 from itertools import product
 
@@ -271,22 +272,18 @@ class _Search:
 
         graph = nx.DiGraph()
         graph.add_edges_from((move.source, move.target) for move in moves)
-        component = {
-            state: number
-            for number, found in enumerate(nx.strongly_connected_components(graph))
-            for state in found
-        }
-        kept: dict[int, frozenset[Until]] = {}
-        fair: set[int] = set()
+        for number, found in enumerate(nx.strongly_connected_components(graph)):
+            nx.set_node_attributes(graph, dict.fromkeys(found, number), "component")
+        component = graph.nodes(data="component")
+        within: dict[int, list[_Move]] = defaultdict(list)
         for move in moves:
-            number = component[move.source]
-            if number != component[move.target]:
-                continue
-            own = promised[move.target]
-            kept[number] = kept.get(number, own) & own
-            if move.fair:
-                fair.add(number)
-        return any(not kept[number] for number in fair)
+            if component[move.source] == component[move.target]:
+                within[component[move.source]].append(move)
+        return any(
+            any(move.fair for move in own)
+            and not frozenset.intersection(*(promised[move.target] for move in own))
+            for own in within.values()
+        )
 
 
 def _left_open(literal: Literal) -> Residual:

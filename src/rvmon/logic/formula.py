@@ -10,9 +10,10 @@ trace: `p or not p` stays (Kleene), and so does `G[0,3] true` (decided when its 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from enum import Enum
-from typing import Any, assert_never, cast
+from itertools import chain
+from typing import Any, TypeVar, assert_never, cast
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -112,6 +113,7 @@ class Previous(Struct, frozen=True, eq=False):
 
 Temporal = Next | Until | Release
 Core = Constant | Literal | And | Or | Next | Until | Release | Since | Previous
+N = TypeVar("N", bound=State | Core)
 
 
 def parts_of(node: Core) -> tuple[Core, ...]:
@@ -211,15 +213,9 @@ class Factory:
         return self._lattice(StateOp.OR, args, self.state_false, self.state_true)
 
     def _lattice(self, op: StateOp, args: Iterable[State], unit: State, zero: State) -> State:
-        flat: dict[State, None] = {}
-        for arg in args:
-            flat.update(dict.fromkeys(arg.args if arg.op is op else (arg,)))
-        flat.pop(unit, None)
-        if zero in flat:
-            return zero
-        if len(flat) <= 1:
-            return next(iter(flat), unit)
-        return self._state(op, tuple(sorted(flat, key=_id)))
+        parts = (arg.args if arg.op is op else (arg,) for arg in args)
+        first, *more = found = _operands(parts, unit, zero)
+        return self._state(op, tuple(found)) if more else first
 
     def previous(self, arg: State) -> State:
         """`arg` at the position before; false at the first."""
@@ -302,15 +298,9 @@ class Factory:
         return self._junction(Or, args, self.false, self.true)
 
     def _junction(self, kind: type[And | Or], args: Iterable[Core], unit: Core, zero: Core) -> Core:
-        flat: dict[Core, None] = {}
-        for arg in args:
-            flat.update(dict.fromkeys(arg.args if isinstance(arg, kind) else (arg,)))
-        flat.pop(unit, None)
-        if zero in flat:
-            return zero
-        if len(flat) <= 1:
-            return next(iter(flat), unit)
-        return cast("Core", self._core(kind, tuple(sorted(flat, key=_id))))
+        parts = (arg.args if isinstance(arg, kind) else (arg,) for arg in args)
+        first, *more = found = _operands(parts, unit, zero)
+        return cast("Core", self._core(kind, tuple(found)) if more else first)
 
     def next(self, operand: Core) -> Next:
         """`operand` at the next position, undecided until there is one."""
@@ -344,6 +334,31 @@ class Factory:
         """`operand` at the position before; at the first position, the constant `first`."""
         return cast("Core", self._core(Previous, operand, first))
 
+    def rebuilt(self, node: Core, of: Callable[[Core], Core], *, positive: bool = True) -> Core:
+        """A formula, or its dual, with what `of` makes of its operands; a literal has none."""
+        match node:
+            case Constant(value=value):
+                return self.constant(value is positive)
+            case And(args=args) | Or(args=args):
+                join = self.all_of if isinstance(node, And) is positive else self.any_of
+                return join(map(of, args))
+            case Next(operand=operand):
+                return self.next(of(operand))
+            case Previous(operand=operand, first=first):
+                return self.core_previous(of(operand), first=first is positive)
+            case Until(left=left, right=right) | Release(left=left, right=right):
+                make = self.until if isinstance(node, Until) is positive else self.release
+                return make(of(left), of(right), node.low, node.high)
+            case Since(left=left, right=right, low=low, high=high, dual=dual):
+                return self.core_since(of(left), of(right), low, high, dual=dual is positive)
+            case Literal():
+                raise AssertionError("a literal is read by whoever rebuilds")
+            case _:
+                assert_never(node)
 
-def _id(node: State | Core) -> int:
-    return node.id
+
+def _operands(parts: Iterable[Sequence[N]], unit: N, zero: N) -> list[N]:
+    """The operands of a lattice, each once, in order of `id`: at least one."""
+    flat = dict.fromkeys(chain.from_iterable(parts))
+    flat.pop(unit, None)
+    return [zero] if zero in flat else sorted(flat, key=lambda node: node.id) or [unit]

@@ -7,7 +7,7 @@ formulas, one per value that unborn may be replaced by; `three_valued` builds th
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cache
+from functools import cache, partial
 
 from rvmon.logic.formula import Factory
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, State
@@ -36,7 +36,7 @@ class Four:
         parts: Sequence[Four] = (),
     ) -> None:
         self._factory = factory
-        self.read = cache(read) if born_late else always_read_as(read(UNKNOWN))
+        self.read = cache(read if born_late else partial(_same, read(UNKNOWN)))
         self.born_late = born_late
         self.stays_born = stays_born
         self.parts = tuple(parts) or (self,)
@@ -63,6 +63,6 @@ class Four:
         return factory.state_any([self.unborn, lost])
 
 
-def always_read_as(state: State) -> Callable[[int], State]:
+def _same(state: State, _: int) -> State:
     """The `read` of a formula that is never unborn: one state for every replacement."""
-    return lambda _: state
+    return state

@@ -137,10 +137,8 @@ class _Planning:
                 return self._neighbour(operand, 1, False)
             case mtl.Previous(operand=operand, first=first):
                 return self._neighbour(operand, -1, first)
-            case mtl.Until() | mtl.Release():
-                return self._ahead(core)
-            case mtl.Since():
-                return self._behind(core)
+            case mtl.Until() | mtl.Release() | mtl.Since():
+                return self._windowed(core)
             case _:
                 assert_never(core)
 
@@ -160,45 +158,28 @@ class _Planning:
         nearest = self.add(Sweep(nowhere, own, offset > 0, first, False))
         return self.add(Shift(nearest, offset, 0))
 
-    def _ahead(self, core: mtl.Until | mtl.Release) -> int:
-        every = isinstance(core, mtl.Release)
-        low = -(-core.low // self.gap)
-        kept = every and core.high is None
-
-        def window(operand: int, first: int, last: int, every: bool, over: int) -> int:
-            return self.add(Window(operand, first, last, every, over))
-
-        # The identity of the module's docstring, part by part. A neutral left operand makes two of
-        # the three parts true, so they are not planned.
-        parts = []
-        if core.high is not None:
-            high = core.high // self.gap
-            parts.append(window(self.place(core.right), low, high, every, core.high + 1))
-        if core.high is None or not _is_neutral(core.left, every):
-            swept = self.add(
-                Sweep(self.place(core.left), self.place(core.right), True, every, kept)
-            )
-            parts.append(self.add(Shift(swept, low, core.low)) if core.low else swept)
-        if core.low and not _is_neutral(core.left, every):
-            parts.append(window(self.place(core.left), 0, low - 1, not every, core.low))
-        return self.join(parts, not every)
-
-    def _behind(self, core: mtl.Since) -> int:
-        every = core.dual
+    def _windowed(self, core: mtl.Until | mtl.Release | mtl.Since) -> int:
+        """The identity that the module states, part by part; offsets of the past are negative."""
+        future = not isinstance(core, mtl.Since)
+        every = core.dual if isinstance(core, mtl.Since) else isinstance(core, mtl.Release)
         low = -(-core.low // self.gap)
 
-        def window(operand: int, first: int, last: int, every: bool) -> int:
-            return self.add(Window(operand, -last, -first, every, None))
+        def window(operand: mtl.Core, first: int, last: int, every: bool, over: int) -> int:
+            own = (first, last, every, over) if future else (-last, -first, every, None)
+            return self.add(Window(self.place(operand), *own))
 
+        # A neutral left operand makes two of the three parts true, so they are not planned.
         parts = []
         if core.high is not None:
-            parts.append(window(self.place(core.right), low, core.high // self.gap, every))
+            parts.append(window(core.right, low, core.high // self.gap, every, core.high + 1))
         if core.high is None or not _is_neutral(core.left, every):
+            kept = future and every and core.high is None
             left, right = self.place(core.left), self.place(core.right)
-            swept = self.add(Sweep(left, right, False, every, False))
-            parts.append(self.add(Shift(swept, -low, 0)) if core.low else swept)
+            swept = self.add(Sweep(left, right, future, every, kept))
+            shift = Shift(swept, low, core.low) if future else Shift(swept, -low, 0)
+            parts.append(self.add(shift) if core.low else swept)
         if core.low and not _is_neutral(core.left, every):
-            parts.append(window(self.place(core.left), 0, low - 1, not every))
+            parts.append(window(core.left, 0, low - 1, not every, core.low))
         return self.join(parts, not every)
 
 

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import assert_never
+from functools import cache
 
 from msgspec import Struct
 
@@ -99,7 +99,7 @@ class Lowering:
             case rv.Unary(op=rv.UnaryOp.NEXT, operand=operand):
                 return self.factory.next(self.required(self.core(operand, positive)))
             case rv.Unary(op=rv.UnaryOp.PREVIOUS, operand=operand):
-                before = self._in_past(self.core(operand, positive))
+                before = self._if_position_exists(self.core(operand, positive))
                 return self.factory.core_previous(before, first=not positive)
             case rv.Binary(op=rv.BinaryOp.AND, left=left, right=right):
                 return self._junction_of(left, right, positive, positive)
@@ -147,8 +147,8 @@ class Lowering:
         low, high = (interval.low, interval.high) if interval else (0, None)
         # `once` and `historically` have a constant on the left, which needs no position to be true.
         if left is not self.factory.constant(not dual):
-            left = self._in_past(left)
-        right = self._in_past(right)
+            left = self._if_position_exists(left)
+        right = self._if_position_exists(right)
         return self.factory.core_since(left, right, low, high, dual=dual)
 
     def _until(
@@ -167,10 +167,6 @@ class Lowering:
     def required(self, operand: mtl.Core) -> mtl.Core:
         """An operand as required at later positions, which an outage of sampled time may lack."""
         return self._if_position_exists(operand) if self._may_lack_position else operand
-
-    def _in_past(self, operand: mtl.Core) -> mtl.Core:
-        """An operand as required at earlier positions, in any time model."""
-        return self._if_position_exists(operand)
 
     def _if_position_exists(self, operand: mtl.Core) -> mtl.Core:
         """`operand`, but unknown where there may be no position; literals are so already."""
@@ -261,59 +257,30 @@ def expanded(core: mtl.Core) -> mtl.Core:
 class _Expanding:
     def __init__(self) -> None:
         self.factory = mtl.Factory()
-        self._made: dict[mtl.Core, mtl.Core] = {}
-
-    def core(self, core: mtl.Core) -> mtl.Core:
-        found = self._made.get(core)
-        if found is None:
-            found = self._made[core] = self._core(core)
-        return found
+        self.core = cache(self._core)
 
     def _core(self, core: mtl.Core) -> mtl.Core:
         factory = self.factory
         match core:
-            case CoreConstant(value=value):
-                return factory.constant(value)
             case mtl.Literal(sense=mtl.Sense.KNOWN_FALSE, proposition=state):
                 return factory.literal(state, mtl.Sense.KNOWN_FALSE)
             case mtl.Literal(proposition=state, sense=sense):
                 return self.state(state, sense is mtl.Sense.TRUE)
-            case mtl.And(args=args):
-                return factory.all_of(self.core(arg) for arg in args)
-            case mtl.Or(args=args):
-                return factory.any_of(self.core(arg) for arg in args)
-            case mtl.Next(operand=operand):
-                return factory.next(self.core(operand))
-            case mtl.Previous(operand=operand, first=first):
-                return factory.core_previous(self.core(operand), first=first)
-            case mtl.Until(left=left, right=right, low=low, high=high):
-                return factory.until(self.core(left), self.core(right), low, high)
             case mtl.Release(left=mtl.Literal(sense=mtl.Sense.KNOWN_FALSE) as over, right=right):
                 # An episode: its end satisfies `R` at that position too, whatever the robustness.
                 ended = self.core(over)
                 return factory.release(ended, factory.any_of([ended, self.core(right)]), 0, None)
-            case mtl.Release(left=left, right=right, low=low, high=high):
-                return factory.release(self.core(left), self.core(right), low, high)
-            case mtl.Since(left=left, right=right, low=low, high=high, dual=dual):
-                ends = self.core(left), self.core(right)
-                return factory.core_since(*ends, low, high, dual=dual)
             case _:
-                assert_never(core)
+                return factory.rebuilt(core, self.core)
 
     def state(self, state: State, positive: bool) -> mtl.Core:
         factory = self.factory
         match state.op:
             case StateOp.LEAF if isinstance(state.leaf, ConstantLeaf):
                 return factory.constant(state.leaf.value is positive)
-            case StateOp.LEAF | StateOp.SURE | StateOp.DOUBT:
-                return factory.literal(state, mtl.Sense.TRUE if positive else mtl.Sense.FALSE)
-            case StateOp.AMOUNT | StateOp.COMPARED | StateOp.PASSED:
-                return factory.literal(state, mtl.Sense.TRUE if positive else mtl.Sense.FALSE)
-            case StateOp.AND if _tests_unknown(state):
-                return factory.literal(state, mtl.Sense.TRUE if positive else mtl.Sense.FALSE)
             case StateOp.NOT:
                 return self.state(state.args[0], not positive)
-            case StateOp.AND | StateOp.OR:
+            case StateOp.AND | StateOp.OR if state.op is StateOp.OR or not _tests_unknown(state):
                 join = factory.all_of if (state.op is StateOp.AND) is positive else factory.any_of
                 return join(self.state(arg, positive) for arg in state.args)
             case StateOp.PREVIOUS:
@@ -324,7 +291,7 @@ class _Expanding:
                 left, right = (self.state(arg, positive) for arg in state.args)
                 return factory.core_since(left, right, state.low, state.high, dual=not positive)
             case _:
-                assert_never(state.op)
+                return factory.literal(state, mtl.Sense.TRUE if positive else mtl.Sense.FALSE)
 
 
 def _tests_unknown(state: State) -> bool:

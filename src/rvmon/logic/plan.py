@@ -226,6 +226,5 @@ def _asks_history(state: State, name: str) -> bool:
         return dict(leaf.signals).get(name, False)
     return isinstance(leaf, rv.Compare) and any(
         isinstance(part, rv.UpdateValue) and part.name == name
-        for side in (leaf.left, leaf.right)
-        for part in operands(side)
+        for part in operands(leaf.left, leaf.right)
     )

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from enum import Enum
+from functools import cache
 from typing import assert_never
 
 from rvmon.logic import formula as mtl
@@ -180,7 +181,8 @@ class Duals:
 
     def __init__(self) -> None:
         self._factory = mtl.Factory()
-        self._made: dict[tuple[mtl.Core, bool], mtl.Core] = {}
+        # a formula (True) or its negation, rebuilt over known propositions
+        self.of = cache(self._of)
 
     def affirmed(self, residual: Residual) -> Residual:
         """The residual, rebuilt over known propositions."""
@@ -208,36 +210,16 @@ class Duals:
         assert isinstance(made, mtl.Literal | mtl.Next | mtl.Until | mtl.Release), "nothing folds"
         return made, clock
 
-    def of(self, node: mtl.Core, positive: bool) -> mtl.Core:
-        """A formula (`positive`) or its negation, rebuilt over known propositions."""
-        key = (node, positive)
-        found = self._made.get(key)
-        if found is None:
-            found = self._made[key] = self._of(node, positive)
-        return found
-
     def _of(self, node: mtl.Core, positive: bool) -> mtl.Core:
-        factory = self._factory
         match node:
-            case mtl.Constant(value=value):
-                return factory.constant(value is positive)
             case mtl.Literal(proposition=proposition, sense=sense):
                 return self._state(proposition, (sense is mtl.Sense.TRUE) is positive)
-            case mtl.And(args=args) | mtl.Or(args=args):
-                join = factory.all_of if isinstance(node, mtl.And) is positive else factory.any_of
-                return join(self.of(arg, positive) for arg in args)
-            case mtl.Next(operand=operand):
-                return factory.next(self.of(operand, positive))
-            case (
-                mtl.Until(left=left, right=right, low=low, high=high)
-                | mtl.Release(left=left, right=right, low=low, high=high)
-            ):
-                make = factory.until if isinstance(node, mtl.Until) is positive else factory.release
-                return make(self.of(left, positive), self.of(right, positive), low, high)
             case mtl.Since() | mtl.Previous():
-                return factory.constant(True)
+                return self._factory.constant(True)
             case _:
-                assert_never(node)
+                return self._factory.rebuilt(
+                    node, lambda part: self.of(part, positive), positive=positive
+                )
 
     def _state(self, state: State, positive: bool) -> mtl.Core:
         """A state formula, or its negation, over literals of leaves and of past operators."""
@@ -252,15 +234,5 @@ class Duals:
                 return self._state(state.args[0], positive)
             case StateOp.LEAF if isinstance(state.leaf, Unborn | Lapsed):
                 return self._factory.constant(not positive)
-            case (
-                StateOp.LEAF
-                | StateOp.PREVIOUS
-                | StateOp.SINCE
-                | StateOp.AMOUNT
-                | StateOp.COMPARED
-                | StateOp.PASSED
-                | StateOp.DOUBT
-            ):
-                return self._factory.literal(state, mtl.Sense.TRUE if positive else mtl.Sense.FALSE)
             case _:
-                assert_never(state.op)
+                return self._factory.literal(state, mtl.Sense.TRUE if positive else mtl.Sense.FALSE)

@@ -6,7 +6,7 @@ Source: partition refinement after Moore 1956.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from itertools import product
 
 from msgspec import Struct
@@ -45,6 +45,26 @@ def reduce(automaton: Automaton, label: Label) -> Automaton:
     return draft.tables()
 
 
+def refined(keys: Sequence[Hashable], moves: Callable[[int, list[int]], Hashable]) -> list[int]:
+    """The block of each place: those of one block have one key, and move to the same blocks.
+
+    `moves` gives, of a place, the blocks of its successors.
+
+    Source: partition refinement after Moore 1956.
+    """
+    blocks = _numbered(keys)
+    while True:
+        finer = _numbered([(block, moves(place, blocks)) for place, block in enumerate(blocks)])
+        if max(finer) == max(blocks):
+            return blocks
+        blocks = finer
+
+
+def _numbered(keys: Sequence[Hashable]) -> list[int]:
+    numbers: dict[Hashable, int] = {}
+    return [numbers.setdefault(key, len(numbers)) for key in keys]
+
+
 class _Draft:
     def __init__(self, automaton: Automaton) -> None:
         self.source = automaton
@@ -69,14 +89,8 @@ class _Draft:
 
     def merge(self, label: Label) -> bool:
         """Merge equivalent locations; returns whether there were any."""
-        blocks = self._numbered([self._key(index, label) for index in range(len(self.drafts))])
-        while True:
-            finer = self._numbered(
-                [(blocks[index], self._moves(index, blocks)) for index in range(len(self.drafts))]
-            )
-            if max(finer) == max(blocks):
-                break
-            blocks = finer
+        keys = [self._key(index, label) for index in range(len(self.drafts))]
+        blocks = refined(keys, self._moves)
         kept = [index for index, block in enumerate(blocks) if blocks.index(block) == index]
         if len(kept) == len(self.drafts):
             return False
@@ -113,11 +127,6 @@ class _Draft:
             return seen[key]
 
         return tuple(tuple(map(move, edges)) for edges, _, _ in self.drafts[index].rows.values())
-
-    @staticmethod
-    def _numbered(keys: list[Hashable]) -> list[int]:
-        numbers: dict[Hashable, int] = {}
-        return [numbers.setdefault(key, len(numbers)) for key in keys]
 
     # Regions.
 

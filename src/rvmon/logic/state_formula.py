@@ -10,14 +10,9 @@ from msgspec import Struct
 from rvmon.language.checked import formula as rv
 
 
-def operands(expression: rv.Numeric) -> Iterator[rv.Numeric]:
-    """The non-arithmetic leaves of a numeric expression."""
-    match expression:
-        case rv.Arithmetic(args=args):
-            for arg in args:
-                yield from operands(arg)
-        case _:
-            yield expression
+def operands(*expressions: rv.Numeric) -> Iterator[rv.Numeric]:
+    """The non-arithmetic leaves of numeric expressions, from the left."""
+    return (part for part in rv.numbers_in(*expressions) if not isinstance(part, rv.Arithmetic))
 
 
 def signals_of(atom: rv.SignalAtom | rv.Compare) -> dict[str, bool]:
@@ -28,7 +23,7 @@ def signals_of(atom: rv.SignalAtom | rv.Compare) -> dict[str, bool]:
     if isinstance(atom, rv.SignalAtom):
         return {atom.name: False}
     found: dict[str, bool] = {}
-    for part in (*operands(atom.left), *operands(atom.right)):
+    for part in operands(atom.left, atom.right):
         if isinstance(part, rv.SignalValue | rv.UpdateValue):
             found[part.name] = found.get(part.name, False) or isinstance(part, rv.UpdateValue)
     return found
@@ -36,28 +31,24 @@ def signals_of(atom: rv.SignalAtom | rv.Compare) -> dict[str, bool]:
 
 def reads_fields(atom: rv.SignalAtom | rv.Compare) -> bool:
     """Whether an atom reads a payload field of an event."""
-    return isinstance(atom, rv.Compare) and any(
-        isinstance(part, rv.FieldValue) for part in (*operands(atom.left), *operands(atom.right))
-    )
+    return isinstance(atom, rv.Compare) and any(rv.fields_in(atom.left, atom.right))
 
 
 def inputs_of(*expressions: rv.Numeric) -> frozenset[str]:
     """The signals and events that expressions read."""
-    parts = [part for expression in expressions for part in operands(expression)]
-    signals = {part.name for part in parts if isinstance(part, rv.SignalValue | rv.UpdateValue)}
-    return frozenset(signals) | frozenset(events_of(*expressions))
+    read = (p for p in operands(*expressions) if isinstance(p, rv.SignalValue | rv.UpdateValue))
+    return frozenset(part.name for part in read).union(events_of(*expressions))
 
 
 def events_of(*expressions: rv.Numeric) -> tuple[str, ...]:
     """The events whose fields expressions read, each once."""
-    parts = [part for expression in expressions for part in operands(expression)]
-    return tuple(dict.fromkeys(part.event for part in parts if isinstance(part, rv.FieldValue)))
+    return tuple(dict.fromkeys(field.event for field in rv.fields_in(*expressions)))
 
 
 def captured_of(*expressions: rv.Numeric) -> frozenset[str]:
     """The captured values that expressions read."""
-    parts = [part for expression in expressions for part in operands(expression)]
-    return frozenset(part.name for part in parts if isinstance(part, rv.Captured))
+    captured = (part for part in operands(*expressions) if isinstance(part, rv.Captured))
+    return frozenset(part.name for part in captured)
 
 
 FALSE, UNKNOWN, TRUE = 0, 1, 2

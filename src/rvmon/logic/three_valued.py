@@ -13,7 +13,7 @@ from rvmon.language.checked.operators import Reading, Tense
 from rvmon.language.checked.rewrite import read, rewritten, without_spans
 from rvmon.logic import state_formula as sf
 from rvmon.logic.formula import Factory
-from rvmon.logic.four_valued import Four, always_read_as
+from rvmon.logic.four_valued import Four
 
 
 class Reader(Reading[Four]):
@@ -103,12 +103,10 @@ class Reader(Reading[Four]):
     def _compared(self, formula: rv.Compare) -> Four:
         """A comparison of windows: unknown where a side has no known number."""
         factory, leaf = self.factory, without_spans(formula)
-        parts = [part for side in (leaf.left, leaf.right) for part in sf.operands(side)]
+        parts = sf.operands(leaf.left, leaf.right)
         known = [rv.itself(part) for part in parts if isinstance(part, rv.Read)]
-        states, asked = (
-            [self.four(comparison).read(sf.UNKNOWN) for comparison in known],
-            [*map(self._unborn, known)],
-        )
+        states = [self.four(comparison).read(sf.UNKNOWN) for comparison in known]
+        asked = [*map(self._unborn, known)]
         for window in rv.windows_in(leaf.left, leaf.right):
             own = (self._truth_reader.four(part).read(sf.FALSE) for part in window.operands)
             states.append(factory.window(window, *own))
@@ -132,7 +130,7 @@ class Reader(Reading[Four]):
         factory = self.factory
         unborn = self._some_unborn(asked)
         if unborn is factory.state_false:
-            return Four(factory, always_read_as(value), born_late=False)
+            return self._always_born(value)
 
         def read(reading: int) -> sf.State:
             if reading == sf.UNKNOWN:
@@ -147,7 +145,7 @@ class Reader(Reading[Four]):
         factory = self.factory
         leaf = without_spans(atom)
         if not isinstance(leaf, rv.SignalAtom | rv.Compare) or not sf.signals_of(leaf):
-            return Four(factory, lambda _: factory.leaf(leaf), born_late=False)
+            return self._always_born(factory.leaf(leaf))
         unborn = None if sf.reads_fields(leaf) else self._unborn(leaf)
         return Four(
             factory,
@@ -160,8 +158,10 @@ class Reader(Reading[Four]):
 
     def constant(self, value: bool) -> Four:
         """A constant."""
-        state = self.factory.state_true if value else self.factory.state_false
-        return Four(self.factory, always_read_as(state), born_late=False)
+        return self._always_born(self.factory.state_true if value else self.factory.state_false)
+
+    def _always_born(self, state: sf.State) -> Four:
+        return Four(self.factory, lambda _: state, born_late=False)
 
     def no(self, arg: Four) -> Four:
         """Negation: unborn where its operand is."""
@@ -236,7 +236,7 @@ class Reader(Reading[Four]):
         if low > 0 or right.born_late:
             value = self._or_lost(value, left, right, low, high)
         if not right.born_late:
-            return Four(factory, always_read_as(value), born_late=False)
+            return self._always_born(value)
         # Once born, always born: the present position tells. Else each position of the window is
         # asked.
         if right.stays_born and low == 0:
@@ -293,14 +293,12 @@ class Reader(Reading[Four]):
         factory = self.factory
         value = factory.previous(arg.read(sf.FALSE))
         if not arg.born_late:
-            return Four(factory, always_read_as(value), born_late=False)
+            return self._always_born(value)
         return self._unborn_where(value, factory.previous(arg.unborn))
 
     def _before(self, arg: Four) -> Four:
         """The value at the previous position; FALSE if unborn there, or if there is none."""
-        return Four(
-            self.factory, always_read_as(self.previous(arg).read(sf.FALSE)), born_late=False
-        )
+        return self._always_born(self.previous(arg).read(sf.FALSE))
 
     def _held(self, arg: Four, truth: Four, interval: rv.Interval | None) -> Four:
         """`held` is unborn unless its operand was born throughout."""
@@ -310,7 +308,7 @@ class Reader(Reading[Four]):
         missing = self._historically(truth.missing, interval)
         if not arg.born_late:
             lost = factory.state_all([missing, factory.negation(missing)])
-            return Four(factory, always_read_as(factory.state_any([value, lost])), born_late=False)
+            return self._always_born(factory.state_any([value, lost]))
 
         def read(unborn: int) -> sf.State:
             if unborn == sf.TRUE:

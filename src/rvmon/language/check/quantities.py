@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from functools import reduce
+from math import prod
 from typing import assert_never
 
 from rvmon.diagnostics import Span
@@ -230,10 +231,7 @@ def spread(values: Sequence[Value], span: Span, make: Callable[[Sequence[Value]]
     Raises:
         Refusal: they have too many outcomes, or what `make` says.
     """
-    outcomes = 1
-    for value in values:
-        outcomes *= _outcomes(value)
-    if outcomes > MOST_OUTCOMES:
+    if prod(map(_outcomes, values)) > MOST_OUTCOMES:
         raise Refusal(rules.many_outcomes(span, MOST_OUTCOMES))
     return _spread(values, make)
 
