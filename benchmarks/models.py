@@ -13,14 +13,15 @@ process, ours what the search added.
 
 from __future__ import annotations
 
-import json
 import re
 import resource
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from multiprocessing import get_context
 from pathlib import Path
-from typing import Any
 
 from benchmarks.process import measured
 from benchmarks.program import program
@@ -29,7 +30,7 @@ from handover.model import handover_network
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import load_network, loads_network
 from rvmon.models.network import Network, Query
-from rvmon.models.search.budget import Budget
+from rvmon.models.search.budget import Budget, Statistics
 from rvmon.models.search.verify import verify
 
 HERE = Path(__file__).parent
@@ -47,26 +48,36 @@ def cost(*, repeat: int = 3, seconds: float = 60.0) -> None:
     """Textbook networks and the handover: the best of some searches, which give up in time."""
     print(f"{'query':22} {'visited':>10} {'stored':>10} {'seconds':>9} {'B/state':>8}")
     for name, size in [*((n, s) for n, sizes in SIZES.items() for s in sizes), ("handover", 0)]:
-        for told in _told(name, size, repeat, seconds):
-            label = f"{name} {size}" if size else f"{name} {told['query']}"
-            held = f"{told['bytes']:8.0f}" if size and told["stored"] > 5_000 else f"{'':8}"
-            figures = f"{told['visited']:10,} {told['stored']:10,} {told['seconds']:9.3f} {held}"
-            unknown = "" if told["holds"] is not None else "   not decided"
+        for query, holds, told, held in _searched(name, size, repeat, seconds):
+            label = f"{name} {size or query}"
+            shown = f"{held:8.0f}" if size and told.stored > 5_000 else f"{'':8}"
+            figures = f"{told.visited:10,} {told.stored:10,} {told.seconds:9.3f} {shown}"
+            unknown = "   not decided" if holds is None else ""
             print(f"{label:22} {figures}{unknown}".rstrip(), flush=True)
 
 
-def _told(name: str, size: int, repeat: int, seconds: float) -> Iterator[dict[str, Any]]:
-    """What the queries of a network cost, in a process of its own."""
-    words = [sys.executable, "-m", "benchmarks.models", "one", name, str(size)]
-    done = measured([*words, str(repeat), str(seconds)])
-    assert done.code == 0, done.said
-    yield from map(json.loads, done.output.splitlines())
+Search = tuple[str, bool | None, Statistics, float]
+"""A query, whether it holds, its cost in seconds of the CPU, bytes for each stored state."""
 
 
-def one(name: str, size: int, repeat: int, seconds: float) -> None:
-    """A network of that name and size, as JSON; `cost` and `tchecker` start it."""
+def _searched(name: str, size: int, repeat: int, seconds: float) -> list[Search]:
+    """What the queries of a network of that name and size cost, in a process of its own."""
+    with ProcessPoolExecutor(1, get_context("spawn")) as pool:
+        return pool.submit(_search, name, size, repeat, seconds).result()
+
+
+def _search(name: str, size: int, repeat: int, seconds: float) -> list[Search]:
+    found = []
     for network, query in _queries(name, size):
-        _measure(network, query, repeat, seconds)
+        before, times = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, []
+        for _ in range(repeat):
+            began = time.process_time()
+            outcome = verify(network, query, budget=Budget(seconds=seconds))
+            times.append(time.process_time() - began)
+        grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
+        told = replace(outcome.statistics, seconds=min(times))
+        found.append((query.id, outcome.holds, told, 1024 * grown / told.stored))
+    return found
 
 
 def _queries(name: str, size: int) -> list[tuple[Network, Query]]:
@@ -85,43 +96,21 @@ def _queries(name: str, size: int) -> list[tuple[Network, Query]]:
     return [(network, network.queries[0])]
 
 
-def _measure(network: Network, query: Query, repeat: int, limit: float) -> None:
-    """Search some times, and print what it cost as JSON."""
-    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    seconds = []
-    for _ in range(repeat):
-        began = time.process_time()
-        outcome = verify(network, query, budget=Budget(seconds=limit))
-        seconds.append(time.process_time() - began)
-    grown = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before
-    cost = outcome.statistics
-    told = {
-        "query": query.id,
-        "holds": outcome.holds,
-        "visited": cost.visited,
-        "stored": cost.stored,
-        "seconds": min(seconds),
-        "bytes": 1024 * grown / cost.stored,
-    }
-    print(json.dumps(told))
-
-
 def tchecker(
     checker: str, models: Sequence[Path], *, repeat: int = 3, seconds: float = 60.0
 ) -> None:
     """Models of TChecker's, searched by both."""
     print(f"{'model':20} {'stored':>10} {'seconds':>8} {'B/state':>8}   TChecker: the same, times")
     for model in models:
-        [told] = _told(str(model), 0, repeat, seconds)
+        [(_, _, told, held)] = _searched(str(model), 0, repeat, seconds)
         labels = asked(model.read_text("utf-8"))
         words = [checker, *SEARCH, *(["-l", ",".join(labels)] if labels else [])]
         done = measured([*words, str(model)])
         found = re.search(r"STORED_STATES (\d+)", done.output)
         assert found is not None, done.said
-        stored, ours = told["stored"], told["seconds"]
-        print(f"{model.stem:20} {stored:10,} {ours:8.3f} {told['bytes']:8.0f}", end="   ")
+        print(f"{model.stem:20} {told.stored:10,} {told.seconds:8.3f} {held:8.0f}", end="   ")
         their, used = int(found[1]), done.mebibytes * 2**20
-        times = done.cpu / max(ours, 1e-3)
+        times = done.cpu / max(told.seconds, 1e-3)
         print(f"{their:10,} {done.cpu:8.2f} {used / their:8.0f} {times:6.1f}", flush=True)
 
 
@@ -201,4 +190,4 @@ def _attributes(text: str) -> tuple[list[str], dict[str, str]]:
 
 
 if __name__ == "__main__":
-    sys.exit(program(__doc__, cost, one, tchecker))
+    sys.exit(program(__doc__, cost, tchecker))
