@@ -13,7 +13,9 @@ read otherwise. The page is printed, or written to the file; `--quick` takes a f
 from __future__ import annotations
 
 import csv
+import os
 import platform
+import re
 import statistics
 import subprocess
 import sys
@@ -129,35 +131,28 @@ def _told(section: str, size: Size, environment: Environment) -> Iterator[str]:
 
 
 def machine() -> str:
-    info = Path("/proc/cpuinfo")
-    lines = info.read_text().splitlines() if info.exists() else []
-    names = [line.partition(": ")[2] for line in lines if line.startswith("model name")]
+    found = re.search(r"model name\s*: (.*)", Path("/proc/cpuinfo").read_text())
+    name = found[1] if found else platform.machine()
     python = f"{platform.python_implementation()} {platform.python_version()}"
-    cores = sum(line.startswith("processor") for line in lines)
-    name = names[0] if names else platform.machine()
-    return f"{name}, {cores} cores, {platform.system()} {platform.release()}, {python}"
+    return f"{name}, {os.cpu_count()} cores, {platform.system()} {platform.release()}, {python}"
 
 
 def _commit() -> str:
     """The commit that is measured, as far as git knows it."""
     words = ["git", "-C", str(HERE), "describe", "--always", "--dirty", "--abbrev=8"]
-    try:
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
-    except OSError:
-        return "unknown"
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
     return done.stdout.strip() or "unknown"
 
 
 def content(results: Sequence[Result], agreements: Sequence[Agreement]) -> dict[str, Any]:
     """What the page says of figures: goals, a table of each section, who agrees on how much."""
     compared = [one for one in agreements if one.compared]
-    by_section = {
-        title: [one for one in results if one.section == section]
-        for section, title in TITLES.items()
-    }
+    sections: dict[str, list[Result]] = {}
+    for one in results:
+        sections.setdefault(TITLES[one.section], []).append(one)
     return {
         "goals": [*_met(results, compared)],
-        "sections": {title: "\n".join(_section(own)) for title, own in by_section.items() if own},
+        "sections": {title: "\n".join(_section(own)) for title, own in sections.items()},
         "compared": compared,
         "agreed": [*_agreed(compared)],
         "calm": {f"{one.label} on {one.name}, {one.form}" for one in compared if not one.false},
@@ -270,11 +265,8 @@ def _cell(figure: Figure | None, result: Result) -> str:
 def _agreed(compared: Sequence[Agreement]) -> Iterator[Sequence[str]]:
     for label, form in sorted({(entry.label, entry.form) for entry in compared}):
         own = [entry for entry in compared if (entry.label, entry.form) == (label, form)]
-        names = {entry.name for entry in own}
-        failing = {entry.name for entry in own if entry.false}
-        figures = ((entry.equal, entry.compared, entry.false) for entry in own)
-        sums = [f"{sum(one):,}" for one in zip(*figures, strict=True)]
-        yield label, form, str(len(names)), str(len(failing)), *sums
+        figures = ((1, entry.false > 0, entry.equal, entry.compared, entry.false) for entry in own)
+        yield label, form, *(f"{sum(one):,}" for one in zip(*figures, strict=True))
 
 
 def main(
