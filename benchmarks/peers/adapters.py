@@ -23,9 +23,11 @@ Pass = Callable[[], float | None]
 class Adapter(ABC):
     """What is the same for all peers."""
 
-    def __init__(self, package: str) -> None:
+    package: str
+
+    def __init__(self) -> None:
         logging.disable(logging.WARNING)  # rtamt warns of every variable
-        self.peer: Any = import_module(package)
+        self.peer: Any = import_module(self.package)
         self._loaded: tuple[list[str], str, Any] = [], "", None
 
     @abstractmethod
@@ -75,8 +77,7 @@ def per_tick(changes: Iterable[Sequence[Any]], ticks: int) -> list[Any]:
 class Reelay(Adapter):
     """reelay's Python package: past formulas; discrete (a position per update) and dense time."""
 
-    def __init__(self) -> None:
-        super().__init__("reelay")
+    package = "reelay"
 
     def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
         """The verdict, or with `robustness` in the kind that; `dense sparse` gives changes only."""
@@ -117,8 +118,7 @@ class Rtamt(Adapter):
     Online, it answers for an instant that lies its horizon back.
     """
 
-    def __init__(self) -> None:
-        super().__init__("rtamt")
+    package = "rtamt"
 
     def _specified(self, which: str, formula: str, names: Iterable[str]) -> Any:
         spec = getattr(self.peer, f"Stl{which}Specification")()
@@ -178,8 +178,7 @@ class Rtamt(Adapter):
 class Mstlo(Adapter):
     """mstlo: bounded future formulas over dense time, signals held between their samples."""
 
-    def __init__(self) -> None:
-        super().__init__("mstlo_python")
+    package = "mstlo_python"
 
     def _monitor(self, formula: str, kind: str) -> Any:
         return self.peer.Monitor(self.peer.parse_formula(formula), semantics=kind)
@@ -222,8 +221,7 @@ class Mstlo(Adapter):
 class Sentil(Adapter):
     """SENTIL: formulas over samples a tick apart, judged by their robustness."""
 
-    def __init__(self) -> None:
-        super().__init__("sentil")
+    package = "sentil"
 
     def judge(self, formula: str, kind: str, columns: Columns) -> dict[str, Any]:
         """The robustness at every tick; a window that the trace cuts short counts as it is."""

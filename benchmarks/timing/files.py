@@ -91,9 +91,8 @@ def _families(size: Size, environment: Environment, folder: Path) -> Iterator[Ta
         spec.write_text(specification([always_text(formula)], workload.columns))
         arrays = {name: np.array(column) for name, column in workload.columns.items()}
         table = {"t_ns": np.arange(workload.rows, dtype=np.int64), **arrays}
-        rows = zip(*(one.astype(np.int64).tolist() for one in table.values()), strict=True)
-        lines = (f"{','.join(map(str, row))}\n" for row in rows)
-        path.write_text("".join([f"{','.join(table)}\n", *lines]))
+        cells, head = np.column_stack([*table.values()]), ",".join(table)
+        np.savetxt(path, cells, "%d", ",", header=head, comments="")
         if environment.reelay is not None:
             pattern = f"historically({translate(formula, 'REELAY_DISCRETE')})"
             command = (str(environment.reelay), "csv", str(path), pattern)
@@ -110,8 +109,7 @@ def _families(size: Size, environment: Environment, folder: Path) -> Iterator[Ta
 
 
 def _first_failure(printed: str) -> Failures:
-    attempts = json.loads(printed)["requirements"]["R1"]["attempts"]
-    return [sorted(("R1", one["decided"]) for one in attempts if one["verdict"] == "F")[:1]]
+    return [report[:1] for report in _failures(printed, "decided")]
 
 
 def _violated(printed: str) -> Failures:
@@ -119,11 +117,11 @@ def _violated(printed: str) -> Failures:
     return [[] if row < 0 else [("R1", row)]]
 
 
-def _failures(printed: str) -> Failures:
+def _failures(printed: str, instant: str = "triggered") -> Failures:
     reports = json.loads(printed)
     return [
         sorted(
-            (name, attempt["triggered"])
+            (name, attempt[instant])
             for name, entry in report["requirements"].items()
             for attempt in entry["attempts"]
             if attempt["verdict"] == "F"
@@ -183,18 +181,15 @@ def _tasks(size: Size, environment: Environment, folder: Path) -> Iterator[Task]
 
 def _odd(plain: Path) -> Mapping[str, Path]:
     """The same recording as other programs write it, by what is odd about it."""
-    rows = plain.read_text().splitlines()
-    texts = {
-        "quoted text in each row": [f'{row},"a ""b"", c"' for row in rows],
-        "ends of Windows": [f"{row}\r" for row in rows],
+    text = plain.read_bytes()
+    written = {
+        "packed": ("packed.csv.gz", gzip.compress(text, 1)),
+        "quoted text in each row": ("quoted.csv", text.replace(b"\n", b',"a ""b"", c"\n')),
+        "ends of Windows": ("ends.csv", text.replace(b"\n", b"\r\n")),
     }
-    found = {"packed": plain.with_name("packed.csv.gz")}
-    for number, (name, lines) in enumerate(texts.items()):
-        found[name] = plain.with_name(f"odd{number}.csv")
-        found[name].write_text("\n".join([*lines, ""]), newline="")
-    with gzip.open(found["packed"], "wb", compresslevel=1) as file:
-        file.write(plain.read_bytes())
-    return found
+    for name, content in written.values():
+        plain.with_name(name).write_bytes(content)
+    return {what: plain.with_name(name) for what, (name, _) in written.items()}
 
 
 def written(path: Path, rows: int, seed: int) -> Path:
