@@ -163,24 +163,13 @@ def by_afl(target: str, folder: Path, seconds: int) -> tuple[str, Sequence[Path]
     made = compiled(folder, target)
     if not (folder / "in").exists():
         begun_with(folder, target)
-    environment = {
-        **os.environ,
-        **dict.fromkeys(
-            ("AFL_NO_UI", "AFL_SKIP_CPUFREQ", "AFL_NO_AFFINITY", "AFL_AUTORESUME"), "1"
-        ),
-        "AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES": "1",
-        "RVMON_PLANS": str(folder / "held"),
-        "ASAN_OPTIONS": "abort_on_error=1:symbolize=0:detect_leaks=0",
-    }
+    environment = os.environ | dict.fromkeys(_SET, "1")
+    environment["RVMON_PLANS"] = str(folder / "held")
+    environment["ASAN_OPTIONS"] = "abort_on_error=1:symbolize=0:detect_leaks=0"
     words = ["afl-fuzz", "-i", folder / "in", "-o", folder / "out", "-m", "none", "-t", "5000"]
+    words += ["-V", str(seconds), "--", made]
     with (folder / "log.txt").open("w") as log:
-        subprocess.run(
-            [*map(str, words), "-V", str(seconds), "--", str(made)],
-            env=environment,
-            stdout=log,
-            stderr=log,
-            check=False,
-        )
+        subprocess.run([*map(str, words)], env=environment, stdout=log, stderr=log, check=False)
     out = folder / "out" / "default"
     lines = (out / "fuzzer_stats").read_text().splitlines()
     pairs = (line.partition(":") for line in lines)
@@ -189,4 +178,8 @@ def by_afl(target: str, folder: Path, seconds: int) -> tuple[str, Sequence[Path]
     return told, sorted([*out.glob("crashes/id*"), *out.glob("hangs/id*")])
 
 
+_SET = (
+    *("AFL_NO_UI", "AFL_SKIP_CPUFREQ", "AFL_NO_AFFINITY", "AFL_AUTORESUME"),
+    "AFL_I_DONT_CARE_ABOUT_MISSING_CRASHES",
+)
 _TOLD = ("run_time", "execs_done", "execs_per_sec", "corpus_count", "bitmap_cvg", "stability")

@@ -7,17 +7,14 @@ import random
 import tempfile
 import traceback
 from collections.abc import Iterator
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 from fuzz.damage import damaged
 from fuzz.targets import TARGETS, run, seeds
 from tests.tools.differential import Campaign, cases_of
-from tests.tools.doors import Content, content_of, doors, whole
+from tests.tools.doors import Content, content_of, doors, told, whole
 
-from rvmon.errors import RvmonError
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
@@ -33,7 +30,8 @@ def judge_doors(found: Campaign, seed: int, numbers: range) -> None:
             for place, spec, content in _contents(f"{seed}/{number}"):
                 expected = None
                 for door, write in doors().items():
-                    text = _told(spec, *write(content, Path(name)))
+                    trace, arguments = write(content, Path(name))
+                    text = told(spec, trace, **arguments)
                     expected = text if expected is None else expected
                     found.counts[door] += 1
                     if text != expected or text.isidentifier():
@@ -50,15 +48,6 @@ def _contents(seed: str) -> Iterator[tuple[str, Spec, Content]]:
         content = content_of(random.Random(f"{seed}/{part}"), case)
         if content.rows:
             yield f"{seed}/{part}", spec, whole(content) if part % 3 == 2 else content
-
-
-def _told(spec: Spec, trace: object, arguments: dict[str, Any]) -> str:
-    """The report as JSON; or the name of the error that refuses."""
-    try:
-        report = spec.evaluate(trace, allow_missing=True, **arguments)
-        return replace(report, trace="").to_json()
-    except RvmonError as error:
-        return type(error).__name__
 
 
 def judge_damage(found: Campaign, seed: int, numbers: range) -> None:

@@ -16,6 +16,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 HERE = Path(__file__).parent
 HOME = HERE.parent / ".env"
 REQUIREMENTS = HERE / "requirements.txt"
@@ -93,10 +95,6 @@ def _build_reelay(python: Path, version: str) -> str:
 
 def packed(columns: Mapping[str, Sequence[bool | float]]) -> bytes:
     """Rows for the C++ monitor, a byte for each: bit i is the column of `LETTERS[i]`."""
-    rows = bytearray(len(next(iter(columns.values()))))
-    for name, column in columns.items():
-        bit = 1 << LETTERS.index(name)
-        for row, value in enumerate(column):
-            if value:
-                rows[row] |= bit
-    return bytes(rows)
+    bits = [np.array(one, np.uint8) << LETTERS.index(name) for name, one in columns.items()]
+    found: bytes = np.bitwise_or.reduce(bits).tobytes()
+    return found

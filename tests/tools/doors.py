@@ -5,15 +5,17 @@ import json
 import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.recordings import parquet, places
+from rvmon.session import Spec
 from rvmon.testing.generate import Rng, chance
 from rvmon.testing.generate.trace import Case
 from rvmon.trace.sample import Value
@@ -45,6 +47,15 @@ class Content:
     def sources(self) -> frozenset[str]:
         """The names that have a column."""
         return frozenset(name.partition(".")[0] for name in self.columns)
+
+
+def told(spec: Spec, trace: object, **arguments: Any) -> str:
+    """The report on a recording as JSON; or the name of the error that refuses it."""
+    try:
+        report = spec.evaluate(trace, allow_missing=True, **arguments)
+        return replace(report, trace="").to_json()
+    except RvmonError as error:
+        return type(error).__name__
 
 
 def content_of(rng: Rng, case: Case) -> Content:

@@ -9,11 +9,11 @@ import pyarrow
 import pytest
 from pyarrow import parquet
 from tests.tools.differential import cases_of
-from tests.tools.doors import content_of, doors, in_pieces, whole
+from tests.tools.doors import content_of, doors, in_pieces, told, whole
 from tests.tools.each import each
 
 import rvmon
-from rvmon.errors import MissingNameError, RvmonError, TraceError, UnknownNameError
+from rvmon.errors import MissingNameError, TraceError, UnknownNameError
 from rvmon.recordings.source import Source
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
@@ -61,13 +61,6 @@ def bare(report):
 
 def judged(spec, trace, **arguments):
     return spec.evaluate(trace, allow_missing=True, **arguments)
-
-
-def told(spec, trace, **arguments) -> str:
-    try:
-        return replace(judged(spec, trace, **arguments), trace="").to_json()
-    except RvmonError as error:
-        return type(error).__name__
 
 
 @pytest.mark.law
