@@ -207,7 +207,8 @@ class _Placer:
                     else symbols.flat(value)
                 )
                 parts.variables += map(partial(symbols.variable_of, kind), names, numbers)
-        return sc.PlacedSymbol(kind.placed_as, Slot(first, kind.extents))
+        is_real = kind.base is BaseType.DOUBLE
+        return sc.PlacedSymbol(kind.placed_as, Slot(first, kind.extents), is_real)
 
 
 def _room(parts: Sequence[Part], count: int, most: int, what: str, span: Span) -> int:

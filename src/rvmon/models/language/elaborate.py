@@ -16,7 +16,7 @@ from rvmon.models.language.declare import Findings, Parts, declare
 from rvmon.models.language.diagonals import Diagonals, without_lower_bounds
 from rvmon.models.language.functions import Functions
 from rvmon.models.language.instantiate import automaton_of, location_names, processes_of
-from rvmon.models.language.operations import as_real, assuming, is_real
+from rvmon.models.language.operations import assuming
 from rvmon.models.language.parse import parse_query
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.symbols import INT32, claim
@@ -239,8 +239,7 @@ def _number(written: syntax.Expression, resolver: Resolver, top: sc.Scope) -> Ex
     if not is_discrete(number):
         fix = "use locations and variables only"
         raise model_error("TA020", "the value of a clock or of runs", written.span, fix)
-    real = is_real(number, resolver.functions)
-    return as_real(number, resolver.functions, written.span) if real else number
+    return number
 
 
 def _term(written: syntax.Expression, resolver: Resolver, top: sc.Scope) -> nta.Term:

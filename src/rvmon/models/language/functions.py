@@ -13,6 +13,7 @@ from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.statements import Bodies, number, variable_type
 from rvmon.models.network import expressions as ex
 from rvmon.models.network import scope as sc
+from rvmon.models.network.fractions import marked
 from rvmon.models.network.guards import parts_in
 
 MAX_LOCALS = 100_000  # the most parameters and local variables of all functions together
@@ -43,7 +44,8 @@ class Functions:
         ]
         if len(self.locals) > MAX_LOCALS:
             raise model_error("TA019", f"more than {MAX_LOCALS:,} local variables", None)
-        return sc.PlacedSymbol(ex.BaseType.INT, ex.Slot(-len(self.locals), kind.extents))
+        slot, is_real = ex.Slot(-len(self.locals), kind.extents), kind.base is ex.BaseType.DOUBLE
+        return sc.PlacedSymbol(ex.BaseType.INT, slot, is_real)
 
     def variable(self, slot: ex.Slot) -> ex.Variable:
         """The variable of a slot, or the first of its array."""
@@ -52,7 +54,7 @@ class Functions:
 
     def call(
         self, symbol: sc.FunctionSymbol, written: syntax.Call, scope: sc.Scope, resolver: Resolver
-    ) -> ex.Invoke:
+    ) -> ex.Expression:
         """The value of a call."""
         text: syntax.FunctionText = symbol.written
         symbols.check_count(text.name, text.parameters, written.arguments, written.span)
@@ -66,10 +68,10 @@ class Functions:
             if not (is_bound or kind.extents or kind.fields):
                 value = number(argument, scope, resolver)
                 real = kind.base is ex.BaseType.DOUBLE
-                values.append(fitted(value, real, resolver.functions, argument.span))
+                values.append(fitted(value, real, argument.span))
                 continue
             thing = resolver.symbol(argument, scope)
-            _check_fit(thing, kind, parameter, argument.span, self)
+            _check_fit(thing, kind, parameter, argument.span)
             if is_bound:
                 bound[-1] = _with_slots(thing, lambda slot: _without_choice(slot, chosen))
             else:
@@ -86,7 +88,8 @@ class Functions:
                 function = self.made[key] = _make(text, symbol.scope, bound, resolver)
             finally:
                 self.open.discard(key)
-        return ex.Invoke(function, (*values, *chosen), written.span)
+        called = ex.Invoke(function, (*values, *chosen), written.span)
+        return marked(called, function.result[1].is_real)
 
 
 def _is_bound(parameter: syntax.Parameter, kind: sc.ResolvedType) -> bool:
@@ -101,15 +104,11 @@ def _check_fit(
     kind: sc.ResolvedType,
     parameter: syntax.Parameter,
     span: Span,
-    calls: Functions,
 ) -> None:
     single = symbols.leaves(thing)
-    own = single[0].kind if isinstance(single[0], sc.PlacedSymbol) else ex.BaseType.INT
-    is_real = (
-        isinstance(single[0], sc.PlacedSymbol)
-        and own is ex.BaseType.INT
-        and calls.variable(single[0].slot).is_real
-    )
+    own, is_real = ex.BaseType.INT, False
+    if isinstance(single[0], sc.PlacedSymbol):
+        own, is_real = single[0].kind, single[0].is_real
     if (
         own is not kind.placed_as
         or len(single) != symbols.count_of(kind)

@@ -11,7 +11,7 @@ from rvmon.models import network as nta
 from rvmon.models.language import automaton_syntax, symbols, syntax
 from rvmon.models.language.automaton_syntax import Document
 from rvmon.models.language.declare import Findings, Parts, check_range
-from rvmon.models.language.operations import as_real, binary, is_real, refuse_clocks
+from rvmon.models.language.operations import binary, refuse_clocks
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.statements import is_price, updates_of
 from rvmon.models.network import scope as sc
@@ -208,13 +208,10 @@ def _place(
                 clock = resolver.clock(target, inner)
                 if clock is None:
                     raise model_error("TA004", "this is no clock", target.span, "declare it")
-                rate = _number(value, inner, resolver)
-                if is_real(rate, resolver.functions):
-                    rate = as_real(rate, resolver.functions, value.span)
-                rates.append(nta.Rate(clock, rate))
+                rates.append(nta.Rate(clock, _number(value, inner, resolver)))
             case _:
                 more = resolver.condition(part, inner)
-                condition = binary(BinaryOp.AND, condition, more, part.span, resolver.functions)
+                condition = binary(BinaryOp.AND, condition, more, part.span)
     if written.leaving is not None:
         one, other = (_number(share, scope, resolver) for share in written.leaving)
         leaving = (one, other)

@@ -9,13 +9,20 @@ from collections.abc import Sequence
 
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
-from rvmon.models.language.symbols import Calls, check_count, is_alike, leaves, value_of
+from rvmon.models.language.symbols import check_count, is_alike, leaves, value_of
 from rvmon.models.network import LeadsToFormula
 from rvmon.models.network import expressions as ex
 from rvmon.models.network.evaluate import OPERATIONS as ON_INTEGERS
 from rvmon.models.network.evaluate import UNARY, check_shift, evaluator
-from rvmon.models.network.fractions import FUNCTIONS, OPERATIONS, gives_fraction, literal, number_of
-from rvmon.models.network.guards import is_discrete, is_fixed, is_linear
+from rvmon.models.network.fractions import (
+    FUNCTIONS,
+    OPERATIONS,
+    gives_fraction,
+    literal,
+    marked,
+    number_of,
+)
+from rvmon.models.network.guards import is_discrete, is_fixed, is_linear, parts_of
 from rvmon.models.network.scope import Symbol
 
 COMPARISONS = {*[*ex.BinaryOp][3:9]}
@@ -43,13 +50,13 @@ def compare_clock(clock: int, op: ex.BinaryOp, bound: ex.Expression, span: Span)
     return ex.BinaryOperation(joined, first, second)
 
 
-def unary(op: ex.UnaryOp, operand: ex.Expression, span: Span, calls: Calls) -> ex.Expression:
+def unary(op: ex.UnaryOp, operand: ex.Expression, span: Span) -> ex.Expression:
     """An operator on one operand."""
     if op is not ex.UnaryOp.NOT:
         refuse_clocks(operand, span)
-        if is_real(operand, calls):
+        if gives_fraction(operand):
             instead = ex.BinaryOp.SUB if op is ex.UnaryOp.NEGATE else ex.BinaryOp.BIT_XOR
-            return binary(instead, ex.Constant(0), operand, span, calls)
+            return binary(instead, ex.Constant(0), operand, span)
     if isinstance(operand, ex.Constant):
         return ex.Constant(UNARY[op](operand.value))
     return ex.UnaryOperation(op, operand)
@@ -62,14 +69,12 @@ def refuse_clocks(operand: ex.Expression, span: Span) -> None:
         raise model_error("TA009", "a condition on clocks or runs is no number", span, fix)
 
 
-def binary(
-    op: ex.BinaryOp, left: ex.Expression, right: ex.Expression, span: Span, calls: Calls
-) -> ex.Expression:
+def binary(op: ex.BinaryOp, left: ex.Expression, right: ex.Expression, span: Span) -> ex.Expression:
     """An operator on two operands."""
-    if op not in _LOGICAL and (is_real(left, calls) or is_real(right, calls)):
+    if op not in _LOGICAL and (gives_fraction(left) or gives_fraction(right)):
         if op not in OPERATIONS:
             raise model_error("TA004", f"`{op}` is for integers", span, "round them: fint(…)")
-        return _fractional(op, (left, right), span, calls)
+        return _fractional(op, (left, right), span)
     if op not in _LOGICAL | SAMENESS:
         refuse_clocks(left, span)
         refuse_clocks(right, span)
@@ -93,15 +98,13 @@ def binary(
             return ex.BinaryOperation(op, left, right, span if op in _PLACED else None)
 
 
-def joined(
-    op: ex.BinaryOp, parts: Sequence[ex.Expression], span: Span, calls: Calls
-) -> ex.Expression:
+def joined(op: ex.BinaryOp, parts: Sequence[ex.Expression], span: Span) -> ex.Expression:
     """Conditions joined as a balanced tree, which stays shallow however many there are."""
     if len(parts) == 1:
         return parts[0] if op is ex.BinaryOp.ADD else truth(parts[0])
     half = len(parts) // 2
-    left, right = (joined(op, own, span, calls) for own in (parts[:half], parts[half:]))
-    return binary(op, left, right, span, calls)
+    left, right = (joined(op, own, span) for own in (parts[:half], parts[half:]))
+    return binary(op, left, right, span)
 
 
 def truth(it: ex.Expression) -> ex.Expression:
@@ -109,17 +112,15 @@ def truth(it: ex.Expression) -> ex.Expression:
     return ex.Constant(int(bool(it.value))) if isinstance(it, ex.Constant) else it
 
 
-def whole_compare(
-    op: ex.BinaryOp, left: Symbol, right: Symbol, span: Span, calls: Calls
-) -> ex.Expression:
+def whole_compare(op: ex.BinaryOp, left: Symbol, right: Symbol, span: Span) -> ex.Expression:
     """Arrays or records compared part by part."""
     if not is_alike(left, right):
         raise model_error("TA004", "these are not of one type", span)
     values = ((value_of(leaf, span) for leaf in leaves(side)) for side in (left, right))
     pairs = zip(*values, strict=True)
-    parts = [binary(ex.BinaryOp.EQ, one, other, span, calls) for one, other in pairs]
-    same = joined(ex.BinaryOp.AND, parts, span, calls)
-    return same if op is ex.BinaryOp.EQ else unary(ex.UnaryOp.NOT, same, span, calls)
+    parts = [binary(ex.BinaryOp.EQ, one, other, span) for one, other in pairs]
+    same = joined(ex.BinaryOp.AND, parts, span)
+    return same if op is ex.BinaryOp.EQ else unary(ex.UnaryOp.NOT, same, span)
 
 
 LINEAR_WORDS = "AEGFX"  # path quantifiers and temporal operators, which look like calls
@@ -181,32 +182,13 @@ def linear_of(name: str, body: ex.Expression, span: Span) -> ex.Expression:
 # Numbers with a fraction.
 
 
-def is_real(value: ex.Expression, calls: Calls) -> bool:
-    """Whether an expression has a fraction."""
-    match value:
-        case ex.VariableValue(slot):
-            return calls.variable(slot).is_real
-        case ex.Invoke(function):
-            return function.result[1].is_real
-        case ex.Choice(_, then, otherwise):
-            return is_real(then, calls) or is_real(otherwise, calls)
-        case _:
-            return gives_fraction(value)
-
-
-def as_real(value: ex.Expression, calls: Calls, span: Span) -> ex.Expression:
+def as_real(value: ex.Expression, span: Span) -> ex.Expression:
     """The same number with a fraction, marked as one."""
     match value:
-        case ex.Fractional() if gives_fraction(value):
-            return value
         case ex.Constant(number):
             return literal(number)
-        case ex.Choice(test, then, otherwise) if is_real(value, calls):
-            return ex.Fractional(
-                "=", (ex.Choice(test, as_real(then, calls, span), as_real(otherwise, calls, span)),)
-            )
-        case _ if is_real(value, calls):
-            return ex.Fractional("=", (value,))
+        case _ if gives_fraction(value):
+            return value
         case _ if is_discrete(value):
             return ex.Fractional("double", (value,))
         case _:
@@ -214,47 +196,45 @@ def as_real(value: ex.Expression, calls: Calls, span: Span) -> ex.Expression:
             raise model_error("TA009", "a clock has no value here", span, fix)
 
 
-def fitted(value: ex.Expression, real: bool, calls: Calls, span: Span) -> ex.Expression:
+def choice(
+    test: ex.Expression, then: ex.Expression, otherwise: ex.Expression, span: Span
+) -> ex.Expression:
+    """`test ? then : otherwise`."""
+    if isinstance(test, ex.Constant):
+        return then if test.value else otherwise
+    if not (gives_fraction(then) or gives_fraction(otherwise)):
+        return ex.Choice(test, then, otherwise)
+    return marked(ex.Choice(test, as_real(then, span), as_real(otherwise, span)), True)
+
+
+def fitted(value: ex.Expression, real: bool, span: Span) -> ex.Expression:
     """A value as a variable holds it, with a fraction or without."""
     if real:
-        return as_real(value, calls, span)
-    if is_real(value, calls):
+        return as_real(value, span)
+    if gives_fraction(value):
         fix = "round it: fint(…)"
         raise model_error("TA004", "an integer is set to a number with a fraction", span, fix)
     return value
 
 
-def fractional_call(
-    name: str, arguments: Sequence[ex.Expression], span: Span, calls: Calls
-) -> ex.Expression:
+def fractional_call(name: str, arguments: Sequence[ex.Expression], span: Span) -> ex.Expression:
     """A function of UPPAAL's."""
     check_count(name, range(FUNCTIONS[name]), arguments, span)
-    return _fractional(name, arguments, span, calls)
+    return _fractional(name, arguments, span)
 
 
-def clock_number(value: ex.Expression, calls: Calls) -> ex.Expression:
+def clock_number(value: ex.Expression) -> ex.Expression:
     """The number for a clock in steps of the grid, also of a fraction of a unit."""
-    if not is_real(value, calls):
+    if not gives_fraction(value):
         return value
     if is_fixed(value) and (number := number_of(evaluator(value)((), ()))).is_integer():
         return ex.Constant(int(number))
     return ex.Fractional("grid", (value,))
 
 
-def _fractional(
-    name: str, operands: Sequence[ex.Expression], span: Span, calls: Calls
-) -> ex.Expression:
-    made = ex.Fractional(name, tuple(as_real(operand, calls, span) for operand in operands), span)
-    if not all(map(_is_literal, made.operands)):
+def _fractional(name: str, operands: Sequence[ex.Expression], span: Span) -> ex.Expression:
+    made = ex.Fractional(name, tuple(as_real(operand, span) for operand in operands), span)
+    if not all(isinstance(part, ex.Fractional | ex.Constant) for part in parts_of(made)):
         return made
     value = evaluator(made)((), ())
     return literal(number_of(value)) if gives_fraction(made) else ex.Constant(value)
-
-
-def _is_literal(value: ex.Expression) -> bool:
-    """Whether it is a number with a fraction as it is written."""
-    match value:
-        case ex.Fractional("=", (ex.Constant(),)):
-            return True
-        case _:
-            return False

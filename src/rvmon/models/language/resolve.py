@@ -50,7 +50,7 @@ class Resolver:
             case syntax.Call(name, given, span) if name in FUNCTIONS and not scope.find(name):
                 self.fraction = self.fraction or span
                 numbers = [self.expression(expression, scope) for expression in given]
-                return operations.fractional_call(name, numbers, span, self.functions)
+                return operations.fractional_call(name, numbers, span)
             case syntax.Call(name, (body,), span) if (
                 name in operations.LINEAR_WORDS and self.automata
             ):
@@ -63,7 +63,7 @@ class Resolver:
                 fix = "a rate stands in an invariant: x' == 2, alone or joined by &&"
                 raise model_error("TA009", "the rate of a clock stands here", span, fix)
             case syntax.Unary(op, operand, span):
-                return operations.unary(op, self.expression(operand, scope), span, self.functions)
+                return operations.unary(op, self.expression(operand, scope), span)
             case syntax.Binary(op, left, right, span):
                 if op in operations.COMPARISONS and (clocks := self._clock_compare(written, scope)):
                     return clocks
@@ -72,15 +72,11 @@ class Resolver:
                 first = self.expression(left, scope)
                 if first == ex.Constant(0) and op is ex.BinaryOp.AND:
                     return first  # what stands behind need not have a meaning then
-                return operations.binary(
-                    op, first, self.expression(right, scope), span, self.functions
-                )
-            case syntax.Conditional(condition, then, otherwise, _):
+                return operations.binary(op, first, self.expression(right, scope), span)
+            case syntax.Conditional(condition, then, otherwise, span):
                 test = self.expression(condition, scope)
                 yes, no = self.expression(then, scope), self.expression(otherwise, scope)
-                if isinstance(test, ex.Constant):
-                    return yes if test.value else no
-                return ex.Choice(test, yes, no)
+                return operations.choice(test, yes, no, span)
             case syntax.Quantified(op, name, kind, body, span):
                 values = symbols.values_of(self.type(kind, scope), kind.span)
                 self.unrolled += len(values)
@@ -91,7 +87,7 @@ class Resolver:
                     self.expression(body, scope.inner({name: sc.ConstantSymbol(value)}))
                     for value in values
                 ]
-                return operations.joined(op, parts, span, self.functions)
+                return operations.joined(op, parts, span)
             case syntax.Path(op, body, bound, span, left):
                 if not self.automata:
                     raise model_error("TA020", "only queries refer to runs", span)
@@ -122,7 +118,7 @@ class Resolver:
     def constant(self, written: syntax.Expression, scope: sc.Scope, *, real: bool = False) -> int:
         """The value of an expression that must not depend on the state; `real`: its bits."""
         value = self.expression(written, scope)
-        value = operations.fitted(value, real, self.functions, written.span)
+        value = operations.fitted(value, real, written.span)
         if not is_fixed(value):
             fix = "use numbers, `const` names, parameters, and functions of them only"
             raise model_error("TA006", "this is not constant", written.span, fix)
@@ -277,7 +273,7 @@ class Resolver:
                 part in (written.left, written.right) for _, part, its in named if its is not None
             ):
                 bound = self.expression(written.right if sign > 0 else written.left, scope)
-                bound = operations.clock_number(bound, self.functions)
+                bound = operations.clock_number(bound)
                 turned = op if sign > 0 else operations.MIRRORED[op]
                 return operations.compare_clock(clock, turned, bound, span)
         number = -sum(
@@ -302,7 +298,7 @@ class Resolver:
             or not (symbols.is_whole(left) and symbols.is_whole(right))
         ):
             return None
-        return operations.whole_compare(written.op, left, right, written.span, self.functions)
+        return operations.whole_compare(written.op, left, right, written.span)
 
     def _record(self, written: syntax.Expression, scope: sc.Scope) -> sc.RecordSymbol | None:
         """The record that an expression names, if it names one."""

@@ -46,15 +46,16 @@ def _update(
     written: syntax.UpdateText | syntax.Call, scope: sc.Scope, resolver: Resolver
 ) -> list[ex.Statement]:
     if isinstance(written, syntax.Call):
-        call = resolver.expression(written, scope)
-        if not isinstance(call, ex.Invoke):
-            raise model_error("TA004", "this is no function", written.span)
-        return [ex.Perform(call)]
+        match resolver.expression(written, scope):
+            case (ex.Invoke() as call) | ex.Fractional("=", (ex.Invoke() as call,)):
+                return [ex.Perform(call)]
+            case _:
+                raise model_error("TA004", "this is no function", written.span)
     if is_price(written.target, scope):
         return []
     clock = resolver.clock(written.target, scope)
     if clock is not None:
-        value = clock_number(number(written.value, scope, resolver), resolver.functions)
+        value = clock_number(number(written.value, scope, resolver))
         if isinstance(value, ex.Constant) and not 0 <= value.value < ex.MAX_TIME:
             raise model_error("TA007", f"a clock is set to {value.value}", written.span)
         return [ex.Reset(clock, value, written.span)]
@@ -80,7 +81,7 @@ def _set(target: sc.Symbol, value: ex.Expression, span: Span, resolver: Resolver
     match target:
         case sc.PlacedSymbol(ex.BaseType.INT, slot) if target.is_single:
             variable = resolver.functions.variable(slot)
-            value = fitted(value, variable.is_real, resolver.functions, span)
+            value = fitted(value, variable.is_real, span)
             return ex.Assignment(replace(slot, span=span), value, variable)
         case _:
             fix = "only variables and clocks can be set"
@@ -134,8 +135,7 @@ class Bodies:
                 if self.text.type is None:
                     raise model_error("TA004", f"`{self.text.name}` returns no value", span)
                 real = self.text.type.base is ex.BaseType.DOUBLE
-                result = fitted(number(value, scope, resolver), real, resolver.functions, span)
-                return [ex.Return(result)], False
+                return [ex.Return(fitted(number(value, scope, resolver), real, span))], False
             case syntax.ReturnText():
                 return [ex.Return(ex.Constant(0))], False
             case _:

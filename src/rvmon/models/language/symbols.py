@@ -13,6 +13,7 @@ from rvmon.models.language import syntax
 from rvmon.models.network import expressions as ex
 from rvmon.models.network import scope as sc
 from rvmon.models.network.evaluate import check_index
+from rvmon.models.network.fractions import marked
 from rvmon.texts import counted, did_you_mean
 
 MAX_VALUES = 10_000
@@ -163,9 +164,9 @@ def value_of(symbol: sc.Symbol, span: Span) -> ex.Expression:
     """The value that a symbol has in an expression."""
     match symbol:
         case sc.ConstantSymbol(int(value), _, is_real):
-            return ex.Fractional("=", (ex.Constant(value),)) if is_real else ex.Constant(value)
-        case sc.PlacedSymbol(ex.BaseType.INT, slot) if symbol.is_single:
-            return ex.VariableValue(replace(slot, span=span))
+            return marked(ex.Constant(value), is_real)
+        case sc.PlacedSymbol(ex.BaseType.INT, slot, is_real) if symbol.is_single:
+            return marked(ex.VariableValue(replace(slot, span=span)), is_real)
         case sc.ChosenSymbol(values, slot) if len(slot.indices) == len(slot.extents):
             return ex.Lookup(values, replace(slot, span=span))
         case sc.PlacedSymbol(ex.BaseType.CLOCK):

@@ -55,6 +55,11 @@ def literal(number: float) -> Fractional:
     return Fractional("=", (Constant(bits_of(number)),))
 
 
+def marked(value: Expression, is_real: bool) -> Expression:
+    """An expression, with the mark of one that gives bits if it does."""
+    return Fractional("=", (value,)) if is_real else value
+
+
 def operation(name: str, span: Span | None) -> Callable[..., int]:
     """Make a function of integers, or of bits, for an operation.
 

@@ -46,6 +46,7 @@ class PlacedSymbol:
 
     kind: BaseType  # `CLOCK`, `CHANNEL`, or `INT` for all variables
     slot: Slot
+    is_real: bool = False  # whether its values are the bits of numbers with a fraction
 
     @property
     def is_single(self) -> bool:
