@@ -66,6 +66,11 @@ class _Site:
         return self.location, self.clocks, self.region
 
     @property
+    def waits(self) -> bool:
+        """Whether time passes there, with the attempt open."""
+        return self.phase is Phase.HELD and not self.is_decided
+
+    @property
     def is_decided(self) -> bool:
         """Whether the attempt has passed or failed, or is not followed any more."""
         return self.location in (FAILED, PASSED, _LOST)
@@ -149,7 +154,10 @@ class Observed:
         # true where an attempt is followed and not decided
         self.is_open = self._where(lambda site: site.location > PASSED, at_start=False)
         # true where it also stays so while time diverges
-        self.rests = self._where(self._is_resting, at_start=False)
+        self.rests = self._where(
+            lambda site: site.waits and self._tables.is_last(site.location, site.region),
+            at_start=False,
+        )
         self.passed = self._where(lambda site: site.location == PASSED)
         self.failed = self._where(lambda site: site.location == FAILED)
 
@@ -161,8 +169,7 @@ class Observed:
         if place is None:
             urgent = site.phase is Phase.FRESH and not site.is_decided
             kind = ex.LocationKind.URGENT if urgent else ex.LocationKind.NORMAL
-            waits = site.phase is Phase.HELD and not site.is_decided
-            bounds = self._tables.highest(*site.held) if waits else ()
+            bounds = self._tables.highest(*site.held) if site.waits else ()
             place = self._sites[site] = self._watcher.add_location(bounds, kind)
             self._waiting.append(site)
         return place
@@ -178,10 +185,6 @@ class Observed:
                     there = ex.BinaryOperation(ex.BinaryOp.AND, there, self._after())
                 places.append(there)
         return either(places)
-
-    def _is_resting(self, site: _Site) -> bool:
-        waits = site.phase is Phase.HELD and not site.is_decided
-        return waits and self._tables.is_last(site.location, site.region)
 
     def _after(self) -> ex.ClockCompare:
         """Some time has passed since the watcher stepped."""

@@ -222,10 +222,8 @@ def _function(names: Names, function: ex.Function) -> Iterator[str]:
     yield f"{type_text(function.result[1])} {names.function(function)}({listed}) {{"
     for thing in _locals(names, function):
         yield f"  {type_text(names.network.locals[thing.first])} {thing.declarator};"
-    count = len(names.network.locals)
     for name, slot, _ in given:
-        thing = next(t for t in names.locals if t.first <= slot + count < t.first + t.length)
-        yield f"  {thing.element(slot + count)} = {name};"
+        yield f"  {names.variable(ex.Slot(slot))} = {name};"
     for line in _lines(names, function.body):
         yield f"  {line}"
     yield "}"

@@ -63,9 +63,13 @@ class Functions:
         chosen: list[ex.Expression] = []
         for parameter, argument in zip(text.parameters, written.arguments, strict=True):
             kind = resolver.typed(parameter, symbol.scope)
-            is_bound = _is_bound(parameter, kind)
+            is_single = not (kind.extents or kind.fields)
+            # Whether it stands for the argument itself, not for its value.
+            is_bound = kind.placed_as is not ex.BaseType.INT or (
+                parameter.reference and not (kind.const and is_single)
+            )
             bound.append(None)
-            if not (is_bound or kind.extents or kind.fields):
+            if is_single and not is_bound:
                 value = number(argument, scope, resolver)
                 real = kind.base is ex.BaseType.DOUBLE
                 values.append(fitted(value, real, argument.span))
@@ -90,13 +94,6 @@ class Functions:
                 self.open.discard(key)
         called = ex.Invoke(function, (*values, *chosen), written.span)
         return marked(called, function.result[1].is_real)
-
-
-def _is_bound(parameter: syntax.Parameter, kind: sc.ResolvedType) -> bool:
-    """Whether a parameter stands for the argument itself, not for its value."""
-    if kind.placed_as is not ex.BaseType.INT:
-        return True
-    return parameter.reference and not (kind.const and not (kind.extents or kind.fields))
 
 
 def _check_fit(

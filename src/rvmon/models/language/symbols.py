@@ -195,7 +195,10 @@ def element_of(symbol: sc.Symbol, index: ex.Expression, span: Span) -> sc.Symbol
                 return sc.ChosenSymbol(tuple(flat(values)), slot)
             return sc.ConstantSymbol(values[index.value - extent.start], tuple(inner))
         case sc.PlacedSymbol(_, slot) | sc.ChosenSymbol(_, slot):
-            return replace(symbol, slot=_deeper(slot, index, span))
+            if len(slot.indices) == len(slot.extents):
+                raise model_error("TA004", "more indices than the array has dimensions", span)
+            deeper = ex.Slot(slot.first, slot.extents, (*slot.indices, index), span)
+            return replace(symbol, slot=settle(deeper))
         case sc.RecordSymbol(fields):
             return sc.RecordSymbol(tuple((name, element_of(s, index, span)) for name, s in fields))
         case sc.ConstantSymbol() | sc.TypeSymbol() | sc.FunctionSymbol():
@@ -251,12 +254,6 @@ def leaves(symbol: sc.Symbol) -> list[sc.Symbol]:
             return [leaf for slot in deeper for leaf in leaves(replace(symbol, slot=slot))]
         case _:
             return [symbol]
-
-
-def _deeper(slot: ex.Slot, index: ex.Expression, span: Span) -> ex.Slot:
-    if len(slot.indices) == len(slot.extents):
-        raise model_error("TA004", "more indices than the array has dimensions", span)
-    return settle(ex.Slot(slot.first, slot.extents, (*slot.indices, index), span))
 
 
 def settle(slot: ex.Slot) -> ex.Slot:

@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import product
+from operator import ge, gt, le, lt
 from typing import Any, TypeVar
 
 from rvmon.errors import ModelError
@@ -45,6 +46,11 @@ def initial_configuration(network: Network) -> Configuration:
         tuple(variable.initial for variable in network.variables),
         (Fraction(0),) * len(network.clocks),
     )
+
+
+_COMPARES: dict[ex.ClockOp, Callable[[Fraction, int], bool]] = {
+    ex.ClockOp.LT: lt, ex.ClockOp.LE: le, ex.ClockOp.GE: ge, ex.ClockOp.GT: gt,
+}  # fmt: skip
 
 
 class Rules:
@@ -148,17 +154,8 @@ class Rules:
 
     def compares(self, now: Configuration, compare: ex.ClockCompare) -> bool:
         """Whether a clock is as a comparison says."""
-        clock = now.clocks[compare.clock]
-        bound = self.value(now, compare.bound)
-        match compare.op:
-            case ex.ClockOp.LT:
-                return clock < bound
-            case ex.ClockOp.LE:
-                return clock <= bound
-            case ex.ClockOp.GE:
-                return clock >= bound
-            case ex.ClockOp.GT:
-                return clock > bound
+        holds = _COMPARES[compare.op]
+        return holds(now.clocks[compare.clock], self.value(now, compare.bound))
 
     def replay(self, run: Run) -> list[Configuration]:
         """Go along a run with its concrete delays.

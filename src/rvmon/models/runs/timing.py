@@ -119,10 +119,9 @@ Piece = tuple[runs.Atom, ...]  # bounds that hold together; without any they hol
 
 
 @dataclass(frozen=True, slots=True)
-class PathStep:
+class PathStep(TimedStep):
     """One instant of a path."""
 
-    timed: TimedStep  # the constraints on its time
     move: Move | None  # the move; `None` if the instant matters for the query only
     state: State
 
@@ -134,28 +133,20 @@ def invariant_of(state: State) -> Piece:
 
 def move_step(state: State, move: Move, leave: Piece = (), enter: Piece = ()) -> PathStep:
     """A move, with what else must hold before and after it."""
-    target = move.target
-    timed = TimedStep(
-        state.delays,
-        (*invariant_of(state), *move.guard, *leave),
-        move.resets,
-        (*invariant_of(target), *enter),
-    )
-    return PathStep(timed, move, target)
+    before = (*invariant_of(state), *move.guard, *leave)
+    after = (*invariant_of(move.target), *enter)
+    return PathStep(state.delays, before, move.resets, after, move, move.target)
 
 
 def mark_step(state: State, holds: Piece, resets: Sequence[int] = ()) -> PathStep:
     """An instant at which something holds, and some clocks of the query start."""
-    leave = (*invariant_of(state), *holds)
-    return PathStep(
-        TimedStep(state.delays, leave, tuple((clock, 0.0) for clock in resets), ()), None, state
-    )
+    started = tuple((clock, 0.0) for clock in resets)
+    return PathStep(state.delays, (*invariant_of(state), *holds), started, (), None, state)
 
 
 def crossing_step(state: State, leave: Piece, enter: Piece) -> PathStep:
     """The instant at which a run crosses from one piece of a formula to another."""
-    timed = TimedStep(state.delays, (*invariant_of(state), *leave), (), enter)
-    return PathStep(timed, None, state)
+    return PathStep(state.delays, (*invariant_of(state), *leave), (), enter, None, state)
 
 
 def make_run(
@@ -170,7 +161,7 @@ def make_run(
     The path may be of another network that has more automata, clocks and variables behind those of
     this one; `loop` is the first step that is repeated.
     """
-    timing = timing_of([step.timed for step in steps])
+    timing = timing_of(steps)
     assert timing is not None, "the search found a run along the path"
     run_steps = tuple(
         runs.RunStep(window, wait, _action(network, step.move), _position(network, step.state))

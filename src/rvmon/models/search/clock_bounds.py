@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from rvmon.models.network import Automaton, Edge, Network
+from rvmon.models.network import Automaton, Network
 from rvmon.models.network import expressions as ex
 
 Limits = dict[int, int]
@@ -60,7 +60,9 @@ def location_bounds(
     for edge in automaton.edges:
         own = bounds[edge.source]
         own.note(edge.guard.clocks, network)
-        if _is_kept_back(edge, network):  # who is kept back, counts the other way round
+        sync = edge.sync
+        if sync is not None and not sync.sends and network.channels[sync.slot.first].broadcast:
+            # Its guard may keep it out of a move: who is kept back, counts the other way round.
             ClockBounds(own.upper, own.lower).note(edge.guard.clocks, network)
         resets.append({update.clock for update in edge.updates if isinstance(update, ex.Reset)})
     # A fixed point: numbers only grow, and each is one of finitely many.
@@ -81,12 +83,6 @@ def location_bounds(
             own.lower.update(both.lower)
             own.upper.update(both.upper)
     return bounds
-
-
-def _is_kept_back(edge: Edge, network: Network) -> bool:
-    """Whether an edge has no part in a move because its guard on clocks fails."""
-    sync = edge.sync
-    return sync is not None and not sync.sends and network.channels[sync.slot.first].broadcast
 
 
 def value_range(expression: ex.Expression, network: Network) -> tuple[int, int]:

@@ -80,7 +80,7 @@ def seek(network: Network, sought: Sought, meter: Meter, *, proper_only: bool = 
 
     def counts(path: bytes, loop: int, head: bytes) -> int:
         # Called from C for each loop found there: rarely, and it needs relations between rounds.
-        steps = [step.timed for step in paths.walk(path)[1][loop:]]
+        steps = paths.walk(path)[1][loop:]
         return time_passes(steps, _zone(array("q", head)), paths.dim)
 
     state, ending, loop, improper, visited, stored, _, _, path, parts, spans = search(
@@ -169,7 +169,7 @@ class _Paths:
         last, steps = self.walk(path)
         for part in self._parts(parts):
             marked = [*steps, timings.mark_step(last, part)]
-            if timings.timing_of([step.timed for step in marked]) is not None:
+            if timings.timing_of(marked) is not None:
                 steps = marked
                 break
         if ending is Ending.DEADLOCK and last.is_time_bounded:
