@@ -15,6 +15,7 @@ from rvmon.cdv.test import from_json
 
 HumanSignal = Literal["activateRobot", "humanIsReady", "setv"]
 RobotSignal = Literal["informHumanOfHandoverStart", "setv"]
+Posture = Literal["hgazeOk", "hlocationOk", "hpressureOk"]
 Switch = Literal[
     "honTask",
     "hgazeOk",

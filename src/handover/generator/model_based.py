@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import random
 from functools import cache
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from handover.generator.abstract_test import (
     SEND_DELAY_S,
     SEND_PAUSE_S,
     AbstractTest,
     Action,
+    Posture,
     ReceiveSignal,
     SendSignal,
     SetParam,
@@ -39,20 +40,21 @@ _STRATEGIES: dict[PolicyName, Strategy] = {
     "shortest": "model-based-shortest",
     "fastest": "model-based-fastest",
 }
-_POSTURES: tuple[tuple[str, Literal["hgazeOk", "hlocationOk", "hpressureOk"]], ...] = (
-    ("gaze", "hgazeOk"),
-    ("location", "hlocationOk"),
-    ("pressure", "hpressureOk"),
-)
+_POSTURES: dict[str, Posture] = {
+    "gaze": "hgazeOk", "location": "hlocationOk", "pressure": "hpressureOk"
+}  # fmt: skip
 ACTIONS: dict[Edge, Action] = {
     ("workflow", "idle", "waitInform"): SendSignal("activateRobot"),
     ("workflow", "waitInform", "informed"): ReceiveSignal("informHumanOfHandoverStart"),
     ("workflow", "informed", "ready"): SendSignal("humanIsReady"),
     ("workflow", "ready", "tasking"): SetParam("honTask", 1),
     ("workflow", "ready", "end"): SetParam("honTask", 0),
-    **{(who, "off", "ok"): SetParam(name, 1) for who, name in _POSTURES},
-    **{(who, "off", "bad"): SetParam(name, 0) for who, name in _POSTURES},
-    **{(who, "ok", "bad"): SetParam(name, 0) for who, name in _POSTURES},
+    **{(who, "off", "ok"): SetParam(name, 1) for who, name in _POSTURES.items()},
+    **{
+        (who, was, "bad"): SetParam(name, 0)
+        for was in ("off", "ok")
+        for who, name in _POSTURES.items()
+    },
 }
 """The action of the human's script for an edge; other edges of the projection need none."""
 

@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import random
 from collections.abc import Collection, Sequence
-from typing import Literal
+from typing import get_args
 
 from handover.generator.abstract_test import (
     AbstractTest,
     Action,
+    Posture,
     ReceiveSignal,
     SendSignal,
     SetParam,
@@ -21,11 +22,7 @@ from handover.world.faults import SceneFaults, SensorFaults
 from rvmon.cdv.campaign import Choose
 
 _TURNS = ("before activating", "after activating", "before being ready", "after being ready")
-_POSTURES: tuple[Literal["hgazeOk", "hlocationOk", "hpressureOk"], ...] = (
-    "hgazeOk",
-    "hlocationOk",
-    "hpressureOk",
-)
+_POSTURES: tuple[Posture, ...] = get_args(Posture)
 
 _PAUSES = ((0, 20), (0, 20), (60, 180), (240, 258), (315, 385))
 """Units of 0.05 s; the third is as long as the robot takes to come, the last nearly too long."""

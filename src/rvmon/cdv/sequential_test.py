@@ -67,9 +67,8 @@ def decide(share: RunShare, verdicts: Iterable[Verdict]) -> Decision:
     good, bad = (high, low) if share.at_least else (low, high)
     ratios = {Verdict.PASS: log(bad / good), Verdict.FAIL: log((1 - bad) / (1 - good))}
     best, worst = min(ratios.values()), max(ratios.values())
-    favourable = unfavourable = (
-        0.0  # logarithms of likelihoods, what is inconclusive gone well, ill
-    )
+    # Logarithms of likelihoods, if what is inconclusive had gone well, or ill.
+    favourable = unfavourable = 0.0
     tests = inconclusive = passed = 0
     holds = None
     for verdict in verdicts:

@@ -32,7 +32,7 @@ from rvmon.trace.time import TICKS_PER_UNIT
 MET_IN_THE_END = "none stays open for ever while time passes on"
 OPEN_FOR_EVER = "an attempt stays open for ever"
 UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"
-"""The remark on a requirement without deadline that no finite run violates."""
+"""Remarks on a requirement without deadline that no finite run violates."""
 
 
 @dataclass(frozen=True, slots=True)

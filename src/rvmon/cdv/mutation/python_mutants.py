@@ -77,18 +77,13 @@ def _first(code: str) -> str:
 
 
 def mutants(
-    path: Path,
-    lines: Collection[int],
-    operators: Collection[str] = (),
-    *,
-    constants: Collection[str] = (),
+    path: Path, lines: Collection[int], *, constants: Collection[str] = ()
 ) -> Iterator[Mutant]:
     r"""All changes that are tried in a file: inside functions, on given lines only.
 
     Args:
         path: the file, which is read and not run.
         lines: the lines to change; a change in a line that no test runs could not be seen.
-        operators: names of those that are applied; default: all.
         constants: names at the file's top whose values are changed as well.
 
     Raises:
@@ -98,7 +93,7 @@ def mutants(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     path = Path(folder, "near.py")
     ...     _ = path.write_text("def near(metres):\n    return metres < 2.0\n")
-    ...     [one.after for one in mutants(path, {2}, ["comparison", "number"])]
+    ...     [one.after for one in mutants(path, {2})][:3]
     ['metres <= 2.0', 'return metres < (2.2)', 'return metres < (1.8)']
     """
     try:
@@ -117,7 +112,7 @@ def mutants(
             if not isinstance(node, ast.expr if is_constant else ast.expr | ast.stmt):
                 continue
             if is_constant or node.lineno in lines:
-                for kind, before, after, text in _changes(source, node, scope, operators):
+                for kind, before, after, text in _changes(source, node, scope):
                     ordinals[name, kind] += 1
                     yield Mutant(
                         path, node.lineno, kind, before, after, text, name, ordinals[name, kind]
@@ -158,12 +153,12 @@ def _executed(node: ast.AST) -> Iterator[ast.AST]:
 
 
 def _changes(
-    source: str, node: ast.expr | ast.stmt, scope: Scope, operators: Collection[str]
+    source: str, node: ast.expr | ast.stmt, scope: Scope
 ) -> Iterator[tuple[str, str, str, str]]:
     """Kind, the code before and after, and the file after, of all changes to a node."""
     for kind, target, text in changes_of(node, scope):
         before, after = ast.unparse(target), ast.unparse(ast.parse(text))
-        if before == after or (operators and kind not in operators):
+        if before == after:
             continue
         changed = _replaced(source, target, text)
         if isinstance(target, ast.Constant | ast.Set):

@@ -1,6 +1,6 @@
-"""The mutation operators of Python code: one table, and what they ask of the code around a node.
+"""The mutation operators of Python code: and what they ask of the code around a node.
 
-Sources of the operators, by the letters that the table cites:
+Sources of the operators, by the letters that comments cite:
 
 * **KO** King, Offutt 1991, A Fortran Language System for Mutation-Based Software Testing (Mothra).
 * **OLRUZ** Offutt, Lee, Rothermel, Untch, Zapf 1996, An Experimental Determination of Sufficient
@@ -159,11 +159,13 @@ def _bracketed(new: ast.expr) -> str:
 
 
 def changes_of(node: ast.expr | ast.stmt, scope: Scope) -> Iterator[Change]:
-    """All changes of a node, in the order of `OPERATORS`."""
+    """All changes of a node, by the operators of the papers where there are such."""
     match node:
+        # ROR, relational operator replacement (KO, OLRUZ)
         case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _COMPARISONS:
             flipped = ast.Compare(left, [_COMPARISONS[type(op)]()], [right])
             yield "comparison", node, _bracketed(flipped)
+        # LCR, logical connector replacement (KO, OLRUZ); ODL, operator deletion (DOA)
         case ast.BoolOp(op=op, values=values):
             other = ast.Or() if isinstance(op, ast.And) else ast.And()
             yield "and/or", node, _bracketed(ast.BoolOp(other, values))
@@ -171,13 +173,16 @@ def changes_of(node: ast.expr | ast.stmt, scope: Scope) -> Iterator[Change]:
                 kept = values[:index] + values[index + 1 :]
                 left = kept[0] if len(kept) == 1 else ast.BoolOp(op, kept)
                 yield "dropped operand", node, _bracketed(left)
+        # COD, conditional operator deletion (DH)
         case ast.UnaryOp(op=ast.Not(), operand=operand):
             yield "dropped not", node, _bracketed(operand)
+        # AOD, arithmetic operator deletion (DH); AOR, its replacement (KO, OLRUZ)
         case ast.BinOp(left=left, op=op, right=right):
             if isinstance(right, ast.Constant) and right.value == 1:
                 yield "off by one", node, _bracketed(left)
             if type(op) in _ARITHMETIC:
                 yield "operator", node, _bracketed(ast.BinOp(left, _ARITHMETIC[type(op)](), right))
+        # CRP, constant replacement (KO), also of numbers and strings
         case ast.Constant(value=bool() as value):
             yield "constant", node, f"({not value})"
         case ast.Constant(value=int() as value):
@@ -193,6 +198,7 @@ def changes_of(node: ast.expr | ast.stmt, scope: Scope) -> Iterator[Change]:
         case ast.Set(elts=elements):
             for text in scope.further(elements):
                 yield "string", node, f"{ast.unparse(node)[:-1]}, {text!r}}}"
+        # COI, conditional operator insertion (DH), also of negated conditions
         case ast.IfExp(test=test, body=body, orelse=orelse):
             yield "swapped branches", node, _bracketed(ast.IfExp(test, orelse, body))
         case ast.Call(func=ast.Name(id=name), args=args, keywords=keywords) if name in _FUNCTIONS:
@@ -207,6 +213,7 @@ def _changes_of_statement(node: ast.stmt, scope: Scope) -> Iterator[Change]:
         yield "negated condition", node.test, _bracketed(ast.UnaryOp(ast.Not(), node.test))
     is_needed = scope.holds_all_waits(node)
     match node:
+        # SDL, statement deletion (KO, DOL), as all that is dropped below
         case ast.Expr(value=ast.Call()) | ast.AugAssign() | ast.Break() | ast.Continue():
             yield "dropped statement", node, "pass"
         case ast.Assign(targets=[ast.Attribute() | ast.Subscript()]):
@@ -218,35 +225,13 @@ def _changes_of_statement(node: ast.stmt, scope: Scope) -> Iterator[Change]:
         case ast.Return() if not scope.is_top_level(node):
             yield "dropped return", node, "pass"
     if scope.is_step(node) and not is_needed:
+        # RSR, return statement replacement (KO)
         for value in scope.returned()[-1:]:
             yield "early return", node, f"return {value}".strip()
     match node:
         case ast.Expr(value=ast.Call()):
             yield "doubled statement", node, f"{ast.unparse(node)}; {ast.unparse(node)}"
+        # MXT, a wait's time is modified (BCD)
         case ast.Expr(value=ast.Yield(value=ast.expr() as wait)):
             yield "wait", wait, "0.0"
             yield "wait", wait, f"2 * ({ast.unparse(wait)})"
-
-
-OPERATORS = (
-    "comparison",  # ROR, relational operator replacement (KO, OLRUZ)
-    "and/or",  # LCR, logical connector replacement (KO, OLRUZ)
-    "dropped operand",  # ODL, operator deletion (DOA)
-    "dropped not",  # COD, conditional operator deletion (DH)
-    "off by one",  # AOD, arithmetic operator deletion (DH)
-    "operator",  # AOR, arithmetic operator replacement (KO, OLRUZ)
-    "constant",  # CRP, constant replacement (KO)
-    "number",  # CRP, constant replacement (KO)
-    "string",  # CRP, constant replacement (KO)
-    "swapped branches",  # COI, conditional operator insertion (DH)
-    "negated condition",  # COI, conditional operator insertion (DH)
-    "function",
-    "dropped statement",  # SDL, statement deletion (KO, DOL)
-    "dropped assignment",  # SDL, statement deletion (KO, DOL)
-    "dropped block",  # SDL, statement deletion (KO, DOL)
-    "dropped return",  # SDL, statement deletion (KO, DOL)
-    "early return",  # RSR, return statement replacement (KO)
-    "doubled statement",
-    "wait",  # MXT, a wait's time is modified (BCD)
-)
-"""In the order in which they are shown."""

@@ -1,6 +1,6 @@
-"""Mutants of requirements, judged on the recorded runs of a suite; their operators in one table.
+"""Mutants of requirements, judged on the recorded runs of a suite; by operators as those of papers.
 
-Sources, by the letters that the table cites:
+Sources, by the letters that comments cite:
 
 * **BOY** Black, Okun, Yesha 2000, Mutation Operators for Specifications.
 * **ALN** Aichernig, Lorber, Ničković 2013, Time for Mutants: Model-Based Mutation Testing with
@@ -51,33 +51,40 @@ _BOUNDARIES = either_way(
 
 
 def _own_changes(formula: rv.Formula) -> Iterator[tuple[str, rv.Formula]]:
-    """The changes of a formula's own operator, in the order of `SPEC_OPERATORS`."""
+    """The changes of a formula's own operator."""
     match formula:
+        # LRO, logical operator reference; MCO, missing condition (BOY)
         case rv.Binary(op=op, left=left, right=right):
             if op in _CONNECTIVES:
                 yield "connective", structs.replace(formula, op=_CONNECTIVES[op])
                 yield "dropped operand", left
                 yield "dropped operand", right
-            yield from (("bound", other) for other in _bounds_moved(formula))
+            for moved in _bounds_moved(formula):
+                yield "bound", moved
+        # ENO, expression negation (BOY)
         case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
             yield "dropped not", operand
+        # A guard's constant is changed, or the guard dropped (ALN).
         case rv.Unary(op=op, interval=interval):
             if op in _TEMPORAL:
                 yield "temporal operator", structs.replace(formula, op=_TEMPORAL[op])
-            yield from (("bound", other) for other in _bounds_moved(formula))
+            for moved in _bounds_moved(formula):
+                yield "bound", moved
             if op in _TEMPORAL and interval is not None and interval.high is not None:
                 unbounded = structs.replace(formula, interval=rv.Interval(interval.low))
                 yield "no deadline", unbounded
+        # SNO, simple expression negation (BOY)
         case rv.SignalAtom() | rv.EventAtom() | rv.ProbeAtom():
             yield "negated", rv.Unary(rv.UnaryOp.NOT, formula)
+        # RRO, relational operator reference (BOY)
         case rv.Compare(op=op, left=left, right=right):
             is_label = isinstance(right, rv.Literal) and isinstance(right.value, bool | str)
             if not is_label or op in _EQUALITIES:
                 yield "comparison", structs.replace(formula, op=_BOUNDARIES[op])
-            for moved in _moved(right):
-                yield "threshold", structs.replace(formula, right=moved)
-            for moved in _moved(left):
-                yield "threshold", structs.replace(formula, left=moved)
+            for number in _moved(right):
+                yield "threshold", structs.replace(formula, right=number)
+            for number in _moved(left):
+                yield "threshold", structs.replace(formula, left=number)
 
 
 def _moved(numeric: rv.Numeric) -> Iterator[rv.Numeric]:
@@ -110,20 +117,6 @@ def _bounds_moved(formula: rv.Unary | rv.Binary) -> Iterator[rv.Formula]:
 
 def _unit(ticks: int) -> int:
     return TICKS_PER_UNIT[format_duration(ticks).split()[1]]
-
-
-SPEC_OPERATORS = (
-    "connective",  # LRO, logical operator reference (BOY)
-    "dropped operand",  # MCO, missing condition (BOY)
-    "dropped not",  # ENO, expression negation (BOY)
-    "negated",  # SNO, simple expression negation (BOY)
-    "comparison",  # RRO, relational operator reference (BOY)
-    "threshold",
-    "temporal operator",
-    "bound",  # change of a guard's constant (ALN)
-    "no deadline",  # guard dropped (ALN)
-)
-"""In the order in which they are applied."""
 
 
 def changes(formula: rv.Formula) -> Iterator[tuple[str, rv.Formula]]:

@@ -108,9 +108,8 @@ class Diagonals:
         for number, edge, sets in setting:
             for other, its, own in setting:
                 if number != other and sets != own and _meet(edge, its):
-                    message = (
-                        f"clocks of `{self._text(diagonal)}` are set by edges that synchronise"
-                    )
+                    clocks = f"clocks of `{self._text(diagonal)}`"
+                    message = f"{clocks} are set by edges that synchronise"
                     fix = f"set both clocks on one of the edges: {edge.text}, {its.text}"
                     raise model_error("TA008", message, span, fix)
 
@@ -135,9 +134,8 @@ class Diagonals:
         if number >= ex.MAX_TIME:
             raise model_error("TA007", f"a clock compared with {number}", edge.span)
         lower = op in (ex.ClockOp.GE, ex.ClockOp.GT)
-        if number < 0 or (
-            number == 0 and op in (ex.ClockOp.GE, ex.ClockOp.LT)
-        ):  # clocks are not below 0
+        # Clocks are not below 0.
+        if number < 0 or (number == 0 and op in (ex.ClockOp.GE, ex.ClockOp.LT)):
             yield self._noted(edge, diagonal, lower)
             return
         for truth in (True, False):

@@ -53,10 +53,8 @@ def check_shift(bits: int, span: Span | None) -> int:
 def check_index(position: int, extent: range, span: Span | None) -> None:
     """Refuse an index outside its array."""
     if position not in extent:
-        fix = (
-            f"the indices are {extent.start} to {extent.stop - 1}: "
-            "guard the edge, or narrow the index's type"
-        )
+        indices = f"the indices are {extent.start} to {extent.stop - 1}"
+        fix = f"{indices}: guard the edge, or narrow the index's type"
         raise model_error("TA007", f"index {position} is outside the array", span, fix)
 
 

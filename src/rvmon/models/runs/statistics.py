@@ -120,10 +120,8 @@ def _random(network: Network, query: Query, seed: int) -> Random:
     check_start(network)
     if network.has_split_edges:
         fix = "compare clocks with numbers, without `or`; or ask whether it can happen: E<> p"
-        message = (
-            "the odds are not known where clocks under `or`, or their differences, split edges"
-        )
-        raise model_error("TA020", message, query.span, fix)
+        where = "clocks under `or`, or their differences, split edges"
+        raise model_error("TA020", f"the odds are not known where {where}", query.span, fix)
     return Random(seed)  # noqa: S311 - repeatable, not secret
 
 

@@ -52,10 +52,8 @@ def check_linear(formula: ex.Expression, span: Span | None) -> None:
                 raise model_error("TA020", "a bound inside LTL is not decided", span, fix)
             case ex.PathFormula():
                 fix = "ask for the parts one by one"
-                message = (
-                    "operators of CTL and of LTL in one formula: that is CTL*, and not decided"
-                )
-                raise model_error("TA020", message, span, fix)
+                what = "operators of CTL and of LTL in one formula"
+                raise model_error("TA020", f"{what}: that is CTL*, and not decided", span, fix)
             case ex.Deadlock():
                 fix = "ask for it with E<> or A[]"
                 raise model_error("TA020", "one run does not show `deadlock`", span, fix)
@@ -119,9 +117,8 @@ class _Tableau:
         known = self._covers.get(formulas)
         if known is None:
             known = []
-            for case in self._cases(
-                sorted(formulas, key=repr), _Case((), frozenset(), frozenset())
-            ):
+            nothing = _Case((), frozenset(), frozenset())
+            for case in self._cases(sorted(formulas, key=repr), nothing):
                 if not any(other.is_as_good_as(case) for other in known):
                     known = [other for other in known if not case.is_as_good_as(other)]
                     known.append(case)

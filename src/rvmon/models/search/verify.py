@@ -11,6 +11,7 @@ from rvmon.models import model_error
 from rvmon.models import network as nta
 from rvmon.models.language.elaborate import asked_on
 from rvmon.models.network import expressions as ex
+from rvmon.models.network import guards
 from rvmon.models.runs import Ending, Run
 from rvmon.models.runs.moves import check_start
 from rvmon.models.search.budget import UNLIMITED, Budget, Meter, Outcome, Policy, Watch
@@ -71,8 +72,8 @@ def verify(
 def compares_in(formula: nta.QueryFormula) -> Iterator[ex.ClockCompare]:
     """All comparisons of clocks in what a query asks."""
     if isinstance(formula, nta.LeadsToFormula):
-        return chain(nta.guards.compares_of(formula.left), nta.guards.compares_of(formula.right))
-    return iter(()) if isinstance(formula, nta.Asked) else nta.guards.compares_of(formula)
+        return chain(guards.compares_of(formula.left), guards.compares_of(formula.right))
+    return iter(()) if isinstance(formula, nta.Asked) else guards.compares_of(formula)
 
 
 def _remark(run: Run | None) -> str:
@@ -98,23 +99,20 @@ class _Found:
 
 def _search(question: _Question, query: nta.Query) -> _Found:
     match query.formula:
-        case nta.LeadsToFormula(left, right) if nta.guards.is_linear(left) or nta.guards.is_linear(
-            right
-        ):
-            check_linear(ex.PathFormula(ex.PathOp.EVENTUALLY, left), query.span)
-        case nta.LeadsToFormula():
-            pass
-        case nta.Chance() | nta.Mean() | nta.Simulation():
-            fix = "simulate it: `rvmon verify` does, as does `sample`"
-            raise model_error("TA020", "statistics are no decision", query.span, fix)
+        case nta.LeadsToFormula(left, right):
+            if guards.is_linear(left) or guards.is_linear(right):
+                check_linear(ex.PathFormula(ex.PathOp.EVENTUALLY, left), query.span)
         case nta.Extremes():
             fix = "`rvmon verify` answers it, as does `extremes`"
             raise model_error("TA020", "a value is no decision", query.span, fix)
-        case formula if nta.guards.is_linear(formula):
+        case nta.Chance() | nta.Mean() | nta.Simulation():
+            fix = "simulate it: `rvmon verify` does, as does `sample`"
+            raise model_error("TA020", "statistics are no decision", query.span, fix)
+        case formula if guards.is_linear(formula):
             return _on_runs(question, query, formula)
     match query.formula:
         case nta.LeadsToFormula(left, right, bound):
-            if nta.guards.is_plain(left) and nta.guards.is_plain(right):
+            if guards.is_plain(left) and guards.is_plain(right):
                 return _Found(False, _unanswered(question, left, right, bound))
             answered = ex.PathFormula(ex.PathOp.EVENTUALLY, right, bound)
             implied = ex.BinaryOperation(ex.BinaryOp.IMPLY, left, answered)
@@ -122,8 +120,8 @@ def _search(question: _Question, query: nta.Query) -> _Found:
         case ex.PathFormula(op, body, None, until) if (
             until != ex.TRUE
             and op in ex.OUTERMOST
-            and nta.guards.is_plain(body)
-            and nta.guards.is_plain(until)
+            and guards.is_plain(body)
+            and guards.is_plain(until)
         ):
             shows = op in (ex.PathOp.POSSIBLY, ex.PathOp.POTENTIALLY_ALWAYS)
             ends = op in (ex.PathOp.POSSIBLY, ex.PathOp.EVENTUALLY)
@@ -132,31 +130,29 @@ def _search(question: _Question, query: nta.Query) -> _Found:
             )
             return _Found(
                 shows,
-                _accepted(question, nta.guards.normal_form(linear, positive=shows), query.span),
+                _accepted(question, guards.normal_form(linear, positive=shows), query.span),
             )
         case ex.PathFormula(op, body, bound, until) if until == ex.TRUE and op in ex.OUTERMOST:
             if op in (ex.PathOp.POSSIBLY, ex.PathOp.POTENTIALLY_ALWAYS):
-                sought, shows = nta.guards.normal_form(body), True
+                sought, shows = guards.normal_form(body), True
             else:
-                sought, shows = nta.guards.normal_form(body, positive=False), False
+                sought, shows = guards.normal_form(body, positive=False), False
             match op:
                 case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if (
-                    nta.guards.has_paths(sought) and bound is None
+                    guards.has_paths(sought) and bound is None
                 ):
                     return _reach_nested(question, sought, shows)
-                case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if nta.guards.is_plain(sought):
+                case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if guards.is_plain(sought):
                     return _Found(shows, *_reach(question, sought, bound))
-                case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if not nta.guards.has_paths(sought):
-                    alive, dead = (nta.guards.with_deadlock(sought, value=v) for v in (False, True))
+                case ex.PathOp.POSSIBLY | ex.PathOp.INVARIANTLY if not guards.has_paths(sought):
+                    alive, dead = (guards.with_deadlock(sought, value=v) for v in (False, True))
                     run = question.run(Sought(Seek.DEADLOCK, alive, dead, bound=bound))
                     return _Found(shows, run)
-                case ex.PathOp.EVENTUALLY | ex.PathOp.POTENTIALLY_ALWAYS if nta.guards.is_plain(
-                    sought
-                ):
+                case ex.PathOp.EVENTUALLY | ex.PathOp.POTENTIALLY_ALWAYS if guards.is_plain(sought):
                     return _Found(shows, _staying(question, None, sought, bound))
                 case _:
                     return _at_start(question, query.formula)
-        case formula if nta.guards.has_paths(formula):
+        case formula if guards.has_paths(formula):
             return _at_start(question, formula)
         case _:
             fix = "begin it with E<>, A[], A<> or E[], or write p --> q"
@@ -168,7 +164,7 @@ def _at_start(question: _Question, formula: ex.Expression) -> _Found:
     # Going backwards meets no run that leaves a variable's range: going forwards does.
     question.run(Sought(Seek.GOAL, ex.FALSE))
     if not question.meter.stopped:
-        found = question.run(Sought(Seek.START, nested=nta.guards.normal_form(formula))) is not None
+        found = question.run(Sought(Seek.START, nested=guards.normal_form(formula))) is not None
         if found or not question.meter.stopped:
             return _Found(True, None, holds=found)
     return _Found(True, None)
@@ -180,9 +176,9 @@ def _at_start(question: _Question, formula: ex.Expression) -> _Found:
 def _alternatives(formula: ex.Expression) -> list[list[ex.Expression]]:
     """A normalised formula as alternatives of parts that hold together; plain parts stay whole."""
     match formula:
-        case ex.BinaryOperation(ex.BinaryOp.OR, left, right) if nta.guards.has_paths(formula):
+        case ex.BinaryOperation(ex.BinaryOp.OR, left, right) if guards.has_paths(formula):
             return [*_alternatives(left), *_alternatives(right)]
-        case ex.BinaryOperation(ex.BinaryOp.AND, left, right) if nta.guards.has_paths(formula):
+        case ex.BinaryOperation(ex.BinaryOp.AND, left, right) if guards.has_paths(formula):
             return [
                 [*some, *others] for some in _alternatives(left) for others in _alternatives(right)
             ]
@@ -192,9 +188,9 @@ def _alternatives(formula: ex.Expression) -> list[list[ex.Expression]]:
 
 def _lasting_part(parts: Sequence[ex.Expression]) -> ex.PathFormula | None:
     """The only part that speaks of runs, if it is `E[]` with a plain formula inside."""
-    match [part for part in parts if nta.guards.has_paths(part)]:
+    match [part for part in parts if guards.has_paths(part)]:
         case [ex.PathFormula(ex.PathOp.POTENTIALLY_ALWAYS, body, _, left) as lasting] if (
-            left == ex.TRUE and nta.guards.is_plain(body)
+            left == ex.TRUE and guards.is_plain(body)
         ):
             return lasting
         case _:
@@ -226,11 +222,11 @@ def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _
     for parts in _alternatives(formula):
         lasting = _lasting_part(parts)
         first = [part for part in parts if part is not lasting]
-        if lasting is None or not all(map(nta.guards.is_plain, first)):
-            run = question.run(Sought(Seek.NESTED, nested=nta.guards.together(parts)))
+        if lasting is None or not all(map(guards.is_plain, first)):
+            run = question.run(Sought(Seek.NESTED, nested=guards.together(parts)))
         else:
-            away = nta.guards.normal_form(lasting.body, positive=False)
-            run = _unanswered(question, nta.guards.together(first), away, lasting.bound)
+            away = guards.normal_form(lasting.body, positive=False)
+            run = _unanswered(question, guards.together(first), away, lasting.bound)
         if run is not None or question.meter.stopped:
             break
     return _Found(shows, run)
@@ -243,8 +239,8 @@ def _unanswered(
     question: _Question, left: ex.Expression, right: ex.Expression, bound: int | None
 ) -> Run | None:
     """A run on which `left` holds, but `right` not from there on, or not within the bound."""
-    inside = nta.guards.normal_form(nta.guards.normal_form(right), positive=False)
-    return _staying(question, nta.guards.normal_form(left), inside, bound)
+    inside = guards.normal_form(guards.normal_form(right), positive=False)
+    return _staying(question, guards.normal_form(left), inside, bound)
 
 
 def _staying(
@@ -277,9 +273,7 @@ def _on_runs(question: _Question, query: nta.Query, formula: ex.Expression) -> _
     ):
         body, shows = formula.body, formula.op is ex.PathOp.SOME_RUN
     check_linear(body, query.span)
-    return _Found(
-        shows, _accepted(question, nta.guards.normal_form(body, positive=shows), query.span)
-    )
+    return _Found(shows, _accepted(question, guards.normal_form(body, positive=shows), query.span))
 
 
 def _accepted(question: _Question, formula: ex.Expression, span: Span | None) -> Run | None:
