@@ -198,7 +198,8 @@ def _fitted(table: VerdictTable, unfitted: VerdictTable) -> str:
     shown = []
     for strategy, requirement in sorted(FITTED_BY_LOSS):
         with_fit, without = (
-            _cell(verdict_table, strategy, requirement) for verdict_table in (table, unfitted)
+            "/".join(map(str, (one.counts(strategy, requirement) or {}).values()))
+            for one in (table, unfitted)
         )
         if with_fit and without:
             letters = "/".join(Verdict)
@@ -210,14 +211,6 @@ def _fitted(table: VerdictTable, unfitted: VerdictTable) -> str:
         f"Fitted to the paper's counts, and so no evidence: {'; '.join(shown)}; "
         "R4, by the slowness of polls."
     )
-
-
-def _cell(table: VerdictTable, strategy: str, requirement: str) -> str:
-    for group in table.groups:
-        counts = group.counts.get(requirement)
-        if group.name == strategy and counts is not None:
-            return "/".join(str(counts[verdict]) for verdict in Verdict)
-    return ""
 
 
 def table_document(summary: CampaignSummary) -> dict[str, object]:

@@ -7,11 +7,10 @@ import xml.etree.ElementTree as ET
 from collections import Counter
 from collections.abc import Collection, Iterator, Sequence
 from functools import partial
-from itertools import product
 
 from markupsafe import Markup
 
-from rvmon.coverage import Group, Item, TestRecord, combination
+from rvmon.coverage import Group, Item, TestRecord
 from rvmon.coverage.analysis import Step
 from rvmon.language.checked.properties import BinKind
 from rvmon.report.coverage_summary import LISTED, Summary, cell_look, is_grid, strategy_name
@@ -219,15 +218,10 @@ def _grid(summary: Summary, group: Group) -> dict[str, object]:
 
     Each row has its heads with the rows that each spans, and its items with their places.
     """
-    *down, (across, columns) = group.axes.items()
-    places = {item.name: (place, item) for place, item in summary.places(group)}
-    axes = [names for _, names in down]
-    rows = [
-        (_heads(axes, number), [places.get(combination([*bins, name])) for name in columns])
-        for number, bins in enumerate(product(*axes))
-    ]
-    shown = {"down": [name for name, _ in down], "across": across, "columns": columns}
-    return {**shown, "rows": rows, "most": _most_hits(summary, group)}
+    grid = summary.grid(group)
+    axes = [group.axes[name] for name in grid.down]
+    rows = [(_heads(axes, number), items) for number, (_, items) in enumerate(grid.rows)]
+    return {**grid._asdict(), "rows": rows, "most": _most_hits(summary, group)}
 
 
 def _heads(axes: Sequence[Sequence[str]], number: int) -> list[tuple[str, int]]:

@@ -5,13 +5,25 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import product
 from math import prod
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from msgspec.structs import asdict
+from numpy.typing import NDArray
 
-from rvmon.coverage import UNKNOWN, Coverage, Ending, Group, Hit, Hits, Item, TestRecord
+from rvmon.coverage import (
+    UNKNOWN,
+    Coverage,
+    Ending,
+    Group,
+    Hit,
+    Hits,
+    Item,
+    TestRecord,
+    combination,
+)
 from rvmon.coverage.analysis import Answers, Comparison, Step, compare
 from rvmon.coverage.holes import Hole, hole_of, nearest_tests
 from rvmon.coverage.ranking import Smallest, fewest, ranking
@@ -23,6 +35,16 @@ from rvmon.trace.time import format_stamped
 from rvmon.verdicts import Verdict
 
 LISTED = 5  # the most tests named of those that hit an item
+
+
+class Grid(NamedTuple):
+    """A cross: the bins of the last axis from left to right, of the others downwards."""
+
+    down: Sequence[str]  # the other axes
+    across: str  # the last axis
+    columns: Sequence[str]  # its bins
+    # by the bins of the other axes, the items beside each other with their places, if there
+    rows: Sequence[tuple[tuple[str, ...], Sequence[tuple[int, Item] | None]]]
 
 
 class Summary(Answers):
@@ -51,11 +73,8 @@ class Summary(Answers):
     @cached_property
     def hole_texts(self) -> Mapping[int, Hole]:
         """By place, each hole in words."""
-        model, items = self.coverage.model, self.coverage.items
-        hits: dict[str, dict[str, Hit]] = {}
-        for place in np.flatnonzero(self.totals.counts).tolist():
-            group, item = items[place]
-            hits.setdefault(group, {})[item] = Hit(int(self.totals.counts[place]))
+        model, items, counts = self.coverage.model, self.coverage.items, self.totals.counts
+        hits = self._hits_at(np.flatnonzero(counts), counts[counts > 0])
         nearest = nearest_tests([items[place] for place in self.holes], self._hits, model)
         return {
             place: hole_of(items[place], model, hits, nearest.get(items[place], ""))
@@ -69,13 +88,17 @@ class Summary(Answers):
         for entry in self.coverage.entries:
             key = entry.row.items.tobytes()
             if key not in hits_by_row:
-                hits: dict[str, dict[str, Hit]] = {}
-                row = zip(entry.row.items.tolist(), entry.row.counts.tolist(), strict=True)
-                for place, count in row:
-                    group, item = self.coverage.items[place]
-                    hits.setdefault(group, {})[item] = Hit(count)
+                hits = self._hits_at(entry.row.items, entry.row.counts)
                 hits_by_row[key] = entry.record.name, hits
         return [*hits_by_row.values()]
+
+    def _hits_at(self, places: NDArray[Any], counts: NDArray[Any]) -> Hits:
+        """Hits by group and item."""
+        hits: dict[str, dict[str, Hit]] = {}
+        for place, count in zip(places.tolist(), counts.tolist(), strict=True):
+            group, item = self.coverage.items[place]
+            hits.setdefault(group, {})[item] = Hit(count)
+        return hits
 
     @cached_property
     def unreachable(self) -> Mapping[str, Sequence[int]]:
@@ -185,6 +208,16 @@ class Summary(Answers):
     def places(self, group: Group) -> Iterator[tuple[int, Item]]:
         """The items of a group with their places."""
         return enumerate(group.items.values(), self.starts[group.name])
+
+    def grid(self, group: Group) -> Grid:
+        """A cross as a table."""
+        *down, (across, columns) = group.axes.items()
+        items = {item.name: (place, item) for place, item in self.places(group)}
+        rows = [
+            (bins, [items.get(combination([*bins, name])) for name in columns])
+            for bins in product(*(names for _, names in down))
+        ]
+        return Grid([name for name, _ in down], across, columns, rows)
 
     def item_name(self, place: int) -> str:
         """The name of an item with its group."""

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
 
-from rvmon.coverage import Group, combination
+from rvmon.coverage import Group, Item
 from rvmon.coverage.analysis import Comparison
 from rvmon.language.checked.properties import BinKind
 from rvmon.report.coverage_summary import Summary, cell_look, is_grid, name_of, not_fine
@@ -134,22 +133,18 @@ def _bar(share: float) -> list[Piece]:
 
 
 def _grid(summary: Summary, group: Group) -> tuple[list[Cell], list[list[Cell]]]:
-    """A cross: the bins of the last axis from left to right, of the others downwards."""
-    *down, (across, columns) = group.axes.items()
-    heads: list[Cell] = [*([axis for axis, _ in down] or [across]), *columns]
-    places = {item.name: place for place, item in summary.places(group)}
+    """The heads and rows of a cross."""
+    grid = summary.grid(group)
+    heads: list[Cell] = [*(grid.down or [grid.across]), *grid.columns]
     rows: list[list[Cell]] = []
     last: Sequence[str] = ()
-    for bins in product(*(names for _, names in down)):
+    for bins, items in grid.rows:
         # A bin of an outer axis is printed once, in the first of its rows.
         row: list[Cell] = [
             "" if last[: i + 1] == bins[: i + 1] else name for i, name in enumerate(bins[:-1])
         ]
-        row += bins[-1:] if down else [""]
-        for name in columns:
-            place = places.get(combination([*bins, name]))
-            row.append("" if place is None else _cell(summary, group, place))
-        rows.append(row)
+        row += bins[-1:] or [""]
+        rows.append([*row, *("" if one is None else _cell(summary, *one) for one in items)])
         last = bins
     return heads, rows
 
@@ -173,8 +168,7 @@ _STYLES = {
 }
 
 
-def _cell(summary: Summary, group: Group, place: int) -> Piece:
-    item = group.items[summary.coverage.items[place][1]]
+def _cell(summary: Summary, place: int, item: Item) -> Piece:
     kind, count = summary.kind(place, item), int(summary.totals.counts[place])
     look, text = cell_look(kind, item.goal, count)
     return text, _STYLES[look]
@@ -185,7 +179,7 @@ def _print_items(summary: Summary, group: Group, printer: Printer) -> None:
     for place, item in summary.places(group):
         tests = int(summary.totals.tests[place])
         name = f"{item.name}{summary.kind_text(place, item)}"
-        counts = [_cell(summary, group, place), f"{tests:,}" if tests else ""]
+        counts = [_cell(summary, place, item), f"{tests:,}" if tests else ""]
         rows.append([name, *counts, summary.first_text(place)])
     printer.table(["", "hits", "tests", "first"], rows, (1, 2), wraps=(0, 3))
 

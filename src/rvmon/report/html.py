@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from markupsafe import Markup
 
 from rvmon.confidence import interval_text
-from rvmon.report.verdict_table import Counts, VerdictTable, checked_text
+from rvmon.report.verdict_table import VerdictTable, checked_text
 from rvmon.report.wording import MARKS, verdict_colours
 from rvmon.texts import counted, percent_text, share_text, shown
 from rvmon.verdicts import Verdict
@@ -172,11 +172,5 @@ def table_html(
         has_checked=any(verdict_table.checked for verdict_table in (table, *others.values())),
         checked_text=checked_text,
         interval_text=interval_text,
-        counts_in=_counts_in,
     )
     return Markup(text)  # noqa: S704 - a template escapes
-
-
-def _counts_in(table: VerdictTable, group: str, requirement: str) -> Counts | None:
-    found = (one.counts.get(requirement) for one in table.groups if one.name == group)
-    return next(found, None)

@@ -232,8 +232,6 @@ def tracks_of(
 
 def _signal_track(signal: Signal, requirement: Requirement, changes: Changes) -> Track:
     kinds = {Kind.BOOL: TrackKind.SWITCH, Kind.LABEL: TrackKind.LABEL}
-    kind, limits = (
-        kinds.get(signal.type.kind, TrackKind.NUMBER),
-        thresholds(requirement, signal.name),
-    )
+    kind = kinds.get(signal.type.kind, TrackKind.NUMBER)
+    limits = thresholds(requirement, signal.name)
     return Track(signal.name, kind, changes.ended(), signal.type.unit, limits)

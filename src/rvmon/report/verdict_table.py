@@ -39,6 +39,11 @@ class VerdictTable(Struct, frozen=True):
     # are drawn at random
     shows_intervals: bool = False
 
+    def counts(self, group: str, requirement: str) -> Counts | None:
+        """The counts of a requirement in a group; `None` if it has none there."""
+        found = (one.counts.get(requirement) for one in self.groups if one.name == group)
+        return next(found, None)
+
 
 def checked_text(holds: bool | None) -> str:
     """A result of model checking in the paper's letters: T, F, or – if not expressible."""
@@ -65,9 +70,8 @@ def tables_csv(tables: Mapping[str, VerdictTable]) -> str:
             for requirement, counts in group.counts.items():
                 figures = [counts.get(verdict, 0) for verdict in Verdict]
                 names = map(plain, (name, group.name, requirement))
-                shares = (
-                    _bounds(figures, group.runs) if table.shows_intervals else [""] * len(bounds)
-                )
+                shows = table.shows_intervals
+                shares = _bounds(figures, group.runs) if shows else [""] * len(bounds)
                 writer.writerow([*names, group.runs, *figures, *shares])
     return text.getvalue()
 
@@ -155,7 +159,7 @@ def _print_groups(
             if has_checked:
                 holds = checked_text(source.checked[name]) if name in source.checked else ""
                 checked = [(f"{holds:^{len('checking')}}", dim)]
-            lines = [_count_lines(source, group.name, name, widths, dim) for group in groups]
+            lines = [_count_lines(source, group, name, widths, dim) for group in groups]
             rows.append([(heading, dim or "bold"), *checked, *(counts for counts, _ in lines)])
             if any(shares for _, shares in lines):
                 rows.append(["", *([""] if has_checked else []), *(shares for _, shares in lines)])
@@ -163,12 +167,11 @@ def _print_groups(
 
 
 def _count_lines(
-    table: VerdictTable, group: str, name: str, widths: Sequence[int], dim: str
+    table: VerdictTable, group: RunGroup, name: str, widths: Sequence[int], dim: str
 ) -> tuple[Line, Piece]:
     """The counts of a group, and below them the intervals of their shares."""
-    found = next((one for one in table.groups if one.name == group), None)
-    counts = None if found is None else found.counts.get(name)
-    if found is None or counts is None:
+    counts = table.counts(group.name, name)
+    if counts is None:
         return [], ""
     line: Line = []
     for verdict, width in zip(Verdict, widths, strict=True):
@@ -177,7 +180,7 @@ def _count_lines(
         line.append((f"{count or ZERO:>{width}}", style))
     if not table.shows_intervals:
         return line, ""
-    shares = (interval_text(counts.get(verdict, 0), found.runs) for verdict in Verdict)
+    shares = (interval_text(counts.get(verdict, 0), group.runs) for verdict in Verdict)
     return line, (_beside(shares, widths), "dim")
 
 
