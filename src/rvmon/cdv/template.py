@@ -98,26 +98,27 @@ def choose_times(template: Template[Any], rng: random.Random, patience: int) -> 
     Raises:
         TestError: the limits contradict each other.
     """
+    import numpy as np  # campaigns start without it
+
+    from rvmon.models.runs import close
+
     size = len(template.steps) + 1
-    most = [[0.0 if p == q else inf for q in range(size)] for p in range(size)]
+    most = np.where(np.eye(size, dtype=bool), 0.0, inf)
     neighbours = [
         Limit(last - 1, last, step.wait) for last, step in enumerate(template.steps, start=1)
     ]
     for limit in (*neighbours, *template.limits):
         first, last, wait = limit.first, limit.last, limit.wait
-        most[last][first] = min(most[last][first], -wait.at_least)
+        most[last, first] = min(most[last, first], -wait.at_least)
         if wait.at_most is not None:
-            most[first][last] = min(most[first][last], wait.at_most)
-    for middle in range(size):
-        for p in range(size):
-            for q in range(size):
-                most[p][q] = min(most[p][q], most[p][middle] + most[middle][q])
-    if any(most[p][p] < 0 for p in range(size)):
+            most[first, last] = min(most[first, last], wait.at_most)
+    close(most)
+    if (most.diagonal() < 0).any():
         raise TestError(f"template {template.name}: no times satisfy all of its limits")
     times = [0]
     for step in range(1, size):
-        low = max(times[p] - most[step][p] for p in range(step))
-        high = min(times[p] + most[p][step] for p in range(step))
+        low = max(times - most[step, :step])
+        high = min(times + most[:step, step])
         times.append(rng.randint(int(low), int(min(high, low + patience))))
     return times
 

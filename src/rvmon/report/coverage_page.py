@@ -128,7 +128,7 @@ def coverage_page(summary: Summary) -> str:
         listed_tests=LISTED,
         shown_groups=rest if hides_whole else [*rest, *whole],
         whole_groups=whole if hides_whole else [],
-        changes=_changes(summary),
+        changes=summary.changes(),
         place_of={item: place for place, item in enumerate(summary.coverage.items)},
         table=_linked(summary, verdicts) if verdicts.requirements else None,
         chart=growth_chart(summary) if len(summary.coverage.entries) > 1 else None,
@@ -158,20 +158,6 @@ def _headline(summary: Summary) -> str:
     if summary.holes:
         parts.append(counted(len(summary.holes), "hole"))
     return ", ".join(parts)
-
-
-def _changes(summary: Summary) -> list[tuple[str, Sequence[tuple[str, str]], str]]:
-    """The changes of items since an earlier campaign: heading, items, letter of the colour."""
-    comparison = summary.comparison
-    if comparison is None:
-        return []
-    changes = (
-        ("New illegal hits", comparison.illegal, "F"),
-        ("Lost", comparison.lost, "I"),
-        ("Newly covered", comparison.gained, "P"),
-        ("No longer in the model", comparison.dropped, "NT"),
-    )
-    return [change for change in changes if change[1]]
 
 
 def _linked(summary: Summary, table: VerdictTable) -> Markup:

@@ -142,6 +142,21 @@ class Summary(Answers):
         """The comparison with the earlier coverage, if there is one."""
         return None if self._earlier is None else compare(self._earlier, self.coverage)
 
+    def changes(self) -> list[tuple[str, Sequence[tuple[str, str]], Verdict]]:
+        """The changes of items since the earlier coverage: heading, items, whose colour they have.
+
+        What has none is left out.
+        """
+        if self.comparison is None:
+            return []
+        changes = (
+            ("New illegal hits", self.comparison.illegal, Verdict.FAIL),
+            ("Lost", self.comparison.lost, Verdict.INCONCLUSIVE),
+            ("Newly covered", self.comparison.gained, Verdict.PASS),
+            ("No longer in the model", self.comparison.dropped, Verdict.NOT_TRIGGERED),
+        )
+        return [change for change in changes if change[1]]
+
     @cached_property
     def first_hitters(self) -> Mapping[int, Sequence[int]]:
         """The first tests that hit each item."""

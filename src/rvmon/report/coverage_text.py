@@ -41,7 +41,7 @@ def print_overview(summary: Summary, printer: Printer) -> None:
     ]
     _print_list(printer, "not fine:", faults, style="bold red")
     if summary.comparison is not None:
-        _print_comparison(summary.comparison, summary.earlier_name, printer)
+        _print_comparison(summary, summary.comparison, printer)
 
 
 def print_holes(summary: Summary, printer: Printer) -> None:
@@ -184,21 +184,23 @@ def _print_items(summary: Summary, group: Group, printer: Printer) -> None:
     printer.table(["", "hits", "tests", "first"], rows, (1, 2), wraps=(0, 3))
 
 
-def _print_comparison(comparison: Comparison, name: str, printer: Printer) -> None:
+def _print_comparison(summary: Summary, comparison: Comparison, printer: Printer) -> None:
     change = f": {share_text(comparison.before)} → {share_text(comparison.after)}"
-    printer.line("since ", (name, "bold"), change)
-    for heading, items, style in (
-        ("new illegal hits:", comparison.illegal, "bold red"),
-        ("lost:", comparison.lost, "bold yellow"),
-        ("newly covered:", comparison.gained, "bold green"),
-        ("no longer in the model:", comparison.dropped, "dim"),
-    ):
-        _print_list(printer, heading, [name_of(item) for item in items], style=style)
+    printer.line("since ", (summary.earlier_name, "bold"), change)
+    for heading, items, verdict in summary.changes():
+        title, style = f"{heading[0].lower()}{heading[1:]}:", _CHANGED[verdict]
+        _print_list(printer, title, [*map(name_of, items)], style=style)
     changes = [
         f"{change.test}  {change.requirement}  {_letter(change.before)} → {_letter(change.after)}"
         for change in comparison.verdicts
     ]
     _print_list(printer, "verdicts that changed:", changes, style="bold")
+
+
+_CHANGED = {
+    Verdict.PASS: "bold green", Verdict.FAIL: "bold red", Verdict.NOT_TRIGGERED: "dim",
+    Verdict.INCONCLUSIVE: "bold yellow",
+}  # fmt: skip
 
 
 def _print_list(printer: Printer, heading: str, lines: Sequence[str], *, style: str) -> None:

@@ -114,16 +114,13 @@ def all_items(network: Network, criterion: Criterion) -> Iterator[Item]:
     for index, automaton in enumerate(network.automata):
         match criterion:
             case Criterion.LOCATIONS:
-                for number in range(len(automaton.locations)):
-                    yield Item(index, (number,))
+                yield from (Item(index, (n,)) for n in range(len(automaton.locations)))
             case Criterion.EDGES:
-                for number in range(len(automaton.edges)):
-                    yield Item(index, (number,))
+                yield from (Item(index, (n,)) for n in range(len(automaton.edges)))
             case Criterion.EDGE_PAIRS:
+                leaving = automaton.leaving()
                 for first, before in enumerate(automaton.edges):
-                    for second, after in enumerate(automaton.edges):
-                        if before.target == after.source:
-                            yield Item(index, (first, second))
+                    yield from (Item(index, (first, n)) for n in leaving[before.target])
 
 
 def item_text(network: Network, item: Item, criterion: Criterion) -> str:
