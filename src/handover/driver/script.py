@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from typing import assert_never
 
 from handover.generator.abstract_test import (
@@ -26,39 +27,21 @@ TIME_UNIT_S = 0.05
 INFORMED = "informed"
 
 
+@dataclass(frozen=True, slots=True)
 class Script:
-    """Plays actions one after the other; each begins when the one before is over.
+    """Plays actions one after the other; each begins when the one before is over."""
 
-    Args:
-        actions: of the abstract test.
-        node: the human's connection to the bus.
-        human: the body that takes the postures.
-        draw: draws a number of a posture from its range.
-        start_s: seconds until the script begins.
-        connected: whether signals reach the robot.
-    """
-
-    def __init__(
-        self,
-        actions: Iterable[Action],
-        node: Node,
-        human: Human,
-        draw: Callable[[float, float], float],
-        *,
-        start_s: float,
-        connected: bool,
-    ) -> None:
-        self._actions = actions
-        self._node = node
-        self._human = human
-        self._draw = draw
-        self._start_s = start_s
-        self._connected = connected
+    actions: Iterable[Action]  # of the abstract test
+    node: Node  # the human's connection to the bus
+    human: Human  # the body that takes the postures
+    draw: Callable[[float, float], float]  # draws a number of a posture from its range
+    start_s: float  # seconds until the script begins
+    connected: bool  # whether signals reach the robot
 
     def run(self) -> Program:
         """Wait for the process to be up, then play all actions, or up to a wait in vain."""
-        yield self._start_s
-        for action in self._actions:
+        yield self.start_s
+        for action in self.actions:
             match action:
                 case SendSignal(signal="setv") | ReceiveSignal(signal="setv"):
                     continue
@@ -66,31 +49,31 @@ class Script:
                     yield from self._send(signal)
                 case ReceiveSignal():
                     yield from self._wait_for_robot()
-                    if self._node.receive(INFORMED) is None:
+                    if self.node.receive(INFORMED) is None:
                         return
                 case SetParam(param="time", value=units):
                     yield units * TIME_UNIT_S
                 case SetParam(param=param, value=value):
                     self._take_posture(param, ok=value != 0)
                 case Withdraw():
-                    self._human.withdraw()
+                    self.human.withdraw()
                 case _:
                     assert_never(action)
 
     def _send(self, signal: str) -> Program:
         yield SEND_DELAY_S
-        if self._connected:
-            self._node.publish(HUMAN_SIGNALS, signal, latched=True)
+        if self.connected:
+            self.node.publish(HUMAN_SIGNALS, signal, latched=True)
         yield SEND_PAUSE_S
 
     def _wait_for_robot(self) -> Program:
-        self._node.publish("person_waits", True)
+        self.node.publish("person_waits", True)
         for _ in range(POLL_LIMIT):
-            self._node.subscribe(INFORMED)
+            self.node.subscribe(INFORMED)
             yield POLL_S
-            if self._node.receive(INFORMED) is not None:
-                self._node.publish("person_told")
-                self._node.publish("person_waits", False)
+            if self.node.receive(INFORMED) is not None:
+                self.node.publish("person_told")
+                self.node.publish("person_waits", False)
                 return
 
     def _take_posture(self, param: str, *, ok: bool) -> None:
@@ -101,21 +84,21 @@ class Script:
             case "hlocationOk":
                 self._reach(ok=ok)
             case "hpressureOk":
-                self._human.grasp(closed=ok)
+                self.human.grasp(closed=ok)
             case "honTask" if not ok:
                 self._look(ok=False)
                 self._reach(ok=False)
-                self._human.grasp(closed=False)
+                self.human.grasp(closed=False)
             case _:
                 pass
 
     def _look(self, *, ok: bool) -> None:
         offset, distance, angle = p.GAZE_OK if ok else p.GAZE_BAD
-        self._human.look(self._draw(*offset), self._draw(*distance), self._draw(*angle))
+        self.human.look(self.draw(*offset), self.draw(*distance), self.draw(*angle))
 
     def _reach(self, *, ok: bool) -> None:
         if ok:
-            self._human.reach(*p.LOCATION_OK, near=True)
+            self.human.reach(*p.LOCATION_OK, near=True)
         else:
-            away = self._draw(*p.LOCATION_BAD)
-            self._human.reach(away, away, near=False)
+            away = self.draw(*p.LOCATION_BAD)
+            self.human.reach(away, away, near=False)

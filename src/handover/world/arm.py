@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import random
 from collections.abc import Callable, Generator
+from dataclasses import dataclass, field
 from itertools import pairwise
 
 from handover.world import parameters as p
@@ -13,40 +14,28 @@ from handover.world.motion import Joints, Trajectory, between, grip_point, joint
 from handover.world.scene import Scene
 
 
+@dataclass(slots=True)
 class Arm:
-    """Plans and follows paths; its motors are written only when their command changes.
+    """Plans and follows paths; its motors are written only when their command changes."""
 
-    Args:
-        scene: the scene of the motors.
-        rng: draws the planner's latency.
-        wake: called with the seconds for which the scene is going to move.
-        note: called with the name of each command, and of each plan in vain.
-        plan_failure: probability that there is no path, though the place is in reach.
-    """
+    scene: Scene  # of the motors
+    rng: random.Random  # draws the planner's latency
+    wake: Callable[[float], None]  # called with the seconds for which the scene is going to move
+    note: Callable[[str], None]  # called with the name of each command, and of each plan in vain
+    plan_failure: float = 0.0  # probability that there is no path, though the place is in reach
+    _goal: Joints = field(init=False)
+    _path: Trajectory | None = field(default=None, init=False)
+    _path_s: float = field(default=0.0, init=False)
+    _minds_people: bool = field(default=False, init=False)
+    _stopped: bool = field(default=False, init=False)
+    _rates: list[float] = field(default_factory=lambda: [0.0] * 3, init=False)
 
-    def __init__(
-        self,
-        scene: Scene,
-        rng: random.Random,
-        wake: Callable[[float], None],
-        note: Callable[[str], None],
-        plan_failure: float = 0.0,
-    ) -> None:
-        self._scene = scene
-        self._rng = rng
-        self._plan_failure = plan_failure
-        self._wake = wake
-        self._note = note
+    def __post_init__(self) -> None:
         self._goal = self.joints()
-        self._path: Trajectory | None = None
-        self._path_s = 0.0
-        self._minds_people = False
-        self._stopped = False
-        self._rates = [0.0, 0.0, 0.0]
 
     def joints(self) -> Joints:
         """The joint angles as they are, rad."""
-        upper, fore, palm = self._scene.links
+        upper, fore, palm = self.scene.links
         first, second, third = upper.angle, fore.angle, palm.angle
         return first, second - first, third - second
 
@@ -58,12 +47,12 @@ class Arm:
         Returns:
             `None` if there is no path.
         """
-        yield self._rng.uniform(*p.PLAN_LATENCY_S)
+        yield self.rng.uniform(*p.PLAN_LATENCY_S)
         goal = joints_for(x, z)
-        fails = self._plan_failure > 0 and self._rng.random() < self._plan_failure
+        fails = self.plan_failure > 0 and self.rng.random() < self.plan_failure
         path = None if goal is None or fails else self._path_to(goal)
         if path is None:
-            self._note("plan_failed")
+            self.note("plan_failed")
         return path
 
     def interpolate(self, joints: Joints, duration: float) -> Trajectory:
@@ -81,11 +70,11 @@ class Arm:
         self._path, self._path_s = path, 0.0
         self._goal = path.goal
         self._minds_people, self._stopped = minds_people, False
-        self._note("arm_commanded")
-        self._wake(path.duration)
+        self.note("arm_commanded")
+        self.wake(path.duration)
         yield path.duration
         if self._stopped:
-            self._note("arm_stopped")
+            self.note("arm_stopped")
         return not self._stopped
 
     def control(self) -> None:
@@ -94,7 +83,7 @@ class Arm:
         if (
             path is not None
             and self._minds_people
-            and (beside_distance(self._scene, *grip_point(self.joints())) < p.CLEARANCE[1])
+            and (beside_distance(self.scene, *grip_point(self.joints())) < p.CLEARANCE[1])
         ):
             self._goal, self._stopped = self.joints(), True
             path = self._path = None
@@ -105,7 +94,7 @@ class Arm:
             if self._path_s >= path.duration:
                 self._path = None
         for index, (motor, want, have) in enumerate(
-            zip(self._scene.joint_motors, wanted, self.joints(), strict=True)
+            zip(self.scene.joint_motors, wanted, self.joints(), strict=True)
         ):
             error = want - have
             rate = -error / p.CONTROL_S if abs(error) > 1e-6 else 0.0
@@ -122,7 +111,7 @@ class Arm:
         steps = 40
         shares = (min_jerk(i / steps) for i in range(steps + 1))
         points = [grip_point(between(start, goal, share)) for share in shares]
-        if any(beside_distance(self._scene, *point) < p.CLEARANCE[0] for point in points):
+        if any(beside_distance(self.scene, *point) < p.CLEARANCE[0] for point in points):
             return None
         fastest = max(math.dist(a, b) for a, b in pairwise(points)) * steps
         return Trajectory(start, goal, max(p.SHORTEST_MOTION_S, fastest / p.TOOL_SPEED_LIMIT))

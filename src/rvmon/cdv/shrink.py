@@ -8,7 +8,7 @@ import re
 import sys
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Generic, TypeVar
 
@@ -124,6 +124,7 @@ def failure_of(
     return next((failure for failure in failures if failure.is_of(outcome)), None)
 
 
+@dataclass(slots=True)
 class _Search(Generic[_Test]):
     """Takes away what can be, first large pieces, then single ones, then simplifies values.
 
@@ -132,27 +133,22 @@ class _Search(Generic[_Test]):
     so only complements are played).
     """
 
-    def __init__(
-        self,
-        test: _Test,
-        outcome: Outcome,
-        play: Callable[[_Test], Outcome],
-        failure: Failure,
-        most: int,
-    ) -> None:
-        self.test = test
-        self.outcome = outcome
-        self.tried = 0
-        self._play = play
-        self._failure = failure
-        self._most = most
-        self._seen = {to_json(test)}
-        known = {field.name for field in structs.fields(test)}
-        for name in test.removable:
+    test: _Test  # the smallest so far
+    outcome: Outcome  # of its run
+    play: Callable[[_Test], Outcome]
+    failure: Failure
+    most: int  # tests that are played
+    tried: int = 0
+    seen: set[bytes] = field(default_factory=set)
+
+    def __post_init__(self) -> None:
+        self.seen.add(to_json(self.test))
+        known = {own.name for own in structs.fields(self.test)}
+        for name in self.test.removable:
             if name not in known:
                 raise UnknownNameError(
-                    f"`{type(test).__name__}.removable` names `{name}`, which is no field of it: "
-                    f"there are {', '.join(sorted(known))}"
+                    f"`{type(self.test).__name__}.removable` names `{name}`, which is no field of "
+                    f"it: there are {', '.join(sorted(known))}"
                 )
 
     def run(self) -> bool:
@@ -191,18 +187,18 @@ class _Search(Generic[_Test]):
     def _fails(self, test: _Test) -> bool:
         """Whether a test that was not played yet fails alike; then it is the one to go on with."""
         text = to_json(test)
-        if text in self._seen:
+        if text in self.seen:
             return False
-        self._seen.add(text)
-        if self.tried >= self._most:
+        self.seen.add(text)
+        if self.tried >= self.most:
             raise _EnoughError
         try:
             checked = from_json(text, type(test))
             self.tried += 1
-            outcome = self._play(checked)
+            outcome = self.play(checked)
         except TestError:  # no such test can be made, or be played
             return False
-        if self._failure.is_of(outcome):
+        if self.failure.is_of(outcome):
             self.test, self.outcome = checked, outcome
             return True
         return False

@@ -182,7 +182,7 @@ class SpecCoverage:
         Raises:
             UnknownNameError: `settle` is neither `now` nor `next`.
         """
-        return CoverageMonitor(self, settle, sources, requirements=requirements)
+        return CoverageMonitor(self, Options(settle, sources, None), requirements=requirements)
 
     def of(
         self, recording: Recording, end: int | None = None, *, requirements: bool = True
@@ -258,19 +258,14 @@ class CoverageMonitor:
     in `_ns`.
     """
 
-    def __init__(
-        self,
-        model: SpecCoverage,
-        settle: str,
-        sources: frozenset[str] | None,
-        *,
-        requirements: bool,
-    ) -> None:
-        refuse_settle(settle)  # also where there is nothing to watch, and so no run that would
+    def __init__(self, model: SpecCoverage, options: Options, *, requirements: bool) -> None:
+        refuse_settle(
+            options.settle
+        )  # also where there is nothing to watch, and so no run that would
         self._model = model
         self._requirements = requirements
         self._runs = [
-            _CoverageRun(planned, compiled, Options(settle, sources, None))
+            _CoverageRun(planned, compiled, options)
             for compiled, planned in model.planned(requirements=requirements).items()
         ]
 
