@@ -143,10 +143,7 @@ class Summary(Answers):
         return None if self._earlier is None else compare(self._earlier, self.coverage)
 
     def changes(self) -> list[tuple[str, Sequence[tuple[str, str]], Verdict]]:
-        """The changes of items since the earlier coverage: heading, items, whose colour they have.
-
-        What has none is left out.
-        """
+        """Items that changed since the earlier coverage: heading, items, whose colour they have."""
         if self.comparison is None:
             return []
         changes = (
