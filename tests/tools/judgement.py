@@ -10,6 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.formula import (
     Arithmetic,
     Binary,
@@ -32,7 +33,7 @@ from rvmon.language.print import format_formula, format_numeric
 from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.attempts import Readings, Start, counts_in_favour, obligation
 from rvmon.testing.law.decisions import Followed, Followings
-from rvmon.testing.law.syntax import constant_value, intervals, is_upon_end, parts_of, subformulas
+from rvmon.testing.law.syntax import constant_value, intervals, is_upon_end, subformulas
 from rvmon.testing.law.truths import Truths
 from rvmon.testing.law.word import Rest, Truth
 from rvmon.testing.oracle import judge_views, report_on
@@ -284,7 +285,7 @@ class _Values:
 
 def _reads_nothing(part: Compare) -> bool:
     """Whether it is of captured values and constants alone."""
-    parts = [one for side in (part.left, part.right) for one in parts_of(side)]
+    parts = [*rv.numbers_in(part.left, part.right)]
     return all(isinstance(one, Captured | Literal | Arithmetic | NowValue) for one in parts)
 
 

@@ -9,11 +9,12 @@ from dataclasses import dataclass, replace
 
 from msgspec import structs
 
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.formula import Probe, ProbeAtom, UpdateValue
 from rvmon.language.checked.specification import CheckedSpec, Event, Type
 from rvmon.testing.generate import Rng, chance, pick
 from rvmon.testing.generate.trace import Case
-from rvmon.testing.law.syntax import numerics, parts_of, subformulas
+from rvmon.testing.law.syntax import numerics, subformulas
 from rvmon.trace.sample import Payload, Sample, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.verdicts import Verdict
@@ -192,7 +193,7 @@ def is_spoken_of(spec: CheckedSpec) -> bool:
             if isinstance(part, ProbeAtom) and (part.probe is Probe.KNOWN or part.name in stale):
                 return False
         values = [value for whole in wholes for value in numerics(whole)]
-        values += [value for one in requirement.captures for value in parts_of(one.value)]
+        values += [value for one in requirement.captures for value in rv.numbers_in(one.value)]
         if any(isinstance(value, UpdateValue) and value.name in stale for value in values):
             return False
     return True

@@ -138,18 +138,10 @@ def _header(spec: CheckedSpec, packed: Packed, prefix: str) -> Iterator[str]:
         f"The plan of `{comment(spec.name)}`, made by rvmon {__version__} for the core beside it "
         f"({CORE}.h) and processors that are {sys.byteorder}-endian."
     )
-    yield ""
-    yield f"#ifndef {upper}_PLAN_H"
-    yield f"#define {upper}_PLAN_H"
-    yield ""
-    yield f'#include "{CORE}.h"'
-    yield ""
-    yield "#ifdef __cplusplus"
-    yield 'extern "C" {'
-    yield "#endif"
-    yield ""
-    yield f"#define {upper}_PLAN_SIZE {len(packed.data)} /* bytes */"
-    yield ""
+    yield from ("", f"#ifndef {upper}_PLAN_H", f"#define {upper}_PLAN_H", "")
+    yield from (f'#include "{CORE}.h"', "")
+    yield from ("#ifdef __cplusplus", 'extern "C" {', "#endif", "")
+    yield from (f"#define {upper}_PLAN_SIZE {len(packed.data)} /* bytes */", "")
     yield _remark(
         "Bytes of a block in which a run begins, and `rv_reserve` finds room for so many open "
         f"attempts, {MOST} at most: of all requirements without `let` and `for each` together, and "
@@ -159,8 +151,7 @@ def _header(spec: CheckedSpec, packed: Packed, prefix: str) -> Iterator[str]:
     )
     yield f"#define {upper}_MEMORY(attempts) \\"
     room = f"((attempts) < {FEWEST} ? {FEWEST} : (attempts))"
-    yield f"    ({begin + ALIGNMENT}U + {more}U * (unsigned){room})"
-    yield ""
+    yield from (f"    ({begin + ALIGNMENT}U + {more}U * (unsigned){room})", "")
     signals, events = list(packed.signals), list(packed.events)
     signal_types = [spec.signals[name].type for name in signals]
     yield from _enum(f"{upper}_SIGNAL", signals, list(map(_words, signal_types)))
@@ -175,12 +166,7 @@ def _header(spec: CheckedSpec, packed: Packed, prefix: str) -> Iterator[str]:
     for name, (type_, values, said) in _tables(packed).items():
         if values:
             yield f"extern {type_} {prefix}_{name}[{len(values)}]; /* {said} */"
-    yield ""
-    yield "#ifdef __cplusplus"
-    yield "}"
-    yield "#endif"
-    yield ""
-    yield "#endif"
+    yield from ("", "#ifdef __cplusplus", "}", "#endif", "", "#endif")
 
 
 def _remark(text: str) -> str:
@@ -205,9 +191,7 @@ def _enum(
     for number, (name, made) in enumerate(zip(names, identifiers(names), strict=True)):
         words = f": {said[number]}" if said else ""
         yield f"    {what}_{made} = {start + number}, /* {comment(name)}{words} */"
-    yield f"    {what}S = {len(names)}"
-    yield "};"
-    yield ""
+    yield from (f"    {what}S = {len(names)}", "};", "")
 
 
 def _fields(spec: CheckedSpec, packed: Packed, what: str) -> Iterator[str]:
@@ -221,9 +205,7 @@ def _fields(spec: CheckedSpec, packed: Packed, what: str) -> Iterator[str]:
         words = _words(fields[field])
         number = list(fields).index(field)
         yield f"    {what}_{made} = {number}, /* {comment(event)}.{comment(field)}: {words} */"
-    yield f"    {what}S = {len(packed.fields)}"
-    yield "};"
-    yield ""
+    yield from (f"    {what}S = {len(packed.fields)}", "};", "")
 
 
 def _tables(packed: Packed) -> dict[str, tuple[str, list[str], str]]:
@@ -241,22 +223,16 @@ def _tables(packed: Packed) -> dict[str, tuple[str, list[str], str]]:
 def _source(packed: Packed, prefix: str) -> Iterator[str]:
     """The plan, aligned to 8, and tables of names."""
     order = f"__ORDER_{sys.byteorder.upper()}_ENDIAN__"
-    yield f'#include "{prefix}_plan.h"'
-    yield ""
+    yield from (f'#include "{prefix}_plan.h"', "")
     yield f"#if defined(__BYTE_ORDER__) && (__BYTE_ORDER__ != {order})"
-    yield f'#error "this plan is for {sys.byteorder}-endian processors"'
-    yield "#endif"
-    yield ""
-    yield "#ifdef __GNUC__"
-    yield "__attribute__((aligned(8)))"
-    yield "#endif"
+    yield from (f'#error "this plan is for {sys.byteorder}-endian processors"', "#endif", "")
+    yield from ("#ifdef __GNUC__", "__attribute__((aligned(8)))", "#endif")
     yield f"const uint64_t {prefix}_plan[{prefix.upper()}_PLAN_SIZE / 8] = {{"
     words = [f"0x{word:016x}U" for word in array("Q", packed.data)]
     yield from (f"    {', '.join(words[i : i + 4])}," for i in range(0, len(words), 4))
     yield "};"
     for name, (type_, values, _said) in _tables(packed).items():
         if values:
-            yield ""
-            yield f"{type_} {prefix}_{name}[{len(values)}] = {{"
+            yield from ("", f"{type_} {prefix}_{name}[{len(values)}] = {{")
             yield from (f"    {value}," for value in values)
             yield "};"

@@ -13,12 +13,10 @@ from rvmon.core.sections import Listed, Section, Sections
 from rvmon.language.checked.arithmetic import UnitRule
 from rvmon.language.checked.formula import (
     Arithmetic,
-    Captured,
     Compare,
     FieldValue,
     Numeric,
     SignalValue,
-    UpdateFunction,
     UpdateValue,
     WindowValue,
 )
@@ -203,25 +201,7 @@ def is_followed(core: Literal | Constant, spec: CheckedSpec, requirement: Requir
 
 def _compares_labels(leaf: Compare, spec: CheckedSpec, requirement: Requirement) -> bool:
     """Whether a comparison is between labels, which have no distance."""
-    values = {capture.name: capture.value for capture in requirement.captures}
-    each = requirement.for_each
-    if each is not None:
-        values[each.name] = each.value
-
-    def is_label(value: Numeric) -> bool:
-        match value:
-            case Number(value=str()):
-                return True
-            case SignalValue(name=name) | UpdateValue(function=UpdateFunction.PREV, name=name):
-                return spec.signals[name].type.kind is Kind.LABEL
-            case FieldValue(event=event, field=field):
-                return spec.events[event].fields[field].kind is Kind.LABEL
-            case Captured(name=name):
-                return is_label(values[name])
-            case _:
-                return False
-
-    return is_label(leaf.left) or is_label(leaf.right)
+    return Kind.LABEL in (spec.kind_of(side, requirement) for side in (leaf.left, leaf.right))
 
 
 def base_factor(leaf: Compare, spec: CheckedSpec) -> float:

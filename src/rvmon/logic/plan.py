@@ -72,9 +72,7 @@ class PlannedRule(Struct, frozen=True, eq=False):
     @property
     def captured(self) -> tuple[str, ...]:
         """The names of the captured values of an attempt: of `for each`, then of `let`."""
-        each = self.requirement.for_each
-        names = [capture.name for capture in self.requirement.captures]
-        return (*(() if each is None else (each.name,)), *names)
+        return tuple(self.requirement.captured)
 
     @property
     def is_apart(self) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
+from functools import cache
 
 from msgspec import Struct
 
@@ -11,81 +12,61 @@ from rvmon.logic.automaton import FAILED, PASSED, Token, location_of
 from rvmon.logic.progress import after, value
 from rvmon.logic.residual import NO_CLOCK, Residual
 from rvmon.logic.state_formula import UNKNOWN
-from rvmon.monitor.cause import Cause, CauseFinder, Sentence, TruthValues, rendered
+from rvmon.monitor.cause import (
+    AT_DECISION,
+    Cause,
+    CauseFinder,
+    Moment,
+    TruthValues,
+    without_cause,
+)
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.explanation import Alone, Explanation, Undecided
 from rvmon.monitor.obligation_words import deadline, settled_alone
 from rvmon.verdicts import Verdict
 
 
-class Finding(Struct, frozen=True):
-    """The explanation shared by decisions that differ only in instants.
-
-    `cause` is `None` if no other decision was possible.
-    """
-
-    cause: Cause | None
-    sentence: Sentence
-
-    def start(self, anchors: Sequence[int], t: int, triggered: int) -> int:
-        """The instant at which the deciding obligation was instantiated, ticks."""
-        clock = self.cause.start if self.cause else NO_CLOCK
-        if clock == NO_CLOCK:
-            return triggered
-        return anchors[clock] if clock > NO_CLOCK else t
-
-
 class Reasons:
     """Explains the decisions of one requirement.
 
-    An explanation depends only on the location, the age regions of its clocks, the letter and the
-    verdict; it is cached by these.
+    A cause depends only on the location, the age regions of its clocks, the letter and the verdict;
+    it is cached by these.
     """
 
     def __init__(self, compiled: CompiledRequirement) -> None:
         self.words = compiled.words
         self._alphabet = compiled.alphabet
-        self._residuals = compiled.shaped_residuals
-        self._cuts: dict[int, tuple[tuple[int, ...], ...]] = {}
-        self._found: dict[tuple[int, ...], Finding] = {}
-        self._deadlines: dict[int, int | None] = {}
+        residuals = self._residuals = compiled.shaped_residuals
+        self._cuts = cache(lambda location: location_of(residuals[location]).cuts)
+        self._after_start = cache(lambda location: deadline(residuals[location], (0,)))
+        self._found: dict[tuple[int, ...], Cause | None] = {}
 
-    def cuts(self, location: int) -> tuple[tuple[int, ...], ...]:
-        """For each clock of a location, the ages (ticks) at which a window opens or is over."""
-        cuts = self._cuts.get(location)
-        if cuts is None:
-            cuts = self._cuts[location] = location_of(self._residuals[location]).cuts
-        return cuts
+    def of(self, before: Token, letter: int, verdict: bool, t: int) -> Cause | None:
+        """The cause of a decision at `t`, taken in state `before` with `letter`.
 
-    def of(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
-        """The finding for a decision at `t`, taken in state `before` with `letter`."""
+        `None` if no other decision was possible.
+        """
         location, anchors = before
-        ages = zip(self.cuts(location), anchors, strict=True)
+        ages = zip(self._cuts(location), anchors, strict=True)
         # In one region no window opens or is over, so ages within it have the same cause.
         key = (location, letter, verdict, *[bisect_right(cuts, t - at) for cuts, at in ages])
-        finding = self._found.get(key)
-        if finding is None:
-            finding = self._found[key] = self._find(before, letter, verdict, t)
-        return finding
+        if key not in self._found:
+            self._found[key] = self._find(before, letter, verdict, t)
+        return self._found[key]
 
-    def _find(self, before: Token, letter: int, verdict: bool, t: int) -> Finding:
+    def _find(self, before: Token, letter: int, verdict: bool, t: int) -> Cause | None:
         residual = self._residuals[before[0]]
         ages = [t - anchor for anchor in before[1]]
         by_time = value(after(residual, ages)) != UNKNOWN
         valuation = self._alphabet.valuation(letter)
-        cause = CauseFinder(valuation, ages, verdict=verdict, by_time=by_time).of(residual)
-        if cause is None:
-            return Finding(None, ("there was no obligation" if verdict else "it can never hold",))
-        return Finding(cause, self.words.sentence(cause, verdict))
+        return CauseFinder(valuation, ages, verdict=verdict, by_time=by_time).of(residual)
 
     def deadline(self, before: Token) -> int | None:
         """The last instant before time alone decides the residual; see `Attempt.deadline`."""
         location, anchors = before
         if len(anchors) != 1:
             return deadline(self._residuals[location], anchors)
-        if location not in self._deadlines:
-            self._deadlines[location] = deadline(self._residuals[location], (0,))
-        after_start = self._deadlines[location]
+        after_start = self._after_start(location)
         return None if after_start is None else anchors[0] + after_start
 
 
@@ -99,13 +80,17 @@ def explained(
     flow: TruthValues,
 ) -> Explanation:
     """Explain a decision at `t` (ticks); `before` and the letter are those of the deciding run."""
-    finding = reasons.of(before, letter, verdict, t)
-    cause = finding.cause
-    start = finding.start(before[1], t, triggered)
+    cause = reasons.of(before, letter, verdict, t)
+    if cause is None:
+        return Explanation(without_cause(verdict))
+    start = triggered
+    if cause.start != NO_CLOCK:
+        start = t if cause.start == AT_DECISION else before[1][cause.start]
+    moment = Moment(t, start, triggered, flow)
     return Explanation(
-        rendered(finding.sentence, t, start, triggered, flow),
-        deadline=None if cause is None else reasons.deadline(before),
-        blame=None if verdict or cause is None else reasons.words.blame(cause, t, start, flow),
+        reasons.words.sentence(cause, verdict, moment),
+        deadline=reasons.deadline(before),
+        blame=None if verdict else reasons.words.blame(cause, moment),
     )
 
 

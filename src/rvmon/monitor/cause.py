@@ -1,12 +1,8 @@
-"""Finds the part of a requirement that decided an attempt, and renders it as one sentence.
-
-Decisions that differ only in instants share one sentence, a template with placeholders.
-"""
+"""Finds the part of a requirement that decided an attempt, and words its instants."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from enum import Enum
 from typing import NamedTuple, assert_never
 
 from msgspec import Struct
@@ -122,61 +118,6 @@ class CauseFinder:
                 assert_never(node)
 
 
-class Base(Enum):
-    """The reference point of an instant or duration in a sentence."""
-
-    DECISION = 0  # the instant of the decision
-    START = 1  # the instant at which the deciding obligation was instantiated
-    AGE = 2  # a duration: the time from `START` to `DECISION`
-
-
-class Place(Struct, frozen=True):
-    """A placeholder for an instant or a duration in a sentence: `plus` ticks after its base."""
-
-    base: Base
-    plus: int = 0
-
-    def ticks(self, decided: int, start: int) -> int:
-        """Its value, ticks; `start` is the instant at which the deciding obligation began."""
-        match self.base:
-            case Base.DECISION:
-                return decided + self.plus
-            case Base.START:
-                return start + self.plus
-            case Base.AGE:
-                return decided - start + self.plus
-            case _:
-                assert_never(self.base)
-
-
-class Turned(Struct, frozen=True):
-    """A placeholder: whether a proposition `was` or `became` true or false at the decision.
-
-    The history of the proposition is not enough: `whenever` may merge it with the trigger, and the
-    merged proposition also changes with that. It did not become so if it was so at the trigger.
-    """
-
-    proposition: State
-    text: str
-    seen: str
-
-
-class AfterTrigger(Struct, frozen=True):
-    """A placeholder: the delay from trigger to decision, if the deciding obligation began there."""
-
-
-class LastWith(Struct, frozen=True):
-    """A placeholder: when a proposition last had a truth value, which may be `lasting`.
-
-    Its verb is `been true`, `been false` or `occurred`.
-    """
-
-    proposition: State
-    value: int
-    verb: str
-    lasting: bool
-
-
 class TruthValues(NamedTuple):
     """The truth values of a requirement's propositions at a position, with their history."""
 
@@ -207,52 +148,55 @@ class TruthValues(NamedTuple):
 
 NEVER = -(1 << 63)  # stands for an instant that there was not
 
-Part = str | Place | Turned | AfterTrigger | LastWith
 
-Sentence = tuple[Part, ...]  # a sentence template: text and placeholders in order
+class Moment(NamedTuple):
+    """A decision: its instants, ticks, with the truth values then; its methods word them."""
+
+    t: int  # the instant of the decision
+    start: int  # the instant at which the deciding obligation was instantiated
+    triggered: int
+    flow: TruthValues
+
+    def instant(self, t: int) -> str:
+        """An instant."""
+        return format_instant(t, self.flow.origin)
+
+    @property
+    def after_trigger(self) -> str:
+        """The delay from trigger to decision, if the deciding obligation began there."""
+        if self.start != self.triggered or self.start == self.t:
+            return ""
+        return f", {format_ticks(self.t - self.start)} after the trigger"
+
+    def turned(self, proposition: State, text: str, seen: str) -> str:
+        """Whether a proposition `was` or `became` true or false at the decision.
+
+        Its history is not enough: `whenever` may merge it with the trigger, and the merged
+        proposition also changes with that. It did not become so if it was so at the trigger.
+        """
+        since = self.flow.since(proposition)
+        was_so = self.flow.at_trigger.get(text) == (TRUE if seen == "true" else FALSE)
+        verb = "became" if self.start < since == self.t and not was_so else "was"
+        long = f" (since {self.instant(since)})" if since < self.t else ""
+        return f"{verb} {seen} at {self.instant(self.t)}{long}"
+
+    def last_with(self, proposition: State, value: int, verb: str, *, lasting: bool) -> str:
+        """When a proposition last had a truth value, which may be `lasting`.
+
+        Its verb is `been true`, `been false` or `occurred`.
+        """
+        last = self.flow.last_with(proposition, value, self.t)
+        if last is None and self.flow.begun is not None:
+            return f"it had not {verb} since {self.instant(self.flow.begun)}"
+        if last is None:
+            return f"it had never {verb} before"
+        if last == self.t:
+            return f"it came at {self.instant(last)}, too late"
+        if self.flow.gap == 1 and lasting:
+            return f"it had {verb} until {self.instant(last + 1)}"
+        return f"it had last {verb} at {self.instant(last)}"
 
 
-def rendered(
-    sentence: Sentence, decided: int, start: int, triggered: int, flow: TruthValues
-) -> str:
-    """Fill in a sentence for one decision; instants are ticks, `start` that of its obligation."""
-    return "".join(
-        [
-            part if type(part) is str else _filled(part, decided, start, triggered, flow)
-            for part in sentence
-        ]
-    )
-
-
-def _filled(part: Part, decided: int, start: int, triggered: int, flow: TruthValues) -> str:
-    """A part of a sentence, for one decision; arguments as of `rendered`."""
-    origin = flow.origin
-    match part:
-        case str():
-            return part
-        case Place(base=base):
-            ticks = part.ticks(decided, start)
-            return format_ticks(ticks if base is Base.AGE else ticks - origin)
-        case Turned(proposition=proposition, seen=seen):
-            since = flow.since(proposition)
-            was_so = flow.at_trigger.get(part.text) == (TRUE if seen == "true" else FALSE)
-            verb = "became" if start < since == decided and not was_so else "was"
-            long = f" (since {format_instant(since, origin)})" if since < decided else ""
-            return f"{verb} {seen} at {format_instant(decided, origin)}{long}"
-        case AfterTrigger():
-            if start != triggered or start == decided:
-                return ""
-            return f", {format_ticks(decided - start)} after the trigger"
-        case LastWith(proposition=proposition, value=value, verb=verb):
-            last = flow.last_with(proposition, value, decided)
-            if last is None and flow.begun is not None:
-                return f"it had not {verb} since {format_instant(flow.begun, origin)}"
-            if last is None:
-                return f"it had never {verb} before"
-            if last == decided:
-                return f"it came at {format_instant(last, origin)}, too late"
-            if flow.gap == 1 and part.lasting:
-                return f"it had {verb} until {format_instant(last + 1, origin)}"
-            return f"it had last {verb} at {format_instant(last, origin)}"
-        case _:
-            assert_never(part)
+def without_cause(verdict: bool) -> str:
+    """The reason of a decision of which no other was possible."""
+    return "there was no obligation" if verdict else "it can never hold"

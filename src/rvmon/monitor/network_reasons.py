@@ -9,7 +9,7 @@ from msgspec import Struct
 from rvmon.logic import formula as mtl
 from rvmon.logic.automaton import FAILED, PASSED, Token
 from rvmon.logic.residual import TooManyClausesError
-from rvmon.monitor.cause import Cause, TruthValues, rendered
+from rvmon.monitor.cause import Cause, Moment, TruthValues, without_cause
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.explanation import Alone, Explanation, Undecided
 from rvmon.monitor.network import Network, settled
@@ -185,17 +185,16 @@ def explained_by_network(
     core, integer = compiled.obligation.required, position // network.positions.gap
     cause = NetworkCauseFinder(network, verdict, truth[1]).of(core, integer)
     if cause is None:
-        return Explanation("there was no obligation" if verdict else "it can never hold")
-    words, start = compiled.words, cause.start
-    blame: Blame | None = None if verdict else words.blame(cause, t, start, flow)
+        return Explanation(without_cause(verdict))
+    words, moment = compiled.words, Moment(t, cause.start, triggered, flow)
+    blame: Blame | None = None if verdict else words.blame(cause, moment)
     deadline = None
     if t > position:  # else there was no obligation yet
         last = _settled_before(network, integer, truth[1])
         # A window that closed before the attempt began is no deadline of it.
         if last is not None and last >= position - 1:
             deadline = last
-    sentence = rendered(words.sentence(cause, verdict), t, start, triggered, flow)
-    return Explanation(sentence, deadline=deadline, blame=blame)
+    return Explanation(words.sentence(cause, verdict, moment), deadline=deadline, blame=blame)
 
 
 def _settled_before(network: Network, position: int, at: int) -> int | None:

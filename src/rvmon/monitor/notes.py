@@ -123,18 +123,12 @@ class NoteExplainer:
     def _then(self, note: Note) -> tuple[int, ...]:
         return truths(note.words[_HEAD : _HEAD + self._leaf_words], len(self._texts))
 
-    def _truth_values(
-        self, note: Note, origin: int
-    ) -> tuple[tuple[int, ...], tuple[int, ...], TruthValues]:
-        """Truth values of leaves and of propositions at the decision, and the latter's history."""
-        words, texts = note.state, self._texts
-        at = 2 + self._leaf_words
-        leaves = truths(words[2:at], len(texts))
-        values = truths(words[at : self._first], len(self._places))
-        then = _by_text(texts, self._then(note))
-        begun = _instant(words[1])
-        places = self._places
-        return leaves, values, TruthValues(origin, self._gap, begun, values, words, places, then)
+    def _truth_values(self, note: Note, origin: int) -> TruthValues:
+        """The truth values of propositions at the decision, with their history."""
+        words, places = note.state, self._places
+        values = truths(words[2 + self._leaf_words : self._first], len(places))
+        then = _by_text(self._texts, self._then(note))
+        return TruthValues(origin, self._gap, _instant(words[1]), values, words, places, then)
 
     def _letter(self, values: Sequence[int], *, passed: bool) -> int:
         """The letter of the reading that decided."""
@@ -152,14 +146,12 @@ class NoteExplainer:
         if note.kind == _NOTHING:
             why = explain.why_nothing(cut=bool(note.flags & _CUT))
         elif note.kind == _DECIDED:
-            why, leaves = self._decided(attempt, note)
-            seen = dict(explain.truths_shown(self._texts, leaves))
+            why = self._decided(attempt, note)
         else:
             why, forecast = self._open(attempt, note)
-            if attempt.decided is not None:
-                seen = dict(
-                    explain.truths_shown(self._texts, self._truth_values(note, attempt.origin)[0])
-                )
+        if note.kind == _DECIDED or (note.kind == _OPEN and attempt.decided is not None):
+            words = note.state[2 : 2 + self._leaf_words]
+            seen = dict(explain.truths_shown(self._texts, truths(words, len(self._texts))))
         fields = {
             "reason": why.reason,
             "deadline": why.deadline,
@@ -172,23 +164,18 @@ class NoteExplainer:
             return fields | {"forecast": forecast and forecast()}
         return fields | {"_details": lambda *_: {"forecast": forecast()}}
 
-    def _decided(self, attempt: Attempt, note: Note) -> tuple[explain.Explanation, tuple[int, ...]]:
-        leaves, values, flow = self._truth_values(note, attempt.origin)
-        passed = attempt.verdict is Verdict.PASS
+    def _decided(self, attempt: Attempt, note: Note) -> explain.Explanation:
+        flow = self._truth_values(note, attempt.origin)
+        passed, when = attempt.verdict is Verdict.PASS, (note.at, attempt.triggered)
         if note.flags & _NETWORK:
             position = note.words[6]
             network = at_decision(
                 self.compiled, self._gap, note.letters, position, attempt.triggered, passed, note.at
             )
-            why = explained_by_network(
-                self.compiled, network, position, passed, note.at, attempt.triggered, flow
-            )
-            return why, leaves
-        letter = self._letter(values, passed=passed)
+            return explained_by_network(self.compiled, network, position, passed, *when, flow)
+        letter = self._letter(flow.truths, passed=passed)
         token, _ = _token(note.words, _HEAD + self._leaf_words, note.words[3])
-        return explained(
-            self._reasons, token, letter, passed, note.at, attempt.triggered, flow
-        ), leaves
+        return explained(self._reasons, token, letter, passed, *when, flow)
 
     def _open(
         self, attempt: Attempt, note: Note
@@ -310,8 +297,8 @@ class NotesReader:
         """By requirement, the explainers of its part, by number of the judge."""
         gap = self._compiled.checked.gap
         chosen = self._compiled.chosen(self._ids)
-        parts = [[compiled for compiled in chosen if not _is_apart(compiled)]]
-        parts += [[compiled] for compiled in chosen if _is_apart(compiled)]
+        parts = [[compiled for compiled in chosen if not compiled.requirement.captured]]
+        parts += [[compiled] for compiled in chosen if compiled.requirement.captured]
         by_requirement: dict[str, Sequence[NoteExplainer]] = {}
         for part in parts:
             judges = [*part, *(judge for compiled in part for judge in _doubt_judges(compiled))]
@@ -322,10 +309,6 @@ class NotesReader:
     def details(self, attempt: Attempt, note: Note, name: str) -> Mapping[str, Any]:
         """See `NoteExplainer.details`."""
         return self._explainers[attempt.requirement][note.judge].details(attempt, note, name)
-
-
-def _is_apart(compiled: CompiledRequirement) -> bool:
-    return bool(compiled.requirement.captures) or compiled.requirement.for_each is not None
 
 
 def _doubt_judges(compiled: CompiledRequirement) -> Sequence[CompiledRequirement]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import cache
 
 from msgspec import Struct
 
@@ -14,17 +15,8 @@ from rvmon.logic.normal_form import Origin
 from rvmon.logic.progress import after, value
 from rvmon.logic.residual import NO_CLOCK, Residual
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN
-from rvmon.monitor.cause import (
-    AfterTrigger,
-    Base,
-    Cause,
-    LastWith,
-    Place,
-    Sentence,
-    TruthValues,
-    Turned,
-)
-from rvmon.trace.time import format_instant
+from rvmon.monitor.cause import Cause, Moment
+from rvmon.trace.time import format_instant, format_ticks
 from rvmon.verdicts.attempt import Blame
 
 _APART = 50
@@ -81,7 +73,11 @@ class Words:
     def __init__(self, origins: Mapping[Core, Origin], consequent: Formula) -> None:
         self._origins = dict(origins)
         self._consequent = consequent
-        self._texts: dict[Core, str] = {}
+        # As many attempts are explained by the same parts: the text of one, the proposition that a
+        # literal requires, and whether the formula of one looks ahead.
+        self.text = cache(self._text)
+        self._atom = cache(self._found_atom)
+        self._looks_ahead = cache(self._found_ahead)
         for node, origin in origins.items():
             opened = node.opened if isinstance(node, Until | Release) else None
             if opened is not None:
@@ -99,97 +95,90 @@ class Words:
             return None
         return origin.formula if origin.positive else Unary(UnaryOp.NOT, origin.formula)
 
-    def text(self, node: Core) -> str:
+    def _text(self, node: Core) -> str:
         """A node in the language."""
-        text = self._texts.get(node)
-        if text is None:
-            text = self._texts[node] = format_formula(self.formula(node) or self._consequent)
-        return text
+        return format_formula(self.formula(node) or self._consequent)
 
     def window(self, node: Until | Release) -> tuple[int, int | None]:
         """The window of a node in ticks after its start; of an opened one, the original window."""
         whole = self._windows.get(node, node)
         return whole.low, whole.high
 
-    def sentence(self, cause: Cause, verdict: bool) -> Sentence:
-        """The sentence template for the decisions that have this cause."""
+    def sentence(self, cause: Cause, verdict: bool, moment: Moment) -> str:
+        """The reason of a decision that has this cause."""
         node = cause.node
         if cause.over and not isinstance(node, Literal):
-            return self._window_over(node)
+            return self._window_over(node, moment)
+        at = f"at {moment.instant(moment.t)}"
         if cause.literal is None or cause.literal not in self._origins:
             became = "was fulfilled" if verdict else "could be fulfilled no more"
-            return (f"{self._quoted(node)} {became} at ", Place(Base.DECISION))
+            return f"{self._quoted(node)} {became} {at}"
         atom = self._atom(cause.literal)
         if verdict:
-            seen: Sentence = (f"{atom.quoted} {atom.was(True)} at ", Place(Base.DECISION))
-            return (*seen, *self._in_time(node))
-        if atom.is_event:
-            seen = (f"{atom.quoted} {atom.was(False)} at ", Place(Base.DECISION))
-        else:
-            turned = Turned(cause.literal.proposition, atom.quoted.strip("`"), atom.truth(False))
-            seen = (f"{atom.quoted} ", turned)
-        return (*seen, *self._asked(node, atom))
+            return f"{atom.quoted} {atom.was(True)} {at}{self._in_time(node, moment)}"
+        seen = f"{atom.was(False)} {at}"
+        if not atom.is_event:
+            text = atom.quoted.strip("`")
+            seen = moment.turned(cause.literal.proposition, text, atom.truth(False))
+        return f"{atom.quoted} {seen}{self._asked(node, atom, moment)}"
 
-    def _in_time(self, node: Literal | Until | Release) -> Sentence:
+    def _in_time(self, node: Literal | Until | Release, moment: Moment) -> str:
         """The clause after a literal that came true and so ended an obligation."""
         if isinstance(node, Literal):
-            return ()
+            return ""
         if isinstance(node, Release):
-            return ("; after that no obligation was left",)
-        after: Sentence = (", ", Place(Base.AGE), " after ", Place(Base.START))
-        high = self.window(node)[1]
-        return after if high is None else (*after, "; it was due by ", Place(Base.START, high))
+            return "; after that no obligation was left"
+        high, start = self.window(node)[1], moment.start
+        due = "" if high is None else f"; it was due by {moment.instant(start + high)}"
+        return f", {format_ticks(moment.t - start)} after {moment.instant(start)}{due}"
 
-    def _asked(self, node: Literal | Until | Release, atom: _Atom) -> Sentence:
+    def _asked(self, node: Literal | Until | Release, atom: _Atom, moment: Moment) -> str:
         """The clause after a literal that failed: what was required of it, and when."""
         if isinstance(node, Literal):
-            return (f"; {atom.had_to('be')} then",)
+            return f"; {atom.had_to('be')} then"
+        low, high = self.window(node)
+        stay = f"{moment.after_trigger}; {atom.had_to('stay')}"
+        last = "" if high is None else moment.instant(moment.start + high)
         if isinstance(node, Until):
-            high = self.window(node)[1]
-            due: Sentence = () if high is None else (", due by ", Place(Base.START, high))
-            return (
-                AfterTrigger(),
-                f"; {atom.had_to('stay')} until {self._quoted(node.right)}",
-                *due,
-            )
-        formula = self.formula(node)
-        if formula is None or not has_future(formula):  # a `whenever` or `always` around it
+            due = f", due by {last}" if last else ""
+            return f"{stay} until {self._quoted(node.right)}{due}"
+        if not self._looks_ahead(node):  # a `whenever` or `always` around it
             all_along = " at all times" if isinstance(node.left, Constant) else " then"
-            return (f"; {atom.had_to('be')}{all_along}",)
+            return f"; {atom.had_to('be')}{all_along}"
         if not isinstance(node.left, Constant):
-            return (AfterTrigger(), f"; {atom.had_to('stay')} until {self._quoted(node.left)}")
-        low, high = self.window(node)
-        from_ = (" from ", Place(Base.START, low))
+            return f"{stay} until {self._quoted(node.left)}"
+        from_ = f" from {moment.instant(moment.start + low)}"
         if high is None:
-            return (AfterTrigger(), f"; {atom.had_to('stay')}", *from_, " on")
+            return f"{stay}{from_} on"
         if low == high:
-            return (AfterTrigger(), f"; {atom.had_to('be')} at ", Place(Base.START, high))
-        to = Place(Base.START, high)
-        if low == 0 and not atom.is_event:
-            return (AfterTrigger(), f"; {atom.had_to('stay')} until ", to)
-        return (AfterTrigger(), f"; {atom.had_to('stay')}", *from_, " to ", to)
+            return f"{moment.after_trigger}; {atom.had_to('be')} at {last}"
+        return f"{stay} until {last}" if not (low or atom.is_event) else f"{stay}{from_} to {last}"
 
-    def _window_over(self, node: Until | Release) -> Sentence:
+    def _window_over(self, node: Until | Release, moment: Moment) -> str:
         low, high = self.window(node)
-        first = Place(Base.START, low)
-        last = Place(Base.DECISION) if high is None else Place(Base.START, high)
+        first = moment.instant(moment.start + low)
+        last = moment.instant(moment.t if high is None else moment.start + high)
         right = node.right
         atom = self._atom(right) if isinstance(right, Literal) else None
         if isinstance(node, Release):
             held = "held" if atom is None else atom.kept
             named = self._quoted(right) if atom is None else atom.quoted
-            return (f"{named} {held} from ", first, " to ", last)
-        window: Sentence = (" at ", last) if low == high else (" between ", first, " and ", last)
+            return f"{named} {held} from {first} to {last}"
+        window = f"at {last}" if low == high else f"between {first} and {last}"
         if atom is None or not isinstance(right, Literal):
-            return (f"{self._quoted(right)} had to come true", *window, ", and did not")
+            return f"{self._quoted(right)} had to come true {window}, and did not"
         value = TRUE if right.sense is Sense.TRUE else FALSE
-        seen = LastWith(right.proposition, value, atom.been, atom.lasting)
-        return (f"{atom.quoted} {atom.due}", *window, ", and did not; ", seen)
+        seen = moment.last_with(right.proposition, value, atom.been, lasting=atom.lasting)
+        return f"{atom.quoted} {atom.due} {window}, and did not; {seen}"
 
     def _quoted(self, node: Core) -> str:
         return f"`{self.text(node)}`"
 
-    def _atom(self, literal: Literal) -> _Atom:
+    def _found_ahead(self, node: Core) -> bool:
+        formula = self.formula(node)
+        return formula is not None and has_future(formula)
+
+    def _found_atom(self, literal: Literal) -> _Atom:
         """The required proposition of a literal."""
         origin = self._origins.get(literal)
         if origin is None:
@@ -202,9 +191,9 @@ class Words:
         quoted, is_event = f"`{format_formula(formula)}`", isinstance(formula, EventAtom)
         return _Atom(quoted, positive, is_event, not (positive and is_pulse(formula)))
 
-    def blame(self, cause: Cause, t: int, start: int, flow: TruthValues) -> Blame:
-        """The obligation that failed at `t`, instantiated at `start` (ticks)."""
-        node = cause.node
+    def blame(self, cause: Cause, moment: Moment) -> Blame:
+        """The obligation that failed."""
+        node, t, start = cause.node, moment.t, moment.start
         formula = self.formula(node) or self._consequent
         span = formula.span
         if span is None and isinstance(formula, Unary):
@@ -217,7 +206,7 @@ class Words:
                 window = (t, None)  # opened instances are merged: the first may have been released
         at: tuple[int, ...] = ()
         if cause.literal is not None:
-            at = (flow.since(cause.literal.proposition),)
+            at = (moment.flow.since(cause.literal.proposition),)
         first, last = (0, 0) if span is None else (span.start, span.end)
         return Blame(self.text(node), first, last, window, at)
 
@@ -242,10 +231,8 @@ class Words:
         text = f"`{self.text(node)}`"
         if clock == NO_CLOCK or not isinstance(node, Until | Release) or node.high is None:
             return text
-        last = anchors[clock] + node.high
-        return (
-            f"{text} {'by' if isinstance(node, Until) else 'until'} {format_instant(last, origin)}"
-        )
+        word, last = "by" if isinstance(node, Until) else "until", anchors[clock] + node.high
+        return f"{text} {word} {format_instant(last, origin)}"
 
 
 def all_of(parts: Sequence[str]) -> str:

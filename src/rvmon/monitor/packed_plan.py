@@ -10,8 +10,7 @@ from msgspec import Struct
 from rvmon import native
 from rvmon.core.sections import packed
 from rvmon.errors import TraceError
-from rvmon.language.checked import formula as rv
-from rvmon.language.checked.specification import CheckedSpec, Requirement, Type
+from rvmon.language.checked.specification import CheckedSpec, Type
 from rvmon.monitor.compiled_spec import Kept, Place
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind
@@ -31,7 +30,11 @@ class CapturedValues:
     """Decodes the captured values of attempts."""
 
     def __init__(self, spec: CheckedSpec, ids: Sequence[str], labels: Mapping[str, int]) -> None:
-        self._kinds = [_kinds(spec, spec.requirements[id_]) for id_ in ids]
+        # by name, the kind of each captured value; `None` for a number, which carries its own kind
+        self._kinds = [
+            {name: spec.kind_of(value, one) for name, value in one.captured.items()}
+            for one in map(spec.requirements.__getitem__, ids)
+        ]
         self._labels = {number: label for label, number in labels.items()}
 
     def of(self, requirement: int, numbers: Sequence[float | None]) -> dict[str, Scalar]:
@@ -48,31 +51,6 @@ class CapturedValues:
         if kind is Kind.BOOL:
             return bool(number)
         return self._labels[int(number)] if kind is Kind.LABEL else number
-
-
-def _kinds(spec: CheckedSpec, requirement: Requirement) -> dict[str, Kind | None]:
-    """By name, the kind of each captured value; `None` for a number, which carries its own kind."""
-    kinds: dict[str, Kind | None] = {}
-    each = requirement.for_each
-    if each is not None:
-        kinds[each.name] = _kind(spec, each.value, kinds)
-    for capture in requirement.captures:
-        kinds[capture.name] = _kind(spec, capture.value, kinds)
-    return kinds
-
-
-def _kind(spec: CheckedSpec, value: rv.Numeric, kinds: Mapping[str, Kind | None]) -> Kind | None:
-    match value:
-        case rv.SignalValue(name=name) | rv.UpdateValue(function=rv.UpdateFunction.PREV, name=name):
-            return spec.signals[name].type.kind
-        case rv.FieldValue(event=event, field=field):
-            return spec.events[event].fields[field].kind
-        case rv.Captured(name=name):
-            return kinds[name]
-        case rv.Literal(value=str()):
-            return Kind.LABEL
-        case _:
-            return None
 
 
 VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)

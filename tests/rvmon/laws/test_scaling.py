@@ -8,10 +8,11 @@ from msgspec import structs
 from tests.rvmon.laws.tried import TRIED, judge
 from tests.tools.build import scaled
 
+from rvmon.language.checked import formula as rv
 from rvmon.language.checked.formula import Formula, UpdateFunction, UpdateValue
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case
-from rvmon.testing.law.syntax import numerics, parts_of
+from rvmon.testing.law.syntax import numerics
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdicts.report import Report
@@ -32,7 +33,7 @@ def test_scaling(case: Case) -> None:
         part.function
         for r in case.spec.requirements.values()
         for capture in r.captures
-        for part in parts_of(capture.value)
+        for part in rv.numbers_in(capture.value)
         if isinstance(part, UpdateValue)
     ]
     assume(UpdateFunction.RATE not in parts)  # it is per second

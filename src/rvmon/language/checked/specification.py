@@ -12,7 +12,16 @@ from enum import StrEnum
 from msgspec import Struct, field
 
 from rvmon.diagnostics import Source, Span
-from rvmon.language.checked.formula import FieldValue, Formula, Numeric
+from rvmon.language.checked.formula import (
+    Captured,
+    FieldValue,
+    Formula,
+    Literal,
+    Numeric,
+    SignalValue,
+    UpdateFunction,
+    UpdateValue,
+)
 from rvmon.language.checked.properties import Cover, Coverpoint, Cross, Property
 from rvmon.trace.schema import Kind, Schema
 
@@ -132,6 +141,12 @@ class Requirement:
     scope: str = ""
     run_share: RunShare | None = None
 
+    @property
+    def captured(self) -> Mapping[str, Numeric]:
+        """By name, what an attempt has values of its own of: by `for each`, then by `let`."""
+        each = {} if self.for_each is None else {self.for_each.name: self.for_each.value}
+        return each | {capture.name: capture.value for capture in self.captures}
+
 
 class TimeModel(StrEnum):
     """Which instants are positions (SEMANTICS 1)."""
@@ -181,6 +196,20 @@ class CheckedSpec(Struct, frozen=True):
             self.ignoring,
             units={name: type_.unit for name, type_ in self._types() if type_.unit},
         )
+
+    def kind_of(self, value: Numeric, requirement: Requirement) -> Kind | None:
+        """The kind of a value that a requirement reads; `None`: a number, which is calculated."""
+        match value:
+            case SignalValue(name=name) | UpdateValue(function=UpdateFunction.PREV, name=name):
+                return self.signals[name].type.kind
+            case FieldValue(event=event, field=field):
+                return self.events[event].fields[field].kind
+            case Captured(name=name):
+                return self.kind_of(requirement.captured[name], requirement)
+            case Literal(value=str()):
+                return Kind.LABEL
+            case _:
+                return None
 
     def _types(self) -> Iterator[tuple[str, Type]]:
         """The type of each signal, and of each event's field as `event.field`."""

@@ -12,7 +12,7 @@ from msgspec.structs import replace
 from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.testing.law.numbers import at_edge, compare, compare_at, events_of, is_born, number
-from rvmon.testing.law.syntax import constant_value, parts_of
+from rvmon.testing.law.syntax import constant_value
 from rvmon.testing.law.word import Letter, Truth, conjunction, truth_of
 from rvmon.trace.sample import Scalar
 from rvmon.trace.schema import Kind
@@ -77,7 +77,7 @@ class Past:
 
     def compared(self, formula: rv.Compare, i: int) -> Truth:
         """The truth of a comparison of expressions with windows."""
-        parts = [part for side in (formula.left, formula.right) for part in parts_of(side)]
+        parts = [*rv.numbers_in(formula.left, formula.right)]
         plain = [
             rv.itself(part)
             for part in parts
@@ -211,7 +211,7 @@ class Past:
         self, formula: rv.WindowValue, value: rv.Numeric, there: Truth, k: int
     ) -> Iterator[tuple[int | float | None, bool]]:
         letter = self.letters[k]
-        events = {*events_of(value)}
+        events = events_of(value)
         if any(self.state(part, k) in (Truth.FALSE, Truth.UNBORN) for part in formula.chosen):
             return
         if len(events) != 1:

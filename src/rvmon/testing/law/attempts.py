@@ -33,7 +33,7 @@ def is_pulse(formula: rv.Formula, *, negated: bool = False) -> bool:
         case rv.EventAtom():
             return not negated
         case rv.Compare(left=left, right=right):
-            return not negated and bool([*events_of(left), *events_of(right)])
+            return not negated and bool(events_of(left, right))
         case rv.ProbeAtom(probe=probe):
             return not negated and probe is not rv.Probe.KNOWN
         case rv.SignalAtom() | rv.BoundAtom() | rv.Amount() | rv.Passed():

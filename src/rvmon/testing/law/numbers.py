@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import product
 from typing import Any, assert_never
 
 from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.testing.law import word
-from rvmon.testing.law.syntax import parts_of
 from rvmon.trace.sample import Payload, Scalar
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
@@ -26,7 +25,7 @@ def compare(
 
     Source: SEMANTICS, section 1 (Unknown, Birth).
     """
-    events = sorted({*events_of(comparison.left), *events_of(comparison.right)})
+    events = events_of(comparison.left, comparison.right)
     choices = product(*(letter.events[event].occurrences for event in events))
 
     def holds(choice: Sequence[word.Occurrence]) -> word.Truth:
@@ -61,8 +60,7 @@ def is_born(comparison: rv.Compare, letter: word.Letter) -> bool:
         letter.signals[part.name].moved
         if isinstance(part, rv.UpdateValue)
         else letter.signals[part.name].born
-        for side in (comparison.left, comparison.right)
-        for part in parts_of(side)
+        for part in rv.numbers_in(comparison.left, comparison.right)
         if isinstance(part, rv.SignalValue | rv.UpdateValue)
     )
 
@@ -72,16 +70,9 @@ def known_scalar(value: Scalar) -> Scalar:
     return None if isinstance(value, float) and math.isnan(value) else value
 
 
-def events_of(expression: rv.Numeric) -> Iterator[str]:
-    """The events whose fields the expression reads."""
-    match expression:
-        case rv.FieldValue(event=event):
-            yield event
-        case rv.Arithmetic(args=args):
-            for arg in args:
-                yield from events_of(arg)
-        case _:
-            return
+def events_of(*expressions: rv.Numeric) -> list[str]:
+    """The events whose fields the expressions read, in order of name."""
+    return sorted({field.event for field in rv.fields_in(*expressions)})
 
 
 def number(

@@ -244,7 +244,7 @@ def _of_window(value: Range, states: Set[Truth], can_be_unborn: bool) -> Margin:
 
 
 def _compared(comparison: rv.Compare, letter: Letter, captured: Mapping[str, Scalar]) -> Range:
-    events = sorted({*events_of(comparison.left), *events_of(comparison.right)})
+    events = events_of(comparison.left, comparison.right)
     ways = []
     for choice in product(*(letter.events[event].occurrences for event in events)):
         payloads = {e: o.payload for e, o in zip(events, choice, strict=True)}

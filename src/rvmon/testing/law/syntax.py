@@ -83,16 +83,7 @@ def numerics(formula: rv.Formula) -> Iterator[rv.Numeric]:
     """All numeric expressions and their parts."""
     for part in subformulas(formula):
         if isinstance(part, rv.Compare):
-            yield from parts_of(part.left)
-            yield from parts_of(part.right)
-
-
-def parts_of(expression: rv.Numeric) -> Iterator[rv.Numeric]:
-    """The expression and all its parts, from the top."""
-    yield expression
-    if isinstance(expression, rv.Arithmetic):
-        for arg in expression.args:
-            yield from parts_of(arg)
+            yield from rv.numbers_in(part.left, part.right)
 
 
 def by_and_or(formula: rv.Binary) -> rv.Binary:
