@@ -25,27 +25,12 @@ SOURCE = "Araiza-Illan et al., Coverage-Driven Verification, HVC 2015, Table 1"
 
 _CHECKED = {"R1": True, "R2": True, "R3": True, "R4": True, "R5": None}
 
-_PSEUDORANDOM = {
-    "R1": (0, 0, 100, 0),
-    "R2": (33, 0, 67, 0),
-    "R3": (33, 0, 67, 0),
-    "R4": (98, 0, 0, 2),
-    "R5": (46, 0, 54, 0),
+_PUBLISHED = {
+    "pseudorandom": ((0, 0, 100, 0), (33, 0, 67, 0), (33, 0, 67, 0), (98, 0, 0, 2), (46, 0, 54, 0)),
+    "constrained": ((0, 0, 100, 0), (87, 0, 13, 0), (87, 0, 13, 0), (98, 0, 0, 2), (93, 0, 7, 0)),
+    "model-based": ((3, 0, 1, 0), (1, 0, 3, 0), (4, 0, 0, 0), (4, 0, 0, 0), (4, 0, 0, 0)),
 }
-_CONSTRAINED = {
-    "R1": (0, 0, 100, 0),
-    "R2": (87, 0, 13, 0),
-    "R3": (87, 0, 13, 0),
-    "R4": (98, 0, 0, 2),
-    "R5": (93, 0, 7, 0),
-}
-_MODEL_BASED = {
-    "R1": (3, 0, 1, 0),
-    "R2": (1, 0, 3, 0),
-    "R3": (4, 0, 0, 0),
-    "R4": (4, 0, 0, 0),
-    "R5": (4, 0, 0, 0),
-}
+"""Tests that are P, F, NT and I, of R1 to R5."""
 
 FITTED_BY_LOSS = {("constrained", "R5")}
 """Cells that the fitted start-up loss reproduces by construction."""
@@ -59,26 +44,14 @@ FITTED = FITTED_BY_LOSS | FITTED_BY_SLOWNESS
 
 def paper_table() -> VerdictTable:
     """The paper's table."""
-    published = {
-        "pseudorandom": _PSEUDORANDOM,
-        "constrained": _CONSTRAINED,
-        "model-based": _MODEL_BASED,
-    }
-    groups = tuple(
-        RunGroup(
-            name,
-            sum(rows["R1"]),
-            {
-                requirement: dict(zip(Verdict, row, strict=True))
-                for requirement, row in rows.items()
-            },
-        )
-        for name, rows in published.items()
-    )
+    groups = []
+    for name, rows in _PUBLISHED.items():
+        counts = (dict(zip(Verdict, row, strict=True)) for row in rows)
+        groups.append(RunGroup(name, sum(rows[0]), dict(zip(_CHECKED, counts, strict=True))))
     return VerdictTable(
         title="As published",
         requirements=dict.fromkeys(_CHECKED, ""),
-        groups=groups,
+        groups=tuple(groups),
         checked=_CHECKED,
         notes=(f"Source: {SOURCE}",),
     )

@@ -6,6 +6,7 @@ import math
 import traceback
 from collections.abc import Callable, Generator
 from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from handover.world.bus import Node, Schedule
@@ -19,44 +20,40 @@ STALL_LIMIT = 10_000
 _ENDED = object()
 
 
+@dataclass(slots=True)
 class Process:
     """Runs one program on one node, from now until it returns, crashes or the time is over."""
 
-    def __init__(
-        self,
-        schedule: Schedule,
-        node: Node,
-        program: Program,
-        around: Callable[[], AbstractContextManager[object]] = nullcontext,
-    ) -> None:
-        self.is_over = False  # whether it returned or crashed
-        # the exception that crashed it, as one line with its place, or `None`
-        self.error: str | None = None
-        self._schedule = schedule
-        self._node = node
-        self._program = program
-        self._around = around
-        self._steps_now = 0
-        schedule.at(schedule.now_ns, self._step)
+    schedule: Schedule
+    node: Node
+    program: Program
+    around: Callable[[], AbstractContextManager[object]] = nullcontext  # of each step
+    is_over: bool = field(default=False, init=False)  # whether it returned or crashed
+    # the exception that crashed it, as one line with its place, or `None`
+    error: str | None = field(default=None, init=False)
+    _steps_now: int = field(default=0, init=False)
+
+    def __post_init__(self) -> None:
+        self.schedule.at(self.schedule.now_ns, self._step)
 
     def _step(self) -> None:
         try:
-            with self._around():
-                wait_s = next(self._program, _ENDED)
+            with self.around():
+                wait_s = next(self.program, _ENDED)
             if wait_s is _ENDED:
                 self._end()
                 return
             wait_ns = self._checked_ns(wait_s)
         except Exception as error:  # noqa: BLE001  # whatever the code under test does is a result
             self.error = describe(error)
-            self._program.close()
+            self.program.close()
             self._end()
             return
-        self._schedule.at(self._schedule.now_ns + wait_ns, self._step)
+        self.schedule.at(self.schedule.now_ns + wait_ns, self._step)
 
     def _end(self) -> None:
         self.is_over = True
-        self._node.end()
+        self.node.end()
 
     def _checked_ns(self, wait_s: object) -> int:
         if (
@@ -66,7 +63,7 @@ class Process:
             or wait_s < 0
         ):
             raise ValueError(f"a program waits by yielding seconds ≥ 0, not {wait_s!r}")
-        wait_ns = round((wait_s + self._node.take_delay_s()) * NS)
+        wait_ns = round((wait_s + self.node.take_delay_s()) * NS)
         self._steps_now = 0 if wait_ns else self._steps_now + 1
         if self._steps_now > STALL_LIMIT:
             raise RuntimeError(f"no time passed in {STALL_LIMIT} steps: the program hangs")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import deque
+from dataclasses import dataclass, field
 
 from handover.robot.ports import Reading
 from handover.world import measures
@@ -13,25 +14,19 @@ from handover.world.human import Human
 from handover.world.scene import Scene
 
 
+@dataclass(slots=True)
 class Sensors:
-    """Gaze, pressure, location and the distance of the hand, measured on the bodies.
+    """Gaze, pressure, location and the distance of the hand, measured on the bodies."""
 
-    Args:
-        scene: the scene of the bodies.
-        human: the human, whose head and hand are tracked.
-        faults: of the sensors.
-        rng: draws the noise.
-    """
+    scene: Scene  # of the bodies
+    human: Human  # whose head and hand are tracked
+    faults: SensorFaults
+    rng: random.Random  # draws the noise
+    _past: deque[tuple[int, Reading]] = field(default_factory=deque, init=False)
 
-    def __init__(
-        self, scene: Scene, human: Human, faults: SensorFaults, rng: random.Random
-    ) -> None:
-        self._scene = scene
-        self._human = human
-        self._faults = faults
-        self._rng = rng
-        self._delay_ns = round(faults.delay_s * p.NS)
-        self._past: deque[tuple[int, Reading]] = deque()
+    @property
+    def _delay_ns(self) -> int:
+        return round(self.faults.delay_s * p.NS)
 
     def remember(self, t_ns: int) -> None:
         """Keep the reading of this instant, if the sensors are slow."""
@@ -57,24 +52,24 @@ class Sensors:
         """Metres between the mass centres of hand and gripper on each axis; `None`: unknown."""
         if self.is_dead("distance"):
             return None
-        x, z = measures.hand_offset(self._scene)
+        x, z = measures.hand_offset(self.scene)
         return abs(x + self._noise()), abs(z + self._noise())
 
     def is_dead(self, sensor: str) -> bool:
         """Whether a sensor drops out."""
-        return sensor in self._faults.dropout
+        return sensor in self.faults.dropout
 
     def _read(self) -> Reading:
-        head_moves, hand_moves = self._human.is_moving()
-        head_known = measures.face_is_seen(self._scene) and not head_moves
-        hand_known = measures.hand_is_seen(self._scene) and not hand_moves
-        force_known = hand_known and not self._human.hand_is_slack
+        head_moves, hand_moves = self.human.is_moving()
+        head_known = measures.face_is_seen(self.scene) and not head_moves
+        hand_known = measures.hand_is_seen(self.scene) and not hand_moves
+        force_known = hand_known and not self.human.hand_is_slack
         return Reading(
-            gaze=measures.gaze_is_ok(self._scene, self._noise)
+            gaze=measures.gaze_is_ok(self.scene, self._noise)
             if self._reads("gaze", head_known)
             else None,
-            pressure=self._human.shares_piece() if self._reads("pressure", force_known) else None,
-            location=measures.location_is_ok(self._scene, self._noise)
+            pressure=self.human.shares_piece() if self._reads("pressure", force_known) else None,
+            location=measures.location_is_ok(self.scene, self._noise)
             if self._reads("location", hand_known)
             else None,
         )
@@ -83,8 +78,8 @@ class Sensors:
         """Whether a sensor has a reading, given whether its quantity can be observed."""
         if not known or self.is_dead(sensor):
             return False
-        return not self._faults.loss or self._rng.random() >= self._faults.loss
+        return not self.faults.loss or self.rng.random() >= self.faults.loss
 
     def _noise(self) -> float:
-        sd = self._faults.noise_m
-        return self._rng.gauss(0.0, sd) if sd else 0.0
+        sd = self.faults.noise_m
+        return self.rng.gauss(0.0, sd) if sd else 0.0

@@ -197,15 +197,13 @@ def _check(database: sqlite3.Connection, path: str | Path | None) -> None:
             f"error: {name_of(path)}: {empty}: give one that `rvmon run --coverage` wrote"
         )
     version = _pragma(database, "user_version")
-    if version > VERSION:
+    if version != VERSION:
+        by, fix = "an older", "record again, or install that one"
+        if version > VERSION:
+            by, fix = "a newer", "install that one, or record again with this one"
         raise CoverageError(
-            f"error: {name_of(path)} was written by a newer rvmon (version {version} of its "
-            f"tables, this one reads {VERSION}): install that one, or record again with this one"
-        )
-    if version < VERSION:
-        raise CoverageError(
-            f"error: {name_of(path)} was written by an older rvmon (version {version} of its "
-            f"tables, this one reads {VERSION}): record again, or install that one"
+            f"error: {name_of(path)} was written by {by} rvmon (version {version} of its "
+            f"tables, this one reads {VERSION}): {fix}"
         )
     statements = {
         sql

@@ -175,38 +175,32 @@ _SHOWN = (
 
 def explained(compiled: CompiledSpec, name: str, budget: Budget | None = None) -> Iterator[Line]:
     """One requirement: in words, facts, automaton, the shortest timeline of each verdict."""
-    compiled_requirement = compiled.requirements[name]
-    yield _title(compiled_requirement.requirement)
+    own = compiled.requirements[name]
+    yield _title(own.requirement)
     yield []
-    for line in requirement_in_words(compiled_requirement.requirement):
+    for line in requirement_in_words(own.requirement):
         yield _wrapped(line, "  ", "    ")
     yield []
-    for heading, fact in facts_of(compiled_requirement).items():
+    for heading, fact in facts_of(own).items():
         yield _wrapped(fact, f"  {heading:<12}", " " * 14)
-    if compiled_requirement.automaton is not None:
+    if own.automaton is not None:
         yield []
         yield [("The automaton", "bold")]
-        for line in graph_lines(
-            graph_of(compiled_requirement, compiled_requirement.automaton, compiled.checked)
-        ):
+        for line in graph_lines(graph_of(own, own.automaton, compiled.checked)):
             yield [line]
     yield []
     yield [("The shortest run on which it …", "bold")]
-    can = possible(
-        compiled.checked,
-        compiled_requirement.obligation.trigger,
-        compiled_requirement.automaton,
-        compiled_requirement.requirement.at_end,
-    )
-    impossible = _impossible(compiled_requirement.requirement, can)
+    trigger, at_end = own.obligation.trigger, own.requirement.at_end
+    can = possible(compiled.checked, trigger, own.automaton, at_end)
+    impossible = _impossible(own.requirement, can)
     wanted = [verdict.value for verdict, _ in _SHOWN if verdict not in impossible]
-    search = shortest_examples(compiled, [compiled_requirement], verdict_of(name), wanted, budget)
+    search = shortest_examples(compiled, [own], verdict_of(name), wanted, budget)
     for verdict, phrase in _SHOWN:
         yield []
         example = search.examples.get(verdict.value)
         if example is not None:
             yield [f"… {phrase}"]
-            yield from picture_of(example, compiled.checked, _names_read(compiled_requirement))
+            yield from picture_of(example, compiled.checked, _names_read(own))
         else:
             yield _wrapped(f"… {phrase}: {impossible.get(verdict) or _not_found(search)}", "", "  ")
 
@@ -244,8 +238,9 @@ def _title(requirement: Requirement) -> Line:
 def _impossible(requirement: Requirement, can: Possible) -> Mapping[Verdict, str]:
     """The impossible verdicts, each with the reason."""
     reasons = {}
-    if _is_always_triggered(requirement):
-        reasons[Verdict.NOT_TRIGGERED] = "never, every run triggers it"
+    match requirement.trigger, requirement.mode:
+        case (BoundAtom(), _) | (Constant(value=True), Mode.WHENEVER):
+            reasons[Verdict.NOT_TRIGGERED] = "never, every run triggers it"
     if can.trigger is False:
         reason = "never, nothing can trigger it"
         reasons |= dict.fromkeys((Verdict.PASS, Verdict.FAIL, Verdict.INCONCLUSIVE), reason)
@@ -254,16 +249,6 @@ def _impossible(requirement: Requirement, can: Possible) -> Mapping[Verdict, str
     if can.fail is False:
         reasons[Verdict.FAIL] = "never, whatever comes: at worst it stays open"
     return reasons
-
-
-def _is_always_triggered(requirement: Requirement) -> bool:
-    match requirement.trigger:
-        case BoundAtom():
-            return True
-        case Constant(value=True):
-            return requirement.mode is Mode.WHENEVER
-        case _:
-            return False
 
 
 def _not_found(search: Found) -> str:

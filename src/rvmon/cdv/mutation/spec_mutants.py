@@ -273,27 +273,13 @@ def _is_equivalent(spec: CheckedSpec, mutant: SpecMutant, together: Together) ->
     Both have to be decided within a bounded time: what is open for ever is not met, and fails not.
     """
     pair = {"before": mutant.requirement, "after": mutant.changed}
-    compiled = CompiledSpec(
-        structs.replace(
-            spec,
-            requirements={
-                name: replace(requirement, id=name) for name, requirement in pair.items()
-            },
-        )
-    ).requirements
-    if any(
-        horizon(requirement.obligation.required) is None or requirement.automaton is None
-        for requirement in compiled.values()
-    ):
+    named = {name: replace(one, id=name) for name, one in pair.items()}
+    compiled = [*CompiledSpec(structs.replace(spec, requirements=named)).requirements.values()]
+    if any(horizon(one.obligation.required) is None or one.automaton is None for one in compiled):
         return False
     before, after = (
-        Subject(
-            requirement.requirement,
-            requirement.obligation.trigger,
-            requirement.automaton,
-            requirement.reads,
-        )
-        for requirement in compiled.values()
+        Subject(one.requirement, one.obligation.trigger, one.automaton, one.reads)
+        for one in compiled
     )
     fails_alone = Aim(frozenset({0}), frozenset({1}))
     return all(

@@ -9,45 +9,42 @@ from rvmon.models import model_error
 
 Reason = tuple[str, str]  # an unsupported construct, and the way to do without it
 
-_STATEMENTS: Reason = (
-    "statements stand in functions only",
-    "write a function, and call it in the update",
-)
-_JUMPS: Reason = ("break, continue and switch are not supported", "write if and while")
-_GAMES: Reason = ("games and strategies are not supported", "ask for a run with E<>")
-_STATISTICS: Reason = (
-    "this form of a statistical query is not supported",
-    "write Pr[<=T](<> p), with >= or <= a number for a test, or E[<=T; n](max: e)",
-)
-_UNTIL: Reason = (
-    "until takes brackets",
-    "write A[p U q], E[p U q], or (p U q) in a formula of LTL",
-)
-_HOOKS: Reason = ("updates around every step are not supported", "write them on the edges")
 _OUTSIDE: Reason = ("functions from outside are not supported", "write their body out")
+_HOOKS: Reason = ("updates around every step are not supported", "write them on the edges")
 _DYNAMIC: Reason = (
     "templates that are started by runs are not supported",
     "declare all instances in the system line",
 )
-_TEXTS: Reason = ("texts are not supported", "use numbers")
 
 _DECLARING: dict[str, Reason] = {
-    "hybrid": ("hybrid clocks are not supported", "use a plain clock"), "string": _TEXTS,
-    "import": _OUTSIDE, "dynamic": _DYNAMIC, "spawn": _DYNAMIC, "before_update": _HOOKS,
-    "after_update": _HOOKS,
+    "hybrid": ("hybrid clocks are not supported", "use a plain clock"),
+    "string": ("texts are not supported", "use numbers"), "import": _OUTSIDE, "dynamic": _DYNAMIC,
+    "spawn": _DYNAMIC, "before_update": _HOOKS, "after_update": _HOOKS,
 }  # fmt: skip
-_COMPUTING: dict[str, Reason] = {
-    **_DECLARING,
-    **dict.fromkeys(("break", "continue", "switch"), _JUMPS),
-}
-_UPDATING: dict[str, Reason] = {
-    **_COMPUTING,
-    **dict.fromkeys(("if", "else", "for", "while", "do", "return"), _STATEMENTS),
-}
+_COMPUTING: dict[str, Reason] = _DECLARING | dict.fromkeys(
+    ("break", "continue", "switch"),
+    ("break, continue and switch are not supported", "write if and while"),
+)
+_UPDATING: dict[str, Reason] = _COMPUTING | dict.fromkeys(
+    ("if", "else", "for", "while", "do", "return"),
+    ("statements stand in functions only", "write a function, and call it in the update"),
+)
 _ASKING: dict[str, Reason] = {
-    **dict.fromkeys(("Pr", "simulate"), _STATISTICS),
-    **dict.fromkeys(("control", "strategy", "under", "minE", "maxE", "minPr", "maxPr"), _GAMES),
-    **dict.fromkeys(("U", "W", "AU", "EU"), _UNTIL),
+    **dict.fromkeys(
+        ("Pr", "simulate"),
+        (
+            "this form of a statistical query is not supported",
+            "write Pr[<=T](<> p), with >= or <= a number for a test, or E[<=T; n](max: e)",
+        ),
+    ),
+    **dict.fromkeys(
+        ("control", "strategy", "under", "minE", "maxE", "minPr", "maxPr"),
+        ("games and strategies are not supported", "ask for a run with E<>"),
+    ),
+    **dict.fromkeys(
+        ("U", "W", "AU", "EU"),
+        ("until takes brackets", "write A[p U q], E[p U q], or (p U q) in a formula of LTL"),
+    ),
 }
 _CALLS = "abs random random_normal random_poisson isnan exp2 log2 cbrt asin acos atan atan2"
 """Functions of UPPAAL, over numbers with a fraction."""
