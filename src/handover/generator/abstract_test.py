@@ -17,30 +17,16 @@ HumanSignal = Literal["activateRobot", "humanIsReady", "setv"]
 RobotSignal = Literal["informHumanOfHandoverStart", "setv"]
 Posture = Literal["hgazeOk", "hlocationOk", "hpressureOk"]
 Switch = Literal[
-    "honTask",
-    "hgazeOk",
-    "setg",
-    "h_undefGaze",
-    "hpressureOk",
-    "setp",
-    "h_undefPress",
-    "hlocationOk",
-    "setl",
-    "h_undefLoc",
-]
+    "honTask", "hgazeOk", "setg", "h_undefGaze", "hpressureOk", "setp", "h_undefPress",
+    "hlocationOk", "setl", "h_undefLoc",
+]  # fmt: skip
 """Parameters that are 0 or 1."""
 
 Parameter = Literal[Switch, "time"]
 Strategy = Literal[
-    "pseudorandom",
-    "constrained",
-    "model-based",
-    "model-based-shortest",
-    "model-based-fastest",
-    "disturbed",
-    "directed",
-    "closed",
-]
+    "pseudorandom", "constrained", "model-based", "model-based-shortest", "model-based-fastest",
+    "disturbed", "directed", "closed",
+]  # fmt: skip
 
 SEND_DELAY_S = 2.0
 """Seconds that the human takes to send a signal."""

@@ -58,19 +58,9 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
     head.angle = p.HEAD_REST_ANGLE
     space.add(head)
     return Scene(
-        space,
-        links,
-        joint_motors,
-        fingers,
-        finger_motors,
-        piece,
-        hand,
-        rest,
-        hand_target,
-        hand_pull,
-        head,
-        beside,
-    )
+        space, links, joint_motors, fingers, finger_motors, piece, hand, rest, hand_target,
+        hand_pull, head, beside,
+    )  # fmt: skip
 
 
 def _from(x: float, place: tuple[float, float]) -> tuple[float, float]:

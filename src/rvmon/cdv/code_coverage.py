@@ -12,7 +12,6 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import permutations
 from pathlib import Path
-from types import TracebackType
 from typing import TYPE_CHECKING
 
 import rvmon
@@ -62,12 +61,7 @@ class Meter:
     def __enter__(self) -> None:
         self._coverage.start()
 
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        place: TracebackType | None,
-    ) -> None:
+    def __exit__(self, *_: object) -> None:
         self._coverage.stop()
 
     def hits(self) -> dict[str, dict[str, Hit]]:
@@ -80,7 +74,7 @@ class Meter:
             if self._code.branches:
                 ran[path].update(self._files[path].branches_of(data.arcs(path) or ()))
         hits = {}
-        for group, path in self._groups:
+        for group, path in self.groups:
             items = {name: Hit(1) for name in group.items if name in ran[path]}
             if items:
                 hits[group.name] = items
@@ -91,8 +85,23 @@ class Meter:
         return {path: _File(self._coverage, path) for path in _paths(self._code)}
 
     @cached_property
-    def _groups(self) -> list[tuple[Group, str]]:
-        return _groups(self._code, self._files)
+    def groups(self) -> list[tuple[Group, str]]:
+        """The groups to cover, each with the file of its block."""
+        groups = []
+        for block in self._code.blocks:
+            file, lines = self._files[block.path], block.lines
+            items = [Item(str(n), text=file.text(n)) for n in sorted(file.statements & lines)]
+            group = group_of(statements_name(block.name), Subject.STATEMENTS, items)
+            groups.append((group, block.path))
+            items = [
+                Item(_arc(*arc), text=" → ".join(map(file.text, arc)))
+                for arc in (sorted(file.branches) if self._code.branches else ())
+                if arc[0] in lines
+            ]
+            if items:
+                group = group_of(branches_name(block.name), Subject.BRANCHES, items)
+                groups.append((group, block.path))
+        return groups
 
 
 def code_groups(code: Code) -> list[Group]:
@@ -101,9 +110,7 @@ def code_groups(code: Code) -> list[Group]:
     Raises:
         RvmonError: coverage.py is not installed, or a file is no Python.
     """
-    meter = _coverage(code)
-    files = {path: _File(meter, path) for path in _paths(code)}
-    return [group for group, _ in _groups(code, files)]
+    return [group for group, _ in Meter(code).groups]
 
 
 def statements_name(block: str) -> str:
@@ -114,27 +121,6 @@ def statements_name(block: str) -> str:
 def branches_name(block: str) -> str:
     """The name of the group of a block's branches."""
     return f"branches of {block}"
-
-
-def _groups(code: Code, files: Mapping[str, _File]) -> list[tuple[Group, str]]:
-    groups = []
-    for block in code.blocks:
-        file = files[block.path]
-        items = [
-            Item(str(line), text=file.text(line)) for line in sorted(file.statements & block.lines)
-        ]
-        group = group_of(statements_name(block.name), Subject.STATEMENTS, items)
-        groups.append((group, block.path))
-        if code.branches:
-            items = [
-                Item(_arc(*arc), text=" → ".join(map(file.text, arc)))
-                for arc in sorted(file.branches)
-                if arc[0] in block.lines
-            ]
-            if items:
-                group = group_of(branches_name(block.name), Subject.BRANCHES, items)
-                groups.append((group, block.path))
-    return groups
 
 
 class _File:

@@ -242,6 +242,12 @@ class Mutator:
                 return ""
 
 
+_SIMPLE = (
+    inspect.NoneType, inspect.BoolType, inspect.LiteralType, inspect.EnumType, inspect.IntType,
+    inspect.FloatType,
+)  # fmt: skip
+
+
 def _can_make(kind: inspect.Type, depth: int = 0) -> bool:
     match kind:
         case inspect.UnionType():
@@ -257,15 +263,7 @@ def _can_make(kind: inspect.Type, depth: int = 0) -> bool:
         case inspect.VarTupleType() | inspect.ListType():
             return _can_make(kind.item_type, depth)
         case _:
-            return isinstance(
-                kind,
-                inspect.NoneType
-                | inspect.BoolType
-                | inspect.LiteralType
-                | inspect.EnumType
-                | inspect.IntType
-                | inspect.FloatType,
-            )
+            return isinstance(kind, _SIMPLE)
 
 
 def _can_change(kind: inspect.Type, depth: int = 0) -> bool:

@@ -169,25 +169,9 @@ class Extremes(Struct, frozen=True):
 
 
 Expression = (
-    Number
-    | Decimal
-    | Name
-    | Index
-    | Member
-    | Rate
-    | Call
-    | Unary
-    | Binary
-    | Conditional
-    | Quantified
-    | Path
-    | LeadsTo
-    | Assuming
-    | Chance
-    | Mean
-    | Simulation
-    | Extremes
-)
+    Number | Decimal | Name | Index | Member | Rate | Call | Unary | Binary | Conditional
+    | Quantified | Path | LeadsTo | Assuming | Chance | Mean | Simulation | Extremes
+)  # fmt: skip
 
 
 # Declarations.

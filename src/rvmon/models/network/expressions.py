@@ -219,19 +219,9 @@ class Fractional:
 
 
 Expression = (
-    Constant
-    | Fractional
-    | VariableValue
-    | Lookup
-    | Invoke
-    | UnaryOperation
-    | BinaryOperation
-    | Choice
-    | InLocation
-    | ClockCompare
-    | Deadlock
-    | PathFormula
-)
+    Constant | Fractional | VariableValue | Lookup | Invoke | UnaryOperation | BinaryOperation
+    | Choice | InLocation | ClockCompare | Deadlock | PathFormula
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)

@@ -78,9 +78,8 @@ class Rules:
         """
         if delay < 0:
             raise InvalidRunError("time goes backwards")
-        later = Configuration(
-            now.locations, now.values, tuple(clock + delay for clock in now.clocks)
-        )
+        clocks = tuple(clock + delay for clock in now.clocks)
+        later = Configuration(now.locations, now.values, clocks)
         if delay > 0 and self.stops_time(now):
             raise InvalidRunError("time passes in an urgent state")
         self._check_invariants(later)
@@ -108,21 +107,12 @@ class Rules:
                 yield Action(((sender, first),))
             elif first.sync.sends:
                 channel = self.channel_index(now, first)
-                choices: list[list[tuple[int, Edge] | None]] = []
-                for index in range(len(self._network.automata)):
-                    able: list[tuple[int, Edge] | None] = [
-                        (other, edge)
-                        for other, edge in edges
-                        if other == index != sender
-                        and edge.sync is not None
-                        and not edge.sync.sends
-                        and self.channel_index(now, edge) == channel
-                    ]
-                    choices.append([*able, None])
-                for chosen in product(*choices):
-                    yield Action(
-                        ((sender, first), *(other for other in chosen if other is not None))
-                    )
+                choices: dict[int, list[tuple[int, Edge] | None]] = {}
+                for other, edge in edges:
+                    if other != sender and self._receives(now, edge, channel):
+                        choices.setdefault(other, [None]).append((other, edge))
+                for chosen in product(*choices.values()):
+                    yield Action(((sender, first), *filter(None, chosen)))
 
     def stops_time(self, now: Configuration) -> bool:
         """Whether an urgent or committed location or an urgent channel keeps time from passing."""
@@ -151,6 +141,11 @@ class Rules:
         """The channel that an edge uses, given the variables."""
         assert edge.sync is not None, "asked of synchronising edges only"
         return int(self._made(edge.sync.slot, slot_evaluator)(now.locations, now.values))
+
+    def _receives(self, now: Configuration, edge: Edge, channel: int) -> bool:
+        """Whether an edge receives from a channel."""
+        receives = edge.sync is not None and not edge.sync.sends
+        return receives and self.channel_index(now, edge) == channel
 
     def compares(self, now: Configuration, compare: ex.ClockCompare) -> bool:
         """Whether a clock is as a comparison says."""
@@ -202,9 +197,8 @@ class Rules:
         movers = [automaton for automaton, _ in action.edges]
         for automaton, edge in action.edges:
             if edge not in self._network.automata[automaton].edges:
-                raise InvalidRunError(
-                    f"{edge.text} is no edge of {self._network.automata[automaton].name}"
-                )
+                name = self._network.automata[automaton].name
+                raise InvalidRunError(f"{edge.text} is no edge of {name}")
             if not self.is_ready(now, automaton, edge) or not all(
                 self.compares(now, compare) for compare in edge.guard.clocks
             ):
@@ -231,9 +225,8 @@ class Rules:
         for automaton, place in zip(self._network.automata, now.locations, strict=True):
             location = automaton.locations[place]
             if not self._holds(now, location.invariant):
-                raise InvalidRunError(
-                    f"the invariant of {automaton.name}.{location.name} is broken"
-                )
+                where = f"{automaton.name}.{location.name}"
+                raise InvalidRunError(f"the invariant of {where} is broken")
 
     def _ready_edges(self, now: Configuration) -> Iterable[tuple[int, Edge]]:
         for index, automaton in enumerate(self._network.automata):
@@ -248,9 +241,7 @@ class Rules:
             for index, edge in self._ready_edges(now)
             if index != sender
             and all(self.compares(now, compare) for compare in edge.guard.clocks)
-            and edge.sync is not None
-            and not edge.sync.sends
-            and self.channel_index(now, edge) == channel
+            and self._receives(now, edge, channel)
         }
 
     def _check_synchronisation(self, now: Configuration, action: Action) -> None:
@@ -263,7 +254,7 @@ class Rules:
             raise InvalidRunError("the first edge does not send")
         channel = self.channel_index(now, first)
         for _, edge in others:
-            if edge.sync is None or edge.sync.sends or self.channel_index(now, edge) != channel:
+            if not self._receives(now, edge, channel):
                 raise InvalidRunError("an edge does not receive from the channel")
         able = self._receivers(now, sender, channel)
         taking = {automaton for automaton, _ in others}

@@ -212,8 +212,7 @@ class Space:
                         tuple(
                             other.atoms(state.locations, state.values)
                             for group, edge in zip(groups.values(), chosen, strict=True)
-                            if edge is None
-                            for other in group
+                            for other in (group if edge is None else ())
                             if other is not None
                         ),
                     )
@@ -275,24 +274,16 @@ def _data(guard: Guard) -> evaluate.Evaluator | None:
 
 def atoms_of(compares: Sequence[ex.ClockCompare], span: Span | None, grid: int = 1) -> AtomMaker:
     """A function that gives the bounds of some comparisons, in steps of a grid."""
-    if all(isinstance(compare.bound, ex.Constant) for compare in compares):
-        fixed = tuple(
-            _atom(compare, compare.bound.value * grid)
-            for compare in compares
-            if isinstance(compare.bound, ex.Constant)
-        )
+    bounds = [compare.bound for compare in compares]
+    numbers = [bound.value * grid for bound in bounds if isinstance(bound, ex.Constant)]
+    if len(numbers) == len(bounds):
+        fixed = tuple(map(_atom, compares, numbers))
         return lambda _locations, _values: fixed
-    bounds = [
-        (
-            compare,
-            evaluate.evaluator(compare.bound),
-            1 if isinstance(compare.bound, ex.Fractional) else grid,
-        )
-        for compare in compares
-    ]
+    steps = [1 if isinstance(bound, ex.Fractional) else grid for bound in bounds]
+    made = [*zip(compares, map(evaluate.evaluator, bounds), steps, strict=True)]
     return lambda locations, values: tuple(
-        _atom(compare, evaluate.check_time(bound(locations, values), span) * steps)
-        for compare, bound, steps in bounds
+        _atom(compare, evaluate.check_time(bound(locations, values), span) * step)
+        for compare, bound, step in made
     )
 
 

@@ -91,17 +91,10 @@ def windows(timing: runs.Timing) -> list[runs.Window]:
     """The shortest and longest wait before each step, over all runs along the path."""
     found = []
     for low, high, _ in timing.waits:
-        low_units, high_units = int(low // timing.scale), None
-        if high != inf:
-            high_units = int(-(-high // timing.scale))
-        found.append(
-            runs.Window(
-                low_units,
-                high_units,
-                low_units * timing.scale != low,
-                high_units is not None and high_units * timing.scale != high,
-            )
-        )
+        least = int(low // timing.scale)
+        most = None if high == inf else int(-(-high // timing.scale))
+        is_below = most is not None and most * timing.scale != high
+        found.append(runs.Window(least, most, least * timing.scale != low, is_below))
     return found
 
 
