@@ -17,7 +17,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from fuzz.sanitize import guarded_memory
-from tests.rvmon.core.put_away import HEAD, Twins
+from tests.rvmon.core.put_away import HEAD, tell
 from tests.rvmon.models.search.plans import search_plans
 from tests.tools.drive import told
 from tests.tools.random_specs import truths_plan, with_random_coverage
@@ -107,11 +107,11 @@ def snapshots(most: int) -> Iterator[tuple[bytes, bytes]]:
             continue
         planned = planned_core(compiled_spec)
         case = random_trace(rng, compiled_spec.checked, TraceProfile(outages=100 * (made % 2)))
-        twins = Twins(planned, frozenset())
+        run = planned.monitor(frozenset())
         for action in [*told(case)][: rng.randint(1, 12)]:
-            twins.tell(action)
+            tell(planned, run, action)
         made += 1
-        yield planned.packed.data, twins.plain.save()[HEAD:]
+        yield planned.packed.data, run.save()[HEAD:]
 
 
 def compiled(folder: Path, target: str) -> Path:

@@ -28,7 +28,7 @@ class Twins:
 
     def tell(self, action: Sample | int | Lost | Found) -> None:
         """Tell both, and take one up again from what it is put away as."""
-        said = [self._told(one, action) for one in (self.plain, self.other)]
+        said = [tell(self._planned, one, action) for one in (self.plain, self.other)]
         assert said[0] == said[1], f"at {action}: {said}"
         self.take_up()
 
@@ -52,17 +52,19 @@ class Twins:
         self.take_up()
         assert _of_records(self._planned, self.plain) == _of_records(self._planned, self.other)
 
-    def _told(self, run: native.Monitor, action: Sample | int | Lost | Found) -> Any:
-        match action:
-            case Lost(names, t):
-                return run.lose([self._planned.numbers[name] for name in names], t), run.flush()
-            case Found(names, t):
-                return run.found([self._planned.numbers[name] for name in names], t), run.flush()
-            case Sample(t, values):
-                return run.judge(t, self._planned.plain(t, values), True), run.flush()
-            case _:
-                run.advance(action)
-                return run.flush()
+
+def tell(planned: PlannedCore, run: native.Monitor, action: Sample | int | Lost | Found) -> Any:
+    """Tell a run something; what it says."""
+    match action:
+        case Lost(names, t):
+            return run.lose([planned.numbers[name] for name in names], t), run.flush()
+        case Found(names, t):
+            return run.found([planned.numbers[name] for name in names], t), run.flush()
+        case Sample(t, values):
+            return run.judge(t, planned.plain(t, values), True), run.flush()
+        case _:
+            run.advance(action)
+            return run.flush()
 
 
 def _state(run: native.Monitor) -> Any:
