@@ -9,8 +9,8 @@ forgotten, two in the wrong order, a rule misunderstood, or a change that is mea
 and disturbed tests are played on each until a requirement fails. Prints what sees it: a
 requirement, a signal that nobody judges, or nothing.
 
-`closing`: tests that it takes to close the holes of two campaigns, of the handover with and without
-the tests that people have written; those that added a goal, those after which each share was met,
+`closing`: tests that it takes to close the holes of the handover, without and with the tests that
+people have written; those that added a goal, those after which each share was met,
 the size of the suite, and CPU seconds of all processes.
 
 `shrinking`: failing tests of robots with a planted fault, those of the model and the first of each
@@ -28,7 +28,6 @@ import tomllib
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
-from importlib import import_module
 from itertools import islice
 from pathlib import Path
 from statistics import median
@@ -51,7 +50,6 @@ from rvmon.cdv.mutation.survivors import How, Tried
 from rvmon.cdv.play import player
 from rvmon.cdv.shrink import Shrunk, shrink
 
-EXAMPLE = Path(__file__).parents[1] / "examples" / "base_and_people"
 FAULTS = tomllib.loads(Path(__file__).with_name("planted_faults.toml").read_text("utf-8"))
 STRATEGIES = ("constrained", "pseudorandom", "model-based", "model-based-fastest")
 
@@ -107,24 +105,19 @@ def _place(source: str, line: int) -> str:
 
 def closing(*, tests: int = 400, seeds: int = 3, seed: int = 1) -> None:
     """Holes that are closed, of a campaign by at most so many tests."""
-    sys.path.insert(0, str(EXAMPLE))
-    people = import_module("campaign").campaign
     handover = handover_campaign(("correct",))
     unwritten = replace(handover.closing, written=())
-    for campaign, robot, strategies in (
-        (people, "base", ("anyone", "in-the-way")),
-        (replace(handover, name="handover, nothing written", closing=unwritten), "correct", ()),
-        (handover, "correct", ()),
+    for campaign in (
+        replace(handover, name="handover, nothing written", closing=unwritten),
+        handover,
     ):
         for number in range(seed, seed + seeds):
-            _timed(campaign, robot, strategies, number, tests)
+            _timed(campaign, number, tests)
 
 
-def _timed(
-    campaign: Campaign, robot: str, strategies: tuple[str, ...], seed: int, tests: int
-) -> None:
+def _timed(campaign: Campaign, seed: int, tests: int) -> None:
     before = sum(os.times()[:4])  # with all processes that it began
-    closed = close(campaign, robot, seed=seed, strategies=strategies, budget=Budget(tests))
+    closed = close(campaign, "correct", seed=seed, budget=Budget(tests))
     reached = {}
     for percent in (90, 95, 99, 100):
         needed = percent * closed.goals / 100

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator, Sequence
-from functools import partial
 from itertools import product
 
 from tests.tools.differential import Campaign
@@ -87,9 +86,9 @@ def by_law(case: Case) -> dict[str, Found]:
     return {name: own for name, own in found.items() if own}
 
 
-def by_monitor(case: Case, coverage: SpecCoverage) -> dict[str, Found]:
+def by_monitor(case: Case) -> dict[str, Found]:
     """What a monitor finds: how often, and when first."""
-    monitor = coverage.monitor(sources=case.names, requirements=False)
+    monitor = SpecCoverage(case.spec).monitor(sources=case.names, requirements=False)
     for one in case.actions:
         if isinstance(one, Sample):
             monitor.step_ns(one.t, one.values)
@@ -104,27 +103,21 @@ def by_monitor(case: Case, coverage: SpecCoverage) -> dict[str, Found]:
 
 def judge_hits(found: Campaign, seed: int, numbers: range) -> None:
     """What coverpoints and crosses are hit against the definition."""
-    coverage: SpecCoverage | None = None
 
     def drawn(place: object) -> Iterator[Case]:
         rng = place if isinstance(place, random.Random) else random.Random(str(place))
         spec = with_random_coverage(rng, Profile(requirements=1, captures=False, for_each=False))
         yield from (random_trace(rng, spec, TraceProfile(long=10)) for _ in range(EACH))
 
-    def ways(place: int, case: Case) -> Iterator[tuple[str, Callable[[Case], list[str]]]]:
-        nonlocal coverage
-        if coverage is None or place == 0:
-            coverage = SpecCoverage(case.spec)
-        found.counts["pairs"] += 1
+    def ways(_: int, case: Case) -> Iterator[tuple[str, Callable[[Case], list[str]]]]:
         hits = (count for own in by_law(case).values() for count, _ in own.values())
-        found.counts["hits"] += sum(hits)
-        yield "coverage", partial(_differs, coverage)
+        found.counts.update(pairs=1, hits=sum(hits))
+        yield "coverage", _differs
 
     for number in numbers:
         found.compare(drawn, f"{seed}/{number}", ways, 1)
 
 
-def _differs(coverage: SpecCoverage, case: Case) -> list[str]:
-    same = case.spec.coverpoints is coverage.spec.coverpoints  # else the case is a smaller one
-    law, ours = by_law(case), by_monitor(case, coverage if same else SpecCoverage(case.spec))
+def _differs(case: Case) -> list[str]:
+    law, ours = by_law(case), by_monitor(case)
     return [] if law == ours else [f"law {law}, monitor {ours}"]

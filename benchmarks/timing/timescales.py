@@ -107,4 +107,4 @@ def _families() -> Iterator[Family]:
             yield structs.replace(family, name=name, past=past, future=future, is_contrary=True)
 
 
-FAMILIES = tuple(_families())
+FAMILIES = {family.name: family for family in _families()}

@@ -5,6 +5,8 @@ from __future__ import annotations
 import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import accumulate
+from operator import xor
 
 from benchmarks.timing import timescales
 
@@ -103,7 +105,7 @@ def always_text(formula: Formula) -> str:
 
 def _online(size: Size) -> Iterator[Workload]:
     """The Timescales families in both forms."""
-    for family in timescales.FAMILIES:
+    for family in timescales.FAMILIES.values():
         for high in size.bounds:
             columns = timescales.trace(family, high, size.rows)
             for form in FORMS:
@@ -115,13 +117,8 @@ def _many(size: Size) -> Iterator[Workload]:
     """So many responses on one stream of 20 signals, of which one changes at each row."""
     names = [f"v{number}" for number in range(20)]
     rng = random.Random("many")
-    columns: dict[str, list[bool | float]] = {name: [] for name in names}
-    state = dict.fromkeys(names, False)
-    for _ in range(size.rows // 2):
-        changed = rng.choice(names)
-        state[changed] = not state[changed]
-        for name in names:
-            columns[name].append(state[name])
+    changed = [rng.choice(names) for _ in range(size.rows // 2)]
+    columns = {name: [*accumulate((one == name for one in changed), xor)] for name in names}
     for count in size.counts:
         for form in FORMS:
             rng = random.Random("responses")
@@ -214,7 +211,7 @@ _BATCHED = (
 def _families(section: str, named: Sequence[tuple[str, int]], *rows: int) -> Iterator[Workload]:
     """Families of past forms, with many and with few rows that change."""
     for name, high in named:
-        family = next(family for family in timescales.FAMILIES if family.name == name)
+        family = timescales.FAMILIES[name]
         asked = (formula(family.text("past", high)),)
         for count in rows:
             columns = timescales.trace(family, high, count)
