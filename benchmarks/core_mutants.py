@@ -1,6 +1,6 @@
 """Does the core's C hold a line that no test needs? Seeded mutants of it, run on recorded cases.
 
-    python -m benchmarks.core_mutants --count 30 --seed 1 [FILE …]
+    python -m benchmarks.core_mutants --count 30 --seed 1 [--only FILE …]
 
 Of each file so many changes are drawn, evenly over their kinds. Each is compiled alone, linked with
 the others, and judges random cases, written as bytes, of which the law and the core say the same
@@ -240,13 +240,17 @@ def draw(found: Iterable[Mutant], count: int, seed: int) -> list[Mutant]:
     return [*itertools.islice(filter(None, rounds), count)]
 
 
-def main(files: Sequence[str] = (), *, count: int = 30, seed: int = 1, pairs: int = 1_200) -> int:
-    """So many changes of each file that is named, or of all."""
-    if unknown := {*files} - {path.name for path in sources()}:
-        raise SystemExit(f"no file of the core is called {', '.join(sorted(unknown))}")
+def main(
+    *,
+    count: int = 30,
+    seed: int = 1,
+    pairs: int = 1_200,
+    only: Sequence[str] = (*core_sources.core_files(),),
+) -> int:
+    """So many changes of each file, or of some."""
     total: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as directory:
-        chosen = [path for path in sources() if not files or path.name in files]
+        chosen = [CORE / name for name in only]
         trial = Trial(Path(directory), recorded(pairs, seed), chosen)
         for path in chosen:
             found: Counter[str] = Counter()
@@ -263,10 +267,8 @@ def main(files: Sequence[str] = (), *, count: int = 30, seed: int = 1, pairs: in
 
 
 def _told(found: Counter[str]) -> str:
-    counted = found["killed"] + found["survived"]
-    return (
-        f"{found['killed']} of {counted} killed, {found['same']} same, {found['unbuilt']} unbuilt"
-    )
+    counted, other = found["killed"] + found["survived"], f"{found['same']} same"
+    return f"{found['killed']} of {counted} killed, {other}, {found['unbuilt']} unbuilt"
 
 
 if __name__ == "__main__":

@@ -18,7 +18,6 @@ from __future__ import annotations
 import math
 import random
 import re
-import resource
 import shutil
 import sys
 import tempfile
@@ -31,6 +30,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from benchmarks.process import mebibytes
 from benchmarks.program import program
 from tests.rvmon.live import killed_watch
 from tests.rvmon.live.killed_watch import Forked
@@ -96,19 +96,13 @@ def _sample(row: int, period: int) -> dict[str, Any]:
     return found
 
 
-def _resident_kib() -> int:
-    """The memory of this process that is in use, now; Linux says so."""
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return pages * resource.getpagesize() // 1024
-
-
 def soak(*, samples: int = 1_000_000) -> int:
     """A monitor that lives long and keeps 100 records of each verdict; 1 if a verdict is wrong."""
     seconds = max(10, samples // ROWS)
     monitor = rvmon.loads(SPEC).monitor(keep=100)
     rows = [_sample(row % 100, row // 100) for row in range(ROWS)]
     step, clock, t, started = monitor.step_ns, time.perf_counter_ns, 0, time.perf_counter()
-    resident, bins, longest = [_resident_kib()], np.zeros(BINS, np.int64), 0
+    resident, bins, longest = [mebibytes("self", "VmRSS")], np.zeros(BINS, np.int64), 0
     for second in range(seconds + 1):
         spent = []
         for row in rows if second < seconds else [{}] * TAIL:
@@ -119,9 +113,9 @@ def soak(*, samples: int = 1_000_000) -> int:
         longest = max(longest, *spent)
         bins += np.bincount([min(one // BIN_NS, BINS - 1) for one in spent], minlength=BINS)
         if (second + 1) * 10 % seconds < 10 and second < seconds:
-            resident.append(_resident_kib())
+            resident.append(mebibytes("self", "VmRSS"))
     print(f"{t // STEP_NS:,} samples in {time.perf_counter() - started:.0f} s")
-    print("memory, MiB: " + " ".join(f"{kib / 1024:.1f}" for kib in resident))
+    print("memory, MiB: " + " ".join(f"{one:.1f}" for one in resident))
     steps = bins.cumsum()
     middle, high = (np.searchsorted(steps, np.array((0.5, 0.999)) * steps[-1]) + 1) * BIN_NS / 1000
     print(f"a step, µs: p50 {middle:.2f}, p99.9 {high:.2f}, longest {longest / 1000:,.0f}")

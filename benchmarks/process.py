@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -58,7 +59,7 @@ def measured(
             if memory is not None:
                 resource.prlimit(process.pid, resource.RLIMIT_AS, (memory, memory))
             while not ended:
-                peak = max(peak, _mebibytes(process.pid))
+                peak = max(peak, mebibytes(process.pid, "VmHWM"))
                 if time.monotonic() > began + limit:
                     os.killpg(process.pid, signal.SIGKILL)
                 time.sleep(POLL_S)
@@ -75,10 +76,9 @@ def measured(
     return Cost(seconds, usage.ru_utime + usage.ru_stime, peak, process.returncode, *texts)
 
 
-def _mebibytes(pid: int) -> float:
-    """The largest resident memory of a process since it began; 0 if it has ended."""
+def mebibytes(pid: int | str, which: str) -> float:
+    """A figure of Linux on the memory of a process; 0 if it has ended."""
     with suppress(OSError):
-        for line in Path(f"/proc/{pid}/status").read_text().splitlines():
-            if line.startswith("VmHWM:"):
-                return int(line.split()[1]) / 1024
+        found = re.search(rf"{which}:\s+(\d+) kB", Path(f"/proc/{pid}/status").read_text())
+        return int(found[1]) / 1024 if found else 0.0
     return 0.0

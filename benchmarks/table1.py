@@ -41,13 +41,13 @@ Cell = tuple[str, str, Verdict]
 """Strategy, requirement, verdict."""
 
 
-def bands(*, seeds: int = 20, seed: int = 1, jobs: int | None = None, write: bool = False) -> int:
-    """The band of each cell over some campaigns, on all cores by default."""
+def bands(*, seeds: int = 20, seed: int = 1, write: bool = False) -> int:
+    """The band of each cell over some campaigns, on all cores."""
     fitted: list[Counter[Cell]] = []
     unfitted: list[Counter[Cell]] = []
     for number in range(seed, seed + seeds):
         campaign = handover_campaign(("legacy",))
-        results = execute(plan(campaign, STRATEGIES, tests=100, seed=number), jobs=jobs)
+        results = execute(plan(campaign, STRATEGIES, tests=100, seed=number))
         if results.cut_short:
             print(f"{results.cut_short} in campaign {number}", file=sys.stderr)
             return 130

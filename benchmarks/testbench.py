@@ -25,6 +25,7 @@ import os
 import sys
 import time
 import tomllib
+from bisect import bisect_left
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
@@ -40,7 +41,6 @@ from handover.generator.abstract_test import AbstractTest
 from handover.robot import handover as code
 from handover.robot.handover import HandoverRobot
 from handover.robot.mutants import MUTATIONS
-from rvmon.cdv import Campaign
 from rvmon.cdv.campaign_plan import Job, plan
 from rvmon.cdv.close import Budget, close
 from rvmon.cdv.mutation.baseline import record_suite
@@ -112,25 +112,21 @@ def closing(*, tests: int = 400, seeds: int = 3, seed: int = 1) -> None:
         handover,
     ):
         for number in range(seed, seed + seeds):
-            _timed(campaign, number, tests)
-
-
-def _timed(campaign: Campaign, seed: int, tests: int) -> None:
-    before = sum(os.times()[:4])  # with all processes that it began
-    closed = close(campaign, "correct", seed=seed, budget=Budget(tests))
-    reached = {}
-    for percent in (90, 95, 99, 100):
-        needed = percent * closed.goals / 100
-        at = [place for place, one in enumerate(closed.tests, 1) if one.met >= needed]
-        reached[percent] = str(at[0]) if at else "–"
-    shares = "  ".join(f"{percent} % after {at}" for percent, at in reached.items())
-    print(
-        f"{campaign.name}, seed {seed}: {closed.met} of {closed.goals} goals by "
-        f"{len(closed.tests)} tests, {sum(bool(one.goals) for one in closed.tests)} of which added "
-        f"one, {sum(os.times()[:4]) - before:.1f} s of CPU; {shares}; suite "
-        f"{closed.needed} ({closed.sizes}), at least {closed.fewest}",
-        flush=True,
-    )
+            before = sum(os.times()[:4])  # with all processes that it began
+            closed = close(campaign, "correct", seed=number, budget=Budget(tests))
+            spent, met = sum(os.times()[:4]) - before, [one.met for one in closed.tests]
+            shares = (
+                f"{percent} % after {bisect_left(met, percent * closed.goals / 100) + 1}"
+                for percent in (90, 95, 99, 100)
+                if closed.met >= percent * closed.goals / 100
+            )
+            print(
+                f"{campaign.name}, seed {number}: {closed.met} of {closed.goals} goals by "
+                f"{len(met)} tests, {sum(bool(one.goals) for one in closed.tests)} of which added "
+                f"one, {spent:.1f} s of CPU; {'  '.join(shares)}; suite {closed.needed} "
+                f"({closed.sizes}), at least {closed.fewest}",
+                flush=True,
+            )
 
 
 def shrinking(*, failures: int = 20, seed: int = 1) -> None:

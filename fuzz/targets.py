@@ -10,7 +10,7 @@ import hashlib
 import json
 import tempfile
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
 
@@ -178,12 +178,12 @@ def snapshot(data: bytes) -> str:
     return "restored"
 
 
-def seeds(name: str) -> Iterator[bytes]:
-    """What a target begins with: what is kept, and runs as they are put away today."""
-    if (CORPUS / name).exists():
-        yield from (path.read_bytes() for path in sorted((CORPUS / name).iterdir()))
+@cache
+def seeds(name: str) -> Sequence[bytes]:
+    """What a target begins with: what is kept, or runs as they are put away today."""
     if name == "snapshot":
-        yield from _runs()
+        return [*_runs()]
+    return [path.read_bytes() for path in sorted((CORPUS / name).iterdir())]
 
 
 def _runs() -> Iterator[bytes]:

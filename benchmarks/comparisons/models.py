@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Sequence
 from random import Random
 
-from benchmarks.comparisons.timed_ltl import LinearTruth, random_linear, satisfied_by
+from benchmarks.comparisons.timed_ltl import LinearTruth, satisfied_by
 from tests.rvmon.models.search.timed_ctl import holds_at_start
 from tests.tools.differential import Campaign
 from tests.tools.timed_generate import random_model
@@ -31,8 +31,13 @@ KINDS = (
 )  # fmt: skip
 """The queries of a random network, in order."""
 
-FORMULAS = 6
-"""Of each logic on each network."""
+CTL = (
+    *("(EF# ({}))", "(AG# ({}))", "(AF# ({}))", "(EG# ({}))", "(AX ({}))", "(EX ({}))"),
+    *("(A[{} U# {}])", "(E[{} U# {}])", "(A[{} W# {}])", "(E[{} W# {}])"),
+)
+LTL = ("F ({})", "G ({})", "F ({})", "G ({})", "({} U {})", "({} W {})", "({} imply {})")
+JOINED = ("not ({})", "({} and {})", "({} or {})", "{}")
+"""Forms of formulas, of either logic and of both."""
 
 
 def _network(seed: int, number: int) -> Network:
@@ -69,8 +74,11 @@ def judge_logics(found: Campaign, seed: int, numbers: range) -> None:
     for number in numbers:
         network, random = _network(seed, number), Random(number)
         states = [f"({query.text.partition(' ')[2]})" for query in network.queries[:4]]
-        formulas = list(random_formulas(random, [*states, "deadlock"], FORMULAS))
-        formulas += [random_linear(random, states, 3) for _ in range(FORMULAS)]
+        formulas = [
+            random_formula(random, own, size, forms, (*forms, *JOINED))
+            for own, forms in (([*states, "deadlock"], CTL), (states, LTL))
+            for size in (1, 2, 2, 3, 3, 4)
+        ]
         for text in formulas:
             try:
                 agrees = _agrees(network, text, found)
@@ -103,35 +111,19 @@ def _agrees(network: Network, text: str, found: Campaign) -> bool:
     return agrees
 
 
-def random_formulas(random: Random, states: list[str], count: int) -> Iterator[str]:
-    """Queries of CTL over some state formulas, with nests of up to three operators."""
-    for _ in range(count):
-        yield _random_path(random, states, random.choice((1, 2, 2, 3)))
+def random_formula(
+    random: Random, states: list[str], size: int, forms: Sequence[str], nested: Sequence[str]
+) -> str:
+    """A formula of one of the forms, with at most so many nested ones, over state formulas.
 
-
-def _random_path(random: Random, states: list[str], depth: int) -> str:
+    A sign `#` of a form is a bound, or none.
+    """
+    if not size:
+        return random.choice(states)
+    form = random.choice(forms)
     bound = f"[<={random.randint(0, 3)}]" if random.random() < 0.25 else ""
-    body = _random_state(random, states, depth - 1)
-    match random.choice(("unary", "unary", "unary", "until", "next")):
-        case "until":
-            left = _random_state(random, states, depth - 1)
-            return f"({random.choice('AE')}[{left} {random.choice('UUW')}{bound} {body}])"
-        case "next":
-            return f"({random.choice(('AX', 'EX'))} ({body}))"
-        case _:
-            return f"({random.choice(('EF', 'AG', 'AF', 'EG'))}{bound} ({body}))"
-
-
-def _random_state(random: Random, states: list[str], depth: int) -> str:
-    match random.choice(("plain", "path", "path", "not", "and", "or")):
-        case "path" if depth > 0:
-            return _random_path(random, states, depth)
-        case "not":
-            return (
-                f"not ({_random_state(random, states, depth - 1)})" if depth > 0 else "not deadlock"
-            )
-        case "and" | "or" as word if depth > 0:
-            first, second = (_random_state(random, states, depth - 1) for _ in range(2))
-            return f"({first} {word} {second})"
-        case _:
-            return random.choice(states)
+    parts = form.count("{}")
+    operands = (
+        random_formula(random, states, (size - 1) // parts, nested, nested) for _ in range(parts)
+    )
+    return form.replace("#", bound).format(*operands)

@@ -1,4 +1,4 @@
-"""Formulas of LTL on the regions of a small network, by an explicit tableau, and random ones.
+"""Formulas of LTL on the regions of a small network, by an explicit tableau.
 
 A node is a region with the set of temporal formulas that are to hold from there; an edge must keep
 what they say of now and next; a component counts if no promise waits in all of it.
@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from itertools import product
-from random import Random
 
 import networkx as nx
 from tests.tools.timed_regions import JOINED, Region, RegionGraph, TooManyRegionsError, truth_of
@@ -165,22 +164,3 @@ def satisfied_by(network: Network, run: Run, formula: ex.Expression) -> bool:
                 raise AssertionError(f"{part} is none of LTL")
 
     return where(formula)[0]
-
-
-def random_linear(random: Random, states: list[str], size: int) -> str:
-    """A formula of LTL over some state formulas, with at most so many operators of its own."""
-    match random.choice(("F", "G", "GF", "FG", "U", "W", "and", "or", "imply", "not", "plain")):
-        case "F" | "G" as word if size > 0:
-            return f"{word} ({random_linear(random, states, size - 1)})"
-        case "GF" | "FG" as words if size > 1:
-            return f"{words[0]} {words[1]} ({random_linear(random, states, size - 2)})"
-        case "U" | "W" as word if size > 0:
-            first = random_linear(random, states, (size - 1) // 2)
-            return f"({first} {word} {random_linear(random, states, (size - 1) // 2)})"
-        case "and" | "or" | "imply" as word if size > 0:
-            first = random_linear(random, states, size // 2)
-            return f"({first} {word} {random_linear(random, states, size - size // 2)})"
-        case "not":
-            return f"not ({random_linear(random, states, size)})"
-        case _:
-            return random.choice(states)

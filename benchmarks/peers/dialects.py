@@ -125,13 +125,10 @@ def _dialects() -> Iterator[tuple[str, Dialect]]:
     tables = tomllib.loads(Path(__file__).with_suffix(".toml").read_text("utf-8"))
     own = {one.name for one in fields(Dialect)}
     for key, table in tables.items():
-        table |= {**tables.get(table.pop("like", ""), {}), **table}
+        table |= {**tables.get(table.get("like", ""), {}), **table}
         if "name" in table:
-            words = {word.upper(): text for word, text in table.items() if word not in own}
-            operators = {
-                (rv.UnaryOp if word in rv.UnaryOp.__members__ else rv.BinaryOp)[word]: text
-                for word, text in words.items()
-            }
+            words = ((op, op.name.lower()) for op in (*rv.UnaryOp, *rv.BinaryOp))
+            operators = {op: table[word] for op, word in words if word in table}
             told = {name: one for name, one in table.items() if name in own}
             yield key, Dialect(operators=operators, **told)
 
