@@ -40,7 +40,7 @@ class Arrivals:
         self._awaited: dict[str, dict[str, str]] = {}
         awaited: dict[str, formulas.Formula] = {}
         for name, requirement in spec.requirements.items():
-            if not (requirement.for_each or requirement.captures):
+            if not requirement.captured:
                 parts = awaitable(requirement)
                 self._awaited[name] = {text: format_formula(part) for text, part in parts.items()}
                 awaited |= zip(self._awaited[name].values(), parts.values(), strict=True)
@@ -155,9 +155,6 @@ def _is_momentary(part: formulas.Formula) -> bool:
         case formulas.ProbeAtom(probe=probe):
             return probe is not formulas.Probe.KNOWN
         case formulas.Compare(left=left, right=right):
-            return any(
-                isinstance(number, formulas.FieldValue)
-                for number in formulas.numbers_in(left, right)
-            )
+            return any(formulas.fields_in(left, right))
         case _:
             return False

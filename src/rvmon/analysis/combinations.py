@@ -11,7 +11,7 @@ from __future__ import annotations
 import operator
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
-from functools import reduce
+from functools import cache, reduce
 from itertools import product
 from math import prod
 from typing import Generic, TypeVar
@@ -59,7 +59,7 @@ class Letters:
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec
-        self._seen: dict[tuple[Source, tuple[State, ...]], tuple[Truths, ...]] = {}
+        self._tried = cache(self._found_by_trying)
 
     def table(self, states: Sequence[State], view: Callable[[Truths], T]) -> Table[T] | None:
         """The possible values of a group, seen through `view`; `None` if there are too many."""
@@ -97,14 +97,13 @@ class Letters:
         if len(known) < len(tables):
             return None
         shared = self._shared(known)
-        relation: dict[tuple[int, ...], set[tuple[T, ...]]] = {(): {()}}
-        live: tuple[Source, ...] = ()
+        joined: Relation[tuple[T, ...]] = (), {(): {()}}
         for number, table in enumerate(known):
             later = {source for other in known[number + 1 :] for source in other.sources}
-            live, relation = _join(live, relation, _Part.of(table, shared), later)
-            if sum(map(len, relation.values())) > MOST_COMBINATIONS:
+            joined = _join(joined, _projected(table, shared), later)
+            if sum(map(len, joined[1].values())) > MOST_COMBINATIONS:
                 return None
-        return frozenset(together for values in relation.values() for together in values)
+        return frozenset(together for values in joined[1].values() for together in values)
 
     def _shared(self, tables: Sequence[Table[T]]) -> dict[Source, dict[State, Truths]]:
         """For each source that several tables read, the truth values of each leaf by case."""
@@ -125,66 +124,57 @@ class Letters:
         alone = leaves[0].leaf if len(leaves) == 1 else None
         if not isinstance(source, str) or isinstance(alone, SignalAtom | EventAtom):
             return ((False,), (True,))
-        if (source, leaves) not in self._seen:
-            conditions = [leaf.leaf for leaf in leaves if leaf.leaf is not None]
-            values = values_of(self.spec, conditions, source)
-            tried = [{} if isinstance(value, Silence) else {source: value} for value in values]
-            valuations = truths_tried(self.spec, conditions, tried)
-            shown = dict.fromkeys(tuple(truth == TRUE for truth in truths) for truths in valuations)
-            self._seen[source, leaves] = tuple(shown)
-        return self._seen[source, leaves]
+        return self._tried(source, leaves)
+
+    def _found_by_trying(self, source: str, leaves: tuple[State, ...]) -> tuple[Truths, ...]:
+        conditions = [leaf.leaf for leaf in leaves if leaf.leaf is not None]
+        values = values_of(self.spec, conditions, source)
+        tried = [{} if isinstance(value, Silence) else {source: value} for value in values]
+        valuations = truths_tried(self.spec, conditions, tried)
+        return (*dict.fromkeys(tuple(one == TRUE for one in truths) for truths in valuations),)
 
 
-class _Part(Struct, Generic[T], frozen=True):
+Relation = tuple[tuple[Source, ...], dict[tuple[int, ...], set[T]]]
+"""Sources, and by their cases what groups of formulas can be."""
+
+
+def _projected(table: Table[T], shared: Mapping[Source, Mapping[State, Truths]]) -> Relation[T]:
     """A table projected onto the cases of the sources that it shares with others."""
-
-    sources: tuple[Source, ...]
-    rows: Mapping[tuple[int, ...], set[T]]
-
-    @classmethod
-    def of(cls, table: Table[T], shared: Mapping[Source, Mapping[State, Truths]]) -> _Part[T]:
-        """The projection of a table."""
-        places = [place for place, source in enumerate(table.sources) if source in shared]
-        cases: list[dict[Truths, list[int]]] = []
-        for place in places:
-            columns = [shared[table.sources[place]][leaf] for leaf in table.leaves[place]]
-            numbers: dict[Truths, list[int]] = defaultdict(list)
-            for case, truths in enumerate(zip(*columns, strict=True)):
-                numbers[truths].append(case)
-            cases.append(numbers)
-        views: dict[tuple[Truths, ...], set[T]] = defaultdict(set)
-        for chosen, view in table.rows.items():
-            views[tuple(chosen[place] for place in places)].add(view)
-        rows: dict[tuple[int, ...], set[T]] = {}
-        for shown, group_views in views.items():
-            for key in product(
-                *(numbers[part] for numbers, part in zip(cases, shown, strict=True))
-            ):
-                rows[key] = group_views
-        return cls(tuple(table.sources[place] for place in places), rows)
+    places = [place for place, source in enumerate(table.sources) if source in shared]
+    cases: list[dict[Truths, list[int]]] = []
+    for place in places:
+        columns = [shared[table.sources[place]][leaf] for leaf in table.leaves[place]]
+        numbers: dict[Truths, list[int]] = defaultdict(list)
+        for case, truths in enumerate(zip(*columns, strict=True)):
+            numbers[truths].append(case)
+        cases.append(numbers)
+    views: dict[tuple[Truths, ...], set[T]] = defaultdict(set)
+    for chosen, view in table.rows.items():
+        views[tuple(chosen[place] for place in places)].add(view)
+    rows: dict[tuple[int, ...], set[T]] = {}
+    for shown, group_views in views.items():
+        for key in product(*(numbers[part] for numbers, part in zip(cases, shown, strict=True))):
+            rows[key] = group_views
+    return tuple(table.sources[place] for place in places), rows
 
 
 def _join(
-    live: tuple[Source, ...],
-    relation: Mapping[tuple[int, ...], set[tuple[T, ...]]],
-    part: _Part[T],
-    later: set[Source],
-) -> tuple[tuple[Source, ...], dict[tuple[int, ...], set[tuple[T, ...]]]]:
+    earlier: Relation[tuple[T, ...]], group: Relation[T], later: set[Source]
+) -> Relation[tuple[T, ...]]:
     """Join one more group on the shared sources; only sources read by later groups are kept.
 
     A hash join with projection, as in bucket elimination. Dropping a source that no later group
     reads loses nothing, as later joins do not depend on its case; keeping all would multiply the
     rows with every group.
     """
-    ours = [place for place, source in enumerate(live) if source in part.sources]
-    theirs = [part.sources.index(live[place]) for place in ours]
+    (live, relation), (sources, rows) = earlier, group
+    ours = [place for place, source in enumerate(live) if source in sources]
+    theirs = [sources.index(live[place]) for place in ours]
     kept = [place for place, source in enumerate(live) if source in later]
-    fresh = [
-        place for place, source in enumerate(part.sources) if source in later and source not in live
-    ]
+    fresh = [p for p, source in enumerate(sources) if source in later and source not in live]
     # The hash table of the join: the group's rows by the cases they share with the relation.
     matches: dict[tuple[int, ...], dict[tuple[int, ...], set[T]]] = {}
-    for chosen, views in part.rows.items():
+    for chosen, views in rows.items():
         rests = matches.setdefault(tuple(chosen[place] for place in theirs), {})
         rests.setdefault(tuple(chosen[place] for place in fresh), set()).update(views)
     joined: dict[tuple[int, ...], set[tuple[T, ...]]] = defaultdict(set)
@@ -192,8 +182,8 @@ def _join(
         head = tuple(chosen[place] for place in kept)
         for rest, views in matches.get(tuple(chosen[place] for place in ours), {}).items():
             joined[head + rest] |= {(*one, view) for one in tuples for view in views}
-    sources = (*(live[place] for place in kept), *(part.sources[place] for place in fresh))
-    return sources, dict(joined)
+    both = (*(live[place] for place in kept), *(sources[place] for place in fresh))
+    return both, dict(joined)
 
 
 def _leaves_by_source(nodes: Iterable[State], spec: CheckedSpec) -> dict[Source, tuple[State, ...]]:

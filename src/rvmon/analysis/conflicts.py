@@ -309,7 +309,7 @@ def implications_among(
 def starts_with(together: Together, other: Subject, implied: Subject) -> bool:
     """Whether an attempt of `other` starts, or is open, wherever one of `implied` starts."""
     ours, theirs = implied.requirement, other.requirement
-    if theirs.captures or theirs.for_each or ours.captures or ours.for_each:
+    if theirs.captured or ours.captured:
         return False
     if other.is_always:
         return True

@@ -94,27 +94,15 @@ def findings_of(spec: CheckedSpec, examination: Examination) -> list[Diagnostic]
 def _single(spec: CheckedSpec, examination: Examination, name: str) -> Iterator[Diagnostic]:
     can, place = examination.possible[name], _places(spec, name)
     if can.trigger is False:
-        yield finding(
-            NEVER_TRIGGERS,
-            f"nothing can trigger {name}",
-            *place,
-            fix="its trigger contradicts itself: look at the comparisons in it",
-        )
+        fix = "its trigger contradicts itself: look at the comparisons in it"
+        yield finding(NEVER_TRIGGERS, f"nothing can trigger {name}", *place, fix=fix)
         return
     if can.fail is False:
-        yield finding(
-            NEVER_FAILS,
-            f"{name} can never fail, whatever comes",
-            *place,
-            fix=_can_fail(spec.requirements[name]),
-        )
+        fix = _can_fail(spec.requirements[name])
+        yield finding(NEVER_FAILS, f"{name} can never fail, whatever comes", *place, fix=fix)
     if can.pass_ is False:
-        yield finding(
-            NEVER_PASSES,
-            f"{name} can never pass, whatever comes",
-            *place,
-            fix=_can_pass(spec.requirements[name]),
-        )
+        fix = _can_pass(spec.requirements[name])
+        yield finding(NEVER_PASSES, f"{name} can never pass, whatever comes", *place, fix=fix)
 
 
 def _implied(spec: CheckedSpec, implication: Implication) -> Diagnostic:
@@ -148,31 +136,26 @@ def _conflict(spec: CheckedSpec, conflict: Conflict) -> Diagnostic:
 
 def _can_fail(requirement: Requirement) -> str:
     """The advice for a requirement that can never fail."""
-    if any(map(_has_no_end, subformulas(requirement.consequent))):
+    if _has_no_end(requirement.consequent):
         return "give it a deadline with `within`, or write `at end: strong`"
     return "the consequent holds wherever it is evaluated: look at the comparisons in it"
 
 
-def _is_open(requirement: Requirement) -> bool:
-    """Whether an obligation of the requirement may stay open to the end of the run."""
-    return requirement.mode is Mode.WHENEVER or any(
-        map(_has_no_end, subformulas(requirement.consequent))
-    )
-
-
-def _has_no_end(part: Formula) -> bool:
-    """Whether a formula is an unbounded future operator."""
-    return (
+def _has_no_end(formula: Formula) -> bool:
+    """Whether a part of a formula is an unbounded future operator."""
+    return any(
         isinstance(part, Unary | Binary)
         and part.op in FUTURE
         and (part.interval is None or part.interval.high is None)
+        for part in subformulas(formula)
     )
 
 
 def _can_pass(requirement: Requirement) -> str:
     """The advice for a requirement that can never pass."""
     policy = requirement.at_end
-    if policy in (EndPolicy.STRICT, EndPolicy.STRONG, EndPolicy.FAIL) and _is_open(requirement):
+    is_open = requirement.mode is Mode.WHENEVER or _has_no_end(requirement.consequent)
+    if policy in (EndPolicy.STRICT, EndPolicy.STRONG, EndPolicy.FAIL) and is_open:
         return (
             f"`at end: {policy}` lets nothing pass that is open at the end: leave it out, or say "
             "for how long with `for`"

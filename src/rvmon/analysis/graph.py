@@ -278,14 +278,9 @@ def _between(clock: str, span: Sequence[int], cuts: tuple[int, ...]) -> str:
     """The guard on one clock for a span of its regions."""
     low = cuts[span[0] - 1] if span[0] else None
     high = cuts[span[-1]] - 1 if span[-1] < len(cuts) else None
-    if low is None and high is None:
-        return ""
-    if low is None:
-        return f"{clock} ≤ {format_duration(high or 0)}"
-    least = _least(clock, low)
-    if high is None:
-        return least
-    return f"{least}, {clock} ≤ {format_duration(high)}"
+    bounds = [] if low is None else [_least(clock, low)]
+    bounds += [] if high is None else [f"{clock} ≤ {format_duration(high)}"]
+    return ", ".join(bounds)
 
 
 def _least(clock: str, low: int) -> str:

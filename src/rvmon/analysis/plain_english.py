@@ -299,7 +299,7 @@ def _memory(compiled: CompiledRequirement, automaton: Automaton | None) -> str:
         span = "while an attempt is open" if reach is None else f"over {format_duration(reach)}"
         return f"where its parts are known to hold or not, a stretch per change, {span}"
     one = compiled.requirement
-    alone = one.mode is Mode.WHENEVER or one.captures or one.for_each is not None
+    alone = one.mode is Mode.WHENEVER or one.captured
     if compiled.obligation.trigger is not None and not alone:
         return "16 bytes per open attempt, in runs: those that wait alike take one step together"
     stamps = f", {counted(automaton.clocks, 'time stamp')}" if automaton.clocks else ""

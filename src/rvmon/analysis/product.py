@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from itertools import product
 
 from msgspec import Struct
@@ -47,23 +48,20 @@ class Together:
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec
         self._letters = Letters(spec)
-        self._tables: dict[Subject, Table[tuple[int, bool]] | None] = {}
-        self._known: dict[tuple[Subject, ...], frozenset[Letter] | None] = {}
+        self._table = cache(self._tabled)
+        self._joint = cache(self._joined)
 
     def letters(self, subjects: Sequence[Subject]) -> frozenset[Letter] | None:
         """The joint letters of requirements; `None` if there are too many."""
-        key = tuple(subjects)
-        if key not in self._known:
-            self._known[key] = self._letters.joint([self._table(subject) for subject in key])
-        return self._known[key]
+        return self._joint(*subjects)
 
-    def _table(self, subject: Subject) -> Table[tuple[int, bool]] | None:
-        if subject not in self._tables:
-            propositions = _automaton(subject).alphabet.propositions
-            trigger = [] if subject.trigger is None else [subject.trigger]
-            states = [*propositions, *trigger]
-            self._tables[subject] = self._letters.table(states, _view(subject))
-        return self._tables[subject]
+    def _joined(self, *subjects: Subject) -> frozenset[Letter] | None:
+        return self._letters.joint([*map(self._table, subjects)])
+
+    def _tabled(self, subject: Subject) -> Table[tuple[int, bool]] | None:
+        propositions = _automaton(subject).alphabet.propositions
+        trigger = [] if subject.trigger is None else [subject.trigger]
+        return self._letters.table([*propositions, *trigger], _view(subject))
 
     def can_start(self, subjects: Sequence[Subject]) -> bool | None:
         """Whether the triggers of all can be true at one instant; `None` if not decided."""
@@ -134,7 +132,7 @@ class _Search:
             cuts |= {offset, offset + 1} | {offset + cut for cut in _cuts(automaton)}
         self.starts = sorted(cuts)
         self.dense = spec.time is TimeModel.HELD
-        self._at: dict[int, frozenset[tuple[int, ...]]] = {}
+        self._classes = cache(self._classes_at)
 
     def after(self, state: State) -> Iterator[State]:
         """The states one step later from which the goal can still be reached."""
@@ -155,23 +153,18 @@ class _Search:
                     for chosen in product(*ways):
                         yield later, chosen
 
-    def _classes(self, cell: int) -> frozenset[tuple[int, ...]]:
+    def _classes_at(self, cell: int) -> frozenset[tuple[int, ...]]:
         """The joint classes possible in a cell: requirements that start there are triggered."""
-        if cell not in self._at:
-            starting = [i for i, at in enumerate(self.offsets) if at == self.starts[cell]]
-            self._at[cell] = frozenset(
-                tuple(class_ for class_, _ in letter)
-                for letter in self.letters
-                if all(letter[index][1] for index in starting)
-            )
-        return self._at[cell]
+        starting = [i for i, at in enumerate(self.offsets) if at == self.starts[cell]]
+        return frozenset(
+            tuple(class_ for class_, _ in letter)
+            for letter in self.letters
+            if all(letter[index][1] for index in starting)
+        )
 
     def _is_lost(self, index: int, spot: Spot | None) -> bool:
-        if spot is None:
-            return False
-        return spot[0] == (FAILED if index in self.aim.well else PASSED) and (
-            index in self.aim.well or index in self.aim.failed
-        )
+        lost = [FAILED] if index in self.aim.well else [PASSED] if index in self.aim.failed else []
+        return spot is not None and spot[0] in lost
 
     def _cells(self, cell: int) -> Sequence[int]:
         """The cells in which the next step may lie."""

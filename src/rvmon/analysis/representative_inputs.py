@@ -39,7 +39,7 @@ from rvmon.logic.formula import Factory, Sense
 from rvmon.logic.state_formula import FALSE, TRUE, UNKNOWN, Leaf, operands
 from rvmon.logic.state_graph import captured_names, names_of
 from rvmon.monitor.formula_truths import Known, known_truths
-from rvmon.trace.sample import Payload, Sample, Scalar, Value, calculated
+from rvmon.trace.sample import Sample, Scalar, Value, calculated
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
 
@@ -93,14 +93,17 @@ def _tidy(value: float) -> float:
 
 
 def _reads(leaf: Compare, variable: Variable) -> bool:
-    parts = [*operands(leaf.left, leaf.right)]
-    windows = [part for part in parts if isinstance(part, WindowValue) and _adds(part, variable)]
-    same = (
-        part.name
-        for part in parts
-        if isinstance(part, UpdateValue) and isinstance(variable, SignalValue)
+    return any(
+        _is(part, variable) or (isinstance(part, WindowValue) and _adds(part, variable))
+        for part in operands(leaf.left, leaf.right)
     )
-    return variable in parts or bool(windows) or getattr(variable, "name", "") in same
+
+
+def _is(part: Numeric, variable: Variable | WindowValue) -> bool:
+    """Whether a part has the value of the variable: an update is what the signal then has."""
+    if isinstance(part, UpdateValue) and isinstance(variable, SignalValue):
+        return part.name == variable.name
+    return part == variable
 
 
 def _adds(window: WindowValue, variable: Variable) -> bool:
@@ -147,11 +150,8 @@ def _with(numeric: Numeric, variable: Variable | WindowValue, value: float) -> S
     match numeric:
         case Literal(value=constant):
             return constant
-        case SignalValue() | FieldValue() | Captured() | NowValue() | WindowValue():
-            return value if numeric == variable else 0.0
-        case UpdateValue(name=name):
-            same = isinstance(variable, SignalValue) and variable.name == name
-            return value if same else 0.0
+        case SignalValue() | FieldValue() | UpdateValue() | Captured() | NowValue() | WindowValue():
+            return value if _is(numeric, variable) else 0.0
         case Arithmetic(op=op, args=args):
             return calculated(op.entry.apply, *(_with(arg, variable, value) for arg in args))
         case _:
@@ -301,13 +301,9 @@ class _Options:
     def _payloads(self, event: str) -> list[Value]:
         fields = self.spec.events[event].fields
         values = [self._scalars(FieldValue(event, name), fields[name]) for name in fields]
-        payloads: list[Value] = []
-        for chosen in _defaults_first(values):
-            payload: Payload = dict(zip(fields, chosen, strict=True))
-            payloads.append(payload or True)
-            if len(payloads) == MOST_PAYLOADS and len(fields) > 1:
-                break
-        return payloads
+        most = MOST_PAYLOADS if len(fields) > 1 else None
+        chosen = islice(_defaults_first(values), most)
+        return [dict(zip(fields, one, strict=True)) or True for one in chosen]
 
     def _scalars(self, variable: Variable, type_: Type) -> Sequence[Scalar]:
         match type_.kind:

@@ -6,6 +6,7 @@ Examples are found by best-first search over relevant samples, instants and valu
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
 from heapq import heappop, heappush
 from itertools import count
 from operator import itemgetter
@@ -20,7 +21,7 @@ from rvmon.analysis.vacuity import Subject
 from rvmon.core.pack import pack
 from rvmon.diagnostics import Diagnostic
 from rvmon.language.checked.classify import subformulas
-from rvmon.language.checked.formula import Amount, Compare, CompareOp, windows_in
+from rvmon.language.checked.formula import Amount, Compare, windows_in
 from rvmon.language.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec, Kept
@@ -187,7 +188,7 @@ class _Search:
         self.most = budget.samples
         self.held: list[Valuation] = []
         self._numbers: dict[str, int] = {}
-        self._further: dict[int, list[tuple[int, dict[str, Value], Valuation]]] = {}
+        self._further = cache(self._sorted)
 
     def first(self) -> Iterator[_Node]:
         """The runs of one sample; signals have a value from the start."""
@@ -223,22 +224,16 @@ class _Search:
                 yield iter((wait,))
 
     def _sampled(self, node: _Node, t: int) -> Iterator[_Node]:
-        held = self.held[node.held]
-        if node.held not in self._further:
-            self._further[node.held] = self._sorted(held)
-        for stir, changes, valuation in self._further[node.held]:
+        for stir, changes, valuation in self._further(node.held):
             said = {name: value for name, value in valuation.items() if value is not SILENT}
-            number = self._number({**held, **said})
+            number = self._number({**self.held[node.held], **said})
             yield _Node((*node.samples, Sample(t, changes)), t, number, node.stir + stir)
 
-    def _sorted(self, held: Valuation) -> list[tuple[int, dict[str, Value], Valuation]]:
+    def _sorted(self, place: int) -> list[tuple[int, dict[str, Value], Valuation]]:
         """The possible samples where these values are held, those with the fewest changes first."""
-        brought = (
-            (self._changes(valuation, held), valuation) for valuation in self.choices.valuations
-        )
-        samples = [
-            (_stir(changes), changes, valuation) for changes, valuation in brought if changes
-        ]
+        held = self.held[place]
+        brought = ((self._changes(one, held), one) for one in self.choices.valuations)
+        samples = [(_stir(changes), changes, one) for changes, one in brought if changes]
         return sorted(samples, key=itemgetter(0))
 
     def _number(self, held: Valuation) -> int:
@@ -262,33 +257,19 @@ class _Search:
 
 
 def _choices(spec: CheckedSpec, requirements: Sequence[CompiledRequirement]) -> Choices:
-    leaves = {
-        state.leaf: None
-        for requirement in requirements
-        for state, _ in requirement.leaves
-        if state.leaf
-    }
-    names = {name for requirement in requirements for name in requirement.reads}
-    names |= {
-        requirement.requirement.for_each.value.event
-        for requirement in requirements
-        if requirement.requirement.for_each
-    }
-    captured = [
-        capture.value
-        for requirement in requirements
-        for capture in requirement.requirement.captures
-    ]
-    windows = [limit for requirement in requirements for limit in _windows(requirement.requirement)]
+    leaves = {state.leaf: None for one in requirements for state, _ in one.leaves if state.leaf}
+    names = {name for one in requirements for name in one.reads}
+    asked = [one.requirement for one in requirements]
+    names |= {one.for_each.value.event for one in asked if one.for_each}
+    captured = [capture.value for one in asked for capture in one.captures]
+    windows = [limit for one in asked for limit in _windows(one)]
     return choices_of(spec, list(leaves), names, captured, windows)
 
 
 def _windows(requirement: Requirement) -> Iterator[Compare]:
     """The comparisons of numeric windows in a requirement."""
     for part in (*subformulas(requirement.trigger), *subformulas(requirement.consequent)):
-        comparison = part
-        if isinstance(part, Amount):
-            comparison = Compare(CompareOp.GE, part.of, part.limit)
+        comparison = part.comparison if isinstance(part, Amount) else part
         if isinstance(comparison, Compare) and any(
             window.value is not None for window in windows_in(comparison.left, comparison.right)
         ):
@@ -312,21 +293,16 @@ class Analysis(Struct, frozen=True):
 def analyse(compiled: CompiledSpec, *, seconds: float = 8.0, timelines: int = 3) -> Analysis:
     """Analyse a specification."""
     subjects = [
-        Subject(
-            requirement.requirement,
-            requirement.obligation.trigger,
-            requirement.automaton,
-            requirement.reads,
-        )
-        for requirement in compiled.requirements.values()
+        Subject(one.requirement, one.obligation.trigger, one.automaton, one.reads)
+        for one in compiled.requirements.values()
     ]
     examination = examine(compiled.checked, subjects, seconds)
-    drawn = []
-    for conflict in examination.conflicts[:timelines]:
-        example = conflict_example(compiled, conflict)
-        if example is not None:
-            drawn.append((conflict, example))
-    return Analysis(tuple(findings_of(compiled.checked, examination)), examination, tuple(drawn))
+    drawn = tuple(
+        (conflict, example)
+        for conflict in examination.conflicts[:timelines]
+        if (example := conflict_example(compiled, conflict)) is not None
+    )
+    return Analysis(tuple(findings_of(compiled.checked, examination)), examination, drawn)
 
 
 def conflict_example(compiled: CompiledSpec, conflict: Conflict) -> Example | None:

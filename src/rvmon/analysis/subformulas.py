@@ -22,6 +22,7 @@ from rvmon.analysis.truths import (
     truths_of_parts,
 )
 from rvmon.language.checked import formula as formulas
+from rvmon.language.checked import rewrite
 from rvmon.language.checked.classify import is_end
 from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.specification import CheckedSpec, Requirement
@@ -139,11 +140,10 @@ class TriggerParts:
 
     def __init__(self, spec: CheckedSpec, requirement: Requirement) -> None:
         options = [
-            _flat(part, formulas.BinaryOp.AND)
-            for part in _flat(requirement.trigger, formulas.BinaryOp.OR)
+            tuple(dict.fromkeys(rewrite.chain(part)))
+            for part in dict.fromkeys(rewrite.chain(requirement.trigger, formulas.BinaryOp.OR))
+            if requirement.for_each is None
         ]
-        if requirement.for_each is not None:
-            options = []
         # asks for the operands; for none of `for each`, which is not explained
         self.question = Question(tuple(dict.fromkeys(chain(*options))))
         parts = {}
@@ -182,14 +182,6 @@ class Looking:
             owner = self._spec.requirements[requirement]
             self._triggers[requirement] = TriggerParts(self._spec, owner)
         return self._triggers[requirement]
-
-
-def _flat(formula: formulas.Formula, op: formulas.BinaryOp) -> tuple[formulas.Formula, ...]:
-    match formula:
-        case formulas.Binary(op=connective, left=left, right=right) if connective is op:
-            return tuple(dict.fromkeys((*_flat(left, op), *_flat(right, op))))
-        case _:
-            return (formula,)
 
 
 def _miss(parts: tuple[_Part, ...], truths: Sequence[Truth]) -> _Miss:

@@ -41,7 +41,7 @@ def windows_blamed(spec: CheckedSpec, requirement: Requirement, blame: Blame) ->
     None in a requirement with `for each` or `let`; none in held time that changes between samples,
     as it fails exactly when it reaches its limit.
     """
-    if requirement.for_each is not None or requirement.captures:
+    if requirement.captured:
         return []
     parts = list(subformulas(requirement.consequent))
     failed = [part for part in parts if format_formula(part) == blame.subformula] or parts

@@ -30,7 +30,7 @@ from rvmon.logic.state_graph import (
 )
 from rvmon.logic.window_chains import Chain, chain_of
 from rvmon.verdicts import Verdict
-from rvmon.verdicts.attempt import Decision
+from rvmon.verdicts.attempt import DECISIONS, VERDICTS, Decision
 
 _OPEN = (Verdict.INCONCLUSIVE, Decision.OPEN)
 
@@ -69,9 +69,6 @@ def settle_at_end(
         case _:
             assert_never(policy)
 
-
-_VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
-_DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
 
 _LETTER, _TRIGGER, _DETERMINED = 1, 2, 4
 _PULSE, _EPISODIC, _HIDDEN, _BLURS_ANYWHERE, _TRACED = 1, 2, 4, 8, 16
@@ -231,7 +228,7 @@ def outcomes(policy: EndPolicy) -> tuple[int, ...]:
             cannot_pass=bool(state & 2),
             cannot_fail=bool(state & 4),
         )
-        found.append(_VERDICTS.index(verdict) + 4 * _DECISIONS.index(decision))
+        found.append(VERDICTS.index(verdict) + 4 * DECISIONS.index(decision))
     return tuple(found)
 
 

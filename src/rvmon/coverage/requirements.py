@@ -20,10 +20,10 @@ from rvmon.language.checked.properties import BinKind
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.monitor.compile import CompiledRequirement
 from rvmon.monitor.compiled_spec import CompiledSpec
-from rvmon.monitor.packed_plan import DECISIONS, VERDICTS, PlannedCore, planned_core
+from rvmon.monitor.packed_plan import PlannedCore, planned_core
 from rvmon.monitor.records import RECORD
 from rvmon.verdicts import Verdict
-from rvmon.verdicts.attempt import Decision
+from rvmon.verdicts.attempt import DECISIONS, VERDICTS, Decision
 from rvmon.verdicts.report import Report
 
 Passages = Mapping[tuple[int, int], Hit]

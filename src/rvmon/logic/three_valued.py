@@ -126,7 +126,7 @@ class Reader(Reading[Four]):
         return self.factory.leaf(sf.Unborn(signals)) if signals else self.factory.state_false
 
     def _unborn_until(self, value: sf.State, asked: Iterable[sf.State]) -> Four:
-        """A value that is unborn while some of `conditions` (each "is unborn") is true."""
+        """A value that is unborn while some of what is `asked` (each "is unborn") is true."""
         factory = self.factory
         unborn = self._some_unborn(asked)
         if unborn is factory.state_false:

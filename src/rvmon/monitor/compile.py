@@ -109,9 +109,7 @@ class CompiledRequirement:
         """
         one = self.requirement
         once = isinstance(one.trigger, Constant | BoundAtom)
-        if automaton is None or once or one.captures or one.for_each:
-            return False
-        return not moves_in_runs(automaton)
+        return not (automaton is None or once or one.captured or moves_in_runs(automaton))
 
     @cached_property
     def hidden(self) -> CompiledRequirement | None:
@@ -167,8 +165,7 @@ class CompiledRequirement:
         record if they are met.
         """
         upon = self.requirement.mode is Mode.UPON and self.obligation.trigger is not None
-        bare = self.requirement.for_each is None and not self.requirement.captures
-        return upon and bare and self.ordinary is None
+        return upon and not self.requirement.captured and self.ordinary is None
 
     @cached_property
     def forecaster(self) -> Forecaster:

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.language.checked.specification import CheckedSpec
 from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.health import Findings, Losses
 from rvmon.monitor.intake import Turn, Validator
@@ -41,22 +40,24 @@ _LAYOUTS: Mapping[Kind, int] = {Kind.REAL: 0, Kind.INT: 1, Kind.BOOL: 2, Kind.LA
 """The numbers of layouts of values in `core.h`."""
 
 
-def judge_recording(
-    checked: CheckedSpec,
-    planned: PlannedCore,
-    source: Source,
-    decided: Callable[[Sequence[Attempt]], object],
+Decided = Callable[[Sequence[Attempt]], object]
+
+
+def judge_source(
+    compiled: CompiledSpec, source: Source, only: Sequence[str] | None, decided: Decided = len
 ) -> Report:
-    """Judge a recording.
+    """Judge a recording: rows of columns together, samples one by one.
 
     `decided` is called with the attempts decided before an error in the recording.
 
     Raises:
+        RvmonError: a requirement exceeds the limits of the core.
         TimeOrderError: an instant is before its predecessor.
-        TraceError: a name or value is unknown to the specification, or an instant has two payloads
-            of an event of which only one can be judged.
+        TraceError: the recording cannot be read, a name or value is unknown to the specification,
+            or an instant has two payloads of an event of which only one can be judged.
     """
-    judge = RecordingRun(checked, planned, source, finds=True)
+    planned = planned_core(compiled, only)
+    judge = RecordingRun(compiled.checked, planned, source, finds=True)
     try:
         for piece in source.pieces():
             judge.take(piece)
@@ -81,7 +82,7 @@ class RecordingRun:
         self._planned = planned
         self._rows = getattr(source.recording, "rows", None)
         self._expected = declared - absent
-        self._findings = Findings(checked, planned, absent) if finds else None
+        self._findings = Findings(planned, absent) if finds else None
         self.core = planned.monitor(absent & planned.numbers.keys())
         self._row = 0
         self._end = source.end
@@ -224,7 +225,7 @@ class RecordingRun:
         """End the run; returns its report."""
         origin, _, _ = self.core.times()
         end = self.finish()
-        findings = () if self._findings is None else self._findings.found(self.core)
+        findings = () if self._findings is None else self._findings.entries(self.core)
         health = (*findings, *(self._losses.health() if self._outages else ()))
         return report_of_run(self._planned, self.core, origin or 0, end, health)
 
@@ -256,24 +257,6 @@ def _cells(
                 raise KeyError
     says = None if cells.says is None else np.ascontiguousarray(cells.says)
     return _LAYOUTS[kind], np.ascontiguousarray(values), says
-
-
-Decided = Callable[[Sequence[Attempt]], object]
-
-
-def judge_source(
-    compiled: CompiledSpec, source: Source, only: Sequence[str] | None, decided: Decided = len
-) -> Report:
-    """Judge a recording: rows of columns together, samples one by one.
-
-    `decided` is called with the attempts decided before an error in the recording.
-
-    Raises:
-        RvmonError: a requirement exceeds the limits of the core.
-        TraceError: the recording cannot be read.
-    """
-    planned = planned_core(compiled, only)
-    return judge_recording(compiled.checked, planned, source, decided)
 
 
 def open_trace(

@@ -23,27 +23,15 @@ if TYPE_CHECKING:
 
 
 class HealthLog:
-    """Counts unknown values by name and kind; `began` is the instant of the first sample."""
+    """Counts unknown values by name and kind."""
 
-    def __init__(self) -> None:
-        self.began: int | None = None
+    def __init__(self, planned: PlannedCore, absent: frozenset[str]) -> None:
+        self.began: int | None = None  # the instant of the first sample
+        # by signal, the instant of its first update, ticks; `None`: there was none
+        self.first: dict[str, int | None] = dict.fromkeys(planned.packed.signals)
+        self._planned = planned
+        self._absent = absent
         self._seen: dict[tuple[HealthKind, str, str], tuple[int, int]] = {}
-
-    def note(self, t: int, values: Mapping[str, Value]) -> None:
-        """Count the unknown values of a sample."""
-        if self.began is None:
-            self.began = t
-        for name, value in values.items():
-            if value is None or value != value:
-                self._note(name, name, value, t)
-            elif type(value) is dict or type(value) is tuple:
-                for payload in payloads_of(value):
-                    for field, scalar in (payload or {}).items():
-                        if scalar is None or scalar != scalar:
-                            self._note(f"{name}.{field}", name, scalar, t)
-
-    def _note(self, shown: str, name: str, value: object, t: int) -> None:
-        self.add(HealthKind.NONE if value is None else HealthKind.NAN, shown, name, 1, t)
 
     def add(self, kind: HealthKind, shown: str, name: str, count: int, first: int) -> None:
         """Count further unknown values of a signal or field `shown`, `first` in ticks."""
@@ -51,28 +39,21 @@ class HealthLog:
             before, since = self._seen.get((kind, shown, name), (0, first))
             self._seen[kind, shown, name] = (before + count, since)
 
-    def entries(
-        self,
-        planned: PlannedCore,
-        run: native.Monitor,
-        absent: frozenset[str],
-        first: Mapping[str, int | None],
-        further: Iterable[Health] = (),
-    ) -> tuple[Health, ...]:
-        """All entries, sorted by name, each with the requirements that read the name.
+    def entries(self, run: native.Monitor, further: Iterable[Health] = ()) -> tuple[Health, ...]:
+        """All entries of a finished run, sorted by name, each with the requirements that read it.
 
-        `first` is, by signal, the instant of its first update, ticks; `None`: there was none.
+        `further` are those of the feed.
         """
-        readers, names = planned.readers, list(planned.numbers)
+        readers, names = self._planned.readers, list(self._planned.numbers)
         entries = [
             Health(kind, shown, count, at, readers.get(name, ()))
             for (kind, shown, name), (count, at) in self._seen.items()
         ]
         for name, ids in readers.items():
-            if name in absent:
+            if name in self._absent:
                 entries.append(Health(HealthKind.ABSENT, name, 1, None, ids))
-            elif name in first and self.began is not None and self.began != first[name]:
-                at = first[name]
+            elif name in self.first and self.began is not None and self.began != self.first[name]:
+                at = self.first[name]
                 since = "no value"
                 if at is not None:
                     since = f"first value at {format_instant(at, self.began)}"
@@ -96,30 +77,38 @@ def of_intake(intake: Intake) -> list[Health]:
     return entries
 
 
-class Findings:
+class Findings(HealthLog):
     """Collects input health while a recording is judged."""
 
-    def __init__(self, checked: CheckedSpec, planned: PlannedCore, absent: frozenset[str]) -> None:
-        self._log = HealthLog()
-        self._planned = planned
-        self._absent = absent
-        signals = [name for name in planned.readers if name in checked.signals]
-        self._first: dict[str, int | None] = dict.fromkeys(signals)
-        self._awaited = set(signals) - absent
+    def __init__(self, planned: PlannedCore, absent: frozenset[str]) -> None:
+        super().__init__(planned, absent)
+        self._awaited = (self.first.keys() & planned.readers.keys()) - absent
 
     def note_sample(self, t: int, values: Mapping[str, Value]) -> None:
         """Take account of a sample."""
-        self._log.note(t, values)
+        if self.began is None:
+            self.began = t
+        for name, value in values.items():
+            if value is None or value != value:
+                self._note(name, name, value, t)
+            elif type(value) is dict or type(value) is tuple:
+                for payload in payloads_of(value):
+                    for field, scalar in (payload or {}).items():
+                        if scalar is None or scalar != scalar:
+                            self._note(f"{name}.{field}", name, scalar, t)
         for name in self._awaited & values.keys():
             self._arrived(name, t)
+
+    def _note(self, shown: str, name: str, value: object, t: int) -> None:
+        self.add(HealthKind.NONE if value is None else HealthKind.NAN, shown, name, 1, t)
 
     def note_batch(self, batch: Batch) -> None:
         """Take account of rows."""
         from rvmon.recordings.batch import unknown_rows
 
         times = batch.times
-        if self._log.began is None:
-            self._log.began = int(times[0])
+        if self.began is None:
+            self.began = int(times[0])
         for name in self._awaited & batch.signals.keys():
             row = batch.signals[name].first_said
             if row is not None:
@@ -137,33 +126,28 @@ class Findings:
 
     def _add(self, kind: HealthKind, shown: str, name: str, at: NDArray[Any]) -> None:
         if len(at):
-            self._log.add(kind, shown, name, len(at), int(at[0]))
+            self.add(kind, shown, name, len(at), int(at[0]))
 
     def _arrived(self, name: str, t: int) -> None:
-        self._first[name] = t
+        self.first[name] = t
         self._awaited.discard(name)
-
-    def found(self, run: native.Monitor) -> tuple[Health, ...]:
-        """All entries, once the run is finished."""
-        return self._log.entries(self._planned, run, self._absent, self._first)
 
 
 def health_of_run(
     planned: PlannedCore, run: native.Monitor, absent: frozenset[str], further: Iterable[Health]
 ) -> tuple[Health, ...]:
     """The input health of a monitor's run, from the counters of the core; `further`: the feed's."""
-    log = HealthLog()
+    log = HealthLog(planned, absent)
     log.began, _, _ = run.times()
     names = [(name, name) for name in planned.numbers]
     names += [(f"{event}.{field}", event) for event, field in planned.packed.fields]
-    first: dict[str, int | None] = {}
     for (shown, name), arrivals in zip(names, iter_unpack("=5q", run.arrivals()), strict=True):
         came, none_count, none_first, nan_count, nan_first = arrivals
-        if shown in planned.packed.signals:
-            first[name] = None if came < -TIME_LIMIT else came
+        if shown in log.first and came >= -TIME_LIMIT:
+            log.first[name] = came
         log.add(HealthKind.NONE, shown, name, none_count, none_first)
         log.add(HealthKind.NAN, shown, name, nan_count, nan_first)
-    return log.entries(planned, run, absent, first, further)
+    return log.entries(run, further)
 
 
 ANY = "samples"  # the name of an entry where the lost names are not known

@@ -261,24 +261,24 @@ class Validator:
 
 
 def _scalar(value: Any, type_: Type, name: str, t: int) -> Scalar:
-    takes = _TAKES[type_.kind]
-    if type(value) in takes and (type_.kind is not Kind.LABEL or value in type_.labels):
-        known: Scalar = value
-        return known
-    if value is None:
-        return None
-    # The common types are done: what follows is of NumPy, of subclasses, or 0 and 1 of a `bool`.
-    scalar: Scalar = as_declared(plain(value), type_.kind)
-    if isinstance(scalar, float | int) and isinstance(scalar, takes) and type(scalar) is not bool:
-        scalar += 0  # may be an instance of a subclass
+    kind, takes, scalar = type_.kind, _TAKES[type_.kind], value
+    if type(value) not in takes:  # it is of NumPy, of a subclass, or 0 or 1 of a `bool`
+        scalar = as_declared(plain(value), kind)
+        if (
+            isinstance(scalar, float | int)
+            and isinstance(scalar, takes)
+            and type(scalar) is not bool
+        ):
+            scalar += 0  # may be an instance of a subclass
     if scalar is None or (
-        type(scalar) in takes and (type_.kind is not Kind.LABEL or scalar in type_.labels)
+        type(scalar) in takes and (kind is not Kind.LABEL or scalar in type_.labels)
     ):
-        return scalar
-    if type_.kind is Kind.LABEL:
-        expected = "one of " + ", ".join(type_.labels)
-    else:
-        expected = {Kind.BOOL: "True or False", Kind.INT: "a whole number"}.get(
-            type_.kind, "a number"
-        )
-    raise _refused(t, f"{name}: expected {expected}, found {value!r}")
+        known: Scalar = scalar
+        return known
+    expected = {
+        Kind.BOOL: "True or False",
+        Kind.INT: "a whole number",
+        Kind.REAL: "a number",
+        Kind.LABEL: "one of " + ", ".join(type_.labels),
+    }
+    raise _refused(t, f"{name}: expected {expected[kind]}, found {value!r}")

@@ -15,11 +15,11 @@ from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.monitor.feed import FedMonitor, Feed
 from rvmon.monitor.health import health_of_run
 from rvmon.monitor.listeners import Callback, Listeners, OneCall, capped, not_passed
-from rvmon.monitor.packed_plan import VERDICTS, PlannedCore, planned_core
+from rvmon.monitor.packed_plan import PlannedCore, planned_core
 from rvmon.monitor.snapshot import Options, document_of, restored_state, snapshot_of
 from rvmon.trace.time import ticks_of_seconds, whole_ticks
 from rvmon.verdicts import Verdict, fold
-from rvmon.verdicts.attempt import Attempt
+from rvmon.verdicts.attempt import VERDICTS, Attempt
 from rvmon.verdicts.report import Report
 
 

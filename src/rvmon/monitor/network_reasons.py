@@ -218,15 +218,10 @@ class NetworkRuns(Struct, frozen=True):
 
     def met(self, worse: Token, better: Token) -> tuple[Token, Token]:
         """The tokens of both runs, updated if the networks have decided one by now."""
-        for network, value, ended in ((self.worse, False, FAILED), (self.better, True, PASSED)):
-            token = better if value else worse
-            if network is None or token[0] != WAITING:
-                continue
-            truth = network.truth(token[1][0])
-            if truth is not None and truth[0] is value and value:
-                better = (ended, token[1])
-            elif truth is not None and truth[0] is value:
-                worse = (ended, token[1])
+        if _value(self.worse, worse) is False:
+            worse = (FAILED, worse[1])
+        if _value(self.better, better) is True:
+            better = (PASSED, better[1])
         return worse, better
 
     def required(self, attempt: Undecided, now: int, *, optimistic: bool) -> str | None:
@@ -273,6 +268,12 @@ class NetworkRuns(Struct, frozen=True):
         except TooManyClausesError:
             return True
         return forecaster.admits(residual, ages, self.gap)
+
+
+def _value(network: Network | None, token: Token) -> bool | None:
+    """What a network has decided a run to be that waited; `None`: nothing."""
+    truth = None if network is None or token[0] != WAITING else network.truth(token[1][0])
+    return None if truth is None else truth[0]
 
 
 def _alone(network: Network | None, token: Token) -> Alone:

@@ -301,7 +301,9 @@ class NotesReader:
         parts += [[compiled] for compiled in chosen if compiled.requirement.captured]
         by_requirement: dict[str, Sequence[NoteExplainer]] = {}
         for part in parts:
-            judges = [*part, *(judge for compiled in part for judge in _doubt_judges(compiled))]
+            # in the order of the plan
+            doubts = (doubt for compiled in part for doubt in (compiled.hidden, compiled.doubted))
+            judges = [*part, *filter(None, doubts)]
             explainers = [NoteExplainer(judge, gap) for judge in judges]
             by_requirement |= {compiled.requirement.id: explainers for compiled in part}
         return by_requirement
@@ -309,9 +311,3 @@ class NotesReader:
     def details(self, attempt: Attempt, note: Note, name: str) -> Mapping[str, Any]:
         """See `NoteExplainer.details`."""
         return self._explainers[attempt.requirement][note.judge].details(attempt, note, name)
-
-
-def _doubt_judges(compiled: CompiledRequirement) -> Sequence[CompiledRequirement]:
-    """The judges of its attempts in doubt, in the order of the plan."""
-    doubted = compiled.doubted if compiled.requirement.for_each is not None else None
-    return [judge for judge in (compiled.hidden, doubted) if judge is not None]

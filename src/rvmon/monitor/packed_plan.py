@@ -15,8 +15,7 @@ from rvmon.monitor.compiled_spec import Kept, Place
 from rvmon.trace.sample import Payload, Scalar, Value
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import format_ticks
-from rvmon.verdicts import Verdict
-from rvmon.verdicts.attempt import Attempt, Decision
+from rvmon.verdicts.attempt import DECISIONS, VERDICTS, Attempt
 
 if TYPE_CHECKING:
     from rvmon.core.sections import Packed
@@ -52,10 +51,6 @@ class CapturedValues:
             return bool(number)
         return self._labels[int(number)] if kind is Kind.LABEL else number
 
-
-VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
-DECISIONS = (Decision.PREFIX, Decision.HELD_TO_END, Decision.POLICY, Decision.OPEN)
-"""Decisions, and above verdicts, by their numbers in `core.h`."""
 
 _KINDS = (Kind.BOOL, Kind.INT, Kind.REAL, Kind.LABEL)  # kinds by their numbers in `module_intake.h`
 

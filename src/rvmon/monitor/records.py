@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from rvmon import native
-from rvmon.monitor.packed_plan import DECISIONS, VERDICTS, PlannedCore
+from rvmon.monitor.packed_plan import PlannedCore
 from rvmon.trace.sample import Health
 from rvmon.verdicts import Verdict, fold
-from rvmon.verdicts.attempt import Attempt, Decision, LazyAttempts
+from rvmon.verdicts.attempt import DECISIONS, VERDICTS, Attempt, Decision, LazyAttempts
 from rvmon.verdicts.report import Report
 
 if TYPE_CHECKING:

@@ -25,7 +25,6 @@ def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> Pl
     if measured and compiled.counts_alone:
         required, alphabet, automaton = _nothing_required()
     obligation = compiled.obligation
-    doubted = compiled.doubted if compiled.requirement.for_each is not None else None
     captures = bool(compiled.requirement.captures)
 
     def doubt_rule(other: CompiledRequirement | None) -> PlannedRule | None:
@@ -36,7 +35,7 @@ def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> Pl
     return PlannedRule(
         compiled.requirement, obligation.trigger, required, alphabet, automaton,
         compiled.scatters(automaton), obligation.again, obligation.unborn, obligation.determined,
-        hidden=doubt_rule(compiled.hidden), doubted=doubt_rule(doubted),
+        hidden=doubt_rule(compiled.hidden), doubted=doubt_rule(compiled.doubted),
         noted=() if measured else tuple(leaf for leaf, _ in compiled.leaves),
         running=obligation.running if captures else None,
         blurs=_blurs(compiled) if captures else None, blurs_anywhere=obligation.doubt is not None,

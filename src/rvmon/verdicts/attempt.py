@@ -30,6 +30,11 @@ class Decision(StrEnum):
     """Not settled: undecided when the trace ended, or still open."""
 
 
+VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
+DECISIONS = tuple(Decision)
+"""Decisions, and above verdicts, by their numbers in `core.h`."""
+
+
 @dataclass(frozen=True, slots=True)
 class Blame:
     """The obligation that failed, and its window.

@@ -110,7 +110,7 @@ def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
 
 
 def decode(text: str | bytes) -> tuple[ReportJson, list[Attempt]]:
-    """Read the document and the attempts of a report written by `encode`."""
+    """Read the document and the attempts of a report written by `Report.to_json`."""
     try:
         document = msgspec.json.decode(text, type=ReportJson)
         attempts = [

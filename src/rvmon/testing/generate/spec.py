@@ -97,7 +97,9 @@ def random_spec(rng: Rng, profile: Profile) -> spec.CheckedSpec:
     if profile.wide:
         profile = replace(profile, wide=100 if chance(rng, profile.wide) else 0)
     found = [draw(rng, profile, time, f"R{place}") for place in range(1, number + 1)]
-    while profile.form and not any(_has_window(requirement) for requirement in found):
+    while profile.form and not any(
+        one for asked in found for one in windows_of(asked.trigger, asked.consequent)
+    ):
         found[-1] = _requirement(rng, profile, time, f"R{number}")
     return spec.CheckedSpec(
         name="random", title="", time=time,
@@ -105,11 +107,6 @@ def random_spec(rng: Rng, profile: Profile) -> spec.CheckedSpec:
         requirements={requirement.id: requirement for requirement in found},
         period=rng.randint(1, 4) if time is spec.TimeModel.CLOCKED else None,
     )  # fmt: skip
-
-
-def _has_window(requirement: spec.Requirement) -> bool:
-    wholes = (requirement.trigger, requirement.consequent)
-    return any(True for _ in windows_of(*wholes))
 
 
 def _stale(rng: Rng, profile: Profile) -> dict[str, int]:
