@@ -87,7 +87,7 @@ class Attempt(Record):
     requirement: str
     number: int
     triggered: int
-    decided: int | None
+    decided: int | None = field()  # without a default, though Record has it as a property
     verdict: Verdict
     decision: Decision = Decision.PREFIX
     reason: str = ""

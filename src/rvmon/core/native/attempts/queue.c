@@ -239,8 +239,10 @@ bool queue_begin(run *r, int32_t index, int64_t t)
     if (made == NULL) {
         return false;
     }
-    count_begin(r, index, t);
-    count_edge(&g, g.a->initial, begun->location, 1, t);
+    if (r->home->moves != NULL) {
+        count_begin(r, index, t);
+        count_edge(&g, g.a->initial, begun->location, 1, t);
+    }
     g.j->count++;
     made->triggered = t;
     made->number = g.j->count;

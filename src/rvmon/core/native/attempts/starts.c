@@ -99,7 +99,7 @@ void begin_here(run *r, int32_t index, int64_t t, int64_t triggered)
         note_trigger(r, index, triggered);
     }
     if (judged_here && (j->first < 0) && (j->letter == j->other)
-        && (!runs_on(r, index) || is_sure(r, index)) && has_queue(r, index)) {
+        && (!runs_on(r, index) || is_sure(r, index)) && ((j->queue != NULL) || has_queue(r, index))) {
         if (r->margins != NULL) {
             margins_begin(r, index, t, measured_attempt(r, triggered, j->count + 1U));
         }

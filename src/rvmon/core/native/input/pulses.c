@@ -13,7 +13,7 @@
 #include "runs/runs.h"
 #include "windows/windows.h"
 
-/* Whether a node is read by triggers of pulses alone, in the second phase. */
+/* Whether a node is read by triggers of pulses alone, in the second phase, and one DOUBT at most. */
 static bool is_read_by_pulses(const plan *all, const part *p, const node_plan *n)
 {
     const link_plan *l = &all->links[n->links.first];
@@ -25,12 +25,8 @@ static bool is_read_by_pulses(const plan *all, const part *p, const node_plan *n
             return false;
         }
     }
-    for (i = 0; i < n->parents[1].count; i++) {
-        if (!is_doubt_of_pulse(&p->nodes[parents[i]])) {
-            return false;
-        }
-    }
-    return true;
+    return (n->parents[1].count == 0)
+           || ((n->parents[1].count == 1) && is_doubt_of_pulse(&p->nodes[parents[0]]));
 }
 
 /* Find the pulses of a part; false: memory is short. Runs that capture values keep what occurred, and
@@ -41,17 +37,21 @@ bool find_pulses(arena *a, const plan *all, part *p)
                              && (p->plan->truths < 0) && (all->counts[SEC_MARGINS] == 0);
     int32_t i;
     p->pulses = arena_take(a, (size_t)(p->plan->atoms.count + 1) * sizeof *p->pulses);
+    p->pulse_doubts = arena_take(a, (size_t)(p->plan->atoms.count + 1) * sizeof *p->pulse_doubts);
     p->pulsing = arena_take(a, (size_t)(p->plan->events.count + 1) * sizeof *p->pulsing);
-    if ((p->pulses == NULL) || (p->pulsing == NULL)) {
+    if ((p->pulses == NULL) || (p->pulse_doubts == NULL) || (p->pulsing == NULL)) {
         return false;
     }
     for (i = 0; i < p->plan->atoms.count; i++) {
         const list leaves = p->atoms[i].nodes[1];
         p->pulses[i] = -1;
+        p->pulse_doubts[i] = -1;
         if (are_unheard && (p->atoms[i].momentary != 0) && (leaves.count == 1)) {
             const int32_t leaf = LIST(all, leaves)[0];
             if ((p->nodes[leaf].op == NODE_LEAF) && is_read_by_pulses(all, p, &p->nodes[leaf])) {
+                const list doubts = p->nodes[leaf].parents[1];
                 p->pulses[i] = leaf;
+                p->pulse_doubts[i] = (doubts.count > 0) ? LIST(all, doubts)[0] : -1;
             }
         }
     }
@@ -66,35 +66,29 @@ bool find_pulses(arena *a, const plan *all, part *p)
     return true;
 }
 
-/* Whether a DOUBT above a leaf has to hear of it. */
-static bool is_doubted(const run *r, int32_t leaf)
+/* Whether the DOUBT above the leaf of a pulse has to hear of it. */
+static inline bool is_doubted(const run *r, int32_t atom)
 {
-    const list doubts = r->part->nodes[leaf].parents[1];
-    int32_t i;
-    for (i = 0; i < doubts.count; i++) {
-        if (r->truth[LIST(PLAN(r), doubts)[i]] != IS_FALSE) {
-            return true;
-        }
-    }
-    return false;
+    const int32_t doubt = r->part->pulse_doubts[atom];
+    return (doubt >= 0) && (r->truth[doubt] != IS_FALSE);
 }
 
 /* Whether an atom of the last position is FALSE at the next, and nothing there hears of it. */
 static bool ends_unheard(const run *r, int32_t atom)
 {
-    const int32_t leaf = r->part->pulses[atom];
-    return (leaf >= 0) && (atom_now(r, &r->part->atoms[atom]) == IS_FALSE) && !is_doubted(r, leaf);
+    return (r->part->pulses[atom] >= 0) && !is_doubted(r, atom)
+           && (atom_now(r, &r->part->atoms[atom]) == IS_FALSE);
 }
 
 /* Set the leaf of a pulse at `t`, of which no DOUBT hears. */
-static void set_unheard(run *r, int32_t leaf, uint8_t now, int64_t t)
+static inline void set_unheard(run *r, int32_t atom, uint8_t now, int64_t t)
 {
-    const list doubts = r->part->nodes[leaf].parents[1];
+    const int32_t leaf = r->part->pulses[atom];
+    const int32_t doubt = r->part->pulse_doubts[atom];
     const uint8_t was = r->truth[leaf];
-    int32_t i;
     r->truth[leaf] = now;
-    for (i = 0; i < doubts.count; i++) {
-        (void)doubt_stays(r, LIST(PLAN(r), doubts)[i], now);
+    if (doubt >= 0) {
+        r->seen[r->part->nodes[doubt].slot] = now; /* as doubt_stays() does */
     }
     if (r->truth_log != NULL) {
         note_node(r, leaf, was, t);
@@ -113,7 +107,7 @@ bool take_pulse(run *r, int32_t local, int32_t says)
         return true; /* it occurs, whatever else is said of it */
     }
     if ((says != RV_SAYS_YES) || (r->at.presence != ARE_THERE) || (r->at.lost_count > 0)
-        || (r->atom[atom] != IS_FALSE) || is_doubted(r, r->part->pulses[atom])) {
+        || (r->atom[atom] != IS_FALSE) || is_doubted(r, atom)) {
         return false;
     }
     r->atom[atom] = IS_TRUE;
@@ -139,7 +133,7 @@ void start_pulses(run *r, int64_t t)
         r->fading[i] = r->fresh[i];
         r->is_fresh[r->fading[i]] = 0;
         r->is_fading[r->fading[i]] = 1;
-        set_unheard(r, r->part->pulses[r->fading[i]], IS_TRUE, t);
+        set_unheard(r, r->fading[i], IS_TRUE, t);
     }
     for (i = 0; i < count; i++) {
         const list links = r->part->nodes[r->part->pulses[r->fading[i]]].links;
@@ -184,7 +178,7 @@ void end_pulses(run *r)
     for (i = 0; i < r->at.fading_count; i++) {
         r->is_fading[r->fading[i]] = 0;
         r->atom[r->fading[i]] = IS_FALSE;
-        set_unheard(r, r->part->pulses[r->fading[i]], IS_FALSE, t);
+        set_unheard(r, r->fading[i], IS_FALSE, t);
     }
     r->at.fading_count = 0;
     for (i = 0; i < r->repeating_count; i++) {

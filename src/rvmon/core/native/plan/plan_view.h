@@ -96,6 +96,7 @@ typedef struct {
     int32_t *perishable;       /* by number among those that go stale, the signal */
     quick_signal *quick;       /* by signal */
     int32_t *pulses;           /* by atom, its leaf if nothing hears of its end; -1: see input/pulses.c */
+    int32_t *pulse_doubts;     /* by such an atom, the DOUBT above its leaf; -1: none */
     int32_t *pulsing;          /* by event, its one atom if nothing but such a pulse reads it; -1 */
     int32_t *networked;        /* judges decided by a network (not by a chain) */
     int32_t networked_count;

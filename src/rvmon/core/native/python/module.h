@@ -21,7 +21,7 @@ typedef struct {
 
 /* A copy of the note of an attempt. */
 typedef struct {
-    int64_t *words;            /* NULL: there is no note; then the state of the propositions */
+    int64_t *words;            /* NULL: there is no note; the state of the propositions follows */
     PyObject *pieces;          /* tuple of the full pieces of letters; NULL: they do not matter */
     PyObject *last;            /* bytes of the last piece, shared; the first `last_count` words are its
                                 * own */
@@ -32,9 +32,15 @@ typedef struct {
 
 /* Fields of a record that are objects; those from REASON on are computed when first asked for. */
 enum {
-    REQUIREMENT, DECIDED, VERDICT, DECISION, DETAILS, NOTED, REASON, DEADLINE, AT_TRIGGER, AT_DECISION,
+    REQUIREMENT, VERDICT, DECISION, DETAILS, NOTED, REASON, DEADLINE, AT_TRIGGER, AT_DECISION,
     REQUIRED, CAPTURED, BLAME, FORECAST, ROBUSTNESS, OBJECTS
 };
+
+enum { UNSET, NEVER_SO_FAR, AT_INSTANT };
+
+/* Words of a note that a record has room for: with its header an object stays below 512 bytes, up to which
+ * Python allocates fast. */
+#define FEW_WORDS 24
 
 typedef struct {
     PyObject_HEAD
@@ -44,8 +50,11 @@ typedef struct {
     long long number;
     long long triggered;
     long long origin;          /* first sample of the run */
+    long long decided;         /* if it is AT_INSTANT */
     char in_doubt;
+    char settling;             /* UNSET, NEVER_SO_FAR: `decided` is None, or AT_INSTANT */
     bool is_worked_out;        /* a field from NOTED on may be set */
+    int64_t few[FEW_WORDS];    /* the words of most notes; nothing else is set by new_record() */
 } attempt_record;
 
 /* Kinds of a signal's or field's values. */
@@ -156,8 +165,8 @@ void note_dropped(void *user, void *held);
 void free_dropped(note_cache *cache);
 PyObject *bytes_of_words(const int64_t *words, int64_t count);
 PyObject *letters_of(const rv_note *note);
-bool copy_note(note_copy *to, const rv_monitor *m, const rv_record *record);
-void free_note(note_copy *note);
+bool copy_note(attempt_record *to, const rv_monitor *m, const rv_record *record);
+void free_note(attempt_record *of);
 PyObject *noted_with(const note_copy *note, PyObject *values);
 
 /* ---- module_record.c */

@@ -110,14 +110,13 @@ static PyObject *attempt_of(const monitor *c, const rv_record *record, const rv_
     made->number = record->number;
     made->triggered = record->triggered;
     made->origin = (began != RV_NO_TIME) ? began : 0;
-    made->objects[DECIDED] = (record->decision == (uint8_t)RV_OPEN)
-        ? Py_NewRef(Py_None) : PyLong_FromLongLong(record->decided);
+    made->settling = (record->decision == (uint8_t)RV_OPEN) ? NEVER_SO_FAR : AT_INSTANT;
+    made->decided = record->decided;
     made->in_doubt = (record->in_doubt != 0U) ? 1 : 0;
     if (count > 0) {
         made->values = values_of(captured, count);
     }
-    if ((made->objects[DECIDED] == NULL) || ((count > 0) && (made->values == NULL))
-        || !copy_note(&made->note, c->m, record)) {
+    if (((count > 0) && (made->values == NULL)) || !copy_note(made, c->m, record)) {
         Py_CLEAR(made);
     }
     return (PyObject *)made;
@@ -152,7 +151,13 @@ void gather_records(const monitor *c, int64_t first, bool open, gathering *g)
     const int64_t count = rv_records(c->m, &records);
     int64_t i;
     for (i = first; (i < count) && !g->failed; i++) {
-        if ((records[i].decision == (uint8_t)RV_OPEN) == open) {
+        if ((records[i].decision == (uint8_t)RV_OPEN) != open) {
+            continue;
+        }
+        if ((c->sizes.captured == 0) && (g->count < g->room)) { /* as most are, without calls */
+            g->records[g->count] = records[i];
+            g->count++;
+        } else {
             (void)gather(g, &records[i], rv_captured(c->m, &records[i]));
         }
     }

@@ -153,39 +153,43 @@ PyObject *letters_of(const rv_note *note)
 }
 
 /* Copy the note of a record; false with an error. */
-bool copy_note(note_copy *to, const rv_monitor *m, const rv_record *record)
+bool copy_note(attempt_record *to, const rv_monitor *m, const rv_record *record)
 {
+    note_copy *made = &to->note;
     rv_note note;
     if (!rv_note_of(m, record, &note)) {
         return true;
     }
-    to->words = PyMem_Malloc((size_t)(note.count + note.state_count) * sizeof *to->words);
-    if (to->words == NULL) {
+    made->words = (note.count + note.state_count <= FEW_WORDS)
+        ? to->few : PyMem_Malloc((size_t)(note.count + note.state_count) * sizeof *made->words);
+    if (made->words == NULL) {
         (void)PyErr_NoMemory();
         return false;
     }
-    to->count = (int32_t)note.count;
-    to->state_count = (int32_t)note.state_count;
-    (void)memcpy(to->words, note.words, (size_t)note.count * sizeof *to->words);
+    made->count = (int32_t)note.count;
+    made->state_count = (int32_t)note.state_count;
+    (void)memcpy(made->words, note.words, (size_t)note.count * sizeof *made->words);
     if (note.state_count > 0) {
-        (void)memcpy(&to->words[note.count], note.state,
-                     (size_t)note.state_count * sizeof *to->words);
+        (void)memcpy(&made->words[note.count], note.state,
+                     (size_t)note.state_count * sizeof *made->words);
     }
     if (note.first == NULL) {
         return true;
     }
-    to->pieces = pieces_of(&note);
-    to->last = bytes_from(note.last, note.last_count);
-    to->last_count = note.last_count;
-    return (to->pieces != NULL) && (to->last != NULL);
+    made->pieces = pieces_of(&note);
+    made->last = bytes_from(note.last, note.last_count);
+    made->last_count = note.last_count;
+    return (made->pieces != NULL) && (made->last != NULL);
 }
 
-void free_note(note_copy *note)
+void free_note(attempt_record *of)
 {
-    PyMem_Free(note->words);
-    note->words = NULL;
-    Py_CLEAR(note->pieces);
-    Py_CLEAR(note->last);
+    if (of->note.words != of->few) {
+        PyMem_Free(of->note.words);
+    }
+    of->note.words = NULL;
+    Py_CLEAR(of->note.pieces);
+    Py_CLEAR(of->note.last);
 }
 
 /* The captured values, or None; with a note (values, note, state, pieces, last piece), None for what is

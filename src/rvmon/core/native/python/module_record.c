@@ -35,7 +35,7 @@ attempt_record *new_record(PyTypeObject *type)
 {
     attempt_record *made = (attempt_record *)new_uncollected(type);
     if (made != NULL) {
-        (void)memset(made->objects, 0, sizeof *made - offsetof(attempt_record, objects));
+        (void)memset(made->objects, 0, offsetof(attempt_record, few) - offsetof(attempt_record, objects));
     }
     return made;
 }
@@ -49,7 +49,7 @@ static void record_dealloc(PyObject *self)
         Py_XDECREF(own->objects[i]);
     }
     Py_XDECREF(own->values);
-    free_note(&own->note);
+    free_note(own);
     free_uncollected(self);
 }
 
@@ -77,7 +77,34 @@ static int set_noted(PyObject *self, PyObject *value, void *unused)
     own->objects[NOTED] = (value != NULL) ? Py_NewRef(value) : NULL;
     Py_XDECREF(was);
     Py_CLEAR(own->values);
-    free_note(&own->note);
+    free_note(own);
+    return 0;
+}
+
+/* The instant of the decision: most attempts are never asked for it, so it is no object. */
+static PyObject *get_decided(PyObject *self, void *unused)
+{
+    const attempt_record *own = (const attempt_record *)self;
+    (void)unused;
+    switch (own->settling) {
+    case AT_INSTANT: return PyLong_FromLongLong(own->decided);
+    case NEVER_SO_FAR: return Py_NewRef(Py_None);
+    default: PyErr_SetString(PyExc_AttributeError, "decided"); return NULL;
+    }
+}
+
+static int set_decided(PyObject *self, PyObject *value, void *unused)
+{
+    attempt_record *own = (attempt_record *)self;
+    (void)unused;
+    if ((value != NULL) && (value != Py_None)) {
+        const long long decided = PyLong_AsLongLong(value);
+        if ((decided == -1) && (PyErr_Occurred() != NULL)) {
+            return -1;
+        }
+        own->decided = decided;
+    }
+    own->settling = (value == NULL) ? UNSET : ((value == Py_None) ? NEVER_SO_FAR : AT_INSTANT);
     return 0;
 }
 
@@ -121,6 +148,7 @@ static int set_late(PyObject *self, PyObject *value, void *place)
 
 static PyGetSetDef record_getset[] = {
     {"_noted", get_noted, set_noted, NULL, NULL},
+    {"decided", get_decided, set_decided, NULL, NULL},
     RVMON_LATE("reason", REASON),
     RVMON_LATE("deadline", DEADLINE),
     RVMON_LATE("at_trigger", AT_TRIGGER),
@@ -142,7 +170,6 @@ static PyMemberDef record_members[] = {
     {"origin", T_LONGLONG, offsetof(attempt_record, origin), 0, NULL},
     {"in_doubt", T_BOOL, offsetof(attempt_record, in_doubt), 0, NULL},
     RVMON_OBJECT("requirement", REQUIREMENT),
-    RVMON_OBJECT("decided", DECIDED),
     RVMON_OBJECT("verdict", VERDICT),
     RVMON_OBJECT("decision", DECISION),
     RVMON_OBJECT("_details", DETAILS),

@@ -253,10 +253,10 @@ void pass_time(run *r, int64_t limit, bool comes)
         int64_t stop;
         position = next_position(r);
         until = least(position - 1, limit);
-        for (i = 0; (gap <= 1) && (comes || (position <= limit)) && (i < networked); i++) {
+        for (i = 0; (i < networked) && (gap <= 1) && (comes || (position <= limit)); i++) {
             network_put_off(r, index[i], until);
         }
-        for (i = 0; restarts && (i < networked); i++) {
+        for (i = 0; (i < networked) && restarts; i++) {
             network_foresee(r, index[i], until);
         }
         stop = restarts ? least(until, timers_next(&r->rules)) : until;

@@ -7,8 +7,7 @@
 /* The first of start, start + step, ... that is not before `t`. */
 static int64_t position_from(int64_t start, int64_t step, int64_t t)
 {
-    const int64_t ahead = t - start;
-    return start + (ahead + step - 1) / step * step;
+    return (step == 1) ? t : start + (t - start + step - 1) / step * step; /* to divide takes long */
 }
 
 /* The first multiple of the gap from `t` on, for t of either sign. */
