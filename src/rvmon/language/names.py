@@ -146,16 +146,13 @@ def overridden(
         findings.extend(wrong)
         if value is not None:
             values[name] = value
-    return [_with_values(file, values) for file in files]
 
-
-def _with_values(file: items.ParsedSpec, values: Mapping[str, Expression]) -> items.ParsedSpec:
-    def item_with_value(item: items.Item) -> items.Item:
+    def with_value(item: items.Item) -> items.Item:
         if isinstance(item, items.ConstItem) and item.name.text in values:
             return replace(item, value=values[item.name.text])
         return item
 
-    return replace(file, items=tuple(map(item_with_value, file.items)))
+    return [replace(file, items=tuple(map(with_value, file.items))) for file in files]
 
 
 def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozenset[str]:

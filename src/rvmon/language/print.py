@@ -78,14 +78,10 @@ def _formula(formula: rv.Formula, level: int) -> str:
             return _amount(formula, denied=False)
         case rv.Unary(op=rv.UnaryOp.NOT, operand=rv.Amount() as denied):
             return _amount(denied, denied=True)
-        case rv.Unary(op=rv.UnaryOp.ONCE) if (age := _age(formula, denied=False)) is not None:
-            return age
-        case rv.Unary(op=rv.UnaryOp.NOT, operand=one) if (
-            age := _age(one, denied=True)
-        ) is not None:
-            return age
+        case rv.Unary(op=rv.UnaryOp.NOT, operand=one):
+            return _age(one, denied=True) or _unary(formula)
         case rv.Unary():
-            return _unary(formula)
+            return _age(formula, denied=False) or _unary(formula)
         case rv.Passed(since=since, after=after, strict=strict):
             begin = "" if since is None else f" - {_name(since)}"
             return f"now{begin} {'>' if strict else '>='} {format_numeric(after)}"
@@ -96,8 +92,8 @@ def _formula(formula: rv.Formula, level: int) -> str:
             assert_never(formula)
 
 
-def _age(formula: rv.Formula, *, denied: bool) -> str | None:
-    """The text of a limit on an age, or of its negation; `None` if the formula is none."""
+def _age(formula: rv.Formula, *, denied: bool) -> str:
+    """The text of a limit on an age, or of its negation; "" if the formula is none."""
     match formula:
         case rv.Unary(
             op=rv.UnaryOp.ONCE,
@@ -115,7 +111,7 @@ def _age(formula: rv.Formula, *, denied: bool) -> str | None:
             op, limit = min(most, below, key=lambda one: len(one[1]))
             return f"age({_name(name)}) {op.denied if denied else op} {limit}"
         case _:
-            return None
+            return ""
 
 
 def _amount(formula: rv.Amount, *, denied: bool) -> str:

@@ -264,15 +264,10 @@ def _scalar(value: Any, type_: Type, name: str, t: int) -> Scalar:
     kind, takes, scalar = type_.kind, _TAKES[type_.kind], value
     if type(value) not in takes:  # it is of NumPy, of a subclass, or 0 or 1 of a `bool`
         scalar = as_declared(plain(value), kind)
-        if (
-            isinstance(scalar, float | int)
-            and isinstance(scalar, takes)
-            and type(scalar) is not bool
-        ):
-            scalar += 0  # may be an instance of a subclass
-    if scalar is None or (
-        type(scalar) in takes and (kind is not Kind.LABEL or scalar in type_.labels)
-    ):
+        is_number = isinstance(scalar, takes) and not isinstance(scalar, str | bool)
+        scalar = scalar + 0 if is_number else scalar  # may be an instance of a subclass
+    is_taken = scalar is None or type(scalar) in takes
+    if is_taken and (kind is not Kind.LABEL or scalar in (None, *type_.labels)):
         known: Scalar = scalar
         return known
     expected = {

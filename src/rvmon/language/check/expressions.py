@@ -23,7 +23,6 @@ from rvmon.language.rules.syntax import Cost, Effort
 from rvmon.language.syntax import expressions as ast
 from rvmon.language.syntax.expressions import Window as WindowSyntax
 from rvmon.language.syntax.items import ConstItem, DefineItem
-from rvmon.trace.schema import Kind
 from rvmon.units import PLAIN, UnknownUnitError, parse_unit
 
 P = ParamSpec("P")
@@ -194,33 +193,19 @@ class Checker:
 
     def _atom(self, name: ast.Name, scope: sc.Scope) -> sc.Value:
         table = self.table
+        unit = table.units.get(name.text, PLAIN)
         if signal := table.signals.get(name.text):
-            return self._typed(
-                rv.SignalValue(signal.name), signal.type.kind, signal.type.labels, name
-            )
+            return sc.typed(rv.SignalValue(signal.name), signal.type, unit)
         if name.text in table.events:
             return rv.EventAtom(name.text, name.span)
         if field := table.field(name.text):
-            value = rv.FieldValue(field.event, field.field)
-            return self._typed(value, field.type.kind, field.type.labels, name)
+            return sc.typed(rv.FieldValue(field.event, field.field), field.type, unit)
         if name.text in table.declared or name.text in table.doubtful:
             raise Reported  # its declaration is wrong, and that is recorded
         if name.text == NOW:
             return sc.Now()
         close = sc.close_name(table, name.text, tuple(scope.names))
         raise Refusal(name_rules.unknown(name.span, name.text, close))
-
-    def _typed(
-        self,
-        node: rv.SignalValue | rv.FieldValue,
-        kind: Kind,
-        labels: tuple[str, ...],
-        name: ast.Name,
-    ) -> sc.Quantity:
-        return sc.Quantity(
-            node, unit=self.table.units.get(name.text, PLAIN), integral=kind is Kind.INT,
-            labels=labels, truth=kind is Kind.BOOL,
-        )  # fmt: skip
 
     def _defined_value(self, name: ast.Name, declared: DefineItem | ConstItem) -> sc.Value:
         """A macro without parameters or a constant: evaluated once, shared by all its uses."""

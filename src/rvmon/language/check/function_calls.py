@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from msgspec.structs import replace
+
 from rvmon.diagnostics import Diagnostic, Span
-from rvmon.language.check.scope import Age, Operands, Quantity, Scope, Value
+from rvmon.language.check.scope import Age, Operands, Quantity, Scope, Value, typed
 from rvmon.language.check.windows import amount, is_extreme
 from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
@@ -100,14 +102,11 @@ def _of_updates(
     if function is not rv.UpdateFunction.PREV and signal.type.kind in (Kind.BOOL, Kind.LABEL):
         raise Refusal(rules.argument_kind(span, function, "a signal with numbers"))
     unit = operands.table.units.get(name, PLAIN)
-    rate = function is rv.UpdateFunction.RATE
-    return Quantity(
-        rv.UpdateValue(function, name),
-        unit=quotient(unit, parse_unit("s")) if rate and unit.symbol else unit,
-        integral=signal.type.kind is Kind.INT and not rate,
-        labels=signal.type.labels,
-        truth=signal.type.kind is Kind.BOOL,
-    )
+    found = typed(rv.UpdateValue(function, name), signal.type, unit)
+    if function is not rv.UpdateFunction.RATE:
+        return found
+    rate = quotient(unit, parse_unit("s")) if unit.symbol else unit
+    return replace(found, unit=rate, integral=False)
 
 
 def _unknown(operands: Operands, call: Call) -> Diagnostic:

@@ -14,7 +14,7 @@ from rvmon.language.check.ctl import linear_form, property_of
 from rvmon.language.check.expressions import Checker
 from rvmon.language.check.moving_windows import refuse_moving
 from rvmon.language.check.quantities import node_of
-from rvmon.language.check.scope import EVERYWHERE, AtTrigger, Moment, Now, Quantity, Scope
+from rvmon.language.check.scope import EVERYWHERE, AtTrigger, Moment, Now, Quantity, Scope, typed
 from rvmon.language.check.traps import (
     at_start_by_mistake,
     capture_traps,
@@ -33,7 +33,6 @@ from rvmon.language.rules import requirements as rules
 from rvmon.language.rules import types as type_rules
 from rvmon.language.syntax import items
 from rvmon.language.syntax.expressions import Ident, ungrouped
-from rvmon.trace.schema import Kind
 from rvmon.units import PLAIN
 
 _C = TypeVar("_C", bound=items.Clause)
@@ -227,13 +226,8 @@ def _instances(checker: Checker, item: items.RequirementItem) -> tuple[spec.ForE
             # An undeclared name is refused here, with a suggestion.
             checker.values((clause.field,), EVERYWHERE)
             raise Refusal(type_rules.argument_kind(clause.field.span, "for each", "an event.field"))
-        local = Quantity(
-            rv.Captured(clause.name.text),
-            unit=checker.table.units.get(clause.field.text, PLAIN),
-            integral=field.type.kind is Kind.INT,
-            labels=field.type.labels,
-            truth=field.type.kind is Kind.BOOL,
-        )
+        unit = checker.table.units.get(clause.field.text, PLAIN)
+        local = typed(rv.Captured(clause.name.text), field.type, unit)
         value = rv.FieldValue(field.event, field.field)
         return spec.ForEach(clause.name.text, value), Scope({clause.name.text: local})
     return None, EVERYWHERE

@@ -16,6 +16,7 @@ from rvmon.language.checked.specification import Capture, Event, Signal, TimeMod
 from rvmon.language.names import Declared
 from rvmon.language.syntax.expressions import Expression
 from rvmon.texts import nearest
+from rvmon.trace.schema import Kind
 from rvmon.units import PLAIN, Unit, unit_table
 
 
@@ -30,6 +31,14 @@ class Quantity(Struct, frozen=True):
     labels: tuple[str, ...] = ()  # the labels it may take, if it is one
     truth: bool = False  # whether it is a bool, for which 0 and 1 stand
     lone: Lone | None = None  # the window that it is, if it is no expression of one
+
+
+def typed(node: rv.Numeric, type_: Type, unit: Unit) -> Quantity:
+    """What an expression of a declared type yields."""
+    return Quantity(
+        node, unit=unit, integral=type_.kind is Kind.INT,
+        labels=type_.labels, truth=type_.kind is Kind.BOOL,
+    )  # fmt: skip
 
 
 class Age(Struct, frozen=True):

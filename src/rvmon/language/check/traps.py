@@ -138,10 +138,11 @@ def _reach(part: rv.Formula) -> int:
     match part:
         case rv.Unary(op=rv.UnaryOp.HELD, interval=window) if window is not None:
             return window.high or 0
-        case rv.Unary(op=rv.UnaryOp.ONCE, interval=window) if window is not None:
-            return window.low
-        case rv.Binary(op=rv.BinaryOp.SINCE, interval=window) if window is not None:
-            return window.low
+        case (
+            rv.Unary(op=rv.UnaryOp.ONCE, interval=rv.Interval(low=low))
+            | rv.Binary(op=rv.BinaryOp.SINCE, interval=rv.Interval(low=low))
+        ):
+            return low
         case _:
             return 0
 

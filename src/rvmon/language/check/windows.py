@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from rvmon.diagnostics import Span
 from rvmon.language.check.comparisons import number_of
 from rvmon.language.check.quantities import arithmetic, node_of
-from rvmon.language.check.scope import Chosen, Lone, Operands, Quantity, Scope, Value
+from rvmon.language.check.scope import Chosen, Lone, Operands, Quantity, Scope
 from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.classify import future_part, is_pulse
@@ -161,8 +161,9 @@ def _added(operands: Operands, measured: rv.Measured, call: Call, window: _Windo
     (value,) = operands.values((window.of,), window.scope)
     conditions: list[rv.Formula] = []
     may_choose = measured in (rv.Measured.SUM, rv.Measured.INTEGRAL) and window.most is None
-    if isinstance(value, Chosen) and may_choose and _is_nothing(value.otherwise):
-        conditions, value = chain(value.condition), value.chosen
+    match value:
+        case Chosen(otherwise=Quantity(constant=0)) if may_choose:
+            conditions, value = chain(value.condition), value.chosen
     quantity = number_of(value, place)
     if quantity.node is None:
         raise Refusal(rules.not_added(place, measured, measured.of.value))
@@ -191,10 +192,6 @@ def _added(operands: Operands, measured: rv.Measured, call: Call, window: _Windo
         _refuse_future(condition, call, measured)
         member = Formulas(place).both(condition, member)
     return Lone(rv.WindowValue(measured, member, None, node, chosen=chosen), quantity)
-
-
-def _is_nothing(value: Value) -> bool:
-    return isinstance(value, Quantity) and value.constant == 0
 
 
 def _is_of_occurrence(formula: rv.Formula, events: set[str]) -> TypeGuard[rv.Compare]:
