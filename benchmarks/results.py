@@ -19,10 +19,9 @@ import re
 import statistics
 import subprocess
 import sys
-import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -86,7 +85,8 @@ def run(size: Size, sections: Sequence[str], r2u2: Path | None) -> dict[str, Any
     results, agreements, tables = list[Result](), list[Agreement](), dict[str, str]()
     for section in sections:
         if section not in SECTIONS:
-            tables[TITLES[section]] = "\n".join(_told(section, size, environment))
+            say(section)
+            tables[TITLES[section]] = "\n".join(TOLD[section](size, environment))
             continue
         racing = [*contenders(environment, section)]
         if r2u2 is not None and section in BUILT_FOR:
@@ -118,16 +118,12 @@ def run(size: Size, sections: Sequence[str], r2u2: Path | None) -> dict[str, Any
     }
 
 
-def _told(section: str, size: Size, environment: Environment) -> Iterator[str]:
-    """The table of a section in which nobody races."""
-    say(section)
-    if section == "files":
-        with tempfile.TemporaryDirectory() as folder:
-            yield from files.table_of_files(size, environment, Path(folder))
-    elif section == "cliffs":
-        yield from cliffs.lines(2 * size.rows // 5, size.repeats)
-    else:
-        yield from differences.lines(environment)
+TOLD: Mapping[str, Callable[[Size, Environment], Iterator[str]]] = {
+    "files": files.lines,
+    "cliffs": lambda size, _: cliffs.lines(2 * size.rows // 5, size.repeats),
+    "differences": lambda _, environment: differences.lines(environment),
+}
+"""The tables of sections in which nobody races."""
 
 
 def machine() -> str:

@@ -138,23 +138,21 @@ def compiled(folder: Path, target: str) -> Path:
 
 def begun_with(folder: Path, target: str) -> None:
     """Write the inputs that AFL++ begins with, and the plans that samples are judged by."""
+    held, rng = list[bytes](), random.Random("samples")
+    match target:
+        case "plans":
+            inputs = [*plans("plans", most=60, limit=SMALL)]
+        case "models":
+            inputs = [searched.numbers for searched in search_plans(range(12))]
+        case "snapshots":
+            held, inputs = map(list, zip(*snapshots(PLANS), strict=True))
+        case _:
+            held = [*plans("samples", most=PLANS)]
+            inputs = [rng.randbytes(120) for _ in held]
     (folder / "in").mkdir()
-    if target == "plans":
-        for number, data in enumerate(plans("plans", most=60, limit=SMALL)):
-            (folder / "in" / str(number)).write_bytes(data)
-        return
-    if target == "models":
-        for number, searched in enumerate(search_plans(range(12))):
-            (folder / "in" / str(number)).write_bytes(searched.numbers)
-        return
-    if target == "snapshots":
-        pairs = [*snapshots(PLANS)]
-    else:
-        rng = random.Random("samples")
-        pairs = [(plan, rng.randbytes(120)) for plan in plans("samples", most=PLANS)]
-    for number, (_, data) in enumerate(pairs):
-        (folder / "in" / str(number)).write_bytes(bytes([number]) + data)
-    sized = b"".join(struct.pack("<q", len(plan)) + plan for plan, _ in pairs)
+    for number, data in enumerate(inputs):
+        (folder / "in" / str(number)).write_bytes((bytes([number]) if held else b"") + data)
+    sized = b"".join(struct.pack("<q", len(plan)) + plan for plan in held)
     (folder / "held").write_bytes(sized)
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from tests.tools.build import requirement, spec_over
 from tests.tools.common_fragment import unrolled
-from tests.tools.compare import Key
+from tests.tools.compare import Key, key_of
 from tests.tools.differential import Campaign, campaign, case_of, cases_of
 from tests.tools.doors import content_of, whole
 from tests.tools.drive import drive
@@ -90,8 +90,8 @@ def by_samples(case: Case) -> Figures:
     """Robustness by a monitor that is stepped."""
     monitor = RobustnessMonitor(Spec(case.spec)._compiled, sources=case.names)
     last, returned = drive(monitor, case)
-    told = [one for several in (*returned, last) for one in several or ()]
-    return _bounds({(o.requirement, o.in_doubt, o.number or 0): o.robustness for o in told})
+    told = (one for several in (*returned, last) for one in several or ())
+    return {key_of(one): _bounds(one.robustness) for one in told}
 
 
 def by_arrays(case: Case) -> Figures:
@@ -101,12 +101,16 @@ def by_arrays(case: Case) -> Figures:
         columns[name] = np.array([one.values[name] for one in case.samples])
     until = None if case.end is None else case.end * 1e-9
     found = Spec(case.spec).robustness(columns, until=until, allow_missing=True)
-    sure = {(name, False, n): one for (name, n), one in found.attempts.items()}
-    return _bounds(sure | {(name, True, n): one for (name, n), one in found.doubtful.items()})
+    both = {False: found.attempts, True: found.doubtful}
+    return {
+        (name, in_doubt, number): _bounds(one)
+        for in_doubt, own in both.items()
+        for (name, number), one in own.items()
+    }
 
 
-def _bounds(found: Mapping[Key, Robustness]) -> Figures:
-    return {key: (one.low, one.high, one.kept) for key, one in found.items()}
+def _bounds(one: Robustness) -> tuple[float, float, float]:
+    return one.low, one.high, one.kept
 
 
 def _in_columns(case: Case) -> Case:

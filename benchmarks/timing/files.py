@@ -8,6 +8,7 @@ import os
 import random
 import statistics
 import sys
+import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from importlib.util import find_spec
@@ -130,22 +131,20 @@ def _failures(printed: str, instant: str = "triggered") -> Failures:
     ]
 
 
-def table_of_files(size: Size, environment: Environment, folder: Path) -> Iterator[str]:
-    """What a robot's files take, by what they are and who judges them."""
-    tasks, refused = [*_tasks(size, environment, folder)], list[Task]()
-
-    def rows() -> Iterator[Sequence[str]]:
+def lines(size: Size, environment: Environment) -> Iterator[str]:
+    """What a robot's files take, by what they are and who judges them: a table."""
+    with tempfile.TemporaryDirectory() as name:
+        folder, rows = Path(name), list[Sequence[str]]()
+        tasks = [*_tasks(size, environment, folder)]
         for what in dict.fromkeys(task.what for task in tasks):
             own = [task for task in tasks if task.what == what]
             measure(own, size.processes, folder)
-            refused.extend(task for task in own if task.refusal)
             there = [task for task in own if not task.refusal]
-            yield from (_cells(task, there[0]) for task in there)
-
+            rows += [_cells(task, there[0]) for task in there]
     head = ("files", "by", "wall (least to most)", "CPU", "memory", "the first over this")
-    yield from table([*head, "failures"], rows())
-    if refused:
-        told = "; ".join(f"{task.who}, {task.what}: {task.refusal}" for task in refused)
+    yield from table([*head, "failures"], rows)
+    refused = (f"{one.who}, {one.what}: {one.refusal}" for one in tasks if one.refusal)
+    if told := "; ".join(refused):
         yield from ("", f"Not measured: {told}.")
 
 

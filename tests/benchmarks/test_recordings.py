@@ -24,14 +24,14 @@ def in_this_process(command: Sequence[str], **_: object) -> Cost:
 
 
 @pytest.mark.slow
-def test_all_ways_find_the_same_failures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_all_ways_find_the_same_failures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Each way has a line, with a ratio as its failures are the first's; who is absent is named."""
     monkeypatch.setattr(files, "SMALL", 3)
     monkeypatch.setattr(files, "EACH", 1_000)
     monkeypatch.setattr(files, "measured", in_this_process)
     absent = Environment(Path(sys.executable), {}, {"duckdb": "not on this index"})
     size = replace(QUICK, file_rows=20_000, columns=2_000, files=2, processes=1)
-    lines = list(files.table_of_files(size, absent, tmp_path))
+    lines = list(files.lines(size, absent))
     assert lines[-1] == "Not measured: DuckDB, 20,000 rows: not on this index."
     cells = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines[2:-2]]
     assert len(cells) == 16
