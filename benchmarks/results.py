@@ -74,11 +74,6 @@ class Goal:
     changing: float  # only results where at most this share of the rows changes
 
 
-def _goals() -> list[Goal]:
-    with (HERE / "goals.csv").open(newline="") as file:
-        return msgspec.convert([*csv.DictReader(file)], list[Goal], strict=False)
-
-
 def run(size: Size, sections: Sequence[str], r2u2: Path | None) -> dict[str, Any]:
     """Measure the chosen sections, reporting what is under way; what the page says."""
     began, environment = time.monotonic(), prepare()
@@ -202,7 +197,8 @@ def _alike(compared: Sequence[Agreement], result: Result, ours: Figure, peer: Fi
 
 def _met(results: Sequence[Result], compared: Sequence[Agreement]) -> Iterator[Sequence[str]]:
     """A row for each goal."""
-    for goal in _goals():
+    rows = csv.DictReader((HERE / "goals.csv").read_text("utf-8").splitlines())
+    for goal in msgspec.convert([*rows], list[Goal], strict=False):
         pairs = [
             (ours.median, peer.median)
             for result in results

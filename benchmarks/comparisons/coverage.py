@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Callable, Iterator, Sequence
-from itertools import product
+from itertools import pairwise, product
 
 from tests.tools.differential import Campaign
 from tests.tools.random_specs import with_random_coverage
@@ -65,14 +65,8 @@ def _starts(word: Word, upon: Formula) -> list[int]:
 
 def _stretches(truths: Sequence[Truth]) -> list[int]:
     """Where it is true, and was false since it last was, or was never true."""
-    found = []
-    for k, truth in enumerate(truths):
-        if truth is not Truth.TRUE:
-            continue
-        earlier = [j for j in range(k) if truths[j] is Truth.TRUE]
-        if not earlier or any(truths[j] is Truth.FALSE for j in range(earlier[-1], k)):
-            found.append(k)
-    return found
+    true = [k for k, truth in enumerate(truths) if truth is Truth.TRUE]
+    return true[:1] + [k for j, k in pairwise(true) if Truth.FALSE in truths[j:k]]
 
 
 def by_law(case: Case) -> dict[str, Found]:

@@ -34,9 +34,8 @@ def judge_doors(found: Campaign, seed: int, numbers: range) -> None:
                     expected = text if expected is None else expected
                     found.counts[door] += 1
                     if text != expected or text.isidentifier():
-                        found.disagreements.append(
-                            f"{place}, {door}:\n  {text}\n  first door: {expected}"
-                        )
+                        both = f"{text}\n  first door: {expected}"
+                        found.disagreements.append(f"{place}, {door}:\n  {both}")
 
 
 def _contents(seed: str) -> Iterator[tuple[str, Spec, Content]]:

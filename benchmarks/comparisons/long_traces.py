@@ -146,12 +146,9 @@ def by_law(case: Case) -> Told:
 def of_report(report: Report) -> Told:
     """What a report says of its attempts."""
     return {
-        one.number: (
-            (one.triggered, one.decided, one.verdict)
-            if one.decision is Decision.PREFIX
-            else (one.triggered, None, None)
-        )
+        one.number: (one.triggered, *(ended if one.decision is Decision.PREFIX else (None, None)))
         for one in report.attempts
+        for ended in [(one.decided, one.verdict)]
     }
 
 

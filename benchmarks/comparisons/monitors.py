@@ -184,8 +184,8 @@ def judge_fillings(
         found.counts.update(f"verdict {verdict}" for verdict in tried.verdicts.values())
         found.counts["turned by a filling that may"] += tried.is_split
         if tried.overturning is not None:
-            lines = [f"number {number}: {tried.verdicts}", show_case(case), "filled in:"]
-            found.disagreements.append("\n".join([*lines, show_case(tried.overturning)]))
+            shown = f"{show_case(case)}\nfilled in:\n{show_case(tried.overturning)}"
+            found.disagreements.append(f"number {number}: {tried.verdicts}\n{shown}")
 
 
 def judge_forecasts(

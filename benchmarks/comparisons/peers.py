@@ -83,11 +83,10 @@ def random_question(rng: random.Random, way: Way, compared: int) -> Question:
     for name in sorted({*names_read(asked)} or {"p"}):
         column = columns[name] = []
         while len(column) < ticks:
-            if not column or chance(rng, 40):
-                is_number = name in NUMBERS
-                column.append(float(rng.randint(-2, 3)) if is_number else chance(rng, 50))
-            else:
+            if column and chance(rng, 60):
                 column.append(column[-1])
+            else:
+                column.append(float(rng.randint(-2, 3)) if name in NUMBERS else chance(rng, 50))
     return Question(asked, columns, way.time)
 
 

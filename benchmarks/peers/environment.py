@@ -46,13 +46,11 @@ def prepare() -> Environment:
     if found.get("pins") != pins:
         if not python.exists():
             subprocess.run([sys.executable, "-m", "venv", str(HOME)], check=True)
-        named = {pin: pin.partition("==")[::2] for pin in pins}
-        reasons = {pin: _install(python, pin) for pin in pins}
-        found = {
-            "pins": pins,
-            "versions": dict(named[pin] for pin, reason in reasons.items() if not reason),
-            "missing": {named[pin][0]: reason for pin, reason in reasons.items() if reason},
-        }
+        found = {"pins": pins, "versions": {}, "missing": {}}
+        for pin in pins:
+            name, _, wanted = pin.partition("==")
+            reason = _install(python, pin)
+            found["missing" if reason else "versions"][name] = reason or wanted
         stamp.write_text(json.dumps(found))
     versions, missing = found["versions"], found["missing"]
     reason = _build_reelay(python, versions.get("reelay", ""))

@@ -19,7 +19,9 @@ from benchmarks.peers.dialects import translate
 from benchmarks.peers.environment import Environment
 from benchmarks.process import Cost, measured
 from benchmarks.program import in_turn, table
-from benchmarks.timing.workload import Size, always_text, processed, specification
+from benchmarks.timing.workload import Size, families, specification
+
+from rvmon.language.print import format_formula
 
 _PEERS = Path(__file__).parents[1] / "peers"
 RVMON = (sys.executable, "-m", "rvmon", "run")
@@ -82,14 +84,15 @@ def measure(tasks: Sequence[Task], repeats: int, folder: Path) -> None:
             task.costs.append(cost)
 
 
-def _families(size: Size, environment: Environment, folder: Path) -> Iterator[Task]:
+def _of_formulas(size: Size, environment: Environment, folder: Path) -> Iterator[Task]:
     """Families of formulas beside reelay's C++, of which the first violated row counts."""
-    for number, workload in enumerate(processed(size)):
+    asked = families("process", (("AbsentAQ", 10), ("RespondGLB", 1000)), size.columns)
+    for number, workload in enumerate(asked):
         own = folder / f"family{number}"
         own.mkdir()
         spec, path = own / "spec.rv", own / "trace.csv"
-        (formula,) = workload.formulas
-        spec.write_text(specification([always_text(formula)], workload.columns))
+        formula = workload.formulas[0]
+        spec.write_text(specification([f"always ({format_formula(formula)})"], workload.columns))
         arrays = {name: np.array(column) for name, column in workload.columns.items()}
         table = {"t_ns": np.arange(workload.rows, dtype=np.int64), **arrays}
         cells, head = np.column_stack([*table.values()]), ",".join(table)
@@ -175,7 +178,7 @@ def _tasks(size: Size, environment: Environment, folder: Path) -> Iterator[Task]
     small = [str(written(folder / f"small{n:04}.csv", 50, n)) for n in range(SMALL)]
     yield judged(f"{SMALL:,} files of 50 rows", *small)
     yield judged("10 rows", str(written(folder / "tiny.csv", 10, 0)))
-    yield from _families(size, environment, folder)
+    yield from _of_formulas(size, environment, folder)
 
 
 def _odd(plain: Path) -> Mapping[str, Path]:

@@ -17,7 +17,7 @@ from benchmarks.peers.dialects import spelling, translate
 from benchmarks.peers.environment import HOME, LETTERS, Environment, packed
 from benchmarks.peers.ways import RTAMT_STEPPED, WAYS, Question, Way
 from benchmarks.program import in_turn
-from benchmarks.timing.workload import Workload, always_text, specification
+from benchmarks.timing.workload import Workload, specification
 from tests.tools.build import scaled
 from tests.tools.common_fragment import UntranslatableError
 
@@ -112,7 +112,8 @@ class Ours(Worker):
             spec, period = margin_text(workload), 1
         else:
             period = workload.period
-            texts = [always_text(scaled(formula, period)) for formula in workload.formulas]
+            formulas = (scaled(formula, period) for formula in workload.formulas)
+            texts = [f"always ({format_formula(formula)})" for formula in formulas]
             spec = specification(texts, columns)
         asked = {"spec": spec, "kind": self.kind, "columns": columns}
         self.peer.ask("load", rows=rows, period=period, **asked)
@@ -246,8 +247,7 @@ def measure(
             spent = [one.cpu_ns / rows[label] for one in own]
             least, middle, most = min(spent), statistics.median(spent), max(spent)
             figures.append(Figure(label, rows[label], middle, least, most, own[-1].violated))
-    one = workload
-    about = one.section, one.name, one.form, one.rows, one.changing
+    about = workload.section, workload.name, workload.form, workload.rows, workload.changing
     return Result(*about, tuple(figures), tuple(refusals.items()))
 
 

@@ -14,7 +14,6 @@ from rvmon import loads
 from rvmon.language.checked.formula import Formula
 from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.rewrite import without_spans
-from rvmon.language.print import format_formula
 
 Column = Sequence[bool | float]
 FORMS = ("past", "future")
@@ -91,16 +90,6 @@ def specification(requirements: Sequence[str], columns: Mapping[str, Column]) ->
     for number, text in enumerate(requirements, start=1):
         lines += ["", f"requirement R{number}", f"  {text}"]
     return "\n".join(lines) + "\n"
-
-
-def always_text(formula: Formula) -> str:
-    """That a formula holds at every position, as people write it.
-
-    >>> from tests.tools.build import eventually, p, q, two
-    >>> always_text(two(p, "->", eventually(q, 0, 3)))
-    'always (p -> within 3 ns q)'
-    """
-    return f"always ({format_formula(formula)})"
 
 
 def _online(size: Size) -> Iterator[Workload]:
@@ -208,7 +197,7 @@ _BATCHED = (
 )
 
 
-def _families(section: str, named: Sequence[tuple[str, int]], *rows: int) -> Iterator[Workload]:
+def families(section: str, named: Sequence[tuple[str, int]], *rows: int) -> Iterator[Workload]:
     """Families of past forms, with many and with few rows that change."""
     for name, high in named:
         family = timescales.FAMILIES[name]
@@ -218,11 +207,6 @@ def _families(section: str, named: Sequence[tuple[str, int]], *rows: int) -> Ite
             yield Workload(section, f"{name} {high}, {count:,} rows", "past", asked, columns)
 
 
-def processed(size: Size) -> Iterator[Workload]:
-    """For whole processes."""
-    return _families("process", (("AbsentAQ", 10), ("RespondGLB", 1000)), size.columns)
-
-
 SECTIONS: Mapping[str, Callable[[Size], Iterator[Workload]]] = {
     "online": _online,
     "many": _many,
@@ -230,6 +214,6 @@ SECTIONS: Mapping[str, Callable[[Size], Iterator[Workload]]] = {
     "unsteady": _unsteady,
     "failing": _failing,
     "margins": lambda size: _unsteady(size, "margins"),
-    "batch": lambda size: _families("batch", _BATCHED, size.columns, size.columns // 10),
+    "batch": lambda size: families("batch", _BATCHED, size.columns, size.columns // 10),
 }
 """What all contenders pass over, by section."""
