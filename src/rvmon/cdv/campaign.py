@@ -295,11 +295,9 @@ def unreachable_items(
             continue
         items = [*_named(unreachable, model)]
         if not items and closing:
-            place = (
-                f"{unreachable.group}: {unreachable.item}"
-                if unreachable.group
-                else f"code `{unreachable.item}`"
-            )
+            place = f"code `{unreachable.item}`"
+            if unreachable.group:
+                place = f"{unreachable.group}: {unreachable.item}"
             known = [
                 f"{name}: {item}" for name, group in model.groups.items() for item in group.items
             ]

@@ -123,10 +123,8 @@ def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
         )
     for strategy, strategy_summary in figures.strategies.items():
         for name, decision in strategy_summary.shares.items():
-            result = (
-                f"{decision}, {errors_text(decision)}" if decision.holds is not None else decision
-            )
-            notes.append(f"{name} {decision.share}: under {strategy} {result}.")
+            errors = "" if decision.holds is None else f", {errors_text(decision)}"
+            notes.append(f"{name} {decision.share}: under {strategy} {decision}{errors}.")
     strategies = figures.strategies.values()
     if crashed := sum(len(strategy.errors[Ending.CRASHED]) for strategy in strategies):
         notes.append(

@@ -242,9 +242,8 @@ class Witnesses:
         robot = names.index(self._model.automaton)
         places = self._network.automata[robot].locations
         passed = [run.start, *(step.position for step in run.steps)]
-        states = (
-            self._model.states.get(places[position.locations[robot]].name) for position in passed
-        )
+        visited = (places[position.locations[robot]].name for position in passed)
+        states = map(self._model.states.get, visited)
         return [*dict.fromkeys(state for state in states if state is not None)]
 
     def _on_edge(self, name: str) -> Witness | Proof | None:

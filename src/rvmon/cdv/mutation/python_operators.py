@@ -80,10 +80,8 @@ class Scope:
 
     def alternatives(self, node: ast.Constant) -> list[str]:
         """Strings that may stand for one: the next of its use, of what is returned the next two."""
-        return self._strings.others(node)[: 2 if self._is_returned(node) else 1]
-
-    def _is_returned(self, node: ast.Constant) -> bool:
-        return any(isinstance(one, ast.Return) and one.value is node for one in self._nodes)
+        returned = any(isinstance(one, ast.Return) and one.value is node for one in self._nodes)
+        return self._strings.others(node)[: 2 if returned else 1]
 
     def further(self, elements: Sequence[ast.expr]) -> list[str]:
         """The next string that a set of strings has not."""
@@ -113,11 +111,6 @@ class Scope:
     def is_top_level(self, node: ast.stmt) -> bool:
         """Whether it is one of its statements, and not part of another."""
         return any(one is node for one in self._body)
-
-    def is_step(self, node: ast.stmt) -> bool:
-        """Whether it is one of its statements, and does something."""
-        is_text = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
-        return self.is_top_level(node) and not is_text
 
     def returned(self) -> list[str]:
         """The constants that it returns; nothing, once, if it returns no values."""
@@ -224,7 +217,8 @@ def _changes_of_statement(node: ast.stmt, scope: Scope) -> Iterator[Change]:
             yield "dropped block", node, "pass"
         case ast.Return() if not scope.is_top_level(node):
             yield "dropped return", node, "pass"
-    if scope.is_step(node) and not is_needed:
+    is_text = isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+    if scope.is_top_level(node) and not (is_text or is_needed):
         # RSR, return statement replacement (KO)
         for value in scope.returned()[-1:]:
             yield "early return", node, f"return {value}".strip()

@@ -95,10 +95,9 @@ class MutationReport:
     @property
     def survives(self) -> bool:
         """Whether a suite does not see a mutant that is not known to be equivalent."""
-        scores = (
-            one[ALL] for name in self.suites for one in (self.scores(name), self.spec_scores(name))
-        )
-        return any(score.killed < score.rest for score in scores)
+        both = (scores(name)[ALL] for name in self.suites
+                for scores in (self.scores, self.spec_scores))  # fmt: skip
+        return any(score.killed < score.rest for score in both)
 
     def contradictions(self) -> list[str]:
         """Mutants that are declared equivalent, and are killed, or make a run differ."""
@@ -172,9 +171,7 @@ def _by_third(
 
 def killer(tried: Tried) -> str:
     """The killer of a mutant, in words: the requirement that fails first."""
-    finding = next(
-        (each for each in tried.findings if each.how == "requirement"), tried.findings[0]
-    )
+    finding = min(tried.findings, key=lambda each: each.how is not How.REQUIREMENT)
     what = ", ".join(finding.what)
     return f"{finding.how} ({what})" + (f" in {finding.test}" if finding.test else "")
 

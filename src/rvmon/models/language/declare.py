@@ -88,9 +88,8 @@ def _counted(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
     """Findings that say the same of several places as one, with their number and the first few."""
     alike: dict[tuple[str, str, str], list[Diagnostic]] = {}
     for diagnostic in findings:
-        alike.setdefault((diagnostic.code, diagnostic.message, diagnostic.help), []).append(
-            diagnostic
-        )
+        key = diagnostic.code, diagnostic.message, diagnostic.help
+        alike.setdefault(key, []).append(diagnostic)
     for first, *others in alike.values():
         if not others:
             yield first
@@ -201,11 +200,8 @@ class _Placer:
                 parts.channel_spans += [span] * len(names)
             case _:
                 first = _room(parts.variables, len(names), MAX_PARTS, "variables", span)
-                numbers = (
-                    [symbols.default_of(kind)] * len(names)
-                    if value is None
-                    else symbols.flat(value)
-                )
+                default = [symbols.default_of(kind)] * len(names)
+                numbers = default if value is None else symbols.flat(value)
                 parts.variables += map(partial(symbols.variable_of, kind), names, numbers)
         is_real = kind.base is BaseType.DOUBLE
         return sc.PlacedSymbol(kind.placed_as, Slot(first, kind.extents), is_real)

@@ -255,9 +255,8 @@ def _edges(
     entering: list[tuple[str, automaton_syntax.EdgeText]] = []
     for element in template.all("transition"):
         edge = _edge(element, names, findings)
-        source, target = (element.first(end) for end in ("source", "target"))
-        start = "" if source is None else source.attributes.get("ref", "")
-        end = "" if target is None else target.attributes.get("ref", "")
+        ends = (element.first(end) for end in ("source", "target"))
+        start, end = ("" if one is None else one.attributes.get("ref", "") for one in ends)
         if start in branches:
             weight = _part(_labels(element).get("probability"), "conditions", findings, None)
             branches[start].append((edge, weight or syntax.Number(1, edge.span)))

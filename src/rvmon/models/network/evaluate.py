@@ -112,12 +112,10 @@ def evaluator(expression: ex.Expression) -> Evaluator:
         case ex.UnaryOperation(unary, operand):
             compute, inner = UNARY[unary], evaluator(operand)
             return lambda locations, values: compute(inner(locations, values))
-        case ex.BinaryOperation(ex.BinaryOp.AND, _, _):
-            every = [evaluator(part) for part in chained(ex.BinaryOp.AND, expression)]
-            return lambda locations, values: int(all(part(locations, values) for part in every))
-        case ex.BinaryOperation(ex.BinaryOp.OR, _, _):
-            some = [evaluator(part) for part in chained(ex.BinaryOp.OR, expression)]
-            return lambda locations, values: int(any(part(locations, values) for part in some))
+        case ex.BinaryOperation(ex.BinaryOp.AND | ex.BinaryOp.OR as op):
+            joined = all if op is ex.BinaryOp.AND else any
+            parts = [evaluator(part) for part in chained(op, expression)]
+            return lambda locations, values: int(joined(part(locations, values) for part in parts))
         case ex.BinaryOperation(op, left, right, span):
             return _binary_evaluator(op, evaluator(left), evaluator(right), span)
         case ex.Choice(condition, then, otherwise):

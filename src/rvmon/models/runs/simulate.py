@@ -219,11 +219,10 @@ class _Choice:
     def delay(self, random: Random, mean_wait: float) -> int:
         """A delay: uniformly from all windows, or if the last has no end exponentially in them."""
         counts = [b - a + 1 for a, b in self.windows]
-        drawn = (
-            int(random.expovariate(1 / mean_wait))
-            if counts[-1] == inf
-            else random.randrange(int(sum(counts)))
-        )
+        if counts[-1] == inf:
+            drawn = int(random.expovariate(1 / mean_wait))
+        else:
+            drawn = random.randrange(int(sum(counts)))
         place = 0
         while drawn >= counts[place]:
             drawn -= int(counts[place])
@@ -264,13 +263,12 @@ def _window(
         if rate == 0:
             if left < -SLACK:
                 return None
-        elif isinstance(left, int) and isinstance(rate, int):
-            low, high = (
-                (low, min(high, left // rate)) if rate > 0 else (max(low, -(left // -rate)), high)
-            )
+            continue
+        if isinstance(left, int) and isinstance(rate, int):
+            step = left // rate if rate > 0 else -(left // -rate)
         else:
             step = ceil(left / rate - SLACK)
-            low, high = (low, min(high, step)) if rate > 0 else (max(low, step), high)
+        low, high = (low, min(high, step)) if rate > 0 else (max(low, step), high)
     return (low, high) if low <= high else None
 
 
