@@ -66,9 +66,8 @@ def gates(robots: Collection[str]) -> dict[str, Gate]:
     }
     if "legacy" in robots:  # it reads too late for some of the model's runs
         for strategy in _MODEL_BASED:
-            found[strategy] = replace(
-                found[strategy], untriggered=(*found[strategy].untriggered, "R2")
-            )
+            lacks = (*found[strategy].untriggered, "R2")
+            found[strategy] = replace(found[strategy], untriggered=lacks)
     if "correct" in robots:
         found["disturbed"] = Gate(_SELDOM, inconclusive=("R5",))  # the distance sensor may be dead
     if "legacy" not in robots:

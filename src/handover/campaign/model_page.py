@@ -187,9 +187,8 @@ def _strategy_row(pairs: Sequence[tuple[AbstractTest, Conformance]], addresses: 
         if found.conforms is not True:
             address = addresses.get((ROBOT, test.name))
             link = Markup('<a href="{}">{}</a>').format(address, test.name)
-            others.append(
-                Markup("{} does not: {}").format(link if address else test.name, _where(found))
-            )
+            who = link if address else test.name
+            others.append(Markup("{} does not: {}").format(who, _where(found)))
     conforming = f"{len(pairs) - len(others)} conform"
     strategy = pairs[0][0].strategy
     return f"runs, {strategy}", str(len(pairs)), conforming, Markup("; ").join(others)

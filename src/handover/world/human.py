@@ -44,9 +44,8 @@ class Limb:
         """Begin to move from the present place to a goal; returns the duration in seconds."""
         here = self._place()
         speed = self._speed()
-        duration = max(
-            p.SHORTEST_REACH_S, PEAK_OVER_MEAN * math.dist(here[:2], goal[:2]) / p.REACH_SPEED
-        )
+        brisk = PEAK_OVER_MEAN * math.dist(here[:2], goal[:2]) / p.REACH_SPEED
+        duration = max(p.SHORTEST_REACH_S, brisk)
         paths = tuple(quintic(a, v, b, duration) for a, v, b in zip(here, speed, goal, strict=True))
         self._reach = _Reach(goal, duration, paths)
         return duration

@@ -63,9 +63,8 @@ def plan(
     for name in strategies:
         if name not in campaign.strategies:
             raise UnknownNameError(f"no strategy `{name}`: there are {known}")
-    generated = {
-        name: _made(campaign, name, tests, seed) for name in strategies or campaign.strategies
-    }
+    names = strategies or campaign.strategies
+    generated = {name: _made(campaign, name, tests, seed) for name in names}
     _refuse_names(campaign, [test for several in generated.values() for test in several])
     return Plan(campaign, seed, generated)
 

@@ -111,15 +111,10 @@ def judge_campaign(
 
 def _undecided(decisions: Mapping[str, Decision], *, strict: bool) -> str:
     """The complaint about a share of runs; empty if it holds, or need not be decided."""
-    rejected = [
-        f"under {name} it {decision}"
-        for name, decision in decisions.items()
-        if decision.holds is False
-    ]
-    if strict and not any(decision.holds for decision in decisions.values()):
-        rejected = rejected or [
-            f"under {name} it is {decision}" for name, decision in decisions.items()
-        ]
+    found = decisions.items()
+    rejected = [f"under {name} it {one}" for name, one in found if one.holds is False]
+    if strict and not rejected and not any(one.holds for _, one in found):
+        rejected = [f"under {name} it is {one}" for name, one in found]
     return "; ".join(rejected)
 
 
@@ -218,9 +213,8 @@ def _gated(
     groups: dict[tuple[str, str], list[Played]] = {}
     for test_run in played:
         if test_run.job.test.mutation is None:  # a planted fault says nothing about the robot
-            groups.setdefault((test_run.job.robot, _gate_name(campaign, test_run)), []).append(
-                test_run
-            )
+            key = test_run.job.robot, _gate_name(campaign, test_run)
+            groups.setdefault(key, []).append(test_run)
     for (robot, strategy), tests in groups.items():
         gate = campaign.gates.get(strategy, Gate())
         place = f"{strategy}, {robot}" if strategy else robot

@@ -210,9 +210,8 @@ def execute(
     played: list[Played] = []
     cut_short = "" if kept is None or kept.shard is None else f"shard {kept.shard}"
     try:
-        with closing(
-            outcomes(plan.campaign, left, jobs=jobs, controls=controls, spool=spool)
-        ) as results:
+        playing = outcomes(plan.campaign, left, jobs=jobs, controls=controls, spool=spool)
+        with closing(playing) as results:
             for job in tests:
                 before = known.get((job.test.name, job.robot))
                 if before is not None:

@@ -162,9 +162,8 @@ def merged(several: Iterable[Hits]) -> dict[str, dict[str, Hit]]:
         for group, items in hits.items():
             group_hits = total.setdefault(group, {})
             for item, hit in items.items():
-                group_hits[item] = Hit(
-                    hit.count + (group_hits[item].count if item in group_hits else 0)
-                )
+                known = group_hits[item].count if item in group_hits else 0
+                group_hits[item] = Hit(known + hit.count)
     return total
 
 

@@ -185,9 +185,8 @@ def _following(
     """The automaton that follows a recording up to the last of some places."""
     watcher = Watcher(network, labels, [""])
     for place in chain:
-        watcher.add_location(
-            [ex.ClockCompare(watcher.clock, ex.ClockOp.LE, ex.Constant(place.latest))]
-        )
+        until = ex.ClockCompare(watcher.clock, ex.ClockOp.LE, ex.Constant(place.latest))
+        watcher.add_location([until])
     numbers = {(place.t, place.left): number for number, place in enumerate(chain)}
     named: dict[tuple[str, ...], ex.Expression] = {(): _named(watcher, labels, ())}
     for number, place in enumerate(chain):

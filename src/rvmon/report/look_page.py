@@ -99,10 +99,8 @@ def values(column: Column) -> str:
     if column.is_event:
         return f"{column.updates:,} times" if column.updates != 1 else "once"
     if column.shape.kind is Kind.BOOL:
-        words = {"false": 0.0, "true": 1.0}
-        return " and ".join(
-            word for word, number in words.items() if number in column.course.extremes
-        )
+        taken = column.course.extremes
+        return " and ".join(word for word, n in (("false", 0.0), ("true", 1.0)) if n in taken)
     if column.low is None or column.high is None:
         return "unknown"
     if column.shape.kind is Kind.INT and column.low != column.high:

@@ -53,10 +53,8 @@ def coverage_lines(groups: Sequence[CoveredGroup]) -> Iterator[str]:
         covered = f"{group.name}: {len(wanted) - len(holes):,} of {len(wanted):,} covered"
         yield f"{covered}; hit: {wording.first_of(hit, wording.SHOWN)}" if hit else covered
         if holes:
-            found = (f"{one.name} ({one.hits:,} of {one.goal:,})" for one in holes)
-            names = [
-                name if one.goal > 1 else one.name for one, name in zip(holes, found, strict=True)
-            ]
+            found = (f" ({one.hits:,} of {one.goal:,})" if one.goal > 1 else "" for one in holes)
+            names = [f"{one.name}{hits}" for one, hits in zip(holes, found, strict=True)]
             yield f"{group.name}: not covered: {wording.first_of(names, wording.SHOWN)}"
 
 
@@ -88,9 +86,8 @@ def print_report(report: Report, spec: CheckedSpec, printer: Printer) -> None:
         _print_verdicts(report, spec, printer)
     for name, verdict in report.verdicts.items():
         if name in report.misses:
-            why = wording.wrapped(
-                wording.without_attempts(verdict, report.misses[name]), printer.width
-            )
+            reason = wording.without_attempts(verdict, report.misses[name])
+            why = wording.wrapped(reason, printer.width)
             printer.line((f"{name} ", "bold"), wording.verdict_text(verdict), f"\n{why}\n")
         for shown in (Verdict.FAIL, Verdict.INCONCLUSIVE):
             count = report.counts.get(name, {}).get(shown, 0)
@@ -168,9 +165,8 @@ def _print_attempt(
     when = "\n  ".join([f"attempt {attempt.numbered}, {first}", *rest])
     if attempt.robustness is not None:
         when += f", robustness {attempt.robustness:.4g}"
-    printer.line(
-        (f"{attempt.requirement} ", "bold"), wording.verdict_text(attempt.verdict), f"  {when}"
-    )
+    name: Piece = (f"{attempt.requirement} ", "bold")
+    printer.line(name, wording.verdict_text(attempt.verdict), f"  {when}")
     if attempt.reason:
         printer.line(wording.wrapped(wording.full_reason(attempt, report), printer.width))
     if attempt.forecast is not None:

@@ -91,9 +91,8 @@ def health_facts(entries: Sequence[Health], origin: int) -> Iterator[tuple[str, 
         elif entry.is_doubt:
             yield entry.name, f"warning: {entry.remark}"
         else:
-            first = (
-                "" if entry.first is None else f", first at {format_stamped(entry.first, origin)}"
-            )
+            at = "" if entry.first is None else format_stamped(entry.first, origin)
+            first = f", first at {at}" if at else ""
             times = "once" if entry.count == 1 else f"{entry.count} times"
             remark = f": {entry.remark}" if entry.remark else ""
             readers = f"  ({', '.join(entry.requirements)})" if entry.requirements else ""

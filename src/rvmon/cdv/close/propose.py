@@ -237,9 +237,9 @@ def _of_strategies(
     campaign: Campaign, strategies: Sequence[str], robot: str, tests: int, seed: int
 ) -> Iterator[Test]:
     """The tests of strategies that are for a robot without a planted fault."""
-    tests_by_strategy = (
-        plan(campaign, strategies, tests=tests, seed=seed).tests if strategies else {}
-    )
-    for test in chain.from_iterable(tests_by_strategy.values()):
+    if not strategies:
+        return
+    by_strategy = plan(campaign, strategies, tests=tests, seed=seed).tests
+    for test in chain.from_iterable(by_strategy.values()):
         if test.mutation is None and test.robot in (None, robot):
             yield test

@@ -114,9 +114,8 @@ def mutants(
             if is_constant or node.lineno in lines:
                 for kind, before, after, text in _changes(source, node, scope):
                     ordinals[name, kind] += 1
-                    yield Mutant(
-                        path, node.lineno, kind, before, after, text, name, ordinals[name, kind]
-                    )
+                    at, ordinal = node.lineno, ordinals[name, kind]
+                    yield Mutant(path, at, kind, before, after, text, name, ordinal)
 
 
 def _scopes(

@@ -167,10 +167,7 @@ def _symbol(item: syntax.Named, scope: sc.Scope, parts: Parts, resolver: Resolve
     kind = resolver.typed(item, scope)
     if isinstance(item, syntax.TypeDefinition):
         return sc.TypeSymbol(kind)
-    if prod(map(len, kind.extents)) > symbols.MAX_VALUES:
-        raise model_error(
-            "TA019", f"an array of more than {symbols.MAX_VALUES:,} elements", item.span
-        )
+    symbols.check_size(prod(map(len, kind.extents)), item.span)
     value = None if item.initial is None else _initial(item.initial, kind, scope, resolver)
     if kind.const and value is None:
         fix = f"write const {item.name} = …"

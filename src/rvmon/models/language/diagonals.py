@@ -177,9 +177,8 @@ def _values(edge: Edge, diagonal: Diagonal) -> dict[int, int]:
     found: dict[int, int] = {}
     for reset in resets_in(edge.updates):
         if reset.clock in (diagonal.first, diagonal.second):
-            if not isinstance(reset.value, ex.Constant) or all(
-                one is not reset for one in edge.updates
-            ):
+            is_direct = any(one is reset for one in edge.updates)
+            if not (is_direct and isinstance(reset.value, ex.Constant)):
                 fix = "set it to a number, in the update of the edge itself"
                 message = "a clock that is compared with another one is set to what is computed"
                 raise model_error("TA008", message, edge.span, fix)
@@ -234,9 +233,8 @@ def _without(
     for place in automaton.locations:
         upper = tuple(bound for bound in place.invariant.clocks if bound.op not in _LOWER)
         locations.append(replace(place, invariant=replace(place.invariant, clocks=upper)))
-    return replace(
-        automaton, locations=tuple(locations), edges=tuple(e for e in edges if e is not None)
-    )
+    kept = tuple(edge for edge in edges if edge is not None)
+    return replace(automaton, locations=tuple(locations), edges=kept)
 
 
 def _refusal(message: str, span: Span | None) -> Exception:

@@ -180,9 +180,8 @@ def _make(
     assert isinstance(place, sc.PlacedSymbol), "of a number"
     body, goes_on = Bodies(text, resolver).statements(text.body.statements, inner)
     if goes_on:
-        body.append(
-            ex.Return(ex.Constant(0)) if text.type is None else ex.Missing(text.name, text.span)
-        )
+        missing = ex.Missing(text.name, text.span)
+        body.append(ex.Return(ex.Constant(0)) if text.type is None else missing)
     slots = [*parameters, *indices]
     return ex.Function(
         text.name, tuple((slot, functions.variable(ex.Slot(slot))) for slot in slots),

@@ -76,9 +76,8 @@ def _instances(
     for count, arguments in enumerate(product(*ranges)):
         if count >= symbols.MAX_VALUES:
             fix = "narrow the types of its parameters"
-            raise model_error(
-                "TA019", f"more than {symbols.MAX_VALUES:,} instances", family.span, fix
-            )
+            message = f"more than {symbols.MAX_VALUES:,} instances"
+            raise model_error("TA019", message, family.span, fix)
         bound = [sc.ConstantSymbol(value) for value in arguments]
         template, scope = _bind(family, bound, families, top, resolver)
         listed = f"({', '.join(map(str, arguments))})" if arguments else ""
@@ -215,9 +214,7 @@ def _place(
     if written.leaving is not None:
         one, other = (_number(share, scope, resolver) for share in written.leaving)
         leaving = (one, other)
-    guard = split_guard(
-        condition, written.span if written.invariant is None else written.invariant.span
-    )
+    guard = split_guard(condition, (written.invariant or written).span)
     return nta.Location(written.name, written.kind, guard, written.span, tuple(rates), leaving)
 
 
@@ -276,9 +273,8 @@ def _edges(
         ranges.append(symbols.values_of(resolver.type(selection.type, scope), selection.span))
     for count, chosen in enumerate(product(*ranges)):
         if count >= symbols.MAX_VALUES:
-            raise model_error(
-                "TA019", f"more than {symbols.MAX_VALUES:,} edges in one", written.span
-            )
+            message = f"more than {symbols.MAX_VALUES:,} edges in one"
+            raise model_error("TA019", message, written.span)
         selected = {
             selection.name: sc.ConstantSymbol(value)
             for selection, value in zip(written.selections, chosen, strict=True)

@@ -92,9 +92,8 @@ class Resolver:
                 if not self.automata:
                     raise model_error("TA020", "only queries refer to runs", span)
                 until = ex.TRUE if left is None else self.expression(left, scope)
-                return ex.PathFormula(
-                    op, self.expression(body, scope), self.limit(bound, scope), until
-                )
+                inner = self.expression(body, scope)
+                return ex.PathFormula(op, inner, self.limit(bound, scope), until)
             case syntax.LeadsTo(_, _, _, span):
                 message = "`-->` can only stand outermost"
                 raise model_error("TA020", message, span, "write A[] (p imply A<> q)")
@@ -148,17 +147,13 @@ class Resolver:
     def _extent(self, size: syntax.Size, scope: sc.Scope) -> range:
         if isinstance(size, syntax.TypeText):
             return symbols.values_of(self.type(size, scope), size.span)
-        if isinstance(size, syntax.Name) and isinstance(
-            symbol := scope.find(size.name), sc.TypeSymbol
-        ):
+        symbol = scope.find(size.name) if isinstance(size, syntax.Name) else None
+        if isinstance(symbol, sc.TypeSymbol):
             return symbols.values_of(symbol.type, size.span)
         number = self.constant(size, scope)
         if number < 1:
             raise model_error("TA007", f"an array of {number} elements", size.span)
-        if number > symbols.MAX_VALUES:
-            raise model_error(
-                "TA019", f"an array of more than {symbols.MAX_VALUES:,} elements", size.span
-            )
+        symbols.check_size(number, size.span)
         return range(number)
 
     def type(self, written: syntax.TypeText, scope: sc.Scope) -> sc.ResolvedType:
@@ -199,9 +194,8 @@ class Resolver:
             if not (self.open_ints or written.const):
                 fix = "give its range: int[low, high]"
                 raise model_error("TA005", "an int without a range", written.span, fix)
-            return sc.ResolvedType(
-                ex.BaseType.INT, *(symbols.INT32 if written.const else symbols.INT16)
-            )
+            limits = symbols.INT32 if written.const else symbols.INT16
+            return sc.ResolvedType(ex.BaseType.INT, *limits)
         low, high = self.constant(written.low, scope), self.constant(written.high, scope)
         if low > high:
             raise model_error("TA007", f"the range [{low}, {high}] is empty", written.span)
@@ -276,9 +270,8 @@ class Resolver:
                 bound = operations.clock_number(bound)
                 turned = op if sign > 0 else operations.MIRRORED[op]
                 return operations.compare_clock(clock, turned, bound, span)
-        number = -sum(
-            sign * self.constant(part, scope) for sign, part, clock in named if clock is None
-        )
+        others = ((sign, part) for sign, part, clock in named if clock is None)
+        number = -sum(sign * self.constant(part, scope) for sign, part in others)
         match clocks:
             case [(sign, clock)]:
                 turned = op if sign > 0 else operations.MIRRORED[op]
@@ -292,11 +285,7 @@ class Resolver:
     def _whole_compare(self, written: syntax.Binary, scope: sc.Scope) -> ex.Expression | None:
         """Records or arrays compared element by element."""
         left, right = self._named(written.left, scope), self._named(written.right, scope)
-        if (
-            left is None
-            or right is None
-            or not (symbols.is_whole(left) and symbols.is_whole(right))
-        ):
+        if not (left and right and symbols.is_whole(left) and symbols.is_whole(right)):
             return None
         return operations.whole_compare(written.op, left, right, written.span)
 

@@ -115,6 +115,12 @@ def parts_of_initial(
     return list(zip(written.items, expected, strict=True))
 
 
+def check_size(elements: int, span: Span) -> None:
+    """Refuse an array of too many elements."""
+    if elements > MAX_VALUES:
+        raise model_error("TA019", f"an array of more than {MAX_VALUES:,} elements", span)
+
+
 def values_of(kind: sc.ResolvedType, span: Span) -> range:
     """All values of a finite type."""
     if kind.base not in (ex.BaseType.INT, ex.BaseType.BOOL):

@@ -101,9 +101,8 @@ class Watcher:
         unnoted = self._unnoted if watches else ()
         updates = (*unnoted, *set_now) if set_now else unnoted
         guard = nta.Guard(when, tuple(bounds))
-        self._edges.append(
-            nta.Edge(source, target, guard, None, updates, 1.0, "", "", watches=watches)
-        )
+        edge = nta.Edge(source, target, guard, None, updates, 1.0, "", "", watches=watches)
+        self._edges.append(edge)
 
     def is_in(self, location: int) -> ex.Expression:
         """Whether it is in a location."""
@@ -131,11 +130,8 @@ class Watcher:
         )
 
     def _noting(self, edge: nta.Edge) -> nta.Edge:
-        noted = (
-            _set(self._slots[name], 1)
-            for name in names_of(self._network, edge)
-            if name in self._slots
-        )
+        names = (name for name in names_of(self._network, edge) if name in self._slots)
+        noted = (_set(self._slots[name], 1) for name in names)
         return replace(edge, updates=(*edge.updates, *noted))
 
 

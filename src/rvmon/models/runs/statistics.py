@@ -108,9 +108,8 @@ def trajectories(
             now += stay
             later = [clock + stay * rate for clock, rate in zip(clocks, rates, strict=True)]
             points[now, values(state, later)] = None
-        return Trajectory(
-            tuple(Fraction(t, GRID) for t, _ in points), tuple(row for _, row in points)
-        )
+        instants, rows = zip(*points, strict=True)
+        return Trajectory(tuple(Fraction(t, GRID) for t in instants), rows)
 
     return list(runs.drawn(one, formula.runs))
 

@@ -64,9 +64,8 @@ def extremes(
         raise model_error("TA020", "this asks for no extreme value", query.span)
     check_start(network)
     terms = (term.clock for term in query.formula.terms if term.clock is not None)
-    check_clocks(
-        network, (*terms, *(comparison.clock for comparison in compares_of(query.formula.where)))
-    )
+    compared = (comparison.clock for comparison in compares_of(query.formula.where))
+    check_clocks(network, (*terms, *compared))
     for term in query.formula.terms:
         for largest in query.formula.ends:
             yield _Climb(network, query, term, largest, Meter(budget, watch)).run()

@@ -128,9 +128,8 @@ def item_text(network: Network, item: Item, criterion: Criterion) -> str:
     automaton = network.automata[item.automaton]
     if criterion is Criterion.LOCATIONS:
         return f"{automaton.name}.{automaton.locations[item.numbers[0]].name}"
-    return f"{automaton.name}: " + ", then ".join(
-        automaton.edges[number].text for number in item.numbers
-    )
+    edges = (automaton.edges[number].text for number in item.numbers)
+    return f"{automaton.name}: {', then '.join(edges)}"
 
 
 def _items_on(network: Network, run: Run, criterion: Criterion) -> frozenset[Item]:

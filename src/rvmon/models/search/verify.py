@@ -125,13 +125,9 @@ def _search(question: _Question, query: nta.Query) -> _Found:
         ):
             shows = op in (ex.PathOp.POSSIBLY, ex.PathOp.POTENTIALLY_ALWAYS)
             ends = op in (ex.PathOp.POSSIBLY, ex.PathOp.EVENTUALLY)
-            linear = ex.PathFormula(
-                ex.PathOp.FINALLY if ends else ex.PathOp.GLOBALLY, body, None, until
-            )
-            return _Found(
-                shows,
-                _accepted(question, guards.normal_form(linear, positive=shows), query.span),
-            )
+            on_run = ex.PathOp.FINALLY if ends else ex.PathOp.GLOBALLY
+            linear = guards.normal_form(ex.PathFormula(on_run, body, None, until), positive=shows)
+            return _Found(shows, _accepted(question, linear, query.span))
         case ex.PathFormula(op, body, bound, until) if until == ex.TRUE and op in ex.OUTERMOST:
             if op in (ex.PathOp.POSSIBLY, ex.PathOp.POTENTIALLY_ALWAYS):
                 sought, shows = guards.normal_form(body), True
