@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from msgspec import Struct
 
 from rvmon.language.checked.classify import subformulas
-from rvmon.language.checked.formula import Binary, Formula, Interval, Unary
+from rvmon.language.checked.formula import Binary, Unary
 from rvmon.language.checked.specification import CheckedSpec, Requirement, TimeModel
 from rvmon.trace.sample import Sample
 from rvmon.trace.time import TICKS_PER_SECOND
@@ -43,13 +43,6 @@ class Found(Struct, frozen=True):
     exhausted: bool  # whether the whole search space was examined
 
 
-def intervals_of(formula: Formula) -> Iterator[Interval]:
-    """The intervals of a formula's operators."""
-    for part in subformulas(formula):
-        if isinstance(part, Unary | Binary) and part.interval is not None:
-            yield part.interval
-
-
 def small_step(spec: CheckedSpec, requirements: Iterable[Requirement]) -> int:
     """A round number of ticks that is small relative to all durations of the requirements.
 
@@ -59,8 +52,9 @@ def small_step(spec: CheckedSpec, requirements: Iterable[Requirement]) -> int:
         bound
         for requirement in requirements
         for formula in (requirement.trigger, requirement.consequent)
-        for interval in intervals_of(formula)
-        for bound in (interval.low, interval.high)
+        for part in subformulas(formula)
+        if isinstance(part, Unary | Binary) and part.interval is not None
+        for bound in (part.interval.low, part.interval.high)
         if bound
     ]
     bounds += [signal.stale_after for signal in spec.signals.values() if signal.stale_after]

@@ -71,7 +71,7 @@ class Part:
         # The order of the fields below is that of `part_plan` in plan.h; the C refuses a plan whose
         # sizes do not agree.
         own: Iterable[int] = SHARED
-        if any(rule.is_apart for rule in plan.rules):
+        if any(rule.captured for rule in plan.rules):
             unit = Unit(plan, numbers[0])
             own = unit.fields(sections, self.names, self._programs, nodes, self._atoms)
         dead = [

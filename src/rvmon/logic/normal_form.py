@@ -101,10 +101,11 @@ class Lowering:
             case rv.Unary(op=rv.UnaryOp.PREVIOUS, operand=operand):
                 before = self._if_position_exists(self.core(operand, positive))
                 return self.factory.core_previous(before, first=not positive)
-            case rv.Binary(op=rv.BinaryOp.AND, left=left, right=right):
-                return self._junction_of(left, right, positive, positive)
-            case rv.Binary(op=rv.BinaryOp.OR, left=left, right=right):
-                return self._junction_of(left, right, positive, not positive)
+            case rv.Binary(op=rv.BinaryOp.AND | rv.BinaryOp.OR as op, left=left, right=right):
+                conjunction = positive is (op is rv.BinaryOp.AND)
+                args = [*flattened(left, positive, conjunction)]
+                args += flattened(right, positive, conjunction)
+                return self.join_signed(args, conjunction)
             case rv.Binary(op=rv.BinaryOp.UNTIL, left=left, right=right, interval=interval):
                 ends = (self.core(left, positive), self.core(right, positive))
                 return self._until(*ends, interval, positive)
@@ -180,13 +181,6 @@ class Lowering:
             self.origins.setdefault(made, self.origins[operand])
         return made
 
-    def _junction_of(
-        self, left: rv.Formula, right: rv.Formula, sign: bool, conjunction: bool
-    ) -> mtl.Core:
-        """The conjunction or disjunction of two operands with a sign, flattened."""
-        args = [*flattened(left, sign, conjunction), *flattened(right, sign, conjunction)]
-        return self.join_signed(args, conjunction)
-
     def join_signed(
         self, args: list[tuple[rv.Formula, bool]], conjunction: bool, further: Sequence[State] = ()
     ) -> mtl.Core:
@@ -224,9 +218,9 @@ def flattened(formula: rv.Formula, sign: bool, conjunction: bool) -> list[tuple[
     match formula:
         case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
             return flattened(operand, not sign, conjunction)
-        case rv.Binary(op=rv.BinaryOp.AND, left=left, right=right) if sign is conjunction:
-            return [*flattened(left, sign, conjunction), *flattened(right, sign, conjunction)]
-        case rv.Binary(op=rv.BinaryOp.OR, left=left, right=right) if sign is not conjunction:
+        case rv.Binary(op=rv.BinaryOp.AND | rv.BinaryOp.OR as op, left=left, right=right) if (
+            sign is conjunction
+        ) is (op is rv.BinaryOp.AND):
             return [*flattened(left, sign, conjunction), *flattened(right, sign, conjunction)]
         case rv.Binary(op=rv.BinaryOp.IMPLIES, left=left, right=right) if sign is not conjunction:
             return [*flattened(left, not sign, conjunction), *flattened(right, sign, conjunction)]

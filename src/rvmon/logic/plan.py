@@ -74,11 +74,6 @@ class PlannedRule(Struct, frozen=True, eq=False):
         """The names of the captured values of an attempt: of `for each`, then of `let`."""
         return tuple(self.requirement.captured)
 
-    @property
-    def is_apart(self) -> bool:
-        """Whether attempts or instances have captured values, and so valuations, of their own."""
-        return bool(self.captured)
-
 
 class Uses(Struct, frozen=True, eq=False):
     """The uses of a signal or event in addition to its present value."""
@@ -158,8 +153,8 @@ def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
     Each attempt or instance of a unit is a run of its own.
     """
     # What captures nothing is valued once for all; each attempt of a unit has its own valuation.
-    shared = plan_of(spec, [rule for rule in rules if not rule.is_apart])
-    units = tuple(plan_of(spec, [rule]) for rule in rules if rule.is_apart)
+    shared = plan_of(spec, [rule for rule in rules if not rule.captured])
+    units = tuple(plan_of(spec, [rule]) for rule in rules if rule.captured)
     return replace(shared, units=units, asked=tuple(rules))
 
 

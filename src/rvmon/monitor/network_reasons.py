@@ -16,7 +16,6 @@ from rvmon.monitor.network import Network, settled
 from rvmon.monitor.network.piecewise import FAR
 from rvmon.monitor.network.remaining import Remaining
 from rvmon.monitor.obligation_words import Words, all_of
-from rvmon.trace.time import format_instant
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Blame
 
@@ -41,22 +40,13 @@ class _PendingText:
             case mtl.Or(args=args):
                 parts = dict.fromkeys(self.at(arg, position) for arg in args)
                 return ", or ".join(part for part in parts if part)
-            case mtl.Next() | mtl.Previous() | mtl.Since():
-                return f"`{self.words.text(core)}`"
-            case mtl.Until(high=high):
-                return self._own(core, "by", position, high)
-            case mtl.Release(right=right, low=low, high=high):
+            case mtl.Next() | mtl.Previous() | mtl.Since() | mtl.Until():
+                return self.words.dated(core, position * self.gap, self.origin)
+            case mtl.Release(right=right, low=low):
                 spawned = self._first_pending(right, position - (-low // self.gap))
-                until = self._own(core, "until", position, high)
-                return all_of([spawned, until])
+                return all_of([spawned, self.words.dated(core, position * self.gap, self.origin)])
             case _:
                 assert_never(core)
-
-    def _own(self, core: mtl.Core, word: str, position: int, high: int | None) -> str:
-        text = f"`{self.words.text(core)}`"
-        if high is None:
-            return text
-        return f"{text} {word} {format_instant(position * self.gap + high, self.origin)}"
 
     def _first_pending(self, core: mtl.Core, first: int) -> str:
         """The pending part of a formula at its first undecided position from `first` on."""

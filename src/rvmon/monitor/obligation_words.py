@@ -215,7 +215,7 @@ class Words:
         clauses = []
         for clause in sorted(residual, key=lambda c: (len(c), sorted((n.id, x) for n, x in c))):
             parts = [
-                self._with_deadline(node, anchors, clock, origin)
+                self.dated(node, None if clock == NO_CLOCK else anchors[clock], origin)
                 for node, clock in sorted(clause, key=lambda atom: (atom[1], atom[0].id))
             ]
             clauses.append(all_of(parts))
@@ -227,12 +227,12 @@ class Words:
         anchors = [clock << _APART for clock in range(max(clocks, default=-1) + 1)]
         return self.required(residual, anchors, 0), deadline(residual, anchors)
 
-    def _with_deadline(self, node: Core, anchors: Sequence[int], clock: int, origin: int) -> str:
-        text = f"`{self.text(node)}`"
-        if clock == NO_CLOCK or not isinstance(node, Until | Release) or node.high is None:
-            return text
-        word, last = "by" if isinstance(node, Until) else "until", anchors[clock] + node.high
-        return f"{text} {word} {format_instant(last, origin)}"
+    def dated(self, node: Core, start: int | None, origin: int) -> str:
+        """A part in quotes, with its deadline if it has one; `start` is when it was opened."""
+        if start is None or not isinstance(node, Until | Release) or node.high is None:
+            return self._quoted(node)
+        word = "by" if isinstance(node, Until) else "until"
+        return f"{self._quoted(node)} {word} {format_instant(start + node.high, origin)}"
 
 
 def all_of(parts: Sequence[str]) -> str:

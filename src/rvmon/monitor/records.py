@@ -63,7 +63,7 @@ class RecordedAttempts(LazyAttempts):
         notes: tuple[bytes, Sequence[tuple[Any, bytes, int]]],
         origin: int,
     ) -> None:
-        self._given = planned
+        self.given = planned
         self._origin = origin
         self._notes = notes
         self._records = records
@@ -76,16 +76,12 @@ class RecordedAttempts(LazyAttempts):
         As bytes, or each would bring the description of its records along.
         """
         records, numbers = self._records.tobytes(), self._numbers.tobytes()
-        return _unpickled, (self._given, records, numbers, self._notes, self._origin)
+        return _unpickled, (self.given, records, numbers, self._notes, self._origin)
 
     @property
     def _planned(self) -> PlannedCore:
-        assert self._given is not None, "whoever takes them from another process gives the plan"
-        return self._given
-
-    def take_plan(self, planned: PlannedCore | None) -> None:
-        """Go on with the plan of the run, or without one."""
-        self._given = planned
+        assert self.given is not None, "whoever takes them from another process gives the plan"
+        return self.given
 
     def __len__(self) -> int:
         return len(self._records)
@@ -97,7 +93,7 @@ class RecordedAttempts(LazyAttempts):
     def __getitem__(self, index: int | slice) -> Attempt | Sequence[Attempt]:
         if isinstance(index, slice):
             chosen = self._records[index], self._numbers[index]
-            return RecordedAttempts(self._given, *chosen, self._notes, self._origin)
+            return RecordedAttempts(self.given, *chosen, self._notes, self._origin)
         return self._attempt(self._records[index].tolist(), self._numbers[index])
 
     def __iter__(self) -> Iterator[Attempt]:
@@ -209,7 +205,7 @@ def give_plan(report: Report, planned: PlannedCore | None) -> Report:
             its own. A plan may be larger than all else.
     """
     if isinstance(report.attempts, RecordedAttempts):
-        report.attempts.take_plan(planned)
+        report.attempts.given = planned
     return report
 
 
@@ -266,16 +262,13 @@ def _dropped(
     ).reshape(-1, len(VERDICTS))
     dropped = {
         name: {
-            verdict: count - there[row, VERDICTS.index(verdict)].item()
+            verdict: left
             for verdict, count in of_requirement.items()
+            if (left := count - there[row, VERDICTS.index(verdict)].item())
         }
         for row, (name, of_requirement) in enumerate(counts.items())
     }
-    return {
-        name: {verdict: count for verdict, count in of_requirement.items() if count}
-        for name, of_requirement in dropped.items()
-        if any(of_requirement.values())
-    }
+    return {name: some for name, some in dropped.items() if some}
 
 
 def _order(records: NDArray[Any]) -> NDArray[np.intp] | None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import partial
 
 from rvmon.language.checked import formula as rv
 from rvmon.language.checked import specification as spec
@@ -173,14 +172,11 @@ def _captures(rng: Rng, profile: Profile, time: spec.TimeModel) -> tuple[spec.Ca
         if profile.amounts and not profile.wide and chance(rng, 40):
             # The language admits no `let` in a window, only its expression.
             held = Shape(step=time is not spec.TimeModel.HELD, longest=4)
-            value = number_of_windows(rng, held, partial(_simple, profile))
+            value = number_of_windows(
+                rng, held, lambda rng, below: formula(rng, replace(below, past=profile.past), 1)
+            )
         found.append(spec.Capture(name, value))
     return tuple(found)
-
-
-def _simple(profile: Profile, rng: Rng, shape: Shape) -> rv.Formula:
-    """A formula without captured values, for a count."""
-    return formula(rng, replace(shape, captured=(), past=profile.past, future=False), 1)
 
 
 def _trigger(rng: Rng, shape: Shape, for_each: spec.ForEach | None) -> rv.Formula:
@@ -200,14 +196,15 @@ def _trigger(rng: Rng, shape: Shape, for_each: spec.ForEach | None) -> rv.Formul
     return drawn(
         rng,
         (28 if shape.events else 0, lambda: rv.EventAtom(pick(rng, EVENTS))),
-        (16 if shape.events else 0, lambda: _with_event(rng, shape)),
+        (
+            16 if shape.events else 0,
+            lambda: rv.Binary(
+                rv.BinaryOp.AND, rv.EventAtom(pick(rng, EVENTS)), formula(rng, shape, 1)
+            ),
+        ),
         (12, lambda: rv.SignalAtom(pick(rng, BOOLS))),
         (14, lambda: rv.BoundAtom(rv.Bound.START)),
         (18, lambda: formula(rng, shape, rng.randint(1, 2))),
         (10 if shape.past else 0, lambda: past_unary(rng, shape, 1)),
         (6, lambda: rv.BoundAtom(rv.Bound.END)),
     )
-
-
-def _with_event(rng: Rng, shape: Shape) -> rv.Formula:
-    return rv.Binary(rv.BinaryOp.AND, rv.EventAtom(pick(rng, EVENTS)), formula(rng, shape, 1))
