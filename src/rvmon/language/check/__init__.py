@@ -21,7 +21,7 @@ from rvmon.language.rules import Findings
 from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import types as type_rules
 from rvmon.language.syntax import items
-from rvmon.language.syntax.expressions import Expression, Name, expressions_in
+from rvmon.language.syntax.expressions import Expression, Name
 from rvmon.trace.schema import Kind
 from rvmon.units import Unit, UnknownUnitError, parse_unit
 
@@ -144,17 +144,9 @@ def check_unused(checker: Checker, spec: ResolvedSpec) -> None:
         match item:
             case items.DefineItem(parameters=None, name=name) | items.ConstItem(name=name):
                 checker.value(Name(name.text, name.span), EVERYWHERE)
-            case items.DefineItem():
-                _look_up(checker, item)
-
-
-def _look_up(checker: Checker, item: items.DefineItem) -> None:
-    parameters = {parameter.text for parameter in item.parameters or ()}
-    table = checker.table
-    for part in expressions_in(item.body):
-        if not isinstance(part, Name) or part.text in parameters | table.doubtful:
-            continue
-        labels = {label for signal in table.signals.values() for label in signal.type.labels}
-        if part.text not in labels and not checker.known(part.text, EVERYWHERE):
-            close = close_name(table, part.text, tuple(parameters))
-            checker.report(name_rules.unknown(part.span, part.text, close))
+            case items.DefineItem(parameters=parameters):
+                named = tuple(parameter.text for parameter in parameters or ())
+                for part in checker.undeclared(item.body):
+                    if part.text not in named:
+                        close = close_name(checker.table, part.text, named)
+                        checker.report(name_rules.unknown(part.span, part.text, close))

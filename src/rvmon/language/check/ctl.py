@@ -208,7 +208,7 @@ def checked_property(
     checker: Checker, name: str, expression: expressions.Expression
 ) -> Property | None:
     """Check a property; `None` if it is wrong, and then that is reported."""
-    foreign = _foreign(checker, expression)
+    foreign = checker.undeclared(expression)
     for part in foreign:
         close = close_name(checker.table, part.text)
         if close and "." not in part.text:
@@ -217,18 +217,6 @@ def checked_property(
     formula = checker.collected(_States(checker, names).of, expression)
     span = expression.span
     return None if formula is None else Property(name, span.text, formula, span)
-
-
-def _foreign(checker: Checker, expression: expressions.Expression) -> list[expressions.Name]:
-    """The names that the spec does not declare, without labels compared with a signal."""
-    labels = {label for s in checker.table.signals.values() for label in s.type.labels}
-    return [
-        part
-        for part in expressions.expressions_in(expression)
-        if isinstance(part, expressions.Name)
-        and not checker.known(part.text, EVERYWHERE)
-        and part.text not in labels | checker.table.doubtful
-    ]
 
 
 class _States(Struct, frozen=True):

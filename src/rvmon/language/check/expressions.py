@@ -179,6 +179,18 @@ class Checker:
             or table.field(name) is not None
         )
 
+    def undeclared(self, expression: ast.Expression) -> list[ast.Name]:
+        """The names in an expression that stand for nothing, not even for a label of a signal."""
+        signals = self.table.signals.values()
+        labels = {label for signal in signals for label in signal.type.labels}
+        return [
+            part
+            for part in ast.expressions_in(expression)
+            if isinstance(part, ast.Name)
+            and not self.known(part.text, sc.EVERYWHERE)
+            and part.text not in labels | self.table.doubtful
+        ]
+
     def _name(self, name: ast.Name, scope: sc.Scope) -> sc.Value:
         local = scope.names.get(name.text)
         match local:

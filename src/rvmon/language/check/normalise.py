@@ -12,12 +12,13 @@ from rvmon.language.checked.classify import future_part, has_future
 from rvmon.language.checked.names_read import names_read
 from rvmon.language.checked.operators import Tense
 from rvmon.language.checked.properties import PathUnary, Property, StateAtom
-from rvmon.language.checked.rewrite import chain, rewritten
+from rvmon.language.checked.rewrite import Formulas, chain, rewritten
 from rvmon.language.checked.specification import Event, Mode, Role, Signal
 from rvmon.language.rules import Refusal
 from rvmon.language.rules import requirements as rules
 
 _ALL = rv.Interval()
+_not = Formulas().no
 
 
 def normalised(formula: rv.Formula) -> tuple[Mode, rv.Formula, rv.Formula]:
@@ -200,7 +201,3 @@ def _and(left: rv.Formula, right: rv.Formula) -> rv.Formula:
 
 def _or(left: rv.Formula, right: rv.Formula) -> rv.Formula:
     return rv.Binary(rv.BinaryOp.OR, left, right, None, left.span)
-
-
-def _not(formula: rv.Formula) -> rv.Formula:
-    return rv.Unary(rv.UnaryOp.NOT, formula, None, formula.span)
