@@ -143,14 +143,10 @@ def _amount(formula: formulas.Amount, positive: bool) -> str:
     known = "" if positive else "not "
     least = formula.limit.value if isinstance(formula.limit, NumericLiteral) else None
     if isinstance(least, int) and of.value is None:
-        often = (
-            f"{least} times" if of.measured is formulas.Measured.COUNT else format_duration(least)
-        )
+        counts = of.measured is formulas.Measured.COUNT
+        often = f"{least} times" if counts else format_duration(least)
         often = f"more than {often}" if formula.strict else f"{often} or more"
-        often = (
-            f"{known}{often}" if of.measured is formulas.Measured.COUNT else f"for {known}{often}"
-        )
-        return f"{often} {back}, {what}"
+        return f"{'' if counts else 'for '}{known}{often} {back}, {what}"
     op = formulas.CompareOp.GT if formula.strict else formulas.CompareOp.GE
     verb = (op if positive else op.denied).said
     if of.value is None or isinstance(of.value, NumericLiteral):  # a count, or a sum of constants
@@ -177,12 +173,14 @@ class _Parts(dict[str, str]):
         self._interval = formula.interval or formulas.Interval()
 
     def __missing__(self, part: str) -> str:
-        window = _back if self._formula.op.entry.tense is Tense.PAST else _ahead
+        past = self._formula.op.entry.tense is Tense.PAST
         match part:
             case "some" | "all":
-                return window(self._interval, some=part == "some")
+                return _window(self._interval, some=part == "some", past=past)
+            case "ago" if self._interval == formulas.Interval():
+                return "once "
             case "ago":
-                return _ago(self._interval)
+                return f"({_window(self._interval, some=True, past=True)}) "
             case "length":
                 return format_duration(self._interval.high or 0)
             case "begins" | "ends":
@@ -209,37 +207,22 @@ def _begins(operand: formulas.Formula, positive: bool) -> str:
     return f"it becomes so that {_clause(operand, positive)}"
 
 
-def _ahead(interval: formulas.Interval, *, some: bool) -> str:
-    """The window of `F` (`some`) or `G`, relative to the present."""
-    low, high = interval.low, interval.high
+_EVER = ("always from then on", "at some time"), ("all the time so far", "at some time so far")
+_WITHIN = ("for", "within"), ("all the time in the last", "at some time in the last")
+"""Windows without bounds, and with an upper one: of `G` and `F`, then of `H` and `O`."""
+
+
+def _window(interval: formulas.Interval, *, some: bool, past: bool) -> str:
+    """The window of `F` and `O` (`some`), or `G` and `H`, relative to the present."""
+    low, high, off = interval.low, interval.high, "ago" if past else "later"
     if high is None:
-        after = "" if not low else f", {format_duration(low)} later or more"
-        return f"at some time{after}" if some else f"always from then on{after}"
-    if high == low:
+        return _EVER[past][some] + (f", {format_duration(low)} {off} or more" if low else "")
+    if high == low and not past:
         return f"exactly {format_duration(low)} later" if low else "at once"
     if not low:
-        return f"within {format_duration(high)}" if some else f"for {format_duration(high)}"
-    window = f"{format_duration(low)} to {format_duration(high)} later"
-    return f"at some time {window}" if some else f"all the time from {window}"
-
-
-def _back(interval: formulas.Interval, *, some: bool) -> str:
-    """The window of `O` (`some`) or `H`, relative to the present."""
-    low, high = interval.low, interval.high
-    if high is None:
-        before = "" if not low else f", {format_duration(low)} ago or more"
-        return f"at some time so far{before}" if some else f"all the time so far{before}"
-    if not low:
-        last = f"in the last {format_duration(high)}"
-        return f"at some time {last}" if some else f"all the time {last}"
-    window = f"{format_duration(low)} to {format_duration(high)} ago"
-    return f"at some time {window}" if some else f"all the time from {window}"
-
-
-def _ago(interval: formulas.Interval) -> str:
-    if interval == formulas.Interval():
-        return "once "
-    return f"({_back(interval, some=True)}) "
+        return f"{_WITHIN[past][some]} {format_duration(high)}"
+    how = "at some time" if some else "all the time from"
+    return f"{how} {format_duration(low)} to {format_duration(high)} {off}"
 
 
 def _clause(formula: formulas.Formula, positive: bool) -> str:

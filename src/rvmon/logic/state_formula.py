@@ -45,12 +45,6 @@ def events_of(*expressions: rv.Numeric) -> tuple[str, ...]:
     return tuple(dict.fromkeys(field.event for field in rv.fields_in(*expressions)))
 
 
-def captured_of(*expressions: rv.Numeric) -> frozenset[str]:
-    """The captured values that expressions read."""
-    captured = (part for part in operands(*expressions) if isinstance(part, rv.Captured))
-    return frozenset(part.name for part in captured)
-
-
 FALSE, UNKNOWN, TRUE = 0, 1, 2
 """Kleene's truth values: `and` is the minimum, `or` the maximum, `not` is 2 − x."""
 

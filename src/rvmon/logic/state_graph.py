@@ -34,9 +34,9 @@ def names_of(leaf: sf.Leaf) -> frozenset[str]:
 
 def captured_names(leaf: sf.Leaf) -> frozenset[str]:
     """The captured values that a leaf compares with."""
-    if isinstance(leaf, rv.Compare):
-        return sf.captured_of(leaf.left, leaf.right)
-    return frozenset()
+    sides = (leaf.left, leaf.right) if isinstance(leaf, rv.Compare) else ()
+    captured = (part for part in rv.numbers_in(*sides) if isinstance(part, rv.Captured))
+    return frozenset(part.name for part in captured)
 
 
 class Graph(Struct, frozen=True, eq=False):
@@ -304,13 +304,14 @@ def above(graph: Graph, leaves: Iterable[int]) -> frozenset[int]:
 def _compared(leaf: sf.Leaf, event: str, name: str) -> rv.FieldValue | None:
     """The field of an event if the leaf is `event.field == name`, for a captured `name`."""
     match leaf:
-        case rv.Compare(rv.CompareOp.EQ, rv.FieldValue() as field, rv.Captured(name=found)):
-            pass
-        case rv.Compare(rv.CompareOp.EQ, rv.Captured(name=found), rv.FieldValue() as field):
-            pass
+        case rv.Compare(
+            rv.CompareOp.EQ, rv.FieldValue() as field, rv.Captured(name=found)
+        ) | rv.Compare(rv.CompareOp.EQ, rv.Captured(name=found), rv.FieldValue() as field) if (
+            found == name and field.event == event
+        ):
+            return field
         case _:
             return None
-    return field if found == name and field.event == event else None
 
 
 def _occurs(state: sf.State, event: str) -> bool:

@@ -17,6 +17,7 @@ from rvmon.language.checked import formula as rv
 from rvmon.language.checked.classify import end_part, future_part, subformulas, truth_at
 from rvmon.language.checked.operators import Tense
 from rvmon.language.checked.properties import Bin, BinKind, Cover, Coverpoint, Cross
+from rvmon.language.checked.rewrite import Formulas
 from rvmon.language.print import format_formula
 from rvmon.language.rules import Refusal, Reported
 from rvmon.language.rules import names as name_rules
@@ -211,7 +212,7 @@ class _Point(Struct, frozen=True):
             raise Refusal(rules.bin_needs_expression(span))
         prev = expressions.Ident(rv.UpdateFunction.PREV.value, expression.span)
         call = expressions.Call(prev, (expression,), expression.span)
-        before = replace(self, expression=call)
+        before, make = replace(self, expression=call), Formulas(span)
         taken: rv.Formula | None = None
         entered: rv.Formula | None = None
         for start, end in pairwise(steps.values):
@@ -219,13 +220,12 @@ class _Point(Struct, frozen=True):
             if _alike(now, self._valued(start)):
                 raise Refusal(rules.same_value(end.span))
             rise = rv.Unary(rv.UnaryOp.RISE, now, None, span)
-            came = rv.Binary(rv.BinaryOp.AND, rise, was, None, span)
+            came = make.both(rise, was)
             # The value that is left now was entered by the previous step: no `entered` since
             # `taken`.
             if taken is not None and entered is not None:
                 stayed = rv.Unary(rv.UnaryOp.NOT, entered, None, span)
-                latest = rv.Binary(rv.BinaryOp.SINCE, stayed, taken, rv.Interval(), span)
-                came = rv.Binary(rv.BinaryOp.AND, came, latest, None, span)
+                came = make.both(came, make.since(stayed, taken, rv.Interval()))
             taken, entered = came, rise
         assert taken is not None, "there are two values at least"
         return taken

@@ -15,6 +15,7 @@ from rvmon.diagnostics import Span
 from rvmon.language.check.scope import Chosen, Quantity, TimeValue, Value
 from rvmon.language.checked import formula as rv
 from rvmon.language.checked.arithmetic import NumericOp, UnitRule
+from rvmon.language.checked.rewrite import Formulas
 from rvmon.language.rules import Refusal, short
 from rvmon.language.rules import types as rules
 from rvmon.trace.time import TICKS_PER_SECOND, TIME_LIMIT
@@ -266,12 +267,9 @@ def either(
     condition: rv.Formula, chosen: rv.Formula, otherwise: rv.Formula, span: Span
 ) -> rv.Formula:
     """`if φ then ψ else χ`, which is known where both sides are the same, whatever φ is."""
-    denied = rv.Unary(rv.UnaryOp.NOT, condition, None, span)
-    first = rv.Binary(rv.BinaryOp.AND, condition, chosen, None, span)
-    second = rv.Binary(rv.BinaryOp.AND, denied, otherwise, None, span)
-    both = rv.Binary(rv.BinaryOp.AND, chosen, otherwise, None, span)
-    one = rv.Binary(rv.BinaryOp.OR, first, second, None, span)
-    return rv.Binary(rv.BinaryOp.OR, one, both, None, span)
+    make, denied = Formulas(span), rv.Unary(rv.UnaryOp.NOT, condition, None, span)
+    one = make.either(make.both(condition, chosen), make.both(denied, otherwise))
+    return make.either(one, make.both(chosen, otherwise))
 
 
 _SECOND = (("s", 1),)
