@@ -93,6 +93,8 @@ def in_words(formula: formulas.Formula, *, positive: bool = True) -> str:
             return f"{name} is {'true' if positive else 'false'}"
         case formulas.EventAtom(name=name):
             return f"{name} occurs" if positive else f"{name} does not occur"
+        case formulas.Compare(left=left, right=NumericLiteral(value=bool())):  # a field of truth
+            return f"{format_numeric(left)} is {'true' if positive else 'false'}"
         case formulas.Compare(op=op, left=left, right=right):
             verb = (op if positive else op.denied).said
             return f"{format_numeric(left)} {verb} {format_numeric(right)}"

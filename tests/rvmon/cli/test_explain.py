@@ -62,6 +62,20 @@ def test_what_is_measured_is_said(tmp_path, says, measured, said):
     assert "`upon`" not in text
 
 
+@pytest.mark.parametrize(
+    ("formula", "said"),
+    [
+        ("rung.loud", "rung.loud is true"),
+        ("not rung.loud", "rung.loud is false"),
+        ("bit(mode, 3)", "bit(mode, 3) is true"),
+    ],
+)
+def test_a_truth_value_among_numbers_is_said(tmp_path, says, formula, said):
+    spec = f"event rung(loud: bool)\nsignal mode : int\nrequirement L\n  always ({formula})\n"
+    (tmp_path / "l.rv").write_text(spec)
+    assert said in says(0, "explain", str(tmp_path / "l.rv")).out
+
+
 @pytest.mark.slow
 def test_all_requirements_within_80_columns(door, says):
     text = says(0, "explain", "door.rv").out
