@@ -13,7 +13,7 @@ from typing import assert_never
 from rvmon.core.atoms import Atoms, Names, Programs
 from rvmon.core.nodes import NodeOp, Nodes
 from rvmon.core.obligations import Automata, add_form, add_margin
-from rvmon.core.sections import Section, Sections
+from rvmon.core.sections import Section, Sections, bits
 from rvmon.language.checked.formula import NowValue
 from rvmon.language.checked.specification import EndPolicy, Mode
 from rvmon.logic.automaton import Automaton
@@ -71,7 +71,6 @@ def settle_at_end(
 
 
 _LETTER, _TRIGGER, _DETERMINED = 1, 2, 4
-_PULSE, _EPISODIC, _HIDDEN, _BLURS_ANYWHERE, _TRACED = 1, 2, 4, 8, 16
 
 _NOTHING = ((0, 0, 0), (0, 0, 0))
 
@@ -166,7 +165,7 @@ class Judges:
             place(rule.blurs),
             owner,
             requirement,
-            _flags(rule, hidden=number >= len(self._plan.rules)),
+            _flags(rule, is_hidden=number >= len(self._plan.rules)),
             *judged_by,
             *self._sections.listed([self._index[state] for state in rule.alphabet.propositions]),
             *self._sections.listed([self._index[state] for state in rule.noted]),
@@ -204,13 +203,9 @@ def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkP
     return network, chain
 
 
-def _flags(rule: PlannedRule, *, hidden: bool) -> int:
-    requirement = rule.requirement
-    found = _PULSE if requirement.pulse else 0
-    found |= _EPISODIC if hidden or requirement.mode is Mode.WHENEVER else 0
-    found |= _HIDDEN if hidden else 0
-    found |= _BLURS_ANYWHERE if rule.blurs_anywhere else 0
-    return found | (_TRACED if rule.traced else 0)
+def _flags(rule: PlannedRule, *, is_hidden: bool) -> int:
+    is_episodic = is_hidden or rule.requirement.mode is Mode.WHENEVER
+    return bits(rule.requirement.pulse, is_episodic, is_hidden, rule.blurs_anywhere, rule.traced)
 
 
 @cache
@@ -231,8 +226,6 @@ def outcomes(policy: EndPolicy) -> tuple[int, ...]:
         found.append(VERDICTS.index(verdict) + 4 * DECISIONS.index(decision))
     return tuple(found)
 
-
-_REPLAYS, _FRESH, _FORGETS, _KEEPS_PAST, _CAPTURES_NOW = 1, 2, 4, 8, 16
 
 SHARED = (0, 0, -1, 0, 0, 0, -1, -1, *([0] * 10))
 """The unit fields of a part without captured values."""
@@ -278,14 +271,11 @@ class Unit:
     def _flags(self) -> int:
         reach = self._reach
         replays, fresh = self._replays, self._is_fresh
-        found = _REPLAYS if replays else 0
-        found |= _FRESH if fresh else 0
-        found |= _FORGETS if fresh and reach is not None and reach.begins else 0
-        reads_now = any(
-            isinstance(capture.value, NowValue) for capture in self._requirement.captures
-        )
-        found |= _CAPTURES_NOW if reads_now else 0
-        return found | (_KEEPS_PAST if replays or (reach is not None and not fresh) else 0)
+        forgets = fresh and reach is not None and reach.begins
+        keeps_past = replays or (reach is not None and not fresh)
+        captured = [capture.value for capture in self._requirement.captures]
+        captures_now = any(isinstance(value, NowValue) for value in captured)
+        return bits(replays, fresh, forgets, keeps_past, captures_now)
 
     def _forgets(self, state: State) -> bool:
         """Whether a stateful node carries no memory into a new attempt."""

@@ -12,16 +12,13 @@ from rvmon.core.atoms import Atom, Atoms, Names, Programs
 from rvmon.core.monitors import SHARED, Judges, Unit
 from rvmon.core.nodes import Nodes
 from rvmon.core.obligations import Automata, add_form
-from rvmon.core.sections import Listed, Numbering, Packed, Section, Sections, packed
+from rvmon.core.sections import Listed, Numbering, Packed, Section, Sections, bits, packed
 from rvmon.errors import RvmonError
 from rvmon.language.checked.formula import Compare, Numeric
 from rvmon.logic.network_plan import plan_of_all
 from rvmon.logic.plan import Plan, Uses
 from rvmon.logic.state_formula import events_of, inputs_of
 from rvmon.logic.state_graph import keys_of
-
-_IGNORES_NAN, _MARKS, _HISTORY, _CAPTURED = 1, 2, 4, 8
-_EVENT_MARKS, _EVENT_FIELDS, _EVENT_KEY = 1, 2, 4
 
 _WATCH = 8  # the kind of a link that notifies a watch, not a judge
 _ITEMS_MOST = 1 << 22  # the most bins and combinations that one part may count
@@ -203,16 +200,12 @@ class Part:
         for name, number in self.names.signals.items():
             signal = plan.spec.signals[name]
             uses = plan.uses.get(name, _UNUSED)
-            flags = _IGNORES_NAN if signal.ignores_nan else 0
-            flags |= _MARKS if uses.marked else 0
-            flags |= _HISTORY if uses.history else 0
-            flags |= _CAPTURED if name in captured else 0
             perishes = signal.stale_after is not None
             sections.add(
                 Section.SIGNALS,
                 signal.stale_after or 0,
                 self.names.numbering.names[name],
-                flags,
+                bits(signal.ignores_nan, uses.marked, uses.history, name in captured),
                 self._births[number],
                 perishable if perishes else -1,
                 *self._phased(on_change[number], self._alive(on_change[number])),
@@ -240,14 +233,12 @@ class Part:
         keyed = self._keyed()
         first = 0
         for name, number in self.names.events.items():
-            flags = _EVENT_MARKS if plan.uses.get(name, _UNUSED).marked else 0
-            flags |= _EVENT_FIELDS if name in with_fields else 0
-            flags |= _EVENT_KEY if key is not None and name == key.event else 0
+            marked, is_key = plan.uses.get(name, _UNUSED).marked, key and name == key.event
             fields = len(plan.spec.events[name].fields)
             sections.add(
                 Section.EVENTS,
                 self.names.numbering.names[name],
-                flags,
+                bits(marked, name in with_fields, is_key),
                 first,
                 fields,
                 keyed.get(name, -1),

@@ -108,6 +108,11 @@ class Section(IntEnum):
     MEASURES = "d4i"
 
 
+def bits(*flags: object) -> int:
+    """Flags as the bits of a number, the first as the lowest."""
+    return sum(bool(flag) << place for place, flag in enumerate(flags))
+
+
 Listed = tuple[int, int]
 """A slice of a section: the index of its first record, and the number of records."""
 

@@ -61,7 +61,8 @@ class _Step:
         self.ages = ages
         self.limit = limit
         self.read = read
-        self.made: dict[mtl.Core, Residual] = {}
+        # the residual of a formula instantiated at this position
+        self.instance = cache(self._instance)
 
     def atom(self, atom: Atom) -> Residual:
         node, clock = atom
@@ -89,13 +90,6 @@ class _Step:
             return waiting
         right = self.instance(node.right)
         return either(right, waiting) if until else both(right, waiting, self.limit)
-
-    def instance(self, node: mtl.Core) -> Residual:
-        """The residual of `node` instantiated at this position."""
-        found = self.made.get(node)
-        if found is None:
-            found = self.made[node] = self._instance(node)
-        return found
 
     def _instance(self, node: mtl.Core) -> Residual:
         match node:
