@@ -8,8 +8,9 @@ Source: Bryant, Graph-based algorithms for Boolean function manipulation, 1986.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from enum import Enum
+from functools import cache, partial
 from typing import TypeAlias
 
 from msgspec import Struct
@@ -168,8 +169,8 @@ class Diagrams:
 
     def __init__(self, alphabet: Alphabet) -> None:
         self.alphabet = alphabet
-        self._known: dict[tuple[int, tuple[Node, ...], Edge | None], Node] = {}
-        self._choices: dict[frozenset[Atom], list[Choice]] = {}
+        self._node = cache(Node)
+        self._choices = cache(partial(_choices_among, alphabet))
 
     def of(self, opened: Residual, leaf: Callable[[Residual], Edge]) -> Node:
         """The diagram of a residual in which literals are still open atoms.
@@ -178,24 +179,8 @@ class Diagrams:
         """
         atoms = frozenset[Atom]().union(*opened)
         read = frozenset(atom for atom in atoms if isinstance(atom[0], Literal))
-        choices = self._choices.get(read)
-        if choices is None:
-            choices = self._choices[read] = list(self._choices_among(read))
+        choices = self._choices(read)
         return self._of(opened, leaf, choices, len(choices) - 1, {})
-
-    def _choices_among(self, read: frozenset[Atom]) -> Iterator[Choice]:
-        senses: dict[State, dict[Atom, Sense]] = {}
-        for atom in read:
-            if isinstance(literal := atom[0], Literal):
-                senses.setdefault(literal.proposition, {})[atom] = literal.sense
-        pairs = zip(self.alphabet.propositions, self.alphabet.truths, strict=True)
-        for level, (proposition, truths) in enumerate(pairs):
-            if own := senses.get(proposition):
-                true = [
-                    frozenset(atom for atom, sense in own.items() if holds(sense, truth))
-                    for truth in truths
-                ]
-                yield level, frozenset(own), true
 
     def _of(
         self,
@@ -224,13 +209,6 @@ class Diagrams:
         made[opened] = found
         return found
 
-    def _node(self, level: int, children: tuple[Node, ...], edge: Edge | None) -> Node:
-        key = (level, children, edge)
-        found = self._known.get(key)
-        if found is None:
-            found = self._known[key] = Node(level, children, edge)
-        return found
-
     def classes(
         self, roots: Sequence[Node], limit: int
     ) -> tuple[LetterClasses, int, list[tuple[Edge, ...]]]:
@@ -252,6 +230,23 @@ class Diagrams:
             tuple(node.edge for node in leaf if node.edge is not None) for leaf in product.leaves
         ]
         return found, len(product.leaves), edges
+
+
+def _choices_among(alphabet: Alphabet, read: frozenset[Atom]) -> list[Choice]:
+    senses: dict[State, dict[Atom, Sense]] = {}
+    for atom in read:
+        if isinstance(literal := atom[0], Literal):
+            senses.setdefault(literal.proposition, {})[atom] = literal.sense
+    pairs = zip(alphabet.propositions, alphabet.truths, strict=True)
+    found: list[Choice] = []
+    for level, (proposition, truths) in enumerate(pairs):
+        if own := senses.get(proposition):
+            true = [
+                frozenset(atom for atom, sense in own.items() if holds(sense, truth))
+                for truth in truths
+            ]
+            found.append((level, frozenset(own), true))
+    return found
 
 
 class TooManyClassesError(Exception):

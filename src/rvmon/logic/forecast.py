@@ -14,6 +14,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Hashable, Iterator, Sequence
+from functools import lru_cache
 from itertools import product
 
 from msgspec import Struct
@@ -55,9 +56,9 @@ class Forecaster:
     def __init__(self) -> None:
         # the factory of residuals over known propositions, and of their negations
         self.duals = Duals()
-        self._known: dict[tuple[Start, int | None], bool] = {}
         self._values: dict[tuple[Residual, Hashable, int | None], bool | None] = {}
-        self._cuts: dict[tuple[Residual, int | None], Cuts] = {}
+        self._cuts = lru_cache(_MOST_KNOWN)(_cuts_of)
+        self._may_hold = lru_cache(_MOST_KNOWN)(_may_hold)
 
     def of(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
         """The value of a residual under all continuations; `None`: they differ, or are too many."""
@@ -65,16 +66,13 @@ class Forecaster:
             return residual == HOLDS
         if len(residual) > MOST_CLAUSES:
             return None
-        cuts = self._cuts.get((residual, gap))
-        if cuts is None:
-            cuts = self._cuts[residual, gap] = _Search(gap, differences=True).cuts(residual)
+        cuts = self._cuts(residual, gap)
         # Ages of an only clock that are alike certainly have the same future.
         is_one = len(ages) == len(cuts) == 1
         key = residual, alike(ages[0] // (gap or 1), cuts[0]) if is_one else tuple(ages), gap
         if key not in self._values:
             if len(self._values) > _MOST_KNOWN:
                 self._values.clear()
-                self._cuts.clear()
             self._values[key] = self._found(residual, ages, gap)
         return self._values[key]
 
@@ -97,18 +95,18 @@ class Forecaster:
         if len(residual) > MOST_CLAUSES:
             return True
         start = start_of(residual, ages, gap)
-        if start is None:
-            return True
-        key = (start, gap)
-        if key not in self._known:
-            if len(self._known) > _MOST_KNOWN:
-                self._known.clear()
-            try:
-                self._known[key] = is_satisfiable(start, gap)
-            except TooLargeError:
-                # "It may": a forecast that is not found never changes a verdict.
-                self._known[key] = True
-        return self._known[key]
+        return start is None or self._may_hold(start, gap)
+
+
+def _cuts_of(residual: Residual, gap: int | None) -> Cuts:
+    return _Search(gap, differences=True).cuts(residual)
+
+
+def _may_hold(start: Start, gap: int | None) -> bool:
+    try:
+        return is_satisfiable(start, gap)
+    except TooLargeError:
+        return True  # a forecast that is not found never changes a verdict
 
 
 MOST_TRIED = 200

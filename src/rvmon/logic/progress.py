@@ -61,8 +61,7 @@ class _Step:
         self.ages = ages
         self.limit = limit
         self.read = read
-        # the residual of a formula instantiated at this position
-        self.instance = cache(self._instance)
+        self.made: dict[mtl.Core, Residual] = {}
 
     def atom(self, atom: Atom) -> Residual:
         node, clock = atom
@@ -90,6 +89,14 @@ class _Step:
             return waiting
         right = self.instance(node.right)
         return either(right, waiting) if until else both(right, waiting, self.limit)
+
+    def instance(self, node: mtl.Core) -> Residual:
+        """The residual of `node` instantiated at this position."""
+        # No `functools.cache`: it would keep each step in a circle until garbage is collected.
+        found = self.made.get(node)
+        if found is None:
+            found = self.made[node] = self._instance(node)
+        return found
 
     def _instance(self, node: mtl.Core) -> Residual:
         match node:

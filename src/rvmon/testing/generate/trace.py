@@ -217,11 +217,8 @@ def _numbers(spec: specification.CheckedSpec) -> list[int | float]:
     for requirement in spec.requirements.values():
         for part in (requirement.trigger, requirement.consequent):
             for expression in numerics(part):
-                match expression:
-                    case Literal(value=int() | float() as value):
-                        found |= {value - 1, value, value + 1}
-                    case _:
-                        pass
+                if isinstance(expression, Literal) and not isinstance(expression.value, str):
+                    found |= {expression.value - 1, expression.value, expression.value + 1}
     return sorted(found)
 
 
