@@ -45,9 +45,8 @@ def robot_code() -> Code:
     owners = state_of_functions()
     names = {f"{HandoverRobot.__name__}.{name}": owners[name] for name in (*STATES, *owners)}
     # What runs before any step of the robot cannot be measured: it counts with no state.
-    (before,) = (
-        block for block in blocks_of(path) if block.name == f"{HandoverRobot.__name__}.__init__"
-    )
+    first = f"{HandoverRobot.__name__}.__init__"
+    (before,) = (block for block in blocks_of(path) if block.name == first)
     blocks = {block.name: block.lines - before.lines for block in blocks_of(path, names)}
     return Code(
         [Block(name, path, blocks[name]) for name in (*STATES, COMMON)],

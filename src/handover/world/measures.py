@@ -118,9 +118,8 @@ def person_distances(scene: Scene) -> tuple[float, float]:
 
 def _hand_offset(scene: Scene, centre: tuple[float, float]) -> tuple[float, float]:
     hands = [scene.hand] if scene.beside is None else [scene.hand, scene.beside.other_hand]
-    offsets = [
-        (abs(x - centre[0]), abs(z - centre[1])) for x, z in (hand.position for hand in hands)
-    ]
+    places = (hand.position for hand in hands)
+    offsets = [(abs(x - centre[0]), abs(z - centre[1])) for x, z in places]
     return min(offsets, key=lambda offset: math.hypot(*offset))
 
 

@@ -56,9 +56,8 @@ def choose_examples(
         or differences(test_run.job.test.expected, test_run.outcome.verdicts)
     }
     cells = [_cells_of(test_run) for test_run in playable]
-    by_cell = {
-        cell: playable[place].job for place in sorted(shown, reverse=True) for cell in cells[place]
-    }
+    backwards = sorted(shown, reverse=True)
+    by_cell = {cell: playable[place].job for place in backwards for cell in cells[place]}
     left = set().union(*cells) - by_cell.keys()
     while left:
         place = max(range(len(cells)), key=lambda one: (len(cells[one] & left), -one))

@@ -208,9 +208,8 @@ def left_over(folder: Path, before: Mapping[Path, int]) -> str:
     `before` is what `dated_files` said before this one was written.
     """
     now = dated_files(folder)
-    counts = Counter(
-        path.relative_to(folder).parts[0] for path, at in before.items() if now.get(path) == at
-    )
+    left = (path for path, at in before.items() if now.get(path) == at)
+    counts = Counter(path.relative_to(folder).parts[0] for path in left)
     if not counts:
         return ""
     places = " and ".join(f"{count} in {folder / part}" for part, count in counts.items())
@@ -234,7 +233,6 @@ def typed(program: str, words: Iterable[object]) -> str:
     if not program:
         return shlex.join(["python", os.path.relpath(sys.argv[0]), *map(str, words)])
     installed = Path(sys.executable).with_name(program)
-    name = (
-        program if shutil.which(program) or not installed.exists() else os.path.relpath(installed)
-    )
+    is_known = shutil.which(program) or not installed.exists()
+    name = program if is_known else os.path.relpath(installed)
     return shlex.join([name, *map(str, words)])

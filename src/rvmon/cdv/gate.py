@@ -101,9 +101,8 @@ def judge_campaign(
         checks |= dict(_contradicted(campaign, results.played))
         checks |= dict(_gated(campaign, requirements, results.played)) if strict else {}
         for (robot, name), by_strategy in decisions.items():
-            if not any(
-                failure.requirement == name and failure.robot in ("", robot) for failure in expected
-            ):
+            known = (one.requirement == name and one.robot in ("", robot) for one in expected)
+            if not any(known):
                 share = next(iter(by_strategy.values())).share
                 checks[f"{name} {share} ({robot})"] = _undecided(by_strategy, strict=strict)
     return CampaignJudgement(tests, checks, results.cut_short)

@@ -94,14 +94,14 @@ def _strategy(
     blocks: Sequence[str],
 ) -> campaign_summary.StrategySummary:
     outcomes = [test_run.outcome for test_run in played]
-    statements = {
-        block: _coverage(groups[code_coverage.statements_name(block)], outcomes) for block in blocks
-    }
-    branches = {
-        block: _coverage(groups[code_coverage.branches_name(block)], outcomes)
-        for block in blocks
-        if code_coverage.branches_name(block) in groups
-    }
+    statements, branches = (
+        {
+            block: _coverage(groups[name(block)], outcomes)
+            for block in blocks
+            if name(block) in groups
+        }
+        for name in (code_coverage.statements_name, code_coverage.branches_name)
+    )
     return campaign_summary.StrategySummary(
         tests=len(outcomes),
         counts=_counts(outcomes, requirements),

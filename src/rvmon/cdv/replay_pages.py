@@ -41,9 +41,8 @@ class Replay:
     def judged(self) -> JudgedRun:
         """The run as its page wants it."""
         samples = tuple(Sample(*sample) for sample in self.recorded.samples)
-        return JudgedRun(
-            self.test.name, replace(self.recorded.report, trace=self.test.name), samples
-        )
+        report = replace(self.recorded.report, trace=self.test.name)
+        return JudgedRun(self.test.name, report, samples)
 
 
 def play_again(test: Test, bench: Bench, *, wants_scene: bool = True) -> Replay:

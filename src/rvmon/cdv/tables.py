@@ -118,18 +118,16 @@ def _groups(
 def _notes(summary: CampaignSummary, figures: RobotSummary) -> tuple[str, ...]:
     notes = []
     if summary.cut_short:
-        notes.append(
-            f"PARTIAL: {summary.cut_short} after {summary.finished} of {summary.planned} tests."
-        )
+        played = f"{summary.finished} of {summary.planned} tests"
+        notes.append(f"PARTIAL: {summary.cut_short} after {played}.")
     for strategy, strategy_summary in figures.strategies.items():
         for name, decision in strategy_summary.shares.items():
             errors = "" if decision.holds is None else f", {errors_text(decision)}"
             notes.append(f"{name} {decision.share}: under {strategy} {decision}{errors}.")
     strategies = figures.strategies.values()
     if crashed := sum(len(strategy.errors[Ending.CRASHED]) for strategy in strategies):
-        notes.append(
-            f"The robot's code crashed in {counted(crashed, 'test')}, evaluated all the same."
-        )
+        tests = counted(crashed, "test")
+        notes.append(f"The robot's code crashed in {tests}, evaluated all the same.")
     ends = {Ending.HUNG: "{} hung: {}, and was ended", Ending.LOST: "{} was lost: {}"}
     for ending, text in ends.items():
         ended = (item for strategy in strategies for item in strategy.errors[ending].items())

@@ -146,13 +146,11 @@ def _refuse(path: Path, *, create: bool) -> None:
         status = path.stat()
     except (FileNotFoundError, NotADirectoryError):
         if not create:
-            raise CoverageError(
-                f"error: there is no file {path}: `rvmon run --coverage {path}` makes it"
-            ) from None
+            fix = f"`rvmon run --coverage {path}` makes it"
+            raise CoverageError(f"error: there is no file {path}: {fix}") from None
         if not path.parent.is_dir():
-            raise CoverageError(
-                f"error: cannot write {path}: there is no folder {path.parent}: make it first"
-            ) from None
+            fix = f"there is no folder {path.parent}: make it first"
+            raise CoverageError(f"error: cannot write {path}: {fix}") from None
         return
     except (OSError, ValueError) as error:
         why = getattr(error, "strerror", None) or error
@@ -193,9 +191,8 @@ def _check(database: sqlite3.Connection, path: str | Path | None) -> None:
     """
     if _pragma(database, "application_id") != APPLICATION:
         empty = "it is empty" if _is_new(database) else "this is a database of something else"
-        raise CoverageError(
-            f"error: {name_of(path)}: {empty}: give one that `rvmon run --coverage` wrote"
-        )
+        fix = "give one that `rvmon run --coverage` wrote"
+        raise CoverageError(f"error: {name_of(path)}: {empty}: {fix}")
     version = _pragma(database, "user_version")
     if version != VERSION:
         by, fix = "an older", "record again, or install that one"

@@ -259,9 +259,8 @@ class CoverageMonitor:
     """
 
     def __init__(self, model: SpecCoverage, options: Options, *, requirements: bool) -> None:
-        refuse_settle(
-            options.settle
-        )  # also where there is nothing to watch, and so no run that would
+        # Also where there is nothing to watch, and so no run that would refuse it.
+        refuse_settle(options.settle)
         self._model = model
         self._requirements = requirements
         self._runs = [

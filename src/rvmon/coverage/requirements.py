@@ -153,9 +153,7 @@ class WatchedRequirement:
         """Its coverage groups: itself, and the locations and edges of its automaton."""
         name = self.requirement.id
         items = [_item(TRIGGERED), _item(PASSED)]
-        items += [
-            _item(decides(variant.part), by_failure=variant.by_failure) for variant in self.variants
-        ]
+        items += [_item(decides(one.part), by_failure=one.by_failure) for one in self.variants]
         if self.deadline is not None:
             items += map(_item, (JUST_BEFORE, AT, AFTER))
         title = self.requirement.text
@@ -217,17 +215,13 @@ class WatchedRequirements:
         self._others = CompiledSpec(
             structs.replace(plain, requirements={**others, **self._goals}), is_kept=True
         )
-        self.groups = [
-            group for requirement in self._watched.values() for group in requirement.groups
-        ]
+        self.groups = [group for one in self._watched.values() for group in one.groups]
         self.groups += [group_of(name, Subject.GOAL, [Item(SHOWN)]) for name in self._goals]
 
     @cached_property
     def planned(self) -> Mapping[CompiledSpec, PlannedCore]:
         """The plans of the runs: one of the requirements, one of variants and cover goals."""
-        traced = {
-            name for name, requirement in self._watched.items() if requirement.graph is not None
-        }
+        traced = {name for name, one in self._watched.items() if one.graph is not None}
         specs = [spec for spec in (self._own, self._others) if spec.checked.requirements]
         return {spec: planned_core(spec, traced=traced) for spec in specs}
 

@@ -117,9 +117,8 @@ def conform(
     # What could come there instead, until the end of the recording.
     ahead = [*chain[:reached], replace(place, latest=end // RESOLUTION, left=())]
     allowed = _allowed(fine, labels, ahead, most, Meter(budget, None))
-    return Conformance(
-        place.explained, Divergence(place.t, place.left[0] if place.left else "", allowed)
-    )
+    label = place.left[0] if place.left else ""
+    return Conformance(place.explained, Divergence(place.t, label, allowed))
 
 
 @dataclass(frozen=True, slots=True)

@@ -94,9 +94,8 @@ class Names:
         return things
 
     def _thing(self, base: str, indices: Mapping[tuple[int, ...], int]) -> Thing:
-        extents = tuple(
-            range(min(places), max(places) + 1) for places in zip(*indices, strict=True)
-        )
+        dimensions = zip(*indices, strict=True)
+        extents = tuple(range(min(places), max(places) + 1) for places in dimensions)
         return Thing(self._fresh(base), min(indices.values()), extents)
 
     def function(self, function: ex.Function) -> str:

@@ -175,9 +175,8 @@ def _is_open(summary: Summary, group: Group) -> bool:
     if len(group.items) <= SHORT:
         return True
     places = range(summary.starts[group.name], summary.starts[group.name] + len(group.items))
-    return len(places) <= LONG and any(
-        hole in places for hole in (*summary.holes, *summary.illegal)
-    )
+    wrong = (*summary.holes, *summary.illegal)
+    return len(places) <= LONG and any(place in places for place in wrong)
 
 
 def _look(summary: Summary, place: int, item: Item, most: int) -> tuple[str, float | None, str]:

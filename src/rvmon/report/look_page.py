@@ -134,9 +134,8 @@ def spark(column: Column, profile: Profile) -> str:
             for stretch in place_stretches
             if stretch.low is not None and stretch.high is not None
         ]
-        if column.is_event and any(
-            stretch.updates and stretch.high != 0.0 for stretch in place_stretches
-        ):
+        occurs = any(stretch.updates and stretch.high != 0.0 for stretch in place_stretches)
+        if column.is_event and occurs:
             drawn += "│"
         elif numbers and not column.is_event:
             share = (sum(numbers) / len(numbers) - low) / (high - low) if high > low else 0.5

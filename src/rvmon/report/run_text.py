@@ -91,9 +91,8 @@ def print_report(report: Report, spec: CheckedSpec, printer: Printer) -> None:
             printer.line((f"{name} ", "bold"), wording.verdict_text(verdict), f"\n{why}\n")
         for shown in (Verdict.FAIL, Verdict.INCONCLUSIVE):
             count = report.counts.get(name, {}).get(shown, 0)
-            for attempt in islice(
-                report.of(name, shown) if count else (), wording.SHOWN_PER_REQUIREMENT
-            ):
+            attempts = report.of(name, shown) if count else ()
+            for attempt in islice(attempts, wording.SHOWN_PER_REQUIREMENT):
                 _print_attempt(attempt, spec.requirements[name], report, printer)
             rest = count - wording.SHOWN_PER_REQUIREMENT
             if rest > 0:

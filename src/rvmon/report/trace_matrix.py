@@ -134,9 +134,8 @@ def _row(rows: Sequence[Traced]) -> _Row:
         _list(f"{mark.sign} {mark.word}", by_verdict[verdict], is_open=verdict is Verdict.FAIL)
         for verdict, mark in MARKS.items()
     ]
-    lists.append(
-        _list("not evaluated", [listed for listed in unfaulted if not listed.verdict], is_open=True)
-    )
+    unjudged = [listed for listed in unfaulted if not listed.verdict]
+    lists.append(_list("not evaluated", unjudged, is_open=True))
     lists.append(_list("with a planted fault", [traced for traced in rows if traced.planted_fault]))
     counts = [(verdict, len(judged)) for verdict, judged in by_verdict.items()]
     return _Row(rows[0], counts, [listed for listed in lists if listed.size])

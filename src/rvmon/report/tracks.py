@@ -171,9 +171,7 @@ def readable(pieces: Sequence[Stretch]) -> list[Stretch]:
     if len(pieces) <= PLACES:
         return list(pieces)
     joined: list[Stretch] = []
-    for narrow, group in groupby(
-        pieces, key=lambda stretch: stretch.right - stretch.left < 1 / PLACES
-    ):
+    for narrow, group in groupby(pieces, lambda piece: piece.right - piece.left < 1 / PLACES):
         neighbours = list(group)
         if narrow and len(neighbours) > 1:
             joined.append(Stretch(neighbours[0].left, neighbours[-1].right, None, busy=True))

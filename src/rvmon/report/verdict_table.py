@@ -144,9 +144,8 @@ def _print_groups(
         if shown & {group.name for group in verdict_table.groups}
     }
     # Only beside the first groups, as it does not depend on the group.
-    has_checked = with_checked and any(
-        verdict_table.checked for verdict_table in (table, *others.values())
-    )
+    tables = (table, *others.values())
+    has_checked = with_checked and any(one.checked for one in tables)
     letters = _beside(Verdict, widths)
     titles = (f"{group.name} ({group.runs})" for group in groups)
     over = ["", *(["model"] if has_checked else []), *(f"{one:^{len(letters)}}" for one in titles)]

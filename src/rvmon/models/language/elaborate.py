@@ -223,9 +223,8 @@ def _formula(written: syntax.Expression, resolver: Resolver, top: sc.Scope) -> n
             if not is_plain(condition):
                 fix = "write a condition on the state: sup{p}: e"
                 raise model_error("TA020", "a condition on runs", written.span, fix)
-            asked = nta.Extremes(
-                ends, condition, tuple(_term(term, resolver, top) for term in terms)
-            )
+            shown = tuple(_term(term, resolver, top) for term in terms)
+            asked = nta.Extremes(ends, condition, shown)
             nta.refuse_fraction(resolver.fraction)
             return asked
         case _:

@@ -177,9 +177,8 @@ def _normal_form(expression: ex.Expression, positive: bool = True) -> ex.Express
             same = (op is ex.BinaryOp.EQ) == positive
             return _chosen(left, _normal_form(right, same), _normal_form(right, not same))
         case ex.Choice(condition, then, otherwise):
-            return _chosen(
-                condition, _normal_form(then, positive), _normal_form(otherwise, positive)
-            )
+            yes, no = _normal_form(then, positive), _normal_form(otherwise, positive)
+            return _chosen(condition, yes, no)
         case _:  # arithmetic, and what is discrete
             raise AssertionError(f"{expression} is no condition")
 
@@ -254,11 +253,8 @@ def alternatives_of(
 
     The formula has no path operators and no `deadlock`; `due` are bounds that hold besides in each.
     """
-    if formula is None:
-        return []
-    return [
-        Guard(together(conditions), (*compares, *due)) for conditions, compares in _split(formula)
-    ]
+    pieces = [] if formula is None else _split(formula)
+    return [Guard(together(data), (*compares, *due)) for data, compares in pieces]
 
 
 _Parts = tuple[list[ex.Expression], list[ex.ClockCompare]]
