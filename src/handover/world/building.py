@@ -10,7 +10,7 @@ import pymunk
 from handover.world import parameters as p
 from handover.world.faults import SceneFaults
 from handover.world.motion import Joints
-from handover.world.scene import Beside, Scene
+from handover.world.scene import Arms, Scene
 
 AS_PLANNED = SceneFaults()
 
@@ -40,18 +40,18 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
     links, joint_motors = _add_arm(space, pose)
     fingers, finger_motors = _add_fingers(space, links[2])
     piece = _add_piece(space, faults.friction, faults.raised_m)
-    rest, beside = p.HAND_REST, None
+    rest, arms = p.HAND_REST, None
     if faults.beside_m is not None:  # the x of the taking arm and of the other one
-        arms = (faults.beside_m + arm for arm in p.BESIDE_ARMS)
-        own, other = sorted(arms, reverse=faults.far_hand)
+        places = (faults.beside_m + arm for arm in p.BESIDE_ARMS)
+        own, other = sorted(places, reverse=faults.far_hand)
         rest = _from(own, p.BESIDE_REST)
     hand, hand_target, hand_pull = _add_hand(space, rest, _HAND, _SCENERY, _PIECE)
     if faults.beside_m is not None:
-        beside = _add_beside(space, hand, own, other)
+        arms = _add_arms(space, hand, own, other)
     if faults.hand_in_plane:
         _meet((*links[2:], *fingers), _HAND)
         _meet((hand,), _GRIPPER)
-    if beside is not None:
+    if arms is not None:
         _meet((*links[2:], *fingers, piece), _BESIDE)
     head = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     head.position = p.HEAD_REST
@@ -59,7 +59,7 @@ def build(pose: Joints, faults: SceneFaults = AS_PLANNED) -> Scene:
     space.add(head)
     return Scene(
         space, links, joint_motors, fingers, finger_motors, piece, hand, rest, hand_target,
-        hand_pull, head, beside,
+        hand_pull, head, arms,
     )  # fmt: skip
 
 
@@ -209,7 +209,7 @@ def _pulled(
     return target, pull
 
 
-def _add_beside(space: pymunk.Space, hand: pymunk.Body, own_x: float, other_x: float) -> Beside:
+def _add_arms(space: pymunk.Space, hand: pymunk.Body, own_x: float, other_x: float) -> Arms:
     """Forearm and other hand. The shoulder carries the forearm, so that it weighs nothing."""
     wrist, elbow = p.LOWER_ARM
     elbow_rest = _from(own_x, p.BESIDE_ELBOW)
@@ -227,7 +227,7 @@ def _add_beside(space: pymunk.Space, hand: pymunk.Body, own_x: float, other_x: f
     space.add(forearm, shape, _hinge(hand, forearm, hand.position))
     target, _ = _pulled(space, forearm, ((wrist - elbow) / 2, 0.0), p.ELBOW_FORCE)
     other, _, _ = _add_hand(space, _from(other_x, p.BESIDE_OTHER), _BESIDE, *meets)
-    return Beside(forearm, target, elbow_rest, other)
+    return Arms(forearm, target, elbow_rest, other)
 
 
 def _carried(body: pymunk.Body, _: tuple[float, float], damping: float, dt: float) -> None:

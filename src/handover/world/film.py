@@ -25,8 +25,8 @@ class Film:
 
     def __init__(self, scene: Scene) -> None:
         # In the order of `BODIES` and `BESIDE`.
-        beside = scene.beside
-        more = () if beside is None else (beside.forearm, beside.other_hand)
+        arms = scene.arms
+        more = () if arms is None else (arms.forearm, arms.other_hand)
         self._bodies = (*scene.links, *scene.fingers, scene.piece, scene.hand, scene.head, *more)
         self._frames: list[tuple[int, tuple[float, ...]]] = []
 

@@ -138,8 +138,8 @@ class Human:
         self._closed = False
         self._grasp: Grasp | None = None
         self._touches = 0
-        beside = scene.beside
-        more = () if beside is None else (beside.forearm, beside.other_hand)
+        arms = scene.arms
+        more = () if arms is None else (arms.forearm, arms.other_hand)
         for body in (scene.hand, *more):
             for shape in body.shapes:
                 shape.collision_type = _HAND
@@ -198,12 +198,12 @@ class Human:
             return 0.0
         return self._pressed(self._scene.hand, self._grasp_force())
 
-    def forces_beside(self) -> tuple[float, float]:
+    def arm_forces(self) -> tuple[float, float]:
         """The same for forearm and other hand of a person who stands beside the way."""
-        beside = self._scene.beside
-        if not self._touches or beside is None:
+        arms = self._scene.arms
+        if not self._touches or arms is None:
             return 0.0, 0.0
-        return self._pressed(beside.forearm), self._pressed(beside.other_hand)
+        return self._pressed(arms.forearm), self._pressed(arms.other_hand)
 
     def holds(self) -> bool:
         """Whether the hand has taken hold of the piece."""
@@ -265,23 +265,23 @@ class Human:
         if not self._wants_hold():
             self._let_go()
         if self._place is not None and self._grasp is None:
-            goal = self._hold_point() if self._wants_hold() else self._beside(*self._place)
+            goal = self._hold_point() if self._wants_hold() else self._near_piece(*self._place)
             self._wake(self._arm.start(goal))
 
     def _move_elbow(self) -> None:
         """Pull the elbow behind the hand, towards where it is when the arm hangs."""
-        beside, target = self._scene.beside, self._scene.hand_target
-        if beside is not None:
+        arms, target = self._scene.arms, self._scene.hand_target
+        if arms is not None:
             hand = target.position + target.velocity * p.CONTROL_S
-            elbow = hand + (beside.elbow - hand).normalized() * p.LOWER_ARM[1]
-            beside.elbow_target.velocity = (elbow - beside.elbow_target.position) / p.CONTROL_S
+            elbow = hand + (arms.elbow - hand).normalized() * p.LOWER_ARM[1]
+            arms.elbow_target.velocity = (elbow - arms.elbow_target.position) / p.CONTROL_S
 
     def _let_go(self) -> None:
         if self._grasp is not None:
             self._grasp.let_go()
             self._grasp = None
 
-    def _beside(self, dx: float, dz: float) -> tuple[float, float]:
+    def _near_piece(self, dx: float, dz: float) -> tuple[float, float]:
         piece_x, piece_z = seen_piece(self._scene)
         x, z = piece_x + dx, piece_z + dz
         above_table = p.TABLE[0] <= x <= p.TABLE[1] + p.HAND_RADIUS and piece_z > 0

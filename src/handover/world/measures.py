@@ -110,14 +110,14 @@ def person_distances(scene: Scene) -> tuple[float, float]:
     centre = pymunk.Vec2d(*gripper_centre(scene))
     to_hand = math.hypot(*_hand_offset(scene, centre))
     parts = [to_hand, (scene.head.position - centre).length]
-    if scene.beside is not None:
-        (bone,) = scene.beside.forearm.shapes
+    if scene.arms is not None:
+        (bone,) = scene.arms.forearm.shapes
         parts.append(bone.point_query(centre).distance + p.LOWER_ARM_RADIUS)
     return to_hand, min(parts)
 
 
 def _hand_offset(scene: Scene, centre: tuple[float, float]) -> tuple[float, float]:
-    hands = [scene.hand] if scene.beside is None else [scene.hand, scene.beside.other_hand]
+    hands = [scene.hand] if scene.arms is None else [scene.hand, scene.arms.other_hand]
     places = (hand.position for hand in hands)
     offsets = [(abs(x - centre[0]), abs(z - centre[1])) for x, z in places]
     return min(offsets, key=lambda offset: math.hypot(*offset))
@@ -128,12 +128,12 @@ def beside_distance(scene: Scene, x: float, z: float) -> float:
 
     They are those of a person beside the way; nobody is there: infinite.
     """
-    if scene.beside is None:
+    if scene.arms is None:
         return math.inf
     low, high = p.GRIPPER_REACH
     return min(
         shape.point_query((x, at)).distance
-        for body in (scene.beside.forearm, scene.beside.other_hand)
+        for body in (scene.arms.forearm, scene.arms.other_hand)
         for shape in body.shapes
         for at in (z - low, z, z + high)
     )

@@ -78,7 +78,7 @@ class Truth:
 
     def step(self) -> None:
         """Keep the greatest forces on the human between two measurements."""
-        now = self._human.hand_force(), *self._human.forces_beside()
+        now = self._human.hand_force(), *self._human.arm_forces()
         if now != _NO_FORCE:
             self._peaks = _greatest(self._peaks, now)
 
@@ -102,15 +102,15 @@ class Truth:
             "forearm_force": round(forearm),
             "true_distance": round(to_hand, 3),
             "person_distance": round(to_person, 3),
-            **self._beside(),
+            **self._person_distance(),
             "true_gaze": measures.gaze_is_ok(scene),
             "true_pressure": self._human.shares_piece(),
             "true_location": measures.location_is_ok(scene),
             "tool_speed": round(measures.tool_speed(scene), 3),
         }
 
-    def _beside(self) -> dict[str, SampleValue]:
-        if self._scene.beside is None:
+    def _person_distance(self) -> dict[str, SampleValue]:
+        if self._scene.arms is None:
             return {}
         distance = measures.beside_distance(self._scene, *measures.tool_point(self._scene))
         return {"beside_distance": round(distance, 3)}

@@ -8,7 +8,7 @@ import pymunk
 
 
 @dataclass(frozen=True, slots=True)
-class Beside:
+class Arms:
     """The bodies of a person beside the robot's way in its plane, besides the taking hand."""
 
     forearm: pymunk.Body  # from the wrist to the elbow; its x axis points to the wrist
@@ -34,4 +34,4 @@ class Scene:
     hand_target: pymunk.Body  # the point to which the human's arm pulls the hand
     hand_pull: pymunk.PivotJoint  # the pull itself, with its largest force
     head: pymunk.Body  # of the human; its angle is the direction of gaze
-    beside: Beside | None  # the rest of a human who stands beside the way
+    arms: Arms | None  # the rest of a human who stands beside the way

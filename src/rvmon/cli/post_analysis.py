@@ -164,11 +164,11 @@ class _Values:
 
     def of_attempts(self) -> Iterator[tuple[str, int, Mapping[str, str]]]:
         """By requirement and number of the attempt, what they were at its decision."""
-        from rvmon.report.tracks import concerned_names
+        from rvmon.report.tracks import names_of_requirement
 
         signals = self._spec.checked.signals
         for attempt, names in self._reads:
-            order = concerned_names(self._spec.requirements[attempt.requirement])
+            order = names_of_requirement(self._spec.requirements[attempt.requirement])
             own = {
                 name: value_text(self._known[attempt.decided or 0, name], signals[name].type.unit)
                 for name in order

@@ -245,11 +245,11 @@ def _timeline(observation: Observation, shown: Run, spec: Spec) -> list[str]:
     from rvmon.models.requirement_check import signals_of
     from rvmon.report.explain_text import picture_of
     from rvmon.report.printer import plain
-    from rvmon.report.tracks import concerned_names
+    from rvmon.report.tracks import names_of_requirement
     from rvmon.trace.sample import Sample
     from rvmon.trace.schema import Kind
 
-    names = concerned_names(spec.requirements[observation.requirement])
+    names = names_of_requirement(spec.requirements[observation.requirement])
     declared = spec.checked.signals
     truths = {name for name, signal in declared.items() if signal.type.kind is Kind.BOOL}
     signals = {

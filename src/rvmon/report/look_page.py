@@ -56,12 +56,12 @@ def grouped(
     profile: Profile, requirements: Sequence[Requirement]
 ) -> Iterator[tuple[str, list[Column]]]:
     """The columns by title: of each requirement, then of each topic, constant ones last."""
-    from rvmon.report.tracks import concerned_names
+    from rvmon.report.tracks import names_of_requirement
 
     by_name = {column.name: column for column in profile.columns}
     read: set[str] = set()
     for requirement in requirements:
-        names = [name for name in concerned_names(requirement) if name in by_name]
+        names = [name for name in names_of_requirement(requirement) if name in by_name]
         read.update(names)
         yield f"{requirement.id}  {requirement.text}", [by_name[name] for name in names]
     rest: dict[str, list[Column]] = {}

@@ -40,7 +40,7 @@ class Scene(Struct, frozen=True):
     view: tuple[float, float, float, float]  # the shown part: left, bottom, right, top in metres
 
 
-def concerned_names(requirement: Requirement) -> tuple[str, ...]:
+def names_of_requirement(requirement: Requirement) -> tuple[str, ...]:
     """The names that a requirement reads, those of its trigger first, each once."""
     names = (
         name
@@ -224,7 +224,7 @@ def tracks_of(
         _signal_track(spec.signals[name], requirement, changes[name])
         if name in spec.signals
         else Track(name, TrackKind.EVENT, changes[name].ended(), absent=name in absent)
-        for name in concerned_names(requirement)
+        for name in names_of_requirement(requirement)
     )
 
 

@@ -146,7 +146,7 @@ def _print_groups(
     # Only beside the first groups, as it does not depend on the group.
     tables = (table, *others.values())
     has_checked = with_checked and any(one.checked for one in tables)
-    letters = _beside(Verdict, widths)
+    letters = _in_columns(Verdict, widths)
     titles = (f"{group.name} ({group.runs})" for group in groups)
     over = ["", *(["model"] if has_checked else []), *(f"{one:^{len(letters)}}" for one in titles)]
     heads = ["", *(["checking"] if has_checked else []), *(letters for _ in groups)]
@@ -180,10 +180,10 @@ def _count_lines(
     if not table.shows_intervals:
         return line, ""
     shares = (interval_text(counts.get(verdict, 0), group.runs) for verdict in Verdict)
-    return line, (_beside(shares, widths), "dim")
+    return line, (_in_columns(shares, widths), "dim")
 
 
-def _beside(texts: Iterable[str], widths: Sequence[int]) -> str:
+def _in_columns(texts: Iterable[str], widths: Sequence[int]) -> str:
     return "".join(f"{text:>{width}}" for text, width in zip(texts, widths, strict=True))
 
 

@@ -28,7 +28,7 @@ from rvmon.report.foxglove_layout import (
     seconds_and_rest,
     topic_of,
 )
-from rvmon.report.tracks import Scene, concerned_names
+from rvmon.report.tracks import Scene, names_of_requirement
 from rvmon.trace.sample import Sample
 from rvmon.trace.schema import Kind
 from rvmon.verdicts import LAW, Verdict
@@ -83,7 +83,9 @@ def write_verdicts(
     if begin < 0:
         raise RvmonError(f"cannot write {path}: MCAP has no instants before 0 s")
     names = {
-        name for verdict in report.verdicts for name in concerned_names(spec.requirements[verdict])
+        name
+        for verdict in report.verdicts
+        for name in names_of_requirement(spec.requirements[verdict])
     }
     states = sorted(_states(report, begin), key=itemgetter(0))
     frames = [] if scene is None else [(t, SCENE, one) for t, one in scene_updates(scene)]

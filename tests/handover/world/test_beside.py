@@ -31,17 +31,17 @@ def most(test: str, mutation: str | None = None) -> dict[str, float]:
 def test_the_forearm_follows_the_hand(*, far_hand: bool) -> None:
     scene_faults = SceneFaults(beside_m=0.6, far_hand=far_hand)
     world = World(random.Random(1), scene_faults=scene_faults)
-    beside = world.scene.beside
-    assert beside is not None
-    other = beside.other_hand.position
+    arms = world.scene.arms
+    assert arms is not None
+    other = arms.other_hand.position
     world.human.reach(*p.LOCATION_OK, near=True)
     middle = sum(p.LOWER_ARM) / 2
     for tenths in range(1, 30):
         world.run(tenths * p.NS // 10)
-        to_hand = world.scene.hand.position - beside.forearm.position
+        to_hand = world.scene.hand.position - arms.forearm.position
         assert to_hand.length == pytest.approx(middle, abs=0.002)
-        assert math.cos(to_hand.angle - beside.forearm.angle) == pytest.approx(1.0, abs=1e-3)
-        assert (beside.other_hand.position - other).length < 0.001
+        assert math.cos(to_hand.angle - arms.forearm.angle) == pytest.approx(1.0, abs=1e-3)
+        assert (arms.other_hand.position - other).length < 0.001
     assert (world.scene.hand.position - world.scene.hand_target.position).length < 0.005
 
 
@@ -75,12 +75,12 @@ def test_contacts_of_a_struck_forearm_are_told_by_pair() -> None:
     test = TESTS["mutant-strikes-a-forearm"]
     world = begun(test).world
     scene = world.scene
-    assert scene.beside is not None
+    assert scene.arms is not None
     pairs: set[int] = set()
     for tenths in range(120, 220):
         world.run(tenths * p.NS // 10)
-        by_body = contact_forces(scene.beside.forearm)
-        felt = world.human.forces_beside()[0]
+        by_body = contact_forces(scene.arms.forearm)
+        felt = world.human.arm_forces()[0]
         robot = [by_body.get(one, 0.0) for one in (scene.links[2], *scene.fingers, scene.piece)]
         assert felt == max(robot)
         pairs |= {index for index, force in enumerate(robot) if force > 1.0}

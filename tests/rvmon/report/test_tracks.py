@@ -18,7 +18,7 @@ from rvmon.report.tracks import (
     Track,
     TrackKind,
     blamed_names,
-    concerned_names,
+    names_of_requirement,
     occurrences,
     polylines,
     readable,
@@ -58,8 +58,8 @@ def track(name, samples, requirement=R1, absent=()):
 
 def test_names_concerned_have_tracks_with_the_thresholds_of_either_side():
     """Those of the trigger first; an event without source is not drawn as if it never happened."""
-    assert concerned_names(R1) == ("go", "mode", "gap", "pick")
-    assert concerned_names(R2) == ("ok", "other")
+    assert names_of_requirement(R1) == ("go", "mode", "gap", "pick")
+    assert names_of_requirement(R2) == ("ok", "other")
     assert thresholds(R1, "gap") == (Threshold(">=", 0.05), Threshold("<", 1.0))
     assert thresholds(R1, "mode") == ()
     assert track("go", [], absent={"go"}).absent

@@ -171,11 +171,11 @@ class Bodies:
         resolver = self.resolver
         if written is None:
             single = [leaf for leaf in symbols.leaves(symbol) if isinstance(leaf, sc.PlacedSymbol)]
-            ranges = [resolver.functions.variable(leaf.slot) for leaf in single]
             span = self.text.span
+            initial = [resolver.functions.variable(leaf.slot).initial for leaf in single]
             return [
-                _set(leaf, ex.Constant(max(v.low, min(0, v.high))), span, resolver)
-                for leaf, v in zip(single, ranges, strict=True)
+                _set(leaf, ex.Constant(value), span, resolver)
+                for leaf, value in zip(single, initial, strict=True)
             ]
         if (kind.extents or kind.fields) and not isinstance(written, syntax.Values):
             return _copy(symbol, resolver.symbol(written, scope), written.span, resolver)

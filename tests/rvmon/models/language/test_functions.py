@@ -38,6 +38,7 @@ EDGE = "automaton A {{ location l location m start l edge l -> m when x >= 1 do 
         ("void f() { const int[0,9] k = a[1]; v = k << 2 | 1; }", "f()", "v == 9"),
         ("void f() { a[v++] = 7; a[v++] += 7; }", "f()", "v == 2 and a[0] == 7 and a[1] == 9"),
         ("", "v = 2, a[v--] = 9", "v == 1 and a[2] == 9 and a[1] == 2"),
+        ("int[-5,-1] w\nvoid f() { int[-5,-1] k; v = k - w + 1; }", "f()", "v == 1 and w == -5"),
         ("void f() { x = 0; }", "f()", "A.m and x == 0"),
         ("void f(clock &c) { c = 5; }", "f(x)", "A.m and x == 5"),
         ("void f(S &z) { z.q[1] = 4; z.p = z.q[1]; }", "f(s[1])", "s[1].p == 4 and s[0].p == 0"),
