@@ -136,7 +136,7 @@ class NoteExplainer:
         weights = alphabet.pessimistic if passed else alphabet.optimistic
         return sum(map(getitem, weights, values))
 
-    def details(self, attempt: Attempt, note: Note, name: str) -> Mapping[str, Any]:
+    def details(self, attempt: Attempt, note: Note, name: str) -> dict[str, Any]:
         """The explanatory fields of an attempt, by name; see `Attempt`.
 
         A forecast takes a search: it waits for who asks for it, unless that is the name.
@@ -152,7 +152,7 @@ class NoteExplainer:
         if note.kind == _DECIDED or (note.kind == _OPEN and attempt.decided is not None):
             words = note.state[2 : 2 + self._leaf_words]
             seen = dict(explain.truths_shown(self._texts, truths(words, len(self._texts))))
-        fields = {
+        fields: dict[str, Any] = {
             "reason": why.reason,
             "deadline": why.deadline,
             "at_trigger": dict(explain.truths_shown(self._texts, self._then(note))),
@@ -161,8 +161,10 @@ class NoteExplainer:
             "blame": why.blame,
         }
         if forecast is None or name == "forecast":
-            return fields | {"forecast": forecast and forecast()}
-        return fields | {"_details": lambda *_: {"forecast": forecast()}}
+            fields["forecast"] = forecast and forecast()
+        else:
+            fields["_details"] = lambda *_: {"forecast": forecast()}
+        return fields
 
     def _decided(self, attempt: Attempt, note: Note) -> explain.Explanation:
         flow = self._truth_values(note, attempt.origin)
@@ -308,6 +310,6 @@ class NotesReader:
             by_requirement |= {compiled.requirement.id: explainers for compiled in part}
         return by_requirement
 
-    def details(self, attempt: Attempt, note: Note, name: str) -> Mapping[str, Any]:
+    def details(self, attempt: Attempt, note: Note, name: str) -> dict[str, Any]:
         """See `NoteExplainer.details`."""
         return self._explainers[attempt.requirement][note.judge].details(attempt, note, name)

@@ -170,7 +170,8 @@ class PlannedCore(Struct, frozen=True):
         if name == "captured":
             return {"captured": values}
         details = self._reader.details(attempt, note(), name)
-        return {**details, "captured": values, "robustness": None, "_noted": None}
+        details.update(captured=values, robustness=None, _noted=None)
+        return details
 
     @property
     def _reader(self) -> NotesReader:

@@ -178,10 +178,10 @@ def format_ticks(ticks: int) -> str:
     """
     if 0 < abs(ticks) < 1_000:
         return f"{ticks} ns"
-    whole, rest = divmod(abs(ticks), TICKS_PER_SECOND)
-    digits = f"{rest:09d}".rstrip("0") if rest else ""
-    sign = "-" if ticks < 0 else ""
-    return f"{sign}{whole}{'.' + digits if digits else ''} s"
+    if ticks < 0:
+        return f"-{format_ticks(-ticks)}"
+    whole, rest = divmod(ticks, TICKS_PER_SECOND)
+    return f"{whole}.{rest:09d}".rstrip("0") + " s" if rest else f"{whole} s"
 
 
 def format_instant(t: int, origin: int) -> str:
