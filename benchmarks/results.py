@@ -269,7 +269,8 @@ def main(
     out: Path | None = None,
 ) -> None:
     """Measure some sections, or all, and print the page, or write it."""
-    shown = ["FOLDER" if Path(one) == r2u2 else one for one in sys.argv[1:]]
+    names = {str(r2u2): "FOLDER", str(out): "FILE"}  # of this machine
+    shown = [names.get(one, one) for one in sys.argv[1:]]
     command = " ".join(["python -m benchmarks.results", *shown])
     text = page({"command": command, **run(QUICK if quick else Size(), only, r2u2)})
     if out is None:
