@@ -50,16 +50,16 @@ def _add(parser: argparse.ArgumentParser, command: Callable[..., int | None]) ->
             words["default"] = one.default
             words["help"] = f"default: {one.default}" if one.default else None
         kind = one.annotation
-        if NoneType in get_args(kind):
-            kind = get_args(kind)[0]
+        kind = get_args(kind)[0] if NoneType in get_args(kind) else kind
         if get_origin(kind) is Sequence:
             [kind] = get_args(kind)
             words["nargs"] = "+" if words.get("default", True) else "*"
             words["choices"] = words.get("default") or None
-        words |= (
-            {"action": "store_true"} if kind is bool else {"type": kind, "metavar": name.upper()}
-        )
-        parser.add_argument(f"--{name.replace('_', '-')}" if is_option else name, **words)
+        word = name.strip("_")
+        valued = {"type": kind, "metavar": word.upper()}
+        words |= {"action": "store_true"} if kind is bool else valued
+        words |= {"dest": name} if is_option else {}
+        parser.add_argument(f"--{word.replace('_', '-')}" if is_option else name, **words)
 
 
 def in_turn(contenders: Sequence[T], repeats: int) -> Iterator[tuple[int, T]]:
