@@ -13,7 +13,7 @@ from rvmon.language.checked.classify import subformulas
 from rvmon.language.checked.operators import Tense
 from rvmon.language.checked.specification import CheckedSpec, TimeModel
 from rvmon.language.print import format_formula
-from rvmon.recordings.last_updates import LastUpdates, last_of
+from rvmon.recordings.last_updates import LastUpdates, first_of, last_of
 from rvmon.trace.sample import Sample, Value
 
 if TYPE_CHECKING:
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from rvmon.verdicts.attempt import Attempt
 
 Key = tuple[str, int]  # the requirement and number of an attempt
+
+_FEW = 256  # samples that are looked through at once: mostly what was awaited comes soon
 
 
 class Arrivals:
@@ -73,15 +75,21 @@ class Arrivals:
 
     def take(self, pieces: Sequence[Batch | Sample], until: int) -> None:
         """Take the next pieces of the recording, which tell all up to an instant (ticks)."""
-        if self._open:
+        place = 0
+        while self._open:
             at = min(waits[0][0] for waits in self._open.values())
             at = at if self._since is None else max(at, self._since)
-            if at < until:
-                passed = sum(last_of(piece) <= at for piece in pieces)
-                self._updates.add(pieces[:passed])
-                pieces = pieces[passed:]
-                self._look(pieces, at, until)
-        self._updates.add(pieces)
+            if at >= until:
+                break
+            passed = place
+            while place < len(pieces) and last_of(pieces[place]) <= at:
+                place += 1
+            self._updates.add(pieces[passed:place])
+            stop = _portion(pieces, place)
+            end = first_of(pieces[stop]) - 1 if stop < len(pieces) else until
+            self._look(pieces[place:stop], at, end)
+            self._since = end
+        self._updates.add(pieces[place:])
         self._since = until
 
     def _look(self, pieces: Sequence[Batch | Sample], at: int, until: int) -> None:
@@ -120,6 +128,14 @@ class Arrivals:
             found.setdefault(t, {})[name] = value
         found.setdefault(at, {})
         return [Sample(t, found[t]) for t in sorted(found)]
+
+
+def _portion(pieces: Sequence[Batch | Sample], place: int) -> int:
+    """The end of a batch, or of a few samples, from a place on: samples are gone through singly."""
+    stop = place
+    while stop < min(place + _FEW, len(pieces)) and isinstance(pieces[stop], Sample):
+        stop += 1
+    return max(stop, min(place + 1, len(pieces)))
 
 
 def is_of_moment(formula: formulas.Formula, time: TimeModel) -> bool:

@@ -157,7 +157,7 @@ READ_AGAIN = {
 
 @pytest.mark.law
 @pytest.mark.parametrize("stale", ["", "stale after 300 ms"])
-@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 300 ms"])
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 300 ms", "held\nmax delay 1 s"])
 @pytest.mark.parametrize("awaited", [ON_THE_WAY, READ_AGAIN])
 def test_late_answers_are_noted_on_the_way(awaited, time, stale, traces, monkeypatch):
     """They are those of a short recording, which is remembered, and so are the values."""
@@ -178,6 +178,7 @@ def test_late_answers_are_noted_on_the_way(awaited, time, stale, traces, monkeyp
             patch.setattr(post_analysis, "MOST_HELD", 60)
             patch.setattr(post_analysis, "_AT_ONCE", 30)
             patch.setattr("rvmon.recordings.places.BLOCK", 900)
+            patch.setattr("rvmon.analysis.arrivals._FEW", 5)
             assert judge(spec, trace, Options()).report == short
         assert short.values["S"]
         assert len(short.late) > 1
