@@ -98,15 +98,6 @@ def of_pieces(path: Path):
             yield piece
 
 
-@each("stamp", ["5", "+5", "-5", "05", "5.", "+5.", "5.0", "5e0", "5.e0", "5E3"])
-def test_nanoseconds_are_whole_in_columns_as_in_rows(tmp_path, stamp):
-    """Digits behind a sign: neither a point nor an exponent, whatever number they make."""
-    (tmp_path / "a.csv").write_text(f"t_ns,p\n-9,1\n{stamp},1\n900,0\n")
-    found = read(of_pieces(tmp_path / "a.csv"))
-    assert found == read(samples_of_csv(SPEC, tmp_path / "a.csv"))
-    assert (len(found) == 3) == stamp.lstrip("+-").isdigit()
-
-
 @pytest.mark.law
 def test_columns_say_what_rows_say(tmp_path, monkeypatch):
     for seed in range(100):
@@ -127,6 +118,7 @@ CELLS = {
     "1e-400 nan nan(1) 1_0 1e",
     "t,p\n{},1\n": "1 1.5 1e0 1.000000001 1.0000000001 +1 nan inf 1_0 4611686018.427387904",
     "t_ns,p\n{},1\n": "1 +1 007 0x1F 1.0 1e3 4611686018427387903 4611686018427387904",
+    "t_ns,p\n-9,1\n{},1\n900,0\n": "5 +5 -5 05 5. +5. 5.0 5e0 5.e0 5E3",
 }
 """Files with a cell to be filled in, and what is."""
 
@@ -135,7 +127,21 @@ CELLS = {
 def test_a_cell_is_read_as_in_rows(text, tmp_path):
     path = tmp_path / "a.csv"
     path.write_text(text)
-    assert read(SPEC.recording(path)) == read(samples_of_csv(SPEC, path))
+    expected = read(samples_of_csv(SPEC, path))
+    assert read(SPEC.recording(path)) == expected
+    assert read(of_pieces(path)) == expected
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("text", ["t,p,x\n1,1,{}\n", "t,p,{}\n1,1,1\n"])
+@pytest.mark.parametrize(("length", "told"), [(131072, ""), (131073, "more than 131,072 char")])
+def test_a_cell_is_as_long_as_in_rows(text, length, told, tmp_path, monkeypatch):
+    monkeypatch.setattr(places, "BLOCK", 1 << 17)
+    (tmp_path / "a.csv").write_text(text.format("a" * length))
+    found = read(of_pieces(tmp_path / "a.csv"))
+    assert found == read(samples_of_csv(SPEC, tmp_path / "a.csv"))
+    assert told in found[0][1]
+    assert found[0][0] == (-1 if told else 10**9)
 
 
 @pytest.mark.slow

@@ -36,65 +36,43 @@ def rows_at_random(seed, count=60):
     return rows
 
 
-def comma(text):
-    return text.replace(".", ",")
+NAMES = ("t_ns", "speed", "mode", "stop")
 
 
-def seconds(t):
-    return f"{t // 10**9}.{t % 10**9:09d}"
+def written(rows, sign=",", *, names=NAMES, point=".", end="\n", above=(), within=()):
+    """Rows as a tool writes them: other signs, names with units, lines above and between rows."""
+    lines = [sign.join(names)]
+    for t, *cells in rows:
+        stamp = f"{t // 10**9}.{t % 10**9:09d}" if names[0] == "t" else t
+        stamp = t // 1_000 if "us" in names[0] else stamp
+        lines.append(sign.join(str(one).replace(".", point) for one in (stamp, *cells)))
+    return end.join([*above, *lines[:10], *within, *lines[10:], ""])
 
 
-def plain(rows):
-    return "t_ns,speed,mode,stop\n" + "".join(",".join(map(str, row)) + "\n" for row in rows)
-
-
-def semicolons(rows):
-    lines = [f"{comma(seconds(t))};{comma(speed)};{mode};{stop}" for t, speed, mode, stop in rows]
-    return "\n".join(["t;speed;mode;stop", *lines, ""])
-
-
-def tabs(rows):
-    lines = [f"{seconds(t)}\t{speed}\t{mode}\t{stop}" for t, speed, mode, stop in rows]
-    return "\r\n".join(["t\tspeed\tmode\tstop", *lines, ""])
-
-
-def bars_below_remarks(rows):
-    lines = [f"{t}|{speed}|{mode}|{stop}" for t, speed, mode, stop in rows]
-    above = ["# Logger 3", "# rate: 100 Hz; range: 2", ""]
-    return "\n".join([*above, "t_ns|speed|mode|stop", *lines[:9], "# paused", *lines[9:], ""])
-
-
-def commented_header(rows):
-    lines = [f"{t},{speed or 'nan'}" for t, speed, _, _ in rows]
-    return "\n".join(["# t_ns,speed", *lines, ""])
-
-
-def below_properties(rows):
-    above = ["Device:,Base 7", "Serial;4711", ""]
-    return "\n".join(above) + "\n" + plain(rows)
-
-
-def units_in_names(rows):
-    lines = [f"{t // 1_000},{speed},{mode},{stop}" for t, speed, mode, stop in rows]
-    return "\n".join(["t [us],speed [m/s],mode,stop (-)", *lines, ""])
-
-
-def said(rows):
-    return "sep=;\n" + semicolons(rows)
-
-
-DIALECTS = (semicolons, tabs, bars_below_remarks, below_properties, units_in_names, said)
+OF_EUROPE = {"sign": ";", "point": ",", "names": ("t", *NAMES[1:])}
+DIALECTS = {
+    "semicolons": OF_EUROPE,
+    "said": OF_EUROPE | {"above": ["sep=;"]},
+    "tabs": {"sign": "\t", "end": "\r\n", "names": ("t", *NAMES[1:])},
+    "bars below remarks": {
+        "sign": "|",
+        "above": ["# Logger 3", "# rate: 100 Hz; range: 2"],
+        "within": ["# paused"],
+    },
+    "below properties": {"above": ["Device:,Base 7", "Serial;4711"]},
+    "units in names": {"names": ("t [us]", "speed [m/s]", "mode", "stop (-)")},
+}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("write", DIALECTS)
+@pytest.mark.parametrize("dialect", DIALECTS.values(), ids=DIALECTS)
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
-def test_a_dialect_gives_the_records_that_plain_csv_gives(tmp_path, write, encoding):
+def test_a_dialect_gives_the_records_that_plain_csv_gives(tmp_path, dialect, encoding):
     spec, verdicts = rvmon.loads(SPEC), set()
     for seed in range(2):
         rows = rows_at_random(seed)
-        (tmp_path / "plain.csv").write_text(plain(rows))
-        (tmp_path / "other.csv").write_bytes(write(rows).encode(encoding))
+        (tmp_path / "plain.csv").write_text(written(rows))
+        (tmp_path / "other.csv").write_bytes(written(rows, **dialect).encode(encoding))
         expected, found = (spec.evaluate(tmp_path / name) for name in ("plain.csv", "other.csv"))
         assert found.attempts == expected.attempts
         assert (found.verdicts, found.end) == (expected.verdicts, expected.end)
@@ -104,7 +82,7 @@ def test_a_dialect_gives_the_records_that_plain_csv_gives(tmp_path, write, encod
 
 def test_plain_text_is_left_as_it_is(tmp_path):
     for seed in range(8):
-        assert dialect_of(plain(rows_at_random(seed)).encode()) == PLAIN
+        assert dialect_of(written(rows_at_random(seed)).encode()) == PLAIN
     for text in ("", "t", "t,a\n", "t,a\n1\n", 't,"a;b"\n0,1;5\n', "1,2\n3,4\n", "a b c\n"):
         assert dialect_of(text.encode()) == PLAIN or text == "a b c\n"
 
@@ -121,9 +99,9 @@ def test_blanks_and_a_header_that_is_a_comment(tmp_path):
     spec = rvmon.loads("spec s\nsignal x, y : real\nrequirement R\n always x + y < 5")
     (tmp_path / "a.csv").write_text("# t x y\n0 1 2\n0.5  2   2.5\n1 3 4\n")
     assert spec.evaluate(tmp_path / "a.csv").attempts[0].decided == 10**9
-    rows = rows_at_random(1)
-    (tmp_path / "b.csv").write_text(commented_header(rows))
-    (tmp_path / "c.csv").write_text(commented_header(rows).removeprefix("# "))
+    text = written([(t, x or "nan") for t, x, *_ in rows_at_random(1)], names=NAMES[:2])
+    (tmp_path / "b.csv").write_text(f"# {text}")
+    (tmp_path / "c.csv").write_text(text)
     spec = rvmon.loads("spec s\nsignal speed : real\nrequirement R\n always speed < 2")
     assert spec.evaluate(tmp_path / "b.csv").attempts == spec.evaluate(tmp_path / "c.csv").attempts
 

@@ -90,19 +90,6 @@ def base() -> Spec:
     return rvmon.loads(BASE)
 
 
-PICKS = {"t": [0.0, 1.0, 2.0], "gear": [1, 1, 1], "pick.id": [None, 3, None]}
-
-
-def test_payloads_come_as_columns(tmp_path):
-    """An occurrence is a row with a field, unless the event's own column says false."""
-    (tmp_path / "a.csv").write_text("t,gear,pick.id\n0,1,\n1,1,3\n2,1,\n")
-    parquet.write_table(pyarrow.table(PICKS), tmp_path / "a.parquet")
-    for trace in (PICKS, pyarrow.table(PICKS), tmp_path / "a.csv", tmp_path / "a.parquet"):
-        assert judged(base(), trace).verdicts["R2"] == "F"
-    for flags, verdict in (([None, False, None], "NT"), ([False, True, False], "F")):
-        assert judged(base(), PICKS | {"pick": flags}).verdicts["R2"] == verdict
-
-
 @pytest.mark.parametrize(
     "columns",
     [
@@ -272,11 +259,3 @@ def test_columns_of_one_array(stamps):
         dict(zip((stamps, "speed"), rows.T, strict=True)) for rows in (one, one.copy("F"))
     )
     assert told(base(), own) == told(base(), apart)
-
-
-def test_frames_of_polars():
-    polars = pytest.importorskip("polars")
-    table = {"t": [0.0, 1.0, 2.0], "speed": [1.0, None, 2.0], "pick.id": [None, 3, None]}
-    assert told(base(), polars.DataFrame(table)) == told(base(), table)
-    table["speed"] = [1.0, NAN, 2.0]
-    assert told(base(), polars.DataFrame(table)) == told(base(), table)

@@ -89,11 +89,6 @@ def test_a_signal_that_ignores_nan_is_refused_where_a_last_line_has_no_end(tmp_p
     assert spec.evaluate(tmp_path / "a.csv").verdicts["R1"] == "P"
 
 
-def test_decimal_seconds_are_exact(tmp_path):
-    _, samples = read(tmp_path, "a.csv", "t,ok\n1700000000.123456789,1\n")
-    assert samples[0][0] == 1_700_000_000_123_456_789
-
-
 BAD = {
     "text in a number": ("a.csv", "t,n\n0,1\n1,abc\n", "a.csv: line 3: column `n`: `abc`"),
     "NA in a number": ("a.csv", "t,n\n0,1\n1,NA\n", "`NA` is not a whole number: leave a cell"),
@@ -197,12 +192,6 @@ def test_unordered_recordings_pass_where_lateness_is_allowed(tmp_path, monkeypat
 def test_a_byte_order_mark_is_no_part_of_the_text(tmp_path, file, text):
     _, samples = read(tmp_path, file, "\ufeff" + text)
     assert samples == [(1_000_000_000, {"n": 4})]
-
-
-def test_a_line_of_blanks_is_passed_over(tmp_path):
-    """Between rows, blanks say as much as an empty line."""
-    _, samples = read(tmp_path, "a.csv", "t,n\n1,4\n \t \n2,5\n")
-    assert [t for t, _ in samples] == [1_000_000_000, 2_000_000_000]
 
 
 @each("number", ["1e400", "-1e400", "9" * 400])

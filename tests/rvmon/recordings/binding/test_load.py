@@ -234,20 +234,6 @@ def test_what_is_wrong_is_told_with_its_place(tmp_path, binding, message):
         rvmon.loads(SPEC).reading(binding=path)
 
 
-@pytest.mark.parametrize(
-    ("value", "message"),
-    [
-        ("twist.linear.x", "has no field `twist.linear.x`: did you mean `twist.twist.linear.x`"),
-        ("twist.twist.linear", "is a message: name a field of it: `twist.twist.linear.x`"),
-        ("child_frame_id", "holds text"),
-        ("pose.covariance", r"is an array: name an element, such as `pose.covariance\[0\]`"),
-    ],
-)
-def test_a_field_that_is_not_there_is_told_with_the_nearest(read, value, message):
-    with pytest.raises(rvmon.TraceError, match=rf"a\.bag: .*{message}"):
-        read(f'[bind.speed]\ntopic = "/base/odom"\nvalue = "{value}"\n')
-
-
 def test_a_topic_that_is_not_there_is_told_with_the_nearest(tmp_path):
     (tmp_path / "base.toml").write_text('[bind.speed]\ntopic = "/base/odm"\nvalue = "x"\n')
     path = write_ros1(tmp_path / "a.bag", SENT)

@@ -3,13 +3,11 @@
 from importlib import resources
 
 import pytest
-from msgspec.structs import replace
 from tests.tools.each import each
 
-from rvmon.errors import TraceError
 from rvmon.recordings.messages import Topic
-from rvmon.recordings.messages.field_meanings import Sort, expect_units, is_listed, meaning_of
-from rvmon.trace.schema import Bound, Field, Kind, Schema
+from rvmon.recordings.messages.field_meanings import Sort, is_listed, meaning_of
+from rvmon.trace.schema import Kind
 
 pytest.importorskip("rosbags")
 
@@ -95,22 +93,6 @@ def test_what_nobody_can_know_is_open():
     assert meaning_of("pose.pose.orientation.x", Topic("/o", "nav_msgs/Odometry", {})).sort is (
         Sort.QUATERNION
     )
-
-
-def test_who_writes_a_unit_has_read_the_comment_that_says_another():
-    """A comment is prose; what a recording says of itself, or a standard, is none."""
-    schema = Schema({"turn": Kind.REAL}, {}, units={"turn": "rad"})
-    told = Topic(
-        "/turn", "shop_msgs/msg/Turn", {"turn": Kind.REAL}, comments={"turn": "[m] or degrees"}
-    )
-    sure = Topic("/turn", "shop_msgs/msg/Turn", {"turn": Kind.REAL}, units={"turn": "m"})
-    bound = Bound("/turn", Field(("turn",)))
-    with pytest.raises(TraceError, match=r"in \[m\], as a comment says: .* write `unit = "):
-        expect_units("turn", bound, schema, told)
-    written = replace(bound, unit="rad")
-    expect_units("turn", written, schema, told)
-    with pytest.raises(TraceError, match=r"is in \[m\]: bind what is in \[rad\]"):
-        expect_units("turn", written, schema, sure)
 
 
 def test_all_tables_can_be_read():

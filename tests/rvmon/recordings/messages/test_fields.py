@@ -123,17 +123,11 @@ def test_a_name_may_be_mapped(tmp_path):
         ("/diagnostics", "number(status[left motor].level)", "is no text, and `number` reads one"),
         ("/diagnostics", "number(status[left motor].lefel)", "did you mean `status"),
         ("/diagnostics", "status[left motor].values[Mode].value", "holds text"),
+        ("/joints", "header[elbow].seq", "no field `header"),
     ],
 )
 def test_texts_and_numbers_are_told_apart(tmp_path, bound, topic, value, message):
     bound.write_text(f'[bind.load]\ntopic = "{topic}"\nvalue = "{value}"\n')
     path = write_ros1(tmp_path / "a.bag", SENT, TYPES, OWN)
     with pytest.raises(rvmon.TraceError, match=message):
-        values(path, bound)
-
-
-def test_what_has_no_names_is_told(tmp_path, bound):
-    bound.write_text('[bind.elbow]\ntopic = "/joints"\nvalue = "header[elbow].seq"\n')
-    path = write_ros1(tmp_path / "a.bag", SENT[:1], TYPES, OWN)
-    with pytest.raises(rvmon.TraceError, match="no field `header"):
         values(path, bound)

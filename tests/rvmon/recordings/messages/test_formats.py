@@ -138,18 +138,6 @@ def test_an_older_bag_of_ros_2_needs_no_definitions_of_what_ros_brings_along(tmp
         spec.evaluate(path)
 
 
-def test_a_file_of_json_without_schemas_or_index_is_read(tmp_path):
-    from mcap.writer import IndexType
-
-    sent = [("/speed", START + t * 10**7, {"data": t / 10}) for t in range(9)]
-    for options in ({}, {"index_types": IndexType.NONE, "use_summary_offsets": False}):
-        path = write_json_mcap(tmp_path / "a.mcap", sent, schemas=False, **options)
-        spec = rvmon.loads("spec s\nsignal speed : real\nrequirement R\n  always speed < 0.75\n")
-        report = spec.evaluate(path)
-        assert report.verdicts["R"] == "F"
-        assert report.end == START + 8 * 10**7
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
 def test_a_folder_is_read_as_the_command_reads_it(tmp_path, capsys, plugin):
