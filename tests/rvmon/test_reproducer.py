@@ -207,28 +207,6 @@ def test_damage_is_told(base, capsys, says):
     zipfile.ZipFile(packed, "w").close()
     (base / "b.rvcase").write_bytes(packed.getvalue())
     assert main(["run", "b.rvcase"]) == 2
-    assert "none.rvcase: No such file" in says(2, "run", "none.rvcase").err
-
-
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (["run", "a.rvcase", "a.csv"], "brings its recording along"),
-        (["run", "a.rvcase", "--map", "p=q"], "leave out these options"),
-        (["run", "a.rv"], "required: TRACE"),
-        (["why", "a.rv", "a.csv"], "required: ID#N"),
-        (["why", "a.rvcase", "a.csv", "R#1"], "name only an attempt"),
-        (["clip", "a.rv", "a.csv", "--from", "0", "-o", "b.rvcase"], "name it, such as R1#3"),
-        (["clip", "a.rv", "a.csv", "R", "--reproducer", "b"], ".rvcase"),
-        (["clip", "a.rv", "a.csv", "R"], "name where it goes to"),
-    ],
-)
-def test_mistakes_are_told(tmp_path, says, monkeypatch, words, told):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "a.rv").write_text(RV)
-    (tmp_path / "a.csv").write_text("t,p\n0,1\n5,0\n")
-    made(tmp_path / "a.rvcase", {"a.rv": RV, "a.csv": "t,p\n0,1\n5,0\n"})
-    assert told in says(2, *words).err
 
 
 def test_a_specification_can_be_known_by_another_name(tmp_path):

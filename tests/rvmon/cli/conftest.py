@@ -10,6 +10,11 @@ requirement D1 "Knocking opens the door"
   upon knock
   then within 2 s not closed
 """
+LABELLED = DOOR.replace("requirement D1", "requirement D0") + (
+    "  severity high\n  tags safety, knocks\n"
+    "requirement D1\n  always closed\n  severity low\n  tags safety\n"
+    "requirement D2\n  always not closed\n"
+)
 
 
 @pytest.fixture

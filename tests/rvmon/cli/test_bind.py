@@ -86,18 +86,11 @@ def test_what_finds_nothing_is_told(words, tmp_path, says):
     assert "what feeds `zapped` is left open" in told.err
 
 
-def test_check_says_what_a_binding_leaves_out(words, tmp_path, capsys, says):
+def test_check_says_what_a_binding_leaves_out(words, tmp_path, capsys):
     path = tmp_path / "base.toml"
     path.write_text('[bind.go]\ntopic = "/go"\n')
     assert main(["check", words[0], "--binding", str(path)]) == 0
     assert "does not bind speed, heading, scan_state, mode, ready, pick" in capsys.readouterr().out
-    path.write_text('[bind.goo]\ntopic = "/go"\n')
-    assert "did you mean `go`?" in says(2, "check", words[0], "--binding", path).err
-
-
-def test_columns_have_no_topics(words, tmp_path, says):
-    (tmp_path / "a.csv").write_text("t,speed\n0,1\n")
-    assert "use --map" in says(2, "init", tmp_path / "a.csv", "--for", words[0]).err
 
 
 def test_a_starter_of_parquet_runs_on_it(tmp_path, monkeypatch):

@@ -55,33 +55,12 @@ def test_an_imported_file_is_reported_once(write, says):
     assert "did you mean `bool`?" in shown.err
 
 
-@pytest.mark.parametrize("content", [b"\xff\xfe\x00\x01", None])
-def test_unreadable_files(write, tmp_path, says, content):
-    path = write("a.rv", content) if content else str(tmp_path / "missing.rv")
-    assert "Traceback" not in says(2, "check", path).err
-
-
 def test_constants(write, says):
     path = write("a.rv", "const T = 3 s\nevent a\nrequirement R upon a then within T not a\n")
     assert main(["check", "--const", "T=2 s", path]) == 0
     assert "no-duration" in says(2, "check", "--const", "T=2 m", path).err
-    assert "expected NAME=VALUE" in says(2, "check", "--const", "T", path).err
 
 
 def test_standard_input(monkeypatch, says):
     monkeypatch.setattr("sys.stdin", io.StringIO(WRONG))
     assert "<stdin>:3:38" in says(2, "check", "-").err
-
-
-@pytest.mark.parametrize("seconds", ["nan", "-1", "inf", "x"])
-def test_the_budget_is_a_number_of_seconds(write, capsys, seconds):
-    assert main(["check", write("a.rv", GOOD), "--analyse", f"--seconds={seconds}"]) == 2
-    assert "--seconds" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize("command", ["check", "format", "explain"])
-def test_a_text_in_another_encoding_is_told_with_its_place(door, says, command):
-    (door / "old.rv").write_bytes("spec old\n# geöffnet\n".encode("latin1"))
-    told = says(2, command, "old.rv").err
-    assert "old.rv: not UTF-8 text (invalid start byte at byte 13)" in told
-    assert "`iconv -f latin1 -t utf-8`" in told

@@ -1,7 +1,6 @@
 """`rvmon clip` as a person uses it."""
 
 import pytest
-from tests.tools.each import each
 
 import rvmon
 from rvmon.cli import main
@@ -106,32 +105,6 @@ def test_late_rows_are_found(base, capsys):
     assert (base / "b.csv").read_text() == "t,speed,ready,go\n9.5,0.4,false,\n12,,,\n10,,,1\n"
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (["-o", "b.csv"], "name what to cut out: an attempt such as R1#3, or --from T and --to T"),
-        (["R1", "-o", "a.csv"], "cannot write a.csv: it is an input"),
-        (["R1", "-o", "link.csv"], "cannot write link.csv: it is an input"),
-        (["R1", "-o", "b.bag"], "a piece of a.csv ends in .csv"),
-        (["R1", "-o", "no/b.csv"], "there is no folder no"),
-        (["R1#7", "-o", "b.csv"], "no attempt R1#7: there is R1#1 only"),
-        (["R9", "-o", "b.csv"], "no requirement `R9`"),
-        (["R1", "--before=-1s", "-o", "b.csv"], "expected a duration of at least 0"),
-        (["R1", "--before", "1 day", "-o", "b.csv"], "expected seconds, or a number with its unit"),
-        (["--from", "18", "--to", "19", "-o", "b.csv"], "there is nothing between 18 s and 19 s"),
-        (["--from", "31", "-o", "b.csv"], "there is nothing from 31 s on"),
-        (["--from", "18", "--clock", "header", "-o", "b.csv"], "use --map"),
-    ],
-)
-def test_mistakes_are_told(base, capsys, words, told):
-    (base / "link.csv").symlink_to("a.csv")
-    assert clip(*words) == 2
-    assert told in capsys.readouterr().err
-    assert not (base / "b.csv").exists()
-    assert (base / "a.csv").read_text() == "\n".join(ROWS)
-    assert not list(base.glob(".rvmon-*"))
-
-
 def test_a_bag_is_not_replaced(base, says):
     """It is a folder, which may hold other things."""
     pytest.importorskip("rosbags")
@@ -159,11 +132,3 @@ def test_a_column_of_dates_or_durations_is_clipped_as_it_is_judged(base, says, k
     piece = parquet.read_table("b.parquet")
     assert piece.schema == parquet.read_table("a.parquet").schema
     assert main(["run", "v.rv", "b.parquet", "--quiet"]) == 1
-
-
-@each("name", ["a.ulg", "a.blf", "a.mf4", "a.h5"])
-@each("out", [["-o", "piece.csv"], ["--reproducer", "a.rvcase"]])
-def test_what_no_piece_is_cut_out_of_says_what_one_is(base, says, name, out):
-    (base / name).write_bytes(b"")
-    told = says(2, "clip", "base.rv", name, "R1", *out).err
-    assert f"error: {name}: no piece can be cut out of this format, as out of CSV" in told

@@ -235,20 +235,6 @@ def test_only_what_was_judged_is_read(base, capsys):
     assert (code, "of others: b.csv" in told) == (1, True)
 
 
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        (["-"], "name files that are there"),
-        (["none.csv"], "name files that are there"),
-        (["a.csv", "a.csv"], "each once"),
-    ],
-)
-def test_what_has_no_hash_of_its_own_is_refused(base, capsys, words, told):
-    assert run(*words) == 2
-    assert told in capsys.readouterr().err
-    assert not (base / "e.zip").exists()
-
-
 def test_what_changes_while_it_is_judged_is_told(base, capsys, monkeypatch):
     """Evidence of something else than was judged is never written."""
     from rvmon.cli import evaluation

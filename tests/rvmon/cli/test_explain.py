@@ -1,7 +1,6 @@
 """`rvmon explain` as a person uses it."""
 
 import pytest
-from tests.tools.each import each
 
 SPEC = """
 spec door "A door"
@@ -109,19 +108,3 @@ def test_a_requirement_differs_not_from_its_twin(tmp_path, says):
     path.write_text("event a\nrequirement R1\n upon a\n then immediately a\n"
                     "requirement R2\n upon a\n then immediately a\n")  # fmt: skip
     assert "No run was found" in says(0, "explain", str(path), "R1", "R2").out
-
-
-@each(
-    ("words", "said"),
-    [
-        (["door.rv", "D9"], "no requirement `D9`: there are D1"),
-        (["door.rv", "D1", "D1"], "two different ones"),
-        (["door.rv", "D1", "D2", "D3"], "two different ones"),
-        (["none.rv", "D1"], "none.rv"),
-        (["RV999"], "no diagnostic `RV999`"),
-        (["door.rv", "D1", "--runs", "0"], "--runs"),
-        (["door.rv", "D1", "--const", "T"], "NAME=VALUE"),
-    ],
-)
-def test_wrong_words_are_answered_with_a_fix(door, says, words, said):
-    assert said in says(2, "explain", *words).err

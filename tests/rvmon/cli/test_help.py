@@ -1,4 +1,4 @@
-"""Help, and what is said of a command line that is wrong."""
+"""Help: the commands, and examples that run."""
 
 import glob
 import re
@@ -65,20 +65,3 @@ def test_every_example_of_handover_is_understood(command, capsys, monkeypatch):
         program, *words = shlex.split(one)
         assert (program, " ".join(words).startswith(("run", command))) == ("handover", True)
         assert handover.cli._parser().parse_args(words)
-
-
-@pytest.mark.parametrize(
-    ("words", "told"),
-    [
-        ("chek base.rv", "did you mean `check`?"),
-        ("run base.rv base.csv --repot out", "did you mean `--report`?"),
-        ("run base.rv base.csv --format jsn", "did you mean `json`?"),
-        ("run base.rv", "rvmon run examples/base.rv examples/base.csv\n"),
-        ("", "evaluate recordings against a specification"),
-    ],
-)
-def test_a_wrong_command_line_says_what_was_meant_or_how_it_is_done(words, told, says):
-    shown = says(2, *words.split())
-    assert told in shown.err
-    assert shown.out == ""
-    assert len(shown.err.splitlines()) < (9 if words else 50)

@@ -111,33 +111,6 @@ def test_a_course_is_bounded_and_loses_no_peak():
     assert max(one.high for one in stretches if one.high is not None) == 9.0
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        ["look", "gone.csv"],
-        ["init", "gone.mcap"],
-        ["init", "gone.bag", "--for", "a.rv"],
-        ["run", "a.rv", "gone/"],
-        ["run", "a.rv", "gone"],
-        ["run", "a.rv", "gone.odd"],
-        ["run", "a.rv", "gone/", "--join"],
-        ["run", "a.rv", "gone.csv", "gone2.csv", "--join"],
-        ["why", "a.rv", "gone.ulg", "R1"],
-        ["clip", "a.rv", "gone.csv", "R1", "-o", "b.csv"],
-        ["watch", "a.rv", "gone.jsonl"],
-        ["conform", "gone.ta", "gone.csv"],
-        ["evidence", "gone.zip"],
-        ["check", "a.rv", "--binding", "gone.toml"],
-    ],
-)
-def test_every_command_says_that_a_path_does_not_exist(tmp_path, monkeypatch, says, words):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "a.rv").write_text("spec s\nsignal x : real\nrequirement R1\n  always x < 1\n")
-    told = says(2, *words).err
-    assert re.search(r"gone[.\w/]*: No such file or directory", told)
-    assert " + " not in told
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("odd", ["word", "1" * 100_000 + "x", "1.5\n2.5"])
 def test_a_column_is_looked_at_to_its_last_cell(odd, tmp_path, says):

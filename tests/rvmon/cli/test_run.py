@@ -9,7 +9,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 
 import pytest
-from tests.rvmon.cli.conftest import DOOR
+from tests.rvmon.cli.conftest import DOOR, LABELLED
 from tests.tools.each import each
 
 from rvmon.cli import evaluation, main
@@ -41,13 +41,6 @@ def test_exit_code_and_verdict(files, says, trace, code, strict):
     assert main(["run", "door.rv", f"{trace}.csv", "--strict"]) == strict
 
 
-LABELLED = DOOR.replace("requirement D1", "requirement D0") + (
-    "  severity high\n  tags safety, knocks\n"
-    "requirement D1\n  always closed\n  severity low\n  tags safety\n"
-    "requirement D2\n  always not closed\n"
-)
-
-
 @each(
     ("words", "chosen"),
     [
@@ -77,24 +70,6 @@ def test_severity_and_tags_are_shown_and_kept(files, capsys):
     assert ("severity", "high") in said
     assert [value for name, value in said if name == "tag"] == ["safety", "knocks", "safety"]
     assert main(["evidence", "e.zip"]) == 0
-
-
-def test_a_place_that_is_none_is_told_before_anything_is_judged(files, capsys, says):
-    (files / "file").write_text("")
-    for places in (["--report", "rep", "--junit", "gone/j.xml"], ["--junit", "."]):
-        told = says(2, "run", "door.rv", "P.csv", *places)
-        assert "error: cannot write" in told.err
-        assert not told.out
-    assert main(["run", "door.rv", "P.csv", "--report", "file", "--junit", "j.xml"]) == 2
-    assert "cannot write to file: it is a file: name a folder" in capsys.readouterr().err
-    (files / "none.rv").write_text(
-        "spec none\nsignal closed : bool\ncoverpoint c = closed {no: false}\n"
-    )
-    told = says(2, "run", "none.rv", "P.csv", "--report", "rep")
-    assert "a page shows requirements, and none has none: add one" in told.err
-    assert not told.out
-    assert not (files / "rep").exists()
-    assert not (files / "j.xml").exists()
 
 
 @pytest.mark.slow
@@ -223,48 +198,6 @@ def test_until_is_the_end_that_is_judged(files, capsys, until, end, verdict):
     assert report["requirements"]["D1"]["verdict"] == verdict
 
 
-@each(
-    ("arguments", "message"),
-    [
-        (["door.rv", "quite-else.mcap"], "quite-else.mcap"),
-        (["door.rv", "gone/P.csv"], "gone/P.csv"),
-        (["dor.rv", "P.csv"], "dor.rv: No such file or directory: did you mean `door.rv`?"),
-        (["door.rv", "PP.csv"], "did you mean `P.csv`?"),
-        (["door.rv", "./NTT.csv"], "did you mean `NT.csv`?"),
-        (["door.rv", "P.csv", "--only", "D9"], "no requirement `D9`"),
-        (
-            ["labelled.rv", "P.csv", "--tag", "saftey"],
-            "no requirement has the tag `saftey`: did you mean `safety`?\n",
-        ),
-        (
-            ["labelled.rv", "P.csv", "--severity="],
-            "no requirement has the severity ``: there are high, low\n",
-        ),
-        (
-            ["labelled.rv", "P.csv", "--tag", "knocks", "--severity", "low"],
-            "no requirement that is asked for has the severity low, the tag knocks\n",
-        ),
-        (["door.rv", "P.csv", "--const", "T"], "expected NAME=VALUE"),
-        (["door.rv", "P.csv", "--only", ""], "there are D1"),
-        (["door.rv", "P.csv", "--jobs", "0"], "at least 1, not 0"),
-        (["door.rv", "P.csv", "--untill", "3"], "did you mean `--until`?"),
-        (["door.rv", "P.csv", "--bogus"], "unrecognized arguments: --bogus\n"),
-        (["door.rv", "nope.csv"], "nope.csv: No such file or directory\n"),
-        (["door.rv", "P.csv", "--until", "nan"], "expected seconds, or a number with its unit"),
-        (["door.rv", "P.csv", "--until", "1e30"], "12.5, 500ms, not 1e30"),
-        (["door.rv", "P.csv", "--until", "3 days"], "not 3 days"),
-        (["door.rv", "P.csv", "--until=-1"], "no sample up to --until -1 s"),
-        (["door.rv", "P.csv", "--junit", "gone/out.xml"], "error: cannot write gone/out.xml"),
-    ],
-)
-def test_wrong_use_is_exit_2_with_a_message(files, says, arguments, message):
-    told = says(2, "run", *arguments).err
-    assert message in told
-    assert ("did you mean" in told) is ("did you mean" in message)
-    assert "Traceback" not in told
-    assert "internal error" not in told
-
-
 def test_binary_standard_input_is_told(files, monkeypatch, says):
     """Bytes that are no UTF-8 are wrong input, in each way a locale may have them decoded."""
     for errors in ("strict", "surrogateescape"):
@@ -309,14 +242,3 @@ def test_a_forecast_is_shown_beside_the_verdict(files, capsys, says):
     assert (code, "R1   I" in shown, said in shown) == (0, True, True)
     assert any(said in page.read_text() for page in (files / "pages").rglob("*.html"))
     assert "forecast F" in says(0, "why", "s.rv", "t.csv", "R1").out
-
-
-def test_a_specification_without_requirements_is_no_success(files, says):
-    """Whatever it was that took them away, a file that was cut off or emptied."""
-    (files / "empty.rv").write_text("spec empty\nsignal closed : bool\n")
-    for words, told in (
-        (["run", "empty.rv", "P.csv"], "empty has no requirement: there is nothing to check"),
-        (["watch", "empty.rv", "P.csv"], "empty has no requirement: there is nothing to check"),
-        (["explain", "empty.rv"], "there is nothing to explain"),
-    ):
-        assert told in says(2, *words).err

@@ -104,12 +104,6 @@ def test_a_first_hit_is_told_in_seconds_of_its_run(files, says):
     assert "calm.csv at 0.5 s (stamp 1700000000.5 s, 2023-11-14 22:13:20 UTC)" in told
 
 
-def test_a_place_that_cannot_be_written(files, says):
-    shown = says(2, "run", "arm.rv", "calm.csv", "--coverage", "none/c.db")
-    assert "there is no folder none" in shown.err
-    assert not shown.out
-
-
 def test_from_standard_input(files, monkeypatch):
     lines = ['{"t": 0, "near": true, "state": "moving"}', '{"t": 1, "state": "idle"}']
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO("\n".join(lines).encode())))

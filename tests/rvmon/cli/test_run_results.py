@@ -6,7 +6,6 @@ import xml.etree.ElementTree as ET
 from dataclasses import replace
 
 import pytest
-from tests.tools.each import each
 from tests.tools.logs import write_can
 
 import rvmon
@@ -117,33 +116,12 @@ def test_shards_are_joined(folder, says):
     assert not list(folder.glob("*.unfinished"))
 
 
-@each(
-    ("words", "told"),
-    [
-        (["--shard", "1/2"], "name the file by --out"),
-        (["--out", "v.csv", "--shard", "3/9"], "there are 2 recordings"),
-        *((["--shard", text], "--shard") for text in ("0/2", "3/2", "1", "a/b", "1/", "/2")),
-    ],
-)
-def test_a_share_of_nothing_is_refused(folder, says, words, told):
-    assert told in says(2, "run", "s.rv", "good.csv", "bad.csv", *words).err
-
-
 @pytest.mark.slow
 def test_shards_of_another_specification_are_refused(folder, says):
     words = ["run", "s.rv", "good.csv", "bad.csv", "--out", "v.csv"]
     assert main([*words, "--shard", "2/2"]) == 1
     (folder / "s.rv").write_text(SPEC.replace("1 s", "2 s"))
     assert "v.shard-2-of-2.csv.unfinished" in says(2, *words, "--resume").err
-
-
-@pytest.mark.parametrize("option", ["--out", "--junit"])
-def test_what_is_judged_is_not_written_over(folder, capsys, option):
-    before = (folder / "good.csv").read_text()
-    (folder / "link.csv").symlink_to(folder / "good.csv")
-    assert main(["run", "s.rv", "bad.csv", "good.csv", option, "link.csv"]) == 2
-    assert "cannot write link.csv: it is an input" in capsys.readouterr().err
-    assert (folder / "good.csv").read_text() == before
 
 
 @pytest.mark.slow
@@ -162,9 +140,6 @@ def test_another_run_does_not_go_on_with_it(folder, says):
     journal.begin(folder / "v.csv.unfinished", [b"another"])
     assert "was begun with another specification" in says(2, *words).err
     assert main([*words[:-1]]) == 0
-    assert "name the file with --out" in says(2, "run", "s.rv", "good.csv", "--resume").err
-    assert main(["run", "s.rv", "good.csv", "--out", "v.xls"]) == 2
-    assert main(["run", "s.rv", "good.csv", "--out", "none/v.csv"]) == 2
 
 
 @pytest.mark.slow

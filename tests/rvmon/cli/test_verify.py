@@ -4,7 +4,6 @@ import json
 from pathlib import Path
 
 import pytest
-from tests.tools.each import each
 
 from rvmon.cli import main
 
@@ -37,39 +36,6 @@ def test_queries_by_id_and_by_text(says):
     first, second = json.loads(says(1, "verify", model, *texts, "--format", "json").out)["queries"]
     assert (first["id"], first["holds"]) == ("quicker", False)
     assert second["holds"] is True
-
-
-@each(
-    ("arguments", "message"),
-    [
-        (["missing.ta"], "No such file"),
-        ([str(MODELS / "bridge.ta"), "--query", "E<> Nobody.safe"], "no automaton `Nobody`"),
-        ([str(MODELS / "bridge.ta"), "--query", "cross"], "no query `cross`\nhelp: it has "),
-        ([str(MODELS / "bridge.ta"), "--query", "Torch.one"], "a query refers to runs"),
-        ([str(MODELS / "fischer.ta"), "--const", "N"], "expected NAME=NUMBER"),
-        ([str(MODELS / "fischer.ta"), "--const", "M=2"], "no constant `M`"),
-        ([str(MODELS / "fischer.ta"), "--const", "N=" + "9" * 5000], "expected NAME=NUMBER"),
-        ([str(MODELS / "bridge.ta"), "--max-states", "0"], "at least 1"),
-        ([str(MODELS / "bridge.ta"), "--max-states", "-1"], "at least 1"),
-        ([str(MODELS / "bridge.ta"), "--max-memory", "0"], "at least 1"),
-        (
-            [str(MODELS / "bridge.ta"), "--max-seconds", "nan"],
-            "expected seconds, or a number with its unit",
-        ),
-        ([str(MODELS / "bridge.ta"), "--max-seconds", "-1"], "at least 0"),
-        ([str(MODELS / "bridge.ta"), "--spec", "a.rv", "--suite", "edges"], "not allowed with"),
-        ([str(MODELS / "bridge.ta"), "--suite", "edges", "--query", "over"], "does nothing"),
-        ([str(MODELS / "bridge.ta"), "--bind", "a=b"], "does nothing without --spec"),
-        (
-            [str(MODELS / "fischer.ta"), "--query", "exclusion,alive"],
-            "write --query exclusion --query alive",
-        ),
-    ],
-)
-def test_wrong_input_exits_with_2(arguments, message, says):
-    error = says(2, "verify", *arguments).err
-    assert message in error
-    assert "Traceback" not in error
 
 
 LAMP = """

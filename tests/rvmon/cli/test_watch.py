@@ -152,35 +152,6 @@ def test_a_view_of_much_fits_and_begins_with_what_failed():
     assert "… and 96 more requirements: 96 NT" in lines
 
 
-@pytest.mark.parametrize(
-    ("words", "why"),
-    [
-        (["watch", "door.rv", "none.jsonl"], "none.jsonl"),
-        (["watch", "door.rv", "empty.jsonl"], "there is no line"),
-        (["watch", "door.rv", "."], "directory"),
-        (["watch", "door.rv", "a.csv"], "by `rvmon run door.rv a.csv`"),
-        (["watch", "door.rv", "a.mcap", "--state", "kept"], "by `rvmon run door.rv a.mcap`"),
-        (["watch", "door.rv", "bag"], "by `rvmon run door.rv bag`"),
-        (["watch", "none.rv", "a.jsonl"], "none.rv"),
-        (["watch", "door.rv", "empty.jsonl", "--state", "/dev/null"], "is no regular file"),
-        (["watch", "door.rv", "a.jsonl", "--only", "D2"], "D2"),
-        (["watch", "door.rv", "a.jsonl", "--map", "sped=x"], "sped"),
-        (["watch", "door.rv", "a.jsonl", "--publish", "v"], "--format json"),
-        (["watch", "door.rv", "mqtt://localhost/x", "--robot", "id"], "first +"),
-        (["watch", "door.rv", "mqtt://localhost/x", "--sim-time"], "/clock"),
-        (["watch", "door.rv", "dds:1", "--robot", "id"], "start one for each"),
-        (["watch", "door.rv", "dds:1", "--time", "t:ms"], "--binding"),
-    ],
-)
-def test_wrong_input_is_told(door, says, words, why):
-    (door / "empty.jsonl").write_text("\n")
-    (door / "a.csv").write_text("t,x\n0,1\n")
-    (door / "a.mcap").write_bytes(b"\x89MCAP0\r\n")
-    (door / "bag").mkdir()
-    (door / "bag" / "metadata.yaml").touch()
-    assert why in says(2, *words).err
-
-
 @pytest.mark.process
 def test_a_change_of_the_specification_is_taken_up_and_ctrl_c_is_an_end(door):
     """While the stream is open; a change that is wrong is told and the former one goes on."""

@@ -4,7 +4,6 @@ import json
 
 import pytest
 from tests.rvmon.cli.conftest import DOOR
-from tests.tools.each import each
 from tests.tools.logs import write_ulog
 
 from rvmon.cli import main
@@ -94,25 +93,6 @@ def test_late_samples_are_put_in_order(tmp_path, says):
     (tmp_path / "a.rv").write_text(text)
     (tmp_path / "a.csv").write_text("t,closed,knock\n0,1,\n2,0,\n1,,1\n9,,\n")
     assert says(0, "why", tmp_path / "a.rv", tmp_path / "a.csv", "D1#1").out.startswith("D1#1  P")
-
-
-@each(
-    ("words", "said"),
-    [
-        (["door.rv", "a.csv", "D1#9"], "there are D1#1 to D1#3"),
-        (["door.rv", "a.csv", "D9"], "no requirement `D9`"),
-        (["door.rv", "a.csv", "D1#x"], "names no attempt"),
-        (["door.rv", "none.csv", "D1"], "none.csv"),
-        (["none.rv", "a.csv", "D1"], "none.rv"),
-        (["door.rv", "-", "D1"], "save the recording"),
-        (["door.rv", "b.csv", "D1"], "line 3"),
-        (["door.rv", "c.csv", "D1"], "never triggered"),
-    ],
-)
-def test_wrong_words_are_answered_with_a_fix(door, says, words, said):
-    (door / "b.csv").write_text("t,closed,knock\n0,1,\n1,maybe,\n")
-    (door / "c.csv").write_text("t,closed,knock\n0,1,\n1,1,\n")
-    assert said in says(2, "why", *words).err
 
 
 def test_what_was_not_triggered_or_not_decided_says_what_lacked(tmp_path, says):
