@@ -1,4 +1,4 @@
-/* Judges what stands on the standard input, by the exported core and plans; see tests/tools/exported.py.
+/* Judges what stands on the standard input, by the exported core and plans; see exported.py.
  *
  * What a call is given lies in memory of its own, so that a core that keeps a pointer to it is seen. */
 #include "plans.h"

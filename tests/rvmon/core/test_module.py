@@ -1,15 +1,14 @@
 """The type of the core: what it takes, what it refuses, what it leaves behind."""
 
 import gc
-import random
 import sys
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from typing import Any
 
 import numpy as np
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.monitor.compiled_spec import compile_spec
@@ -73,37 +72,6 @@ def closer(*given: object, **named: object) -> list[rvmon.Attempt]:
 
 
 @pytest.mark.slow
-def test_samples_of_all_kinds_most_of_them_wrong():
-    rng = random.Random(1)
-    odd: list[Any] = [None, float("nan"), 7, 1 << 61, 1 << 70, "red", "none", {"k": None}, {}]
-    odd += [{"k": 3, "where": "left"}, {"z": 1}, (), ({"k": 1},), ({"k": 1}, {"k": 2}), [], True]
-    odd += [False, 0.5, object(), b"red"]
-    names: list[Any] = [*NUMBERS, "z", 3]
-    monitor = rvmon.loads(SPEC).monitor()
-    kept: list[rvmon.Attempt] = []
-    refused = 0
-    for _ in range(3):
-        t = 0
-        for row in range(1500):
-            t += rng.choice([1, 10**8, 10**9, -1])
-            count = rng.randint(0, 12)
-            values = {rng.choice(names): rng.choice(odd) for _ in range(count)}
-            try:
-                kept += monitor.step_ns(t, values)
-            except rvmon.RvmonError:
-                refused += 1
-            if row % 100 == 0:
-                kept += monitor.open
-                kept += monitor.advance_ns(max(t, 0))
-        kept += monitor.finish().attempts
-        monitor.reset()
-    assert refused > 500
-    assert len(kept) > 100
-    assert {"R2", "R3"} <= {one.requirement for one in kept}
-    assert all(repr(one) for one in kept)
-
-
-@pytest.mark.slow
 def test_the_collector_steps_in_the_midst_of_a_step():
     """Attempts are made of copies: what the core holds may move while they are."""
     monitor = rvmon.loads(WAITING).monitor()
@@ -132,36 +100,20 @@ def test_the_collector_steps_in_the_midst_of_a_step():
     assert told == [(r, n, t + 1) for r in ("R1", "R2") for n in range(1, 1501)]
 
 
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"p": 1},
-        {"p": np.bool_(True)},
-        {"n": 1.0},
-        {"n": True},
-        {"n": 1 << 63},
-        {"x": True},
-        {"x": "1"},
-        {"x": 1 << 64},
-        {"x": np.float32(1)},
-        {"mode": "left"},
-        {"mode": 0},
-        {"e": 1},
-        {"e": {"z": 1}},
-        {"e": {3: 1}},
-        {"e": {"k": 1.0}},
-        {"e": [{"k": 1}]},
-        {"e": ({"k": 1}, {"k": 2})},
-        {"e": ({"k": 1}, True)},
-        {"f": {"k": 1}},
-        {"z": True},
-        {3: True},
-        [("p", True)],
-    ],
-)
-@pytest.mark.parametrize("before", [{}, {"q": True, "f": True, "e": {"k": 5}}])
-def test_what_takes_a_closer_look_is_left(run, values, before):
+ODD: list[Any] = [
+    *({"p": 1}, {"p": np.bool_(True)}, {"n": 1.0}, {"n": True}, {"n": 1 << 63}),
+    *({"x": True}, {"x": "1"}, {"x": 1 << 64}, {"x": np.float32(1)}, {"mode": "left"}, {"mode": 0}),
+    *({"e": 1}, {"e": {"z": 1}}, {"e": {3: 1}}, {"e": {"k": 1.0}}, {"e": [{"k": 1}]}),
+    *({"e": ({"k": 1}, {"k": 2})}, {"e": ({"k": 1}, True)}, {"f": {"k": 1}}, {"z": True}),
+    *({3: True}, [("p", True)]),
+]
+
+
+@each("values", ODD)
+@each("before", [{}, {"q": True, "f": True, "e": {"k": 5}}])
+def test_what_takes_a_closer_look_is_left(planned, values, before):
     """Python gets the call as it was; nothing was taken of it."""
+    run = planned.monitor(frozenset(), closer, closer)
     given = {**before, **values} if isinstance(values, dict) else values
     with pytest.raises(LookupError) as left:
         run.step_ns(7, given)
@@ -241,7 +193,7 @@ WRONG: list[tuple[Any, Any]] = [
 ]
 
 
-@pytest.mark.parametrize("given", WRONG)
+@each("given", WRONG)
 def test_columns_that_are_none_are_refused(run, given):
     """Their sizes, kinds and numbers are looked at before anything is read."""
     with pytest.raises((ValueError, TypeError, BufferError)):
@@ -343,22 +295,6 @@ def test_nothing_is_left_behind(planned):
         for _ in range(20):
             everything(planned, wrong)
     assert min(found[1:]) <= found[0] + 15  # a leak in any way leaves 20
-
-
-@pytest.mark.slow
-def test_other_threads_run_while_rows_are_judged(planned):
-    times = np.arange(1, 200_001) * 1000
-    p = times // 1000 % 2 == 0
-
-    def judged(_: int) -> tuple[bytes, ...]:
-        run = planned.monitor(frozenset(NUMBERS[1:]))
-        assert run.rows(times, ((0, (2, p, None)),)) == len(times)
-        run.finish(None)
-        return run.records()[:3]
-
-    with ThreadPoolExecutor(3) as pool:
-        found = set(pool.map(judged, range(6)))
-    assert len(found) == 1
 
 
 def test_records_share_the_letters_of_their_notes():

@@ -171,6 +171,11 @@ CASES |= {
         ("held", "upon e then eventually g.k == key for each key in h.m", "0 e h=/1; 1; 2 g=1"),
         # The trigger comes first, then the value of `for each`, both before a tick of the clock.
         ("sampled every 3 ns", "upon e then true for each key in g.k", "10 e; 11 g=-2; 15"),
+        # Of those that are sure at once the one that began first has the lower number.
+        (
+            *("sampled", "whenever p or g.k == n then F[1 ns, 1 ns] true for each n in g.k"),
+            "0 -p; 1 g=-1; 16 g=1; 27 ?p g=-1; 32 p",
+        ),
         # It looks back to the first position of the run, where nothing started yet.
         ("sampled", "upon g then (previous (next true)) for each n in g.k", "0; 1 g=0"),
         # Of what has no value yet the trigger is unknown, and no other occurs at any position.

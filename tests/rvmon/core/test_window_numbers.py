@@ -66,7 +66,7 @@ def test_members_take_the_memory_that_is_stated(measured, text):
     assert 16 * 16_400 < taken <= measured.each * 16_400 + 6 * 16_384  # and rings before these
 
 
-@pytest.mark.parametrize(
+@each(
     ("required", "due"),
     [
         ("mean(x, 10 s) <= 3", 6_000_000_000),
@@ -100,20 +100,3 @@ def test_sums_are_those_of_the_numbers_that_there_are():
         samples = [(float(t), {"e": {"x": x}}) for t, x in enumerate([*values])]
         last = spec.evaluate(samples).attempts[-1]
         assert last.verdict.value == "P" if len(values) == 3 else "F"
-
-
-def test_a_sum_goes_on_from_a_snapshot():
-    """At every sample, as if nothing had been."""
-    required = (
-        *("mean(x, 3 s) <= 2", "integral(x) <= 7 s", "distinct(x, 3 s) <= 1", "delta(x, 3 s) <= 1"),
-        *("variance(last(2, x)) <= 1", "sum(last(2, x)) <= 3", "count(last(3, x > 2)) <= 1"),
-    )
-    body = "".join(f"requirement R{n}\n  always {one}\n" for n, one in enumerate(required))
-    spec = rvmon.loads(f"spec s\nsignal x : real\n{body}")
-    samples = [(0.0, {"x": 1.0}), (1.0, {"x": None}), (2.5, {"x": 2.5}), (4.0, {"x": 1e300})]
-    whole = spec.monitor()
-    other = spec.monitor()
-    for t, sample in samples:
-        assert whole.step(t, sample) == other.step(t, sample)
-        other = spec.restore(other.snapshot())
-    assert whole.finish(9.0).verdicts == other.finish(9.0).verdicts

@@ -7,7 +7,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec import structs
 from tests.rvmon.laws.tried import judge
-from tests.tools.build import e, requirement, spec_of
 from tests.tools.compare import differences
 
 from rvmon.session import Spec
@@ -59,15 +58,3 @@ def test_the_order_within_the_delay(data: st.DataObject) -> None:
     end = None if case.end is None else case.end * 1e-9
     found = Spec(spec).evaluate(pairs, sources=case.names, until=end)
     assert differences(expected, found) == []
-
-
-def test_what_comes_after_the_delay_is_left_out() -> None:
-    spec = structs.replace(spec_of(requirement(e, upon=e)), max_delay=3)
-    monitor = Spec(spec).monitor()
-    for t in (10, 6, 7, 20, 17, 16):
-        monitor.step_ns(t, {"e": True})
-    report = monitor.finish_ns()
-    assert [attempt.triggered for attempt in report.attempts] == [7, 10, 17, 20]
-    assert [(h.kind.value, h.count, h.first) for h in report.health if h.count > 1] == [
-        ("late", 2, 6)
-    ]

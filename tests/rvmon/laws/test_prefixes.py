@@ -5,14 +5,16 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.rvmon.laws.tried import TRIED, judge, judged_otherwise
+from tests.rvmon.laws.tried import TRIED, judge, judged_otherwise, moved
 from tests.tools.compare import differences, outcomes
-from tests.tools.law import names_read
+from tests.tools.drive import drive, feed
+from tests.tools.law import names_read, word
 
 from rvmon.language.checked.specification import TimeModel
+from rvmon.session import Spec
 from rvmon.testing.generate import BOOLS
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import Case
+from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
@@ -84,13 +86,9 @@ def test_order_inside_a_sample(case: Case) -> None:
 def test_shifting_in_time(case: Case) -> None:
     """A trace that happens later is judged alike, later (clocked: by multiples of the period)."""
     shift = 7 * (case.spec.period or 1)
-    later = tuple(
-        replace(action, t=action.t + shift) if isinstance(action, Sample) else action + shift
-        for action in case.actions
-    )
     end = None if case.end is None else case.end + shift
-    moved = judge(replace(case, actions=later, end=end))
-    assert differences(judge(case), _back(moved, shift)) == []
+    later = replace(case, actions=moved(case.actions, lambda t: t + shift), end=end)
+    assert differences(judge(case), _back(judge(later), shift)) == []
 
 
 def _back(report: Report, shift: int) -> Report:
@@ -103,3 +101,27 @@ def _back(report: Report, shift: int) -> Report:
         for attempt in report.attempts
     )
     return replace(report, attempts=attempts)
+
+
+@TRIED
+@given(cases(Profile(), TraceProfile(outages=30)))
+def test_finish_is_an_advance_behind_the_end(case: Case) -> None:
+    """Whoever calls `advance` up to behind the end is told what `finish` alone tells."""
+    end = word(case).end
+    if end is not None:
+        told = replace(case, actions=(*case.actions, end + 1), end=end)
+        assert judged_otherwise(case, told) == []
+
+
+@TRIED
+@given(cases(), st.data())
+def test_a_monitor_that_is_used_again_is_as_a_new_one(case: Case, data: st.DataObject) -> None:
+    before = data.draw(st.integers(0, len(case.actions)))
+    monitor, new = (Spec(case.spec).monitor(sources=case.names) for _ in "12")
+    for action in case.actions[:before]:
+        feed(monitor, action)
+    if data.draw(st.booleans()):
+        monitor.finish_ns()
+    monitor.reset()
+    assert monitor.open == new.open
+    assert drive(monitor, case) == drive(new, case)

@@ -10,14 +10,17 @@ from msgspec import structs
 from tests.rvmon.laws.tried import ONE, TRIED, judge, known_from_the_first
 from tests.tools.build import start
 from tests.tools.compare import outcomes
-from tests.tools.sound import is_spoken_of, refilled
+from tests.tools.sound import is_spoken_of, overturned, refilled
 
 from rvmon.language.checked.specification import CheckedSpec, EndPolicy, Mode
-from rvmon.testing.strategies import specs, traces
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import Case, TraceProfile
+from rvmon.testing.strategies import cases, specs, traces
 from rvmon.verdicts.attempt import Decision
 
+pytestmark = pytest.mark.law
 
-@pytest.mark.law
+
 @TRIED
 @given(specs(ONE), st.data(), st.randoms(use_true_random=False))
 def test_resolving_unknowns(spec: CheckedSpec, data: st.DataObject, rng: Random) -> None:
@@ -42,3 +45,11 @@ def test_resolving_unknowns(spec: CheckedSpec, data: st.DataObject, rng: Random)
             assert after[key].decided <= outcome.decided
             if outcome.decision is Decision.PREFIX:
                 assert after[key].decision is Decision.PREFIX
+
+
+@TRIED
+@given(cases(Profile(), TraceProfile(outages=35)), st.randoms(use_true_random=False))
+def test_filling_in_what_was_lost(case: Case, rng: Random) -> None:
+    """Green never hides a failure."""
+    assume(is_spoken_of(case.spec))
+    assert overturned(rng, case, 4, judge).overturning is None

@@ -1,5 +1,6 @@
 """How laws are tried: on the core, which other tests hold to the oracle call by call."""
 
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from hypothesis import HealthCheck, settings
@@ -51,3 +52,10 @@ def judge(case: Case) -> Report:
 def judged_otherwise(left: Case, right: Case) -> list[str]:
     """How the reports on two cases differ."""
     return differences(judge(left), judge(right))
+
+
+def moved(actions: Iterable[Sample | int], to: Callable[[int], int]) -> tuple[Sample | int, ...]:
+    """The same actions at other instants."""
+    return tuple(
+        replace(one, t=to(one.t)) if isinstance(one, Sample) else to(one) for one in actions
+    )

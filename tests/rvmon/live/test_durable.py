@@ -4,9 +4,9 @@ import random
 
 import pytest
 from tests.rvmon.live import killed_watch
+from tests.tools.each import each
 
 import rvmon
-from rvmon.cli import main
 from rvmon.errors import SnapshotError, TraceError
 from rvmon.execute.journal import add
 from rvmon.live.durable import DurableMonitor
@@ -45,18 +45,6 @@ def test_a_run_that_is_cut_tells_what_a_whole_one_does(tmp_path, seed):
     assert found == whole
 
 
-def test_a_torn_entry_is_as_one_that_never_came(tmp_path):
-    told = []
-    path = tmp_path / "run"
-    DurableMonitor(SPEC, path, told.append).step_ns(0, {"speed": 0.5})
-    path.write_bytes(path.read_bytes() + b"0123456")
-    monitor = DurableMonitor(SPEC, path, lambda *one: told.append(one))
-    monitor.step_ns(1, {"speed": 2.0})
-    again = DurableMonitor(SPEC, path, lambda *one: told.append(one))
-    assert again.taken == 2
-    assert [(number, one.name) for number, one in told] == [(1, "R2#1")] * 2
-
-
 def test_what_was_saved_is_not_told_again(tmp_path):
     """So a watch that came to its end tells nothing when it is begun again."""
     told = []
@@ -66,16 +54,6 @@ def test_what_was_saved_is_not_told_again(tmp_path):
     monitor.save()
     DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
     assert len(told) == 1
-
-
-def test_a_sample_that_is_lost_leaves_its_names_unknown(tmp_path):
-    told = []
-    monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
-    monitor.step_ns(0, {"speed": 0.5, "p": True})
-    monitor.miss(["p", "go"])
-    monitor.step_ns(9, {"go": True})
-    monitor.step_ns(30_000_000, {})
-    assert not told
 
 
 def test_files_and_values_that_are_none_are_told(tmp_path):
@@ -97,44 +75,54 @@ def test_files_and_values_that_are_none_are_told(tmp_path):
 
 def test_a_sample_that_is_damaged_in_the_file_is_told(tmp_path):
     """Without it those behind cannot be judged; the last may be torn, and was not taken then."""
-    path = tmp_path / "run"
+    path, told = tmp_path / "run", []
     monitor = DurableMonitor(SPEC, path, print)
     for t in range(3):
         monitor.step_ns(t, {"speed": 0.5})
     lines = path.read_bytes().splitlines(keepends=True)
     path.write_bytes(b"".join(lines)[:-3])
-    assert DurableMonitor(SPEC, path, print).taken == 2
+    for taken in (2, 3):
+        monitor = DurableMonitor(SPEC, path, lambda *one: told.append(one))
+        assert monitor.taken == taken
+        if taken == 2:
+            monitor.step_ns(2, {"speed": 2.0})
+    assert [(number, one.name) for number, one in told] == [(1, "R2#1")] * 2
     path.write_bytes(b"".join([*lines[:2], lines[2].replace(b"0.5", b"5.5"), *lines[3:]]))
     with pytest.raises(SnapshotError, match="run: line 3 is damaged, and not the last one"):
         DurableMonitor(SPEC, path, print)
 
 
+@pytest.fixture
+def watched(tmp_path, says):
+    """Write lines, and watch them with a state by a command that is to end with a code."""
+    (tmp_path / "s.rv").write_text("signal x : real\nrequirement R\n  always x < 5\n")
+
+    def watch(code, lines, *words):
+        (tmp_path / "a.jsonl").write_text(lines)
+        words = words or [str(tmp_path / "a.jsonl")]
+        return says(code, "watch", tmp_path / "s.rv", *words, "--state", tmp_path / "run")
+
+    return watch
+
+
 @pytest.mark.parametrize(
     ("line", "told"), [('{"t": 9, "x": ', "dropped once"), ('{"t": 1, "x": 9}', "late once")]
 )
-def test_a_watch_that_lost_a_line_is_no_success(tmp_path, says, line, told):
-    spec, lines = tmp_path / "s.rv", tmp_path / "a.jsonl"
-    spec.write_text("signal x : real\nrequirement R\n  always x < 3")
-    command = ["watch", str(spec), str(lines), "--state", str(tmp_path / "run")]
+def test_a_watch_that_lost_a_line_is_no_success(watched, line, told):
     text = '{"t": 0, "x": 1}\n{"t": 8, "x": 1}\n'
     for more, code in (("", 0), (line + "\n", 1), ('{"t": 12, "x": 1}\n', 1)):
         text += more
-        lines.write_text(text)
-        assert (told in says(code, *command).err) is (code == 1)
+        assert (told in watched(code, text).err) is (code == 1)
 
 
 @pytest.mark.parametrize(("rows", "is_same"), [(7, False), (20, False), (0, True)])
-def test_a_watch_goes_on_in_no_other_file(tmp_path, says, rows, is_same):
+def test_a_watch_goes_on_in_no_other_file(watched, rows, is_same):
     """As of a log that was put away: lines of the new one would pass for those that were taken."""
-    spec, lines = tmp_path / "s.rv", tmp_path / "a.jsonl"
-    spec.write_text("signal x : real\nrequirement R\n  always x < 3")
-    command = ["watch", str(spec), str(lines), "--state", str(tmp_path / "run")]
     text = "".join(f'{{"t": {t}, "x": 1}}\n' for t in range(10))
-    lines.write_text(f'{text}{{"t": 10, "x"')  # is being written
-    assert main(command) == 1
+    watched(1, f'{text}{{"t": 10, "x"')  # is being written
     other = "".join(f'{{"t": {t}, "x": 9}}\n' for t in range(20, 20 + rows))
-    lines.write_text(other or f'{text}{{"t": 10, "x": 1}}\n{{"t": 11, "x": 1}}\n')
-    told = says(1 if is_same else 2, *command).err
+    other = other or f'{text}{{"t": 10, "x": 1}}\n{{"t": 11, "x": 1}}\n'
+    told = watched(1 if is_same else 2, other).err
     assert ("is not the file of which 11 lines were evaluated" in told) is not is_same
 
 
@@ -147,27 +135,16 @@ def test_a_watch_that_is_killed_goes_on(tmp_path):
     assert found == expected
 
 
-def test_a_watch_without_a_line_is_no_success(tmp_path, says):
-    (tmp_path / "s.rv").write_text("signal x : real\nrequirement R\n  always x < 5\n")
-    (tmp_path / "a.jsonl").write_text("\n")
-    command = ["watch", str(tmp_path / "s.rv"), str(tmp_path / "a.jsonl")]
-    assert "there is no line" in says(2, *command, "--state", str(tmp_path / "run")).err
-
-
-def test_what_fails_by_the_last_line_is_no_success(tmp_path, says):
+def test_what_fails_by_the_last_line_is_no_success(watched):
     """Its verdict waits for a line with a later stamp, as another may have the same."""
-    (tmp_path / "s.rv").write_text("signal x : real\nrequirement R\n  always x < 5\n")
-    lines = tmp_path / "a.jsonl"
-    lines.write_text('{"t": 0, "x": 1}\n{"t": 1, "x": 9}\n')
-    command = ["watch", str(tmp_path / "s.rv"), str(lines), "--state", str(tmp_path / "run")]
-    told = says(1, *command)
+    assert "there is no line" in watched(2, "\n").err
+    text = '{"t": 0, "x": 1}\n{"t": 1, "x": 9}\n'
+    told = watched(1, text)
     assert (told.out, "R: fails by the last line" in told.err) == ("", True)
-    with lines.open("a") as more:
-        more.write('{"t": 2, "x": 1}\n')
-    assert "R#1 F" in says(1, *command).out
+    assert "R#1 F" in watched(1, text + '{"t": 2, "x": 1}\n').out
 
 
-@pytest.mark.parametrize(
+@each(
     ("words", "message"),
     [
         (["--robot", "name"], "leave --robot out"),
@@ -176,9 +153,7 @@ def test_what_fails_by_the_last_line_is_no_success(tmp_path, says):
         (["mqtt://localhost/#"], "a pipe or a file"),
     ],
 )
-def test_what_does_not_go_with_a_state_is_refused(tmp_path, says, words, message):
+def test_what_does_not_go_with_a_state_is_refused(watched, tmp_path, words, message):
     """Instead of being judged otherwise than it was asked."""
-    (tmp_path / "s.rv").write_text(killed_watch.SPEC)
-    told = ["watch", "--state", str(tmp_path / "run"), str(tmp_path / "s.rv"), *words]
-    assert message in says(2, *told).err
+    assert message in watched(2, "", *words).err
     assert not (tmp_path / "run").exists()

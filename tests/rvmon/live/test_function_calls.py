@@ -36,23 +36,17 @@ def test_a_call_is_an_event_with_its_arguments(driver):
     assert _verdict(driver) is Verdict.PASS
 
 
-def test_a_call_that_raises_has_not_ended(driver):
-    @as_event(driver, "grip", ended="gripped", payload=lambda: {"width": 1.0})
-    def close_gripper():
-        raise KeyError("jammed")
-
-    with pytest.raises(KeyError, match="jammed"):
-        close_gripper()
-    assert _verdict(driver) is Verdict.INCONCLUSIVE
-
-
-def test_a_coroutine_ends_when_it_was_awaited(driver):
-    @as_event(driver, "grip", ended="gripped", payload=lambda width: {"width": width})
+def test_a_call_that_raises_has_not_ended_and_a_coroutine_when_it_was_awaited(driver):
+    @as_event(driver, "grip", ended="gripped", payload=lambda width: {"width": 1 / width})
     async def close_gripper(width):
         await asyncio.sleep(0)
-        return width
+        return 1 / (width - 1)
 
-    assert asyncio.run(close_gripper(3.0)) == 3.0
+    with pytest.raises(ZeroDivisionError):
+        asyncio.run(close_gripper(1.0))
+    assert driver.waiting == 1
+    assert asyncio.run(close_gripper(3.0)) == 0.5
+    assert driver.waiting == 3
     assert _verdict(driver) is Verdict.PASS
 
 

@@ -1,25 +1,22 @@
-"""What a driver says of random samples, with and without loss, beside a monitor that got all."""
+"""What a driver says of random samples, beside a monitor."""
 
 import random
 
 import pytest
 from tests.tools.differential import case_of
-from tests.tools.sound import is_spoken_of
 
 from rvmon.live import Driver, SimulatedClock
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import TraceProfile
-from rvmon.verdicts import Verdict
 
 pytestmark = pytest.mark.law
-PART, PARTS = 25, 4
 
 
-def _driven(spec, case, rng, **options):
+def _driven(spec, case, rng):
     """A driver that was offered the samples of a case as they are stamped."""
     clock = SimulatedClock(case.samples[0].t)
-    driver = Driver(spec, clock=clock, keep=None, sources=case.names, **options)
+    driver = Driver(spec, clock=clock, keep=None, sources=case.names)
     for sample in case.samples:
         if sample.t > clock.now_ns():
             clock.set_ns(sample.t)
@@ -39,29 +36,19 @@ def _monitored(spec, case, end):
     return monitor.finish_ns()
 
 
-@pytest.mark.parametrize("part", range(PARTS))
-def test_a_driver_judges_as_a_monitor_and_loss_hides_no_failure(part):
-    """With room the records are equal; without, a verdict is that of all samples or I."""
-    lost = 0
-    for number in range(PART):
-        seed = f"live/{part}/{number}"
+def test_a_driver_judges_as_a_monitor():
+    """With room; that without it loss hides no failure is shown in `laws/test_doors.py`."""
+    judged = 0
+    for number in range(60):
+        seed = f"live/{number}"
         case = case_of(seed, Profile(requirements=2), TraceProfile())
         if not case.samples or case.spec.max_delay:
             continue
-        spec, rng = Spec(case.spec), random.Random(seed)
-        driver, clock = _driven(spec, case, rng)
+        spec = Spec(case.spec)
+        driver, clock = _driven(spec, case, random.Random(seed))
         wanted = _monitored(spec, case, clock.now_ns())
         (report,) = driver.close()[""]
         assert report.attempts == wanted.attempts, seed
         assert report.verdicts == wanted.verdicts, seed
-
-        driver, _ = _driven(spec, case, rng, room=rng.randint(1, 4))
-        driver.close()
-        status = driver.status()[""]
-        lost += status.lost
-        if not is_spoken_of(case.spec) or status.run > 1:
-            continue
-        for name, verdict in status.verdicts.items():
-            failed = wanted.verdicts[name] is Verdict.FAIL
-            assert verdict is Verdict.INCONCLUSIVE or (verdict is Verdict.FAIL) == failed, seed
-    assert lost > 5
+        judged += len(wanted.attempts)
+    assert judged > 50

@@ -1,41 +1,26 @@
 """Open attempts in runs: what the builder proves; that it is so `core/test_queue.py` shows."""
 
-import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.logic.automaton import moves_in_runs
 
-HEAD = """
-spec many
-signal p, q : bool
-event asked
-"""
 
-
-def proved(body: str) -> bool:
-    spec = rvmon.loads(f"{HEAD}requirement R1\n  {body}\n")
-    [requirement] = spec._compiled.requirements.values()
-    assert requirement.automaton is not None
-    return moves_in_runs(requirement.automaton)
-
-
-@pytest.mark.parametrize(
-    "body",
+@each(
+    ("required", "is_proved"),
     [
-        "upon asked\n  then within 1 h p",
-        "upon asked\n  then for 2 s not p",
-        "upon asked\n  then p until[1 s, 3 s] q",
-        "upon asked\n  then eventually[2 s, 5 s] p",
+        # What most requirements are moves in runs: with one clock, from the trigger.
+        ("upon e then within 1 h p", True),
+        ("upon e then for 2 s not p", True),
+        ("upon e then p until[1 s, 3 s] q", True),
+        ("upon e then eventually[2 s, 5 s] p", True),
+        # A run could lose its order: only attempts that share their clocks are stepped together.
+        ("whenever p then within 2 s q", False),
+        ("upon e then within 2 s (p and for 1 s q)", False),
     ],
 )
-def test_one_clock_from_the_trigger_is_proved(body):
-    """What most requirements are moves in runs."""
-    assert proved(body)
-
-
-@pytest.mark.parametrize(
-    "body", ["whenever p\n  then within 2 s q", "upon asked\n  then within 2 s (p and for 1 s q)"]
-)
-def test_a_clock_that_is_started_later_is_none(body):
-    """A run could lose its order: only attempts that share their clocks are stepped together."""
-    assert not proved(body)
+def test_one_clock_from_the_trigger_is_proved(required, is_proved):
+    spec = rvmon.loads(f"signal p, q : bool\nevent e\nrequirement R1\n  {required}\n")
+    [requirement] = spec._compiled.requirements.values()
+    assert requirement.automaton is not None
+    assert moves_in_runs(requirement.automaton) is is_proved

@@ -2,6 +2,7 @@
 
 import pytest
 from tests.tools.build import always, eventually, no, p, q, r, requirement, two
+from tests.tools.each import each
 
 from rvmon.language.checked.formula import SignalAtom
 from rvmon.logic.alphabet import LetterDiagram, alphabet_of
@@ -23,19 +24,18 @@ def build(formula, budget=None, **more):
     return construct(*core(formula, **more), budget or Budget())
 
 
-SIZES = {
-    "response": (eventually(p, 0, 3 * SECOND), None, 4, 1, 2),
-    "absence": (always(no(p), 0, 2 * SECOND), None, 4, 1, 2),
-    "invariant": (p, q, 4, 0, 4),
-    "response everywhere": (two(p, "->", eventually(q, 0, 5)), None, 4, 1, 4),
-    "hold after rise": (two(p, "->", always(r, 0, 3 * SECOND)), q, 6, 1, 7),
-}
-
-
-@pytest.mark.parametrize("name", SIZES)
-def test_usual_requirements_stay_small(name):
+@each(
+    ("formula", "whenever", "locations", "clocks", "classes"),
+    [
+        (eventually(p, 0, 3 * SECOND), None, 4, 1, 2),
+        (always(no(p), 0, 2 * SECOND), None, 4, 1, 2),
+        (p, q, 4, 0, 4),
+        (two(p, "->", eventually(q, 0, 5)), None, 4, 1, 4),
+        (two(p, "->", always(r, 0, 3 * SECOND)), q, 6, 1, 7),
+    ],
+)
+def test_usual_requirements_stay_small(formula, whenever, locations, clocks, classes):
     """The shapes that people write need a handful of locations and at most one clock."""
-    formula, whenever, locations, clocks, classes = SIZES[name]
     automaton = build(formula, **({"whenever": whenever} if whenever else {}))
     assert len(automaton.locations) <= locations
     assert automaton.clocks == clocks
@@ -52,7 +52,7 @@ def test_many_propositions_do_not_make_many_classes():
     assert automaton.classes == 2
 
 
-@pytest.mark.parametrize("high", [None, 5])
+@each("high", [None, 5])
 def test_conjunctions_of_recurring_demands_close(high):
     """A location is what of three is still required, however many ways lead there."""
     demands = two(eventually(p, 0, high), "and", eventually(q, 0, high))

@@ -15,7 +15,18 @@ from rvmon.verdicts.attempt import Decision
 
 pytestmark = pytest.mark.law
 
-HEAD = 'spec t\ntime {}\nsignal p, q : bool\nrequirement R1 "x"\n  upon start then {}\n'
+TEXT = "spec t\ntime {}\nsignal p, q, r : bool\nrequirement R\n  upon start then {}\n"
+
+
+def forecast_of(formula, *samples, time="held"):
+    """What is forecast of an attempt after samples at whole seconds."""
+    monitor = loads(TEXT.format(time, formula)).monitor()
+    for t, values in enumerate(samples or [{"p": formula.startswith("p until"), "q": False}]):
+        monitor.step(t, values)
+    (attempt,) = monitor.open
+    return attempt.forecast and attempt.forecast.value
+
+
 CASES = {
     "eventually p": None,
     "always eventually p": None,
@@ -35,10 +46,7 @@ CASES = {
 @each("time", ["held", "sampled"])
 @each("formula", CASES)
 def test_what_is_still_possible(formula, time):
-    monitor = loads(HEAD.format(time, formula)).monitor()
-    monitor.step_ns(0, {"p": formula.startswith("p until"), "q": False})
-    (attempt,) = monitor.open
-    assert (attempt.forecast and attempt.forecast.value) == CASES[formula]
+    assert forecast_of(formula, time=time) == CASES[formula]
 
 
 @pytest.mark.parametrize("most", [0, 1, 3])
@@ -46,28 +54,20 @@ def test_a_search_that_outgrows_its_limit_says_nothing(most, monkeypatch):
     """What is not searched to the end is not forecast; what is, is forecast as ever."""
     for name in ("MOST_TRIED", "_MOST_APART"):
         monkeypatch.setattr(f"rvmon.logic.forecast.{name}", most)
-    said = []
-    for formula, forecast in CASES.items():
-        monitor = loads(HEAD.format("held", formula)).monitor()
-        monitor.step_ns(0, {"p": formula.startswith("p until"), "q": False})
-        (attempt,) = monitor.open
-        said.append(attempt.forecast and attempt.forecast.value)
-        assert said[-1] in (None, forecast)
-    assert (most < 3) is (said != list(CASES.values()))
+    said = {formula: forecast_of(formula) for formula in CASES}
+    assert all(one in (None, CASES[formula]) for formula, one in said.items())
+    assert (most < 3) is (said != CASES)
 
 
-@pytest.mark.parametrize(("time", "forecast"), [("held", "F"), ("sampled", None)])
+@each(("time", "forecast"), [("held", "F"), ("sampled", None)])
 def test_a_window_without_a_position_asks_for_nothing(time, forecast):
     """In held time every tick is a position; samples may leave a window out."""
     both = "(always[2 s, 3 s] p) and always[2 s, 3 s] not p"
-    monitor = loads(HEAD.format(time, both)).monitor()
-    monitor.step_ns(0, {"p": False, "q": False})
-    (attempt,) = monitor.open
-    assert (attempt.forecast and attempt.forecast.value) == forecast
+    assert forecast_of(both, time=time) == forecast
 
 
-@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 3 ns"])
-@pytest.mark.parametrize(
+@each("time", ["held", "sampled", "sampled every 3 ns"])
+@each(
     "formula",
     [
         "(within 51 ns p) and always[18 ns, 48 ns] not p",
@@ -78,7 +78,7 @@ def test_a_window_without_a_position_asks_for_nothing(time, forecast):
 def test_attempts_of_all_ages_are_forecast_as_each_alone(formula, time):
     if "every" in time:  # bounds are whole periods
         formula = formula.replace("19", "21")
-    text = HEAD.format(time, formula).replace("upon start", "upon q")
+    text = TEXT.format(time, formula).replace("upon start", "upon q")
     instants = range(0, 69, 6)
 
     def forecasts(*triggers):
@@ -93,23 +93,11 @@ def test_attempts_of_all_ages_are_forecast_as_each_alone(formula, time):
 
 
 def test_a_forecast_is_no_verdict():
-    spec = loads(HEAD.format("held", "(within 3 s p) and for 5 s not p"))
+    spec = loads(TEXT.format("held", "(within 3 s p) and for 5 s not p"))
     report = spec.evaluate([(0, {"p": False, "q": False}), (1, {"q": True})])
     (attempt,) = report.attempts
     assert (attempt.verdict, attempt.forecast) == (Verdict.INCONCLUSIVE, Verdict.FAIL)
     assert '"forecast":"F"' in report.to_json().replace(" ", "")
-
-
-HELD = "spec t\nsignal p, q, r : bool\nrequirement R1\n  upon start then {}\n"
-
-
-def forecast_of(formula, *samples):
-    """What the network forecasts of an attempt after samples at whole seconds."""
-    monitor = loads(HELD.format(formula)).monitor()
-    for t, values in enumerate(samples):
-        monitor.step(t, values)
-    (attempt,) = monitor.open
-    return attempt.forecast and attempt.forecast.value
 
 
 def test_the_network_forecasts_by_what_it_knows():

@@ -13,7 +13,6 @@ from tests.tools.build import (
     q,
     r,
     requirement,
-    start,
     two,
     x,
 )
@@ -59,17 +58,6 @@ def test_what_is_decided_late_is_not_folded():
     assert isinstance(required(always(two(p, "or", no(p)), 0, 3)), Release)
     tautology = required(two(p, "or", no(p)))
     assert isinstance(tautology, Literal)
-
-
-def test_constants_are_folded_where_that_changes_no_instant():
-    factory = Factory()
-
-    def made(formula):
-        return lower(requirement(formula), factory).required
-
-    always_true = two(p, "or", always(two(q, "and", no(q)), 0, 3))
-    assert made(eventually(two(start, "->", start), 0, 3)) is not factory.true
-    assert isinstance(made(always_true), type(made(two(p, "or", always(q, 0, 3)))))
 
 
 def test_an_episode_ends_where_its_trigger_is_known_to_be_false():

@@ -6,6 +6,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from tests.tools.build import always, eventually, false, no, p, q, r, requirement, two
+from tests.tools.each import each
 
 from rvmon.logic.alphabet import alphabet_of
 from rvmon.logic.automaton import PASSED, Automaton, Token
@@ -103,36 +104,26 @@ def test_a_reduced_automaton_decides_the_same(data, steps):
         word.append((t, letter, gap - 1))
         t += gap
     expected = walk(original, word)
-    for small in (reduce(original, told), reduce(original, nothing)):
+    labelled = reduce(original, told)
+    texts = [{told(place.residual) for place in one.locations} for one in (original, labelled)]
+    assert texts[0] == texts[1], "what people are told stays"
+    for small in (labelled, reduce(original, nothing)):
         assert walk(small, word) == expected
         assert len(small.locations) <= len(original.locations)
         assert rows(small) <= rows(original)
 
 
 @pytest.mark.slow
-@settings(max_examples=30, deadline=None)
-@given(formula=formulas(Shape(mixed=False)))
-def test_what_people_are_told_stays(formula):
-    try:
-        original, told = built(formula)
-    except DoesNotCloseError:
-        assume(False)
-    small = reduce(original, told)
-    texts = [{told(location.residual) for location in one.locations} for one in (original, small)]
-    assert texts[0] == texts[1]
-
-
-SMALLER = {
-    "nested windows": always(two(p, "U", two(q, "U", r, 2, 4), 1, 5)),
-    "recurrence until": two(always(eventually(r), 3), "U", q, 3, None),
-}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", SMALLER)
-def test_equivalent_locations_are_one(name):
+@each(
+    "formula",
+    [
+        always(two(p, "U", two(q, "U", r, 2, 4), 1, 5)),
+        two(always(eventually(r), 3), "U", q, 3, None),
+    ],
+)
+def test_equivalent_locations_are_one(formula):
     """Locations that only their text tells apart are merged where no text is asked for."""
-    original, told = built(SMALLER[name])
+    original, told = built(formula)
     some = (reduce(original, nothing), reduce(original, told), original)
     sizes = [len(one.locations) for one in some]
     assert sizes[0] < sizes[2]

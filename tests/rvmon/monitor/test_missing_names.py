@@ -9,7 +9,6 @@ from pyarrow import parquet
 from tests.tools.each import each
 
 import rvmon
-from rvmon.cli import main
 
 SPEC = """
 spec base "A base"
@@ -48,23 +47,14 @@ def without(name):
     return {own: column for own, column in COLUMNS.items() if own != name}
 
 
-UPDATES = """
-spec updates
-signal p : bool
-signal beat : real
-event e
-requirement R1
-  always (not updated(beat) or p)
-requirement R2
-  upon updated(e) then within 1 s p
-requirement R3
-  always age(beat) <= 1 s
-"""
-
-
 def test_updates_of_a_missing_name_are_not_known():
     """That a column is missing says neither that something came nor that nothing did."""
-    spec = rvmon.loads(UPDATES + "requirement R4\n  always not changed(beat)\n")
+    conditions = ("not updated(beat) or p", "not updated(e) or p", "age(beat) <= 1 s")
+    required = "".join(
+        f"requirement R{n}\n  always ({one})\n"
+        for n, one in enumerate((*conditions, "not changed(beat)"))
+    )
+    spec = rvmon.loads(f"signal p : bool\nsignal beat : real\nevent e\n{required}")
     columns = {"t": np.array([0.0, 1.0, 3.0]), "p": np.array([False, True, False])}
     report = spec.evaluate(columns, allow_missing=True)
     assert {*report.verdicts.values()} == {"I"}
@@ -98,17 +88,8 @@ def test_an_event_is_there_by_a_column_of_its_payload(spec, tmp_path):
 @each(
     "column",
     [
-        "Speed",
-        "SPEED",
-        "speed [m/s]",
-        "speed(m/s)",
-        "speed_mps",
-        "speed_m_s",
-        "/base/speed",
-        "sped",
-        "/base/Speed [m/s]",
-        "base.speed",
-        "/odom/twist/x",
+        *("Speed", "SPEED", "speed [m/s]", "speed(m/s)", "speed_mps", "speed_m_s", "/base/speed"),
+        *("sped", "/base/Speed [m/s]", "base.speed", "/odom/twist/x"),
     ],
 )
 def test_the_column_that_was_meant_is_told(spec, column):
@@ -128,6 +109,8 @@ def test_unknown_names_are_refused(spec):
         spec.evaluate(COLUMNS, columns={"sped": "v"})
     with pytest.raises(rvmon.RvmonError, match="one column, one name"):
         spec.evaluate(COLUMNS, columns={"speed": "v", "gap": "v"})
+    with pytest.raises(rvmon.errors.MissingNameError, match=r"`speed` \(as `v_mean`\), read by R1"):
+        spec.evaluate(COLUMNS, columns={"speed": "v_mean"})
 
 
 def test_many_traces_are_read_alike(spec):
@@ -148,41 +131,25 @@ def test_a_column_is_mapped_through_every_door(spec, tmp_path):
     assert spec.evaluate(path, columns={"speed": "odom.v"}).verdicts["R1"] == "F"
 
 
-def test_a_mapped_column_that_is_not_there_is_told(spec):
-    with pytest.raises(rvmon.errors.MissingNameError, match=r"`speed` \(as `v_mean`\), read by R1"):
-        spec.evaluate(COLUMNS, columns={"speed": "v_mean"})
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
+@pytest.mark.slow
+def test_the_command_line_refuses_and_maps(tmp_path, monkeypatch, says):
+    """Exit code 2 with the file, 1 where it may be lacking, 0 where it is mapped."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "base.rv").write_text(SPEC)
-    doors(tmp_path, COLUMNS)
     (tmp_path / "less.csv").write_text("t,Speed,gap,pick\n0,0,2,1\n1,0,2,0\n")
-    return tmp_path
-
-
-@pytest.mark.slow
-def test_the_command_line_refuses_and_maps(folder, capsys):
-    """Exit code 2 with the file, 1 where it may be lacking, 0 where it is mapped."""
-    assert main(["run", "base.rv", "less.csv"]) == 2
-    told = capsys.readouterr().err
+    run, why = ("run", "base.rv", "less.csv"), ("why", "base.rv", "less.csv", "R1")
+    told = says(2, *run).err
     assert "error: less.csv: there is no column" in told
     assert "--map speed=Speed" in told
     assert "--allow-missing=speed" in told
-    assert main(["run", "base.rv", "less.csv", "--only", "R2"]) == 0
-    assert main(["run", "base.rv", "less.csv", "--map", "speed=Speed", "--only", "R1,R2"]) == 0
-    assert main(["run", "--allow-missing", "base.rv", "less.csv", "--format", "json"]) == 1
-    capsys.readouterr()
-    assert main(["run", "base.rv", "less.csv", "--allow-missing=speed", "--format", "json"]) == 1
-    shown = json.loads(capsys.readouterr().out)
+    mapped = ("--map", "speed=Speed")
+    says(0, *run, "--only", "R2")
+    says(0, *run, *mapped, "--only", "R1,R2")
+    says(1, "run", "--allow-missing", *run[1:], "--format", "json")
+    shown = json.loads(says(1, *run, "--allow-missing=speed", "--format", "json").out)
     assert shown["requirements"]["R1"]["verdict"] == "I"
-    assert main(["run", "base.rv", "less.csv", "--allow-missing=gap"]) == 2
-    assert main(["why", "base.rv", "less.csv", "R1"]) == 2
-    assert main(["why", "base.rv", "less.csv", "R1", "--map", "speed=Speed"]) == 0
-
-
-@pytest.mark.parametrize("words", [["--map", "speed"], ["--map", "=x"], ["--map", "speed="]])
-def test_a_map_has_two_sides(folder, words, capsys):
-    assert main(["run", "base.rv", "a.csv", *words]) == 2
-    assert "expected NAME=COLUMN" in capsys.readouterr().err
+    says(2, *run, "--allow-missing=gap")
+    says(2, *why)
+    says(0, *why, *mapped)
+    for wrong in ("speed", "=x", "speed="):
+        assert "expected NAME=COLUMN" in says(2, *run, "--map", wrong).err

@@ -3,39 +3,21 @@
 import math
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import TraceError, UnknownNameError
 from rvmon.verdicts import Verdict
 
-SPEC = """spec handover "Handover"
-time held
-
-signal distance : real [m]  input  stale after 200 ms
-signal ready : bool  input
-signal mode : {idle, busy}  output
-event sensed  input
-event pick(id: int)  input
-event released  output
-
-requirement R1 "Release in time"
+SPEC = """
+signal ready : bool
+event sensed, released
+requirement R1
   upon sensed and ready
   then within 3 s released
-
-requirement R2 "No release"
+requirement R2
   upon sensed and not ready
   then for 2 s not released
-
-requirement R3 "Far enough"
-  upon pick.id > 3
-  then immediately distance >= 5 cm
-"""
-
-SPAWNING = """spec spawning
-time held
-event a, b input
-requirement R
-  always (a -> eventually[20 ns, 90 ns] b)
 """
 
 
@@ -60,8 +42,8 @@ def test_what_each_tick_starts_again_is_not_due():
 
 def test_next_due_says_when_to_call_advance(monitor):
     assert monitor.next_due is None
-    monitor.step(0, {"ready": True, "distance": 1.0})
-    monitor.step(1, {"sensed": True, "distance": 1.0})
+    monitor.step(0, {"ready": True})
+    monitor.step(1, {"sensed": True})
     for _ in range(9):
         if monitor.next_due < 4_000_000_001:
             assert monitor.advance_ns(monitor.next_due) == ()
@@ -71,15 +53,11 @@ def test_next_due_says_when_to_call_advance(monitor):
     assert monitor.next_due is None
 
 
-@pytest.mark.parametrize("t", [math.inf, math.nan, 1e300])
-def test_an_impossible_time_is_an_error(monitor, t):
-    for call in (
-        lambda: monitor.step(t, {}),
-        lambda: monitor.advance(t),
-        lambda: monitor.finish(t),
-    ):
-        with pytest.raises(TraceError):
-            call()
+@each("t", [math.inf, math.nan, 1e300])
+@each("call", ["advance", "finish"])
+def test_an_impossible_time_is_an_error(monitor, t, call):
+    with pytest.raises(TraceError):
+        getattr(monitor, call)(t)
 
 
 def test_a_name_without_source_is_unknown_and_must_not_arrive():
@@ -90,16 +68,14 @@ def test_a_name_without_source_is_unknown_and_must_not_arrive():
     assert monitor.finish(9).verdicts["R1"] is Verdict.INCONCLUSIVE
 
 
-@pytest.mark.parametrize("options", [{"only": ["R9"]}, {"settle": "never"}], ids=str)
+@each("options", [{"only": ["R9"]}, {"settle": "never"}])
 def test_an_unknown_option_is_named_with_those_there_are(options):
     with pytest.raises(UnknownNameError, match=r"there (are|is)"):
         rvmon.loads(SPEC).monitor(**options)
 
 
 MANY = """
-spec many
 event go(id: int)
-event stop
 signal p : bool
 requirement R
   upon go
@@ -112,7 +88,7 @@ requirement K
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("keep", [pytest.param(None, marks=pytest.mark.slow), 3])
+@pytest.mark.parametrize("keep", [None, 3])
 def test_what_is_decided_together_is_made_as_it_is_read(keep):
     spec = rvmon.loads(MANY)
     count = 2_500

@@ -3,8 +3,10 @@
 from itertools import accumulate
 
 import pytest
+from tests.tools.build import actions
 from tests.tools.differential import case_of
 from tests.tools.drive import drive
+from tests.tools.each import each
 
 import rvmon
 from rvmon.analysis.plain_english import facts_of
@@ -23,15 +25,16 @@ def spec_of(requirement, time="held"):
     )
 
 
-def outcomes(spec, samples, end=None):
-    """Trigger and decision instants in ticks, with the verdicts."""
+def outcomes(spec, told, end=None):
+    """Trigger and decision instants in seconds, with the verdicts; it is told `actions` at such."""
     monitor = spec.monitor()
-    for t, values in samples:
-        monitor.step(t, values)
-    return [(a.triggered, a.decided, a.verdict.value) for a in monitor.finish(end).attempts]
+    for one in actions(told):
+        monitor.step(one.t, one.values)
+    found = monitor.finish(end).attempts
+    return [(a.triggered / SECOND, a.decided and a.decided / SECOND, a.verdict) for a in found]
 
 
-@pytest.mark.parametrize(
+@each(
     ("requirement", "judge"),
     [
         ("upon e then within 3 s b", "automaton"),
@@ -50,36 +53,32 @@ def test_the_compiler_picks_it_where_no_automaton_closes(requirement, judge):
 def test_the_future_below_the_past():
     """What was required a while ago is judged as soon as that is settled."""
     spec = spec_of("upon e then immediately once[0 s, 2 s] (a and within 3 s b)")
-    samples = [(0, {"a": True, "b": False}), (1, {"a": False}), (2, {"e": True}), (9, {})]
     # The last tick with `a` is just before 1 s; `b` was due within 3 s of it.
-    assert outcomes(spec, samples) == [(2 * SECOND, 4 * SECOND, "F")]
-    met = [*samples[:3], (3.5, {"b": True})]
-    assert outcomes(spec, met) == [(2 * SECOND, 3_500_000_000, "P")]
+    assert outcomes(spec, "0 a -b; 1 -a; 2 e; 9") == [(2, 4, "F")]
+    assert outcomes(spec, "0 a -b; 1 -a; 2 e; 3 b") == [(2, 3, "P")]
 
 
 def test_time_alone_may_decide_one_reading_of_an_attempt():
     """It is settled as one that cannot pass, whatever its policy says of what is open."""
     spec = spec_of("upon e then eventually[1 s, 3 s] (a and for 1 s a)\n  at end weak")
-    assert outcomes(spec, [(0, {}), (1, {"e": True}), (9, {"b": True})]) == [(SECOND, None, "I")]
-    assert outcomes(spec, [(0, {}), (1, {"e": True})], 9) == [(SECOND, None, "I")]
+    assert outcomes(spec, "0; 1 e; 9 b") == outcomes(spec, "0; 1 e", 9) == [(1, None, "I")]
 
 
 def test_what_only_led_on_is_settled_together():
     """An episode fails where it does, however many samples it lasted, far apart or not."""
+    spec = spec_of("whenever a then b", "sampled")
     for last in range(30, 50):
         stamps = list(accumulate(1 + 6 * (k % 7 == 0) for k in range(last)))
-        samples = [(t, {"a": True, "b": t < stamps[-1]}) for t in stamps]
-        spec = spec_of("whenever a then b", "sampled")
-        assert outcomes(spec, samples) == [(stamps[0] * SECOND, stamps[-1] * SECOND, "F")]
+        told = "; ".join(f"{t} a {'b' if t < stamps[-1] else '-b'}" for t in stamps)
+        assert outcomes(spec, told) == [(stamps[0], stamps[-1], "F")]
 
 
 def test_the_sample_before_is_kept():
     """What looks back a sample finds it, however far back it lies and however long it has gone."""
+    spec = spec_of("upon e then F[1 s, 2 s] rise(F[0 s, 0 s] a)", "sampled")
     for at in range(20, 37):
-        samples = [(2 * k, {"a": True, "e": k == at}) for k in range(at + 3)]
-        spec = spec_of("upon e then F[1 s, 2 s] rise(F[0 s, 0 s] a)", "sampled")
-        began = 2 * at * SECOND
-        assert outcomes(spec, samples) == [(began, began + 2 * SECOND + 1, "F")]
+        told = "; ".join(f"{2 * k} a{' e' * (k == at)}" for k in range(at + 3))
+        assert outcomes(spec, told) == [(2 * at, 2 * at + 2 + 1e-9, "F")]
 
 
 def test_time_decides_under_another_letter_before_the_next_position():

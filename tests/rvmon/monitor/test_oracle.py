@@ -1,9 +1,10 @@
 """Robustness against its oracle, and its sign against the verdict, on random cases."""
 
 import pytest
+from tests.tools.build import actions
 from tests.tools.compare import key_of
 from tests.tools.differential import case_of
-from tests.tools.drive import feed
+from tests.tools.drive import Found, Lost, feed, told
 from tests.tools.each import each
 from tests.tools.judgement import Judgement
 
@@ -14,13 +15,14 @@ from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, show_case
 from rvmon.testing.law.margins import margins
+from rvmon.testing.law.word import Outage
 from rvmon.trace.sample import Sample
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Decision
 
 pytestmark = pytest.mark.law
 
-PAIRS = 25
+PAIRS = 30
 
 
 def measured(case):
@@ -30,8 +32,15 @@ def measured(case):
     """
     monitor = RobustnessMonitor(Spec(case.spec)._compiled, sources=case.names)
     found, bounds = {}, {}
-    for action in case.actions:
-        for one in feed(monitor, action):
+    for action in told(case):
+        match action:
+            case Lost(names, t):
+                said = monitor.lose_ns(names, t)
+            case Found(names, t):
+                said = monitor.found_ns(names, t)
+            case _:
+                said = feed(monitor, action)
+        for one in said or ():
             found[key_of(one)] = one.robustness
         for one in monitor.open:
             assert_within(one.robustness, bounds.get(key_of(one)), case)
@@ -42,6 +51,11 @@ def measured(case):
     for key, figures in found.items():
         assert_within(figures, bounds.get(key), case)
     return {key: (one.low, one.high, one.kept) for key, one in found.items()}, settled
+
+
+def by_oracle(case):
+    judgement = Judgement(case)
+    return margins(judgement.followings, judgement.outcomes, case.spec.time)
 
 
 def assert_within(later, earlier, case):
@@ -73,7 +87,7 @@ def test_engine_and_oracle_agree(time):
     """Each attempt has the oracle's least and greatest value, and the sign of its verdict."""
     finite = early = doubtful = 0
     for number in range(PAIRS):
-        case = case_of(f"margins {number}", Profile(time=time), TraceProfile())
+        case = case_of(f"margins {number}", Profile(time=time), TraceProfile(outages=20))
         judgement = Judgement(case)
         expected = margins(judgement.followings, judgement.outcomes, case.spec.time)
         found, settled = measured(case)
@@ -88,7 +102,57 @@ def test_engine_and_oracle_agree(time):
     assert min(finite, early, doubtful) > 2
 
 
-@each("value", [float("inf"), float("-inf")])
+INFINITE = float("inf")
+RARE = {
+    "before the first sample nothing was true of a signal yet to come: it never rose and fell": (
+        *("held", "upon start then always not fall(rise(p))", "0; 2!", None, ()),
+        [(-INFINITE, INFINITE)],
+    ),
+    "an attempt is measured in the piece of the trace in which it begins": (
+        *("sampled", "upon start then for 9 ns x <= 5", "0 x=2; 1 x=3; 4 x=4; 6 x=1", 20),
+        *((("x", 2, 3),), [(-INFINITE, 2.0)]),
+    ),
+    "what lies beyond an outage may be anything to what looks back": (
+        *("sampled", "upon e then H[0 ns, 2 ns] x <= 5", "0 x=2; 4 x=4 e; 6 x=1 e", 20),
+        *((("x", 2, 3),), [(-INFINITE, 1.0), (1.0, 1.0)]),
+    ),
+    "an event that is lost between samples may have occurred, unknown before or not": (
+        *("held", "upon start then for 3 ns h.m < 5", "-3 h=/?", 3, (("h", -2, -1),)),
+        [(-INFINITE, -INFINITE)],
+    ),
+    "the same up to the end": (
+        *("held", "upon start then for 1 ns h.m < 5", "-3 h=/?", -2, (("h", -2, -2),)),
+        [(-INFINITE, INFINITE)],
+    ),
+    "an outage does not hide that something was false before it": (
+        *("sampled", "upon e then false since[1 ns, inf) g.k != 1", "0; 5 x=5 e; 9!", None),
+        *((("", 2, 3),), [(-INFINITE, -INFINITE)]),
+    ),
+    "nor that the trace had begun": (
+        *("sampled", "upon e then held(x >= 2 or F[1 ns, 1 ns] x >= 9, 1 ns)"),
+        *("0; 5 x=5 e; 9!", None, (("", 2, 3),), [(3.0, 3.0)]),
+    ),
+    "a trace that may begin in an outage has held nothing for sure": (
+        *("sampled", "upon start then held(true, 1 ns) for each one in g.k", "6 g=2", None),
+        *((("", 4, 4),), []),
+    ),
+}
+"""Time, requirement, what is told, the end, what was lost; the figures of what is sure."""
+
+
+@each("name", RARE)
+def test_a_rare_case_is_measured_as_the_law_has_it(name):
+    time, required, said, end, lost, figures = RARE[name]
+    text = f"time {time}\nsignal p : bool\nsignal x : real\nevent e\nevent g(k: int)\n"
+    spec = loads(f"{text}event h(m: real)\nrequirement R\n  {required}\n")
+    outages = tuple(Outage(frozenset({own} - {""}), first, last) for own, first, last in lost)
+    case = Case(spec.checked, actions(said), end, outages=outages)
+    found, _ = measured(case)
+    assert found == by_oracle(case)
+    assert [one[:2] for key, one in sorted(found.items()) if not key[1]] == figures
+
+
+@each("value", [INFINITE, -INFINITE])
 @each("compare", ["<=", "<", ">=", ">", "==", "!="])
 @each("time", ["held", "sampled"])
 def test_equal_infinities_are_nothing_apart(time, compare, value):
@@ -96,19 +160,7 @@ def test_equal_infinities_are_nothing_apart(time, compare, value):
     spec = loads(f"{text}  upon q then immediately x {compare} y\n")
     values = {"x": value, "y": value, "q": True}
     case = Case(spec.checked, (Sample(0, values), Sample(1, {"x": 1.0, "y": 2.0})))
-    judgement = Judgement(case)
-    of_steps, _ = measured(case)
-    of_oracle = margins(judgement.followings, judgement.outcomes, case.spec.time)
     columns = {"t": [0, 1], "x": [value, 1.0], "y": [value, 2.0], "q": [1, 0]}
     of_rows = [(one.low, one.high, one.kept) for one in spec.robustness(columns).attempts.values()]
-    figures = [*of_rows, *of_steps.values(), *of_oracle.values()]
+    figures = [*of_rows, *measured(case)[0].values(), *by_oracle(case).values()]
     assert figures == [(0.0, 0.0, 0.0)] * 3
-
-
-def test_before_the_first_sample_nothing_was_true_of_a_signal_yet_to_come():
-    """What `rise` reads there is surely false, so `p` without a value never rose and fell."""
-    spec = loads("signal p : bool\nrequirement Q\n  upon start then always not fall(rise(p))\n")
-    case = Case(spec.checked, (Sample(0, {}), 2))
-    judgement = Judgement(case)
-    of_oracle = margins(judgement.followings, judgement.outcomes, case.spec.time)
-    assert of_oracle == measured(case)[0] == {("Q", False, 1): (float("-inf"), *[float("inf")] * 2)}

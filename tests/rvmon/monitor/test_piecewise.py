@@ -45,34 +45,23 @@ def at(pieces, position):
 
 
 @pytest.mark.slow
-def test_points():
+def test_points_and_windows():
     for seed in CASES:
         rng = random.Random(seed)
         one, other = random_known(rng)[0], random_known(rng)[0]
+        low = rng.randint(-6, 4)
+        high = low + rng.randint(0, 7)
+        some, every = some_of_window(one, low, high), all_of_window(one, low, high)
         offset, first, last = rng.randint(-5, 5), rng.randint(0, 10), rng.randint(4, 20)
         assert all(left <= right for left, right, _, _ in clip(one, first, last))
-        for i in range(-8, LAST + 9):
+        for i in range(-12, LAST + 12):
             assert at(earliest(one, other), i) == min(at(one, i), at(other, i))
             assert at(latest(one, other), i) == max(at(one, i), at(other, i))
             assert at(shift(one, offset), i) == at(one, i + offset)
             assert at(clip(one, first, last), i) == (at(one, i) if first <= i <= last else NEVER)
             assert at(up_to(one, 15), i) == (at(one, i) if at(one, i) <= 15 else NEVER)
-
-
-def test_windows():
-    for seed in CASES:
-        rng = random.Random(seed)
-        pieces = random_known(rng)[0]
-        low = rng.randint(-6, 4)
-        high = low + rng.randint(0, 7)
-        some, every = some_of_window(pieces, low, high), all_of_window(pieces, low, high)
-        for i in range(-12, LAST + 12):
-            stamps = [at(pieces, j) for j in range(i + low, i + high + 1)]
-            assert at(some, i) == min(stamps)
-            assert at(every, i) == max(stamps)
-
-
-def test_an_empty_window():
+            stamps = [at(one, j) for j in range(i + low, i + high + 1)]
+            assert (at(some, i), at(every, i)) == (min(stamps), max(stamps))
     assert some_of_window(((0, 5, PAST, 0),), 3, 2) == ()
     assert at(all_of_window((), 3, 2), -FAR) == PAST
 

@@ -103,6 +103,10 @@ CASES = {
         "whenever x > 0 or g.k == key then F[0 ns, 0 ns] false for each key in g.k",
         *("0 x=1; 15 g=0; 24 g=0; 28 g=0", None),
     ),
+    "between the ticks of a clock a captured attempt is not looked after": (
+        *("sampled every 3 ns", "upon e then g.m >= 1 let v = y"),
+        *("0 ?e; 2 g=/?; 7 ?e; 8; 11", None),
+    ),
     "a window without a tick is over in time": (
         *("sampled every 10 ns", "upon e then F[1 ns, 5 ns] p", "0 p; 10 e; 16!", None),
     ),
@@ -218,7 +222,7 @@ def disagreeing(cases):
     return [
         (form, found)
         for case in cases
-        for form in FORMS
+        for form in (*FORMS, "c+interrupt")
         if (found := disagreements(case, Maker(form, compiler), online=True))
     ]
 

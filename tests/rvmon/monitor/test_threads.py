@@ -1,10 +1,7 @@
 """A monitor takes one call at a time, from whatever thread, and refuses the others by name."""
 
-import queue
 import signal
 import threading
-from collections import Counter
-from collections.abc import Iterator
 from itertools import count
 
 import pytest
@@ -29,50 +26,47 @@ def _monitor() -> Monitor:
     return rvmon.loads(_SPEC).monitor()
 
 
-def _row(number: int) -> dict[str, object]:
-    return {"x": float(number % 5), "e": True, "p": number % 3 == 0}
-
-
 class _Odd(dict[str, object]):
     """A sample that takes a closer look."""
 
 
-def _stepped_by_two(
-    monitor: Monitor, samples: int, clock: Iterator[int], *, odd: bool
-) -> Counter[str]:
-    """What comes of steps by two threads, of which every other sample may be odd."""
-    found: list[str] = []  # an item comes whole; a count might be interrupted
+def _tried(monitor: Monitor, number: int, found: list[str], *, odd: bool = False) -> None:
+    """Take a step, and note what came of it: an item comes whole, a count might be interrupted."""
+    row = {"x": float(number % 5), "e": True, "p": number % 3 == 0}
+    try:
+        monitor.step_ns(number, _Odd(row) if odd and number % 2 else row)
+    except Exception as error:  # noqa: BLE001 - whatever comes is looked at
+        found.append(type(error).__name__)
+    else:
+        found.append("taken")
+
+
+def _numbers(monitor: Monitor, end: int, found: list[str]) -> list[int]:
+    """The numbers of attempts of R2, at most as many as samples were taken, or refused by name."""
+    assert set(found) <= {"taken", "OverlapError", "TimeOrderError"}
+    report = monitor.finish_ns(end)
+    numbers = [one.number for one in report.attempts if one.requirement == "R2"]
+    assert len(numbers) <= found.count("taken")
+    return numbers
+
+
+@pytest.mark.usefixtures("quick_turns")
+@pytest.mark.parametrize("odd", [False, True])
+def test_two_threads_break_nothing_but_their_own_calls(odd: bool) -> None:
+    """Of whose samples every other may take a closer look."""
+    monitor, clock, found = _monitor(), count(1), list[str]()
 
     def work() -> None:
-        for _ in range(samples):
-            number = next(clock)
-            try:
-                row = _row(number)
-                monitor.step_ns(number, _Odd(row) if odd and number % 2 else row)
-            except Exception as error:  # noqa: BLE001 - whatever comes is looked at
-                found.append(type(error).__name__)
-            else:
-                found.append("taken")
+        for _ in range(600):
+            _tried(monitor, next(clock), found, odd=odd)
 
     workers = [threading.Thread(target=work) for _ in range(2)]
     for one in workers:
         one.start()
     for one in workers:
         one.join()
-    return Counter(found)
-
-
-@pytest.mark.usefixtures("quick_turns")
-@pytest.mark.parametrize("odd", [False, True])
-def test_two_threads_break_nothing_but_their_own_calls(odd: bool) -> None:
-    monitor = _monitor()
-    clock = count(1)
-    found = _stepped_by_two(monitor, 600, clock, odd=odd)
-    assert set(found) <= {"taken", "OverlapError", "TimeOrderError"}
-    report = monitor.finish_ns(next(clock))
-    numbers = [one.number for one in report.attempts if one.requirement == "R2"]
-    assert sorted(numbers) == list(range(1, found["taken"] + 1))[: len(numbers)]
-    assert len(numbers) <= found["taken"]
+    numbers = _numbers(monitor, next(clock), found)
+    assert sorted(numbers) == list(range(1, len(numbers) + 1))
 
 
 def test_a_call_within_another_is_refused() -> None:
@@ -105,18 +99,10 @@ def test_a_call_within_another_is_refused() -> None:
 
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="there is no signal.setitimer")
 def test_a_signal_handler_within_a_step_is_refused_or_takes_its_sample_whole() -> None:
-    monitor = _monitor()
-    clock = count(1)
-    found: list[str] = []  # an item comes whole; a count might be interrupted
+    monitor, clock, found = _monitor(), count(1), list[str]()
 
     def step(*_: object) -> None:
-        number = next(clock)
-        try:
-            monitor.step_ns(number, _row(number))
-        except Exception as error:  # noqa: BLE001 - whatever comes is looked at
-            found.append(type(error).__name__)
-        else:
-            found.append("taken")
+        _tried(monitor, next(clock), found)
 
     before = signal.signal(signal.SIGALRM, step)
     signal.setitimer(signal.ITIMER_REAL, 0.0005, 0.0005)
@@ -126,11 +112,7 @@ def test_a_signal_handler_within_a_step_is_refused_or_takes_its_sample_whole() -
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0)
         signal.signal(signal.SIGALRM, before)
-    assert set(found) <= {"taken", "OverlapError", "TimeOrderError"}
-    report = monitor.finish_ns(next(clock))
-    assert max(one.number for one in report.attempts if one.requirement == "R2") <= found.count(
-        "taken"
-    )
+    assert max(_numbers(monitor, next(clock), found)) <= found.count("taken")
 
 
 def test_callbacks_may_call_their_monitor() -> None:
@@ -149,31 +131,3 @@ def test_callbacks_may_call_their_monitor() -> None:
     monitor.step_ns(4, {"x": 5.0})
     assert [name for name, *_ in looked] == ["R1#1", "R1#2"]
     assert monitor.finish_ns(5).counts["R1"]["F"] == 2
-
-
-@pytest.mark.slow
-def test_a_monitor_is_handed_from_thread_to_thread() -> None:
-    monitor = _monitor()
-    turns: queue.SimpleQueue[int] = queue.SimpleQueue()
-    turns.put(1)
-    errors = []
-
-    def work() -> None:
-        for _ in range(200):
-            number = turns.get()
-            try:
-                monitor.step_ns(number, _row(number))
-            except Exception as error:  # noqa: BLE001 - whatever comes is looked at
-                errors.append(error)
-            turns.put(number + 1)
-
-    workers = [threading.Thread(target=work) for _ in range(4)]
-    for one in workers:
-        one.start()
-    for one in workers:
-        one.join()
-    assert not errors
-    alone = _monitor()
-    for number in range(1, 801):
-        alone.step_ns(number, _row(number))
-    assert monitor.finish_ns(900).attempts == alone.finish_ns(900).attempts

@@ -1,6 +1,7 @@
 """A monitor that watches for weeks: verdicts so far, callbacks, and records that are not kept."""
 
 import pytest
+from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import RvmonError, TraceError
@@ -49,9 +50,6 @@ def _spec():
     return rvmon.loads(SPEC)
 
 
-# Verdicts so far.
-
-
 def test_verdicts_so_far_are_the_fold_of_what_was_returned(spec):
     """F if an attempt failed, else P if one passed, else NT, after each call."""
     monitor = spec.monitor()
@@ -83,9 +81,6 @@ def test_what_is_undecided_does_not_count_so_far(spec):
     assert monitor.verdicts == {"U1": "I"}
 
 
-# Callbacks.
-
-
 @pytest.mark.parametrize("settle", ["now", "next"])
 def test_callbacks_hear_of_each_decision_once_in_order(spec, settle):
     monitor = spec.monitor(settle=settle)
@@ -110,19 +105,20 @@ def test_a_callback_can_be_taken_away_and_stays_over_a_reset(spec):
     monitor = spec.monitor(only=["L1"])
     heard = []
     stop = monitor.on_failure(heard.append)
-    monitor.step(0, {"x": 5})
-    monitor.reset()
-    monitor.step(0, {"x": 5})
+    for _ in "12":
+        monitor.step(0, {"x": 5})
+        monitor.reset()
     assert [one.decided for one in heard] == [0, 0]
     stop()
     stop()
-    monitor.step(1, {"x": 1})
     assert len(monitor.step(2, {"x": 5})) == 1
     assert len(heard) == 2
     monitor.on_failure(heard.append)
     monitor.step(3, {"x": 1})
     monitor.step(4, {"x": 5})
     assert len(heard) == 3
+    with pytest.raises(RvmonError, match="takes an attempt, found 3"):
+        monitor.on_failure(3)
 
 
 def test_what_a_callback_raises_leaves_the_monitor_in_order(spec):
@@ -155,14 +151,6 @@ def test_what_a_callback_raises_leaves_the_monitor_in_order(spec):
     report = plain.finish(60)
     assert monitor.finish() == report
     assert len(heard) == sum(one.decided is not None for one in report.attempts)
-
-
-def test_what_cannot_be_called_is_refused(spec):
-    with pytest.raises(RvmonError, match="takes an attempt, found 3"):
-        spec.monitor().on_failure(3)
-
-
-# What is kept.
 
 
 UNDECIDED = {
@@ -209,37 +197,24 @@ def test_what_is_undecided_for_good_is_bounded(name):
         assert report.dropped[one]["I"] == expected.counts[one]["I"] - 4
 
 
-def test_a_snapshot_carries_the_counts(spec):
-    plain, monitor = spec.monitor(keep=3), spec.monitor(keep=3)
-    sizes = []
-    for index, (t, values) in enumerate(samples(400)):
-        plain.step_ns(t, values)
-        monitor.step_ns(t, values)
-        if index % 100 == 99:
-            data = monitor.snapshot()
-            sizes.append(len(data))
-            verdicts = monitor.verdicts
-            monitor = spec.restore(data)
-            assert monitor.verdicts == verdicts == plain.verdicts
-    assert max(sizes) < 2 * min(sizes)
-    expected = plain.finish()
-    assert monitor.finish() == expected
-    assert expected.dropped
-
-
 @pytest.mark.parametrize("only", [None, ["L1"], ["U1"], ["Y1"], ["B1"]], ids=str)
 def test_a_run_that_keeps_few_records_does_not_grow(spec, only):
     """Nor does what is noted for reasons: a snapshot is as long after hours as after a while."""
-    monitor = spec.monitor(only=only, keep=3)
+    plain, monitor = (spec.monitor(only=only, keep=3) for _ in "12")
     sizes = []
     for index, (t, values) in enumerate(samples(8_000)):
+        plain.step_ns(t, values)
         monitor.step_ns(t, values)
         if index % 500 == 499:
             sizes.append(len(monitor.snapshot()))
+            monitor = spec.restore(monitor.snapshot())
+            assert monitor.verdicts == plain.verdicts
     assert max(sizes[8:]) <= 1.1 * max(sizes[:8])
+    assert monitor.finish() == plain.finish()
+    assert monitor.finish().dropped
 
 
-@pytest.mark.parametrize("keep", [-1, 2.0, True, "3"])
+@each("keep", [-1, 2.0, True, "3"])
 def test_what_is_no_count_is_refused(spec, keep):
     with pytest.raises(RvmonError, match="whole number from 0 on"):
         spec.monitor(keep=keep)

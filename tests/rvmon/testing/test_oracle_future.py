@@ -35,31 +35,20 @@ UNTIL, WEAK, STRONG = two(p, "U", q, 2, 4), two(p, "W", q, 0, 3), two(p, "M", q,
         (eventually(p, 0, 3), {"p": "0", "advances": [4]}, "0 F 4"),
         # What is held counts between samples, from the opening of the window on.
         (eventually(p, 2, 3), {"p": "1", "end": 9}, "0 P 2"),
-        (eventually(p, 2, 3), {"p": "1", "advances": [2]}, "0 I"),
         (eventually(p, 2, 3), {"p": "1", "advances": [3]}, "0 P 2"),
-        (eventually(p, 2, 3), {"p": "1.0..1"}, "0 F 4"),
         # A window of one point.
         (eventually(p, 0, 0), {"p": "1"}, "0 P 0"),
-        (eventually(p, 0, 0), {"p": "0", "end": 0}, "0 F 1"),
-        (eventually(p, 3, 3), {"p": "0.1.0"}, "0 P 3"),
-        (eventually(p, 3, 3), {"p": "0.10", "end": 4}, "0 F 4"),
         # Without an upper bound nothing is ever missed.
         (eventually(p), {"p": "0", "end": 50}, "0 I"),
-        (eventually(p), {"p": "0...1"}, "0 P 4"),
-        (eventually(p, 2), {"p": "1.0..1"}, "0 P 5"),
         # An unknown value is neither: the window may still be met, else it stays open.
         (eventually(p, 0, 3), {"p": "u.1"}, "0 P 2"),
-        (eventually(p, 0, 3), {"p": "0u0", "end": 9}, "0 I"),
         # `G[a,b]` fails where its operand does, and holds at b + 1.
         (always(p, 0, 3), {"p": "1", "end": 3}, "0 P 4"),
         (always(p, 0, 3), {"p": "1..0"}, "0 F 3"),
-        (always(p, 2, 3), {"p": "0..1"}, "0 F 2"),
-        (always(p, 0, 3), {"p": "1u0", "end": 9}, "0 F 2"),
         # `p U[2,4] q` needs q in the window and p at every instant before it.
         (UNTIL, {"p": "1", "q": "0..1"}, "0 P 3"),
         # The left operand is required from the start on, also before the window opens.
         (UNTIL, {"p": "01", "q": "0..1"}, "0 F 0"),
-        (UNTIL, {"p": "10", "q": "0.1"}, "0 F 1"),
         # It is not required where the right one is met.
         (UNTIL, {"p": "1.0", "q": "0.1"}, "0 P 2"),
         # Met before the window is not met.
@@ -67,28 +56,19 @@ UNTIL, WEAK, STRONG = two(p, "U", q, 2, 4), two(p, "W", q, 0, 3), two(p, "M", q,
         # The bound itself, the tick after it, the end at the bound.
         (UNTIL, {"p": "1", "q": "0...1"}, "0 P 4"),
         (UNTIL, {"p": "1", "q": "0....1"}, "0 F 5"),
-        (UNTIL, {"p": "1", "q": "0", "end": 4}, "0 F 5"),
         # An unknown left operand leaves it open, a false one behind it does not.
         (UNTIL, {"p": "1u1", "q": "0..1", "end": 9}, "0 I"),
-        (UNTIL, {"p": "1u0", "q": "0"}, "0 F 2"),
         # An unknown right operand may have been it, but a later sure one is.
         (UNTIL, {"p": "1", "q": "0.u1"}, "0 P 3"),
-        (UNTIL, {"p": "1", "q": "0.u0", "end": 9}, "0 I"),
         # `p U q` is met at once by q, fails as p ends before, and is open for ever else.
         (two(p, "U", q), {"p": "0", "q": "1"}, "0 P 0"),
-        (two(p, "U", q), {"p": "1..0", "q": "0"}, "0 F 3"),
-        (two(p, "U", q), {"p": "1..0", "q": "0..1"}, "0 P 3"),
-        (two(p, "U", q), {"p": "1", "q": "0", "end": 50}, "0 I"),
         # `p W[0,3] q` is `q R[0,3] (p | q)`: p, for 3 ticks or until q.
         (WEAK, {"p": "1", "q": "0", "end": 3}, "0 P 4"),
-        (WEAK, {"p": "1.0", "q": "0.1"}, "0 P 2"),
         (WEAK, {"p": "10", "q": "0.1"}, "0 F 1"),
         # `p M[0,3] q` is `q U[0,3] (p & q)`: q up to p, with it, and p within 3 ticks.
         (STRONG, {"p": "0.1", "q": "1"}, "0 P 2"),
         (STRONG, {"p": "0.1", "q": "1.0"}, "0 F 2"),
         (STRONG, {"p": "0", "q": "1", "end": 3}, "0 F 4"),
-        (STRONG, {"p": "0", "q": "1", "end": 2}, "0 I"),
-        (STRONG, {"p": "1", "q": "0"}, "0 F 0"),
         # Nested operators are decided as soon as their operands leave one value:
         # F[0,2] G[0,2] p: p from 1 to 3 makes G true at 1, known at 4.
         (eventually(always(p, 0, 2), 0, 2), {"p": "01..0"}, "0 P 4"),
@@ -98,7 +78,6 @@ UNTIL, WEAK, STRONG = two(p, "U", q, 2, 4), two(p, "W", q, 0, 3), two(p, "M", q,
         (always(eventually(p, 0, 1), 0, 2), {"p": "010.", "end": 9}, "0 F 4"),
         # (p U[0,2] q) at 0 or 3 ticks later.
         (eventually(two(p, "U", q, 0, 2), 3, 3), {"p": "0..1", "q": "0....1"}, "0 P 5"),
-        (eventually(two(p, "U", q, 0, 2), 3, 3), {"p": "0..1", "q": "0.....1"}, "0 F 6"),
     ],
 )
 def test_held(judge: Any, formula: Formula, told: dict[str, Any], expected: str) -> None:
@@ -130,17 +109,12 @@ def test_release(judge: Any, low: int, told: dict[str, Any], expected: str) -> N
     [
         # Bounds measure stamps; a missed deadline is decided at b + 1 though no sample is there.
         (eventually(p, 0, 3), {"p": "0....1"}, "0 F 4"),
-        (eventually(p, 0, 3), {"p": "0", "advances": [3]}, "0 I"),
         # Between samples there is no position: over an empty window F is false and G true.
         (eventually(p, 1, 2), {"p": "1..1"}, "0 F 3"),
-        (always(p, 1, 2), {"p": "0..0"}, "0 P 3"),
         # A sample may still come at the very instant that `advance` names.
         (eventually(p, 0, 2), {"p": "0.1", "advances": [2]}, "0 P 2"),
-        (two(p, "U", q, 0, 9), {"p": "1..0", "q": "0....1"}, "0 F 3"),
         # X is the next sample, whenever it comes; `finish` makes none.
         (following(p), {"p": "0.1"}, "0 P 2"),
-        (following(p), {"p": "1...0"}, "0 F 4"),
-        (following(p), {"p": "1", "end": 9}, "0 I"),
         (following(following(p)), {"p": "0.0.1"}, "0 P 4"),
         (always(two(p, "->", following(q)), 0, 3), {"p": "1.0", "q": "0.1", "end": 9}, "0 P 4"),
     ],
@@ -155,17 +129,12 @@ def test_sampled(judge: Any, formula: Formula, told: dict[str, Any], expected: s
     [
         # Positions are 3, 6, 9 ... from the first multiple at or after the first sample.
         (p, {"p": ".1"}, None),
-        (p, {"p": ".1", "end": 3}, "3 P 3"),
         (p, {"p": ".1", "advances": [4]}, "3 P 3"),
         # Signals by hold: only what holds at a multiple is seen.
         (p, {"p": ".1.0"}, "3 F 3"),
-        (eventually(p, 0, 3), {"p": ".0..10", "end": 7}, "3 F 7"),
-        (eventually(p, 0, 3), {"p": ".0...1", "end": 6}, "3 P 6"),
         # The window [3,7] holds 3 and 6, and is over at 8, between two ticks of the clock.
         (eventually(p, 0, 4), {"p": ".0", "end": 6}, "3 I"),
         (eventually(p, 0, 4), {"p": ".0", "end": 7}, "3 F 8"),
-        (eventually(p, 1, 2), {"p": "1", "end": 9}, "0 F 3"),
-        (following(p), {"p": "0.1", "end": 3}, "0 P 3"),
     ],
 )
 def test_clocked(judge: Any, formula: Formula, told: dict[str, Any], expected: str | None) -> None:

@@ -36,24 +36,18 @@ def value(expression: Numeric, *values: dict[str, Any]) -> Any:
     ("expression", "expected"),
     [
         (of("+", MOST, 1), None),
-        (of("-", LEAST, 1), None),
-        (of("*", 2**32, 2**31), None),
         (of("*", 2**31, 2**31), 2**62),
         (of("neg", LEAST), None),
-        (of("abs", LEAST), None),
         # What leaves int64 on the way is unknown, though the whole would not.
         (of("-", of("+", MOST, 1), 1), None),
-        (of("+", of("-", MOST, 1), 1), MOST),
         # Beside a real, and in quotients, roots and lengths, whole numbers are rounded first.
         (of("+", ODD, 0.0), 2.0**53),
         (of("max", ODD, 0.0), 2.0**53),
         (of("max", ODD, 0), ODD),
-        (of("/", ODD, 1), 2.0**53),
         (of("/", 7, 2), 3.5),
         (of("/", 7, 0), None),
         (of("sqrt", -1), None),
         (of("*", 1e200, 1e200), None),
-        (of("hypot", 3, 4), 5.0),
     ],
 )
 def test_arithmetic(expression: Numeric, expected: Any) -> None:
