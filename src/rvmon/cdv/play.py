@@ -79,6 +79,11 @@ class Recorded(NamedTuple):
     seconds: float  # wall time that it took, with judging
     cpu_s: float  # processor time of this process that playing it took
 
+    @property
+    def verdicts(self) -> Mapping[str, Verdict]:
+        """By requirement."""
+        return self.report.verdicts
+
 
 class Bench:
     """One robot with all that plays, judges and measures it: one test after the other.

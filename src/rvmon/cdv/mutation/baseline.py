@@ -5,34 +5,20 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import zip_longest
 
 from rvmon.cdv.campaign import Campaign, Robot
 from rvmon.cdv.code_coverage import code_groups, statements_name
 from rvmon.cdv.mutation.python_mutants import Mutant
-from rvmon.cdv.play import Bench
-from rvmon.cdv.system import Code, Run, Values
+from rvmon.cdv.play import Bench, Progress, Recorded
+from rvmon.cdv.system import Code, Values
 from rvmon.cdv.test import Test
 from rvmon.coverage import Subject
 from rvmon.errors import RvmonError
 from rvmon.execute import parallel
 from rvmon.session import Spec
-from rvmon.verdicts import Verdict
-
-
-@dataclass(frozen=True, slots=True)
-class Recorded:
-    """A test that was played."""
-
-    verdicts: Mapping[str, Verdict]  # by requirement
-    run: Run  # the report of the system at its end
-    samples: tuple[tuple[int, Values], ...]  # instants, and what changed or occurred
-    # of each file of the code under test, the statements that ran; where it was measured
-    lines: Mapping[str, frozenset[int]]
-    cpu_s: float  # processor time of this process that it took
-    seconds: float  # wall time that it took, with judging
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,18 +40,8 @@ def recorder(name: str, robot: Robot, code: Code | None = None) -> Callable[[Tes
 
     def play(test: Test) -> Recorded:
         played = bench.play(test, keeps=True)
-        lines: dict[str, frozenset[int]] = {}
-        for block in () if code is None else code.blocks:
-            ran = frozenset(map(int, played.hits.get(statements_name(block.name), ())))
-            lines[block.path] = lines.get(block.path, frozenset()) | ran
-        return Recorded(
-            played.report.verdicts,
-            played.run,
-            tuple(played.samples),
-            lines,
-            played.cpu_s,
-            played.seconds,
-        )
+        # Of the report the verdicts are compared: what each attempt was need not be sent.
+        return played._replace(report=replace(played.report, attempts=()))
 
     return play
 
@@ -91,8 +67,8 @@ def difference(test: str, was: Recorded, now: Recorded) -> Difference | None:
     return Difference(test, *min(places, key=lambda place: place[0]), verdicts)
 
 
-def _states(recorded: Recorded) -> tuple[tuple[int, Values], ...]:
-    return tuple((t_ns, {"state": state}) for t_ns, state in recorded.run.states)
+def _states(recorded: Recorded) -> Sequence[tuple[int, Values]]:
+    return [(t_ns, {"state": state}) for t_ns, state in recorded.run.states]
 
 
 _OVER: tuple[int, Values] = (2**63, {})
@@ -100,7 +76,7 @@ _OVER: tuple[int, Values] = (2**63, {})
 
 
 def _of_samples(
-    was: tuple[tuple[int, Values], ...], now: tuple[tuple[int, Values], ...]
+    was: Sequence[tuple[int, Values]], now: Sequence[tuple[int, Values]]
 ) -> tuple[int, str, str, str] | None:
     for (t_was, before), (t_now, after) in zip_longest(was, now, fillvalue=_OVER):
         t_ns = min(t_was, t_now)
@@ -125,10 +101,6 @@ def _as_text(values: Values, name: str) -> str:
     return "unknown" if value is None else str(value)
 
 
-Progress = Callable[[int], None]
-"""Called with the number of those that are done."""
-
-
 @dataclass(frozen=True)
 class Suite:
     """A robot, and tests that were played on it."""
@@ -147,9 +119,12 @@ class Suite:
         if mutant.function in self.code.constants.get(path, ()):
             return list(self.tests)
         statements = self._statements[path]
-        statement = statements[bisect_right(statements, mutant.line) - 1]
+        statement = str(statements[bisect_right(statements, mutant.line) - 1])
+        groups = [statements_name(one.name) for one in self.code.blocks if one.path == path]
         return [
-            name for name, recorded in self.recorded.items() if statement in recorded.lines[path]
+            name
+            for name, recorded in self.recorded.items()
+            if any(statement in recorded.hits.get(group, ()) for group in groups)
         ]
 
     @cached_property

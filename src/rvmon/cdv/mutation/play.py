@@ -18,10 +18,10 @@ from functools import partial
 from importlib.machinery import SourceFileLoader
 from types import CodeType, FrameType, FunctionType, ModuleType
 
-from rvmon.cdv.mutation.baseline import Progress, Recorded, Suite, difference, recorder
+from rvmon.cdv.mutation.baseline import Suite, difference, recorder
 from rvmon.cdv.mutation.python_mutants import Mutant
 from rvmon.cdv.mutation.survivors import Finding, How, Tried
-from rvmon.cdv.play import Bench
+from rvmon.cdv.play import Bench, Progress, Recorded
 from rvmon.errors import RvmonError
 from rvmon.execute import Ended, parallel
 from rvmon.texts import text_of_file

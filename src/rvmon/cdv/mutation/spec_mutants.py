@@ -18,10 +18,10 @@ from msgspec import structs
 from rvmon.analysis.conflicts import starts_with
 from rvmon.analysis.product import Aim, Together
 from rvmon.analysis.vacuity import Subject
-from rvmon.cdv.mutation.baseline import Recorded
 from rvmon.cdv.mutation.python_mutants import third_of
 from rvmon.cdv.mutation.python_operators import either_way
 from rvmon.cdv.mutation.survivors import Score
+from rvmon.cdv.play import Recorded
 from rvmon.cdv.system import Checker
 from rvmon.language.checked import formula as rv
 from rvmon.language.checked.classify import is_pulse

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 
-from rvmon.cdv.mutation.baseline import Difference, Recorded
+from rvmon.cdv.mutation.baseline import Difference
 from rvmon.cdv.mutation.python_mutants import HELD_OUT, Mutant
+from rvmon.cdv.play import Recorded
 from rvmon.errors import RvmonError
 from rvmon.language.checked.names_read import names_of_requirement
 from rvmon.language.checked.specification import CheckedSpec

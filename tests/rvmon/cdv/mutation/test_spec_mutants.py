@@ -7,8 +7,8 @@ import pytest
 from tests.tools.each import each
 
 from rvmon import load, loads
-from rvmon.cdv.mutation.baseline import Recorded
 from rvmon.cdv.mutation.spec_mutants import spec_mutants, try_spec_mutants
+from rvmon.cdv.play import Recorded
 from rvmon.cdv.system import Run
 from rvmon.language.print import format_formula
 
@@ -67,8 +67,8 @@ def tried(requirement, *samples, end_s=9):
     monitor = spec.monitor()
     for t_ns, values in samples:
         monitor.step_ns(t_ns, values)
-    verdicts = monitor.finish_ns(end_s * 10**9).verdicts
-    run = Recorded(verdicts, Run(end_s * 10**9), samples, {}, 0.0, 0.0)
+    report = monitor.finish_ns(end_s * 10**9)
+    run = Recorded(Run(end_s * 10**9), report, samples, {}, (), 0.0, 0.0)
     found = try_spec_mutants(spec, spec_mutants(spec.checked), {"one": run})
     return {one.mutant.after: one for one in found}
 
