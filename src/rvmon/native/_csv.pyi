@@ -59,8 +59,5 @@ def as_plain(text: bytes, separator: int, has_commas: int, /) -> bytes | None:
         `None` if a line needs a closer look: a quote, a comma that stays, a row without a value.
     """
 
-def all_are(says: NDArray[Any], entry: int, /) -> bool:
-    """Whether each of these uint8 is that entry."""
-
 def rise(times: NDArray[Any], /) -> bool:
     """Whether each of these int64 is more than the one before."""

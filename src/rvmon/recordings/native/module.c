@@ -132,25 +132,6 @@ static PyObject *csv_plain_text(PyObject *module, PyObject *args)
     return made;
 }
 
-/* all_are(says, entry): whether each of these bytes is that entry. */
-static PyObject *csv_all_are(PyObject *module, PyObject *args)
-{
-    Py_buffer says;
-    int entry;
-    bool alike;
-    (void)module;
-    if (!PyArg_ParseTuple(args, "y*i", &says, &entry)) {
-        return NULL;
-    }
-    alike = says.len == 0;
-    if (!alike) { /* the first is it, and each is as the one before */
-        const uint8_t *first = says.buf;
-        alike = (*first == entry) && (memcmp(first, first + 1, (size_t)says.len - 1) == 0);
-    }
-    PyBuffer_Release(&says);
-    return PyBool_FromLong(alike);
-}
-
 /* rise(times): whether each of these int64 is more than the one before. */
 static PyObject *csv_rise(PyObject *module, PyObject *args)
 {
@@ -170,7 +151,6 @@ static PyObject *csv_rise(PyObject *module, PyObject *args)
 }
 
 static PyMethodDef methods[] = {
-    {"all_are", csv_all_are, METH_VARARGS, NULL},
     {"rise", csv_rise, METH_VARARGS, NULL},
     {"read", csv_read_rows, METH_VARARGS, NULL},
     {"as_plain", csv_plain_text, METH_VARARGS, NULL},
