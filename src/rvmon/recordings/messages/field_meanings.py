@@ -152,57 +152,50 @@ _ALIKE = frozenset({"+", "-", "min", "max", "hypot", "<", "<=", ">", ">=", "==",
 _TRUTHS = frozenset({"<", "<=", ">", ">=", "==", "!=", "and", "or", "xor", "not", "any", "all"})
 
 
-class Measure(Struct, frozen=True):
-    """A unit of a value."""
-
-    unit: Unit  # of it, at least of the same kind
-    is_exact: bool = True  # whether the scale is known as well
-    is_prose: bool = False  # whether a comment says it
+_PLAIN = Meaning(Sort.MEASURED, (PLAIN,))
+_ANGLE = Meaning(Sort.MEASURED, (parse_unit("rad"),))
 
 
-def measures_of(term: Term, topic: Topic) -> tuple[Measure, ...]:
-    """In which units a value may be; none if nobody knows, or if it is a constant."""
+def _measured(term: Term, topic: Topic) -> Meaning:
+    """In which units a value may be; without any if nobody knows, or if it is a constant."""
     match term:
         case Constant():
-            return ()
+            return UNKNOWN
         case Field() | Elements():
             meaning = meaning_of(str(term), topic)
-            if meaning.sort is Sort.QUATERNION:
-                return (Measure(PLAIN),)
-            is_exact, is_prose = not meaning.is_scaled, meaning.is_prose
-            return tuple(Measure(unit, is_exact, is_prose) for unit in meaning.units)
+            return _PLAIN if meaning.sort is Sort.QUATERNION else meaning
         case Applied(sign=turn) if turn in TURNS:
-            return (Measure(parse_unit("rad")),)
+            return _ANGLE
         case Applied(args=(value, _), sign=""):
-            return measures_of(value, topic)
+            return _measured(value, topic)
         case Applied(args=args, sign=sign):
-            inner = [measures_of(arg, topic) for arg in args]
+            inner = [_measured(arg, topic) for arg in args]
             if sign in _ALIKE:
                 _expect_alike(term, inner, topic)
-            return () if sign in _TRUTHS else _combined(sign, args, inner)
+            return UNKNOWN if sign in _TRUTHS else _combined(sign, args, inner)
 
 
-def _combined(
-    sign: str, args: tuple[Term, ...], inner: list[tuple[Measure, ...]]
-) -> tuple[Measure, ...]:
+def _combined(sign: str, args: tuple[Term, ...], inner: list[Meaning]) -> Meaning:
     """The units of a result, where those of all arguments but constants are known."""
-    known = [(arg, own) for arg, own in zip(args, inner, strict=True) if own]
-    if any(not own and not isinstance(arg, Constant) for arg, own in zip(args, inner, strict=True)):
-        return ()
+    pairs = list(zip(args, inner, strict=True))
+    known = [own for own in inner if own.units]
+    if any(not own.units and not isinstance(arg, Constant) for arg, own in pairs):
+        return UNKNOWN
     if not known or (sign in ("*", "/") and len(known) == 2) or sign == "sqrt":
-        return ()  # products of fields are rare: that nothing is known of them does no harm
-    if sign == "/" and not inner[0]:
-        return ()
+        return UNKNOWN  # products of fields are rare: that nothing is known of them does no harm
+    if sign == "/" and not inner[0].units:
+        return UNKNOWN
     # A number that is not a field may change the scale: thousandths of metres become metres.
-    keeps = sign not in ("*", "/")
-    return tuple(replace(measure, is_exact=measure.is_exact and keeps) for measure in known[0][1])
+    return replace(known[0], is_scaled=known[0].is_scaled or sign in ("*", "/"))
 
 
-def _expect_alike(term: Applied, inner: list[tuple[Measure, ...]], topic: Topic) -> None:
-    dimensions = [{measure.unit.dimension for measure in own} for own in inner if own]
+def _expect_alike(term: Applied, inner: list[Meaning], topic: Topic) -> None:
+    dimensions = [{unit.dimension for unit in own.units} for own in inner if own.units]
     if dimensions and not reduce(set.intersection, dimensions):
         listed = " and ".join(
-            f"`{arg}` in {_written(own)}" for arg, own in zip(term.args, inner, strict=True) if own
+            f"`{arg}` in {_written(own.units)}"
+            for arg, own in zip(term.args, inner, strict=True)
+            if own.units
         )
         raise TraceError(
             f"`{term}` of topic {topic.name} ({topic.type}): {listed} cannot be added or compared"
@@ -219,24 +212,26 @@ def expect_units(name: str, bound: Bound, schema: Schema, topic: Topic) -> None:
 
 
 def _expect(name: str, term: Term, declared: str, given: str, topic: Topic) -> None:
-    found = measures_of(term, topic)
-    is_prose = bool(found) and all(measure.is_prose for measure in found)
-    if not found or not declared or (is_prose and given):
+    found = _measured(term, topic)
+    is_prose = found.is_prose
+    if not found.units or not declared or (is_prose and given):
         return  # who writes the unit of a field has read what its comment means
     target = parse_unit(given or declared)
-    alike = [measure for measure in found if measure.unit.dimension == target.dimension]
+    alike = [unit for unit in found.units if unit.dimension == target.dimension]
     where = f"topic {topic.name} ({topic.type})" if topic.type else f"topic {topic.name}"
-    is_so = f"`{term}` of {where} is {_written(found)}{', as a comment says' if is_prose else ''}"
+    is_so = (
+        f"`{term}` of {where} is {_written(found.units)}{', as a comment says' if is_prose else ''}"
+    )
     wanted = f"`{name}` is declared [{declared}]"
     if not alike:
         otherwise = f', or write `unit = "{declared}"` in a binding if it is' if is_prose else ""
         raise TraceError(
             f"{wanted}, and {is_so}: bind what is in [{declared}]{_such(target, topic)}{otherwise}"
         )
-    if any(not measure.is_exact or measure.unit.factor == target.factor for measure in alike):
+    if found.is_scaled or any(unit.factor == target.factor for unit in alike):
         return
     says = f"and `unit` says [{given}]" if given else "in which it would be judged as it is"
-    fix = f'write `unit = "{alike[0].unit.symbol or 1}"` in a binding, and it is converted'
+    fix = f'write `unit = "{alike[0].symbol or 1}"` in a binding, and it is converted'
     raise TraceError(f"{is_so}; {wanted}, {says}: {fix}")
 
 
@@ -249,14 +244,11 @@ def _such(target: Unit, topic: Topic) -> str:
     return f", such as {' or '.join(fields[:3])}" if fields and target.dimension else ""
 
 
-def _written(found: Iterable[Measure]) -> str:
+def _written(units: Iterable[Unit]) -> str:
     """Units as a person reads them.
 
-    >>> _written([Measure(parse_unit("rad")), Measure(PLAIN)])
+    >>> _written([parse_unit("rad"), PLAIN])
     'in [rad] or a plain number'
     """
-    listed = [
-        f"in [{measure.unit.symbol}]" if measure.unit.dimension else "a plain number"
-        for measure in found
-    ]
+    listed = [f"in [{unit.symbol}]" if unit.dimension else "a plain number" for unit in units]
     return " or ".join(dict.fromkeys(listed))
