@@ -53,17 +53,21 @@ def csv_batches(
             ended, end = yield from reader.batch(text)
             if ended == _ROW:
                 before = text.line
-                row = bounded_lines(io.StringIO(text.cut(end), newline=""))
-                yield csv_samples(split_lines(row, before), layout)
+                yield csv_samples(_split(text.cut(end), before), layout)
             elif ended == _ALL and not text.read_on():
                 break
     finally:
         text.close()
     if text.start < len(text.rest):
         before = text.line
-        tail = bounded_lines(io.StringIO(text.cut(len(text.rest)), newline=""))
-        for line, t, values, text.lost in unended(split_lines(tail, before), layout, ignoring):
+        tail = _split(text.cut(len(text.rest)), before)
+        for line, t, values, text.lost in unended(tail, layout, ignoring):
             yield iter([(line, t, values)])
+
+
+def _split(text: str, before: int) -> Iterator[tuple[int, list[str]]]:
+    """The rows of a text before which so many lines stand."""
+    return split_lines(bounded_lines(io.StringIO(text, newline=""), before), before)
 
 
 class Found(Struct, frozen=True):

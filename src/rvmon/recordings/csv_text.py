@@ -89,8 +89,8 @@ class CsvText(Generic[_Found]):
     def _refuse_long(self) -> None:
         rest = self.rest[self.start :].decode(errors="ignore")
         if len(rest) > places.LONGEST_LINE:
-            for _ in split_lines(places.bounded_lines(io.StringIO(rest, newline="")), self.line):
-                pass
+            lines = places.bounded_lines(io.StringIO(rest, newline=""), self.line)
+            deque(split_lines(lines, self.line), 0)
 
     def lines(self) -> Iterator[str]:
         """The next lines, each taken as it is given out."""

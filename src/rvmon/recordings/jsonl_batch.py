@@ -45,24 +45,11 @@ def jsonl_batches(
         try:
             batch = _batch(text.removeprefix(b"" if line else _MARK), schema, ignored)
         except NotPlainError:
-            lines = places.bounded_lines(io.StringIO(text.decode(), newline=""))
-            yield _numbered(jsonl_samples(lines, schema, ignored), line)
+            lines = places.bounded_lines(io.StringIO(text.decode(), newline=""), line)
+            yield jsonl_samples(lines, schema, ignored, line)
         else:
             yield replace(batch, first=line + 1)
         line += text.count(b"\n")
-
-
-def _numbered(rows: Iterator[Row], before: int) -> Iterator[Row]:
-    """The rows with the numbers of their lines, of which so many stand before."""
-    try:
-        for number, t, values in rows:
-            yield number + before, t, values
-    except TraceError as error:
-        head, _, rest = str(error).partition(":")
-        line = head.removeprefix("line ")
-        if not line.isdecimal():
-            raise
-        raise type(error)(f"line {int(line) + before}:{rest}") from None
 
 
 def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:

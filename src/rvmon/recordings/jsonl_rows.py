@@ -38,9 +38,12 @@ _APART_IN_BYTES = re.compile(rb'"\s+:')  # a quote that may end a name, with bla
 
 
 def jsonl_samples(
-    lines: Iterable[str], schema: Schema, ignored: Counter[str]
+    lines: Iterable[str], schema: Schema, ignored: Counter[str], before: int = 0
 ) -> Iterator[tuple[int, int, Mapping[str, Value]]]:
-    """Line number, ticks and values of each line but blank ones; undeclared names are counted."""
+    """Line number, ticks and values of each line but blank ones; undeclared names are counted.
+
+    `before`: the lines that stand before them.
+    """
     for name in schema.columns:
         if name not in schema.signals and name not in schema.events:
             raise TraceError(
@@ -48,7 +51,7 @@ def jsonl_samples(
                 "have other names"
             )
     decode = msgspec.json.Decoder().decode
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(lines, 1 + before):
         if number == 1:
             line = line.removeprefix("\ufeff")
         if not line.strip():

@@ -212,9 +212,9 @@ BLOCK = 1 << 20  # bytes of a piece
 LONGEST_LINE = 1 << 26  # characters of a line; longer ones are refused
 
 
-def bounded_lines(text: TextIO) -> Iterator[str]:
-    """The lines of a text, which never fill the memory."""
-    for number, line in enumerate(iter(partial(text.readline, LONGEST_LINE + 1), ""), 1):
+def bounded_lines(text: TextIO, before: int = 0) -> Iterator[str]:
+    """The lines of a text, which never fill the memory; so many stand before them."""
+    for number, line in enumerate(iter(partial(text.readline, LONGEST_LINE + 1), ""), 1 + before):
         if len(line) > LONGEST_LINE:
             raise TraceError(
                 f"line {number}: longer than {LONGEST_LINE:,} characters: is this a recording? "

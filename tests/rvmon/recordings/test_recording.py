@@ -228,6 +228,16 @@ def test_a_row_of_quoted_lines_is_bounded(tmp_path, monkeypatch):
         list(spec.recording(path))
 
 
+@pytest.mark.parametrize(("name", "row"), [("a.csv", "1,{}\n"), ("a.jsonl", '{{"t":1,"x":{}}}\n')])
+def test_a_line_that_is_too_long_is_named(tmp_path, monkeypatch, name, row):
+    for module in ("places", "csv_rows"):
+        monkeypatch.setattr(f"rvmon.recordings.{module}.LONGEST_LINE", 1 << 18)
+    above = "t,x\n" if name == "a.csv" else row.format(0)
+    (tmp_path / name).write_text(above + row.format(2) + row.format("1" * (1 << 21)))
+    with pytest.raises(TraceError, match="line 3: longer than 262,144 characters"):
+        list(FileRecording(tmp_path / name, Schema({"x": Kind.REAL}, {})))
+
+
 def test_a_small_text_is_read_once(tmp_path):
     """What stood there when the header was read is judged; going through it again reads it."""
     path = tmp_path / "a.csv"
