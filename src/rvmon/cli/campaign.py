@@ -81,7 +81,7 @@ def add_commands(
         value = "NAMES" if name == "run" else "NAME"
         parser.option(f"--robot {value}", about, default=preset.get("robot"))
         if name in ("replay", "shrink"):
-            parser.add_argument("test", metavar="TEST", help="a test, a .json file")
+            parser.option("TEST", "a test, a .json file")
         else:
             drawn = preset.get("strategy", "those of the campaign" if name == "close" else "all")
             about = f"of {strategies} (default: {drawn})"

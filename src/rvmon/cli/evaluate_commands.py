@@ -20,14 +20,9 @@ def add_run(subparsers: Subparsers) -> None:
         "examples/base.rv examples/base.csv --only B2 --report pages --junit "
         "verdicts.xml",
     )
-    add = parser.add_argument
-    add(
-        "spec",
-        metavar="SPEC",
-        help="a .rv file, or a reproducer (.rvcase) that contains the other arguments",
-    )
-    add(
-        "traces", metavar="TRACE", nargs="+", help="recordings: files, folders, patterns, addresses"
+    parser.option("SPEC", "a .rv file, or a reproducer (.rvcase) that contains the other arguments")
+    parser.option(
+        "TRACE", "recordings: files, folders, patterns, addresses", nargs="+", dest="traces"
     )
     parser.option("--only IDS", "evaluate only these requirements: R1,R3")
     declare(parser, *ONLY[1:], *EVALUATED)
@@ -101,18 +96,16 @@ def add_watch(subparsers: Subparsers) -> None:
         epilog='example: printf \'{"t":0,"speed":0.5,"obstacle":0.4}\\n\' | '
         "rvmon watch examples/base.rv",
     )
-    add = parser.add_argument
-    add("spec", metavar="SPEC", help="a .rv file")
-    add(
-        "source",
-        metavar="SOURCE",
-        nargs="?",
-        default="-",
-        help="a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, "
+    declare(parser, "SPEC")
+    parser.option(
+        "SOURCE",
+        "a pipe or file of JSON lines (default: standard input), or mqtt://HOST/TOPICS, "
         "whose first + names the robot, such as mqtt://localhost/robots/+/#, ros1: (ROS 1 "
         "topics), ros2: (ROS 2 topics) or dds:DOMAIN (ROS 2 topics without an installation of "
         "ROS). Lines with a time stamp (t, t_ns, --time) are evaluated at that time, others when "
         "they arrive",
+        nargs="?",
+        default="-",
     )
     declare(parser, *ONLY, "--const", "--time", "--map", "--binding")
     parser.option(
@@ -161,14 +154,9 @@ def add_why(subparsers: Subparsers) -> None:
         description="Explain one attempt: show when each part of its requirement was true.",
         epilog="example: rvmon why examples/base.rv examples/base.csv B2#2",
     )
-    add = parser.add_argument
-    add(
-        "spec",
-        metavar="SPEC",
-        help="a .rv file, or a reproducer (.rvcase) that contains the other arguments",
-    )
-    add("trace", metavar="TRACE", help="a recording, as `rvmon run` takes it")
-    add("attempt", metavar="ID#N", help=ATTEMPT_HELP)
+    parser.option("SPEC", "a .rv file, or a reproducer (.rvcase) that contains the other arguments")
+    parser.option("TRACE", "a recording, as `rvmon run` takes it")
+    parser.option("ID#N", ATTEMPT_HELP, dest="attempt")
     declare(parser, *EVALUATED, "--format")
 
 
@@ -182,10 +170,8 @@ def add_clip(subparsers: Subparsers) -> None:
         epilog="example: rvmon clip examples/base.rv examples/base.csv B2#2 --before 1s -o "
         "piece.csv",
     )
-    add = parser.add_argument
-    add("spec", metavar="SPEC", help="a .rv file")
-    add("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
-    add("attempt", metavar="ID#N", nargs="?", help=ATTEMPT_HELP)
+    declare(parser, "SPEC", "DATA")
+    parser.option("ID#N", ATTEMPT_HELP, nargs="?", dest="attempt")
     parser.option(
         "--before TIME",
         f"start TIME ({TIME_FORMS}; default: 10s) before the trigger, or before the failure "
@@ -222,9 +208,8 @@ def add_compare(subparsers: Subparsers) -> None:
         epilog="examples: rvmon run examples/base.rv examples/base.csv --out old.csv; rvmon "
         "compare old.csv old.csv",
     )
-    add = parser.add_argument
-    add("before", metavar="OLD", help="the earlier verdicts")
-    add("after", metavar="NEW", help="the later verdicts")
+    parser.option("OLD", "the earlier verdicts", dest="before")
+    parser.option("NEW", "the later verdicts", dest="after")
     parser.option("--all", "list all differences")
     declare(parser, "--format")
 
@@ -238,8 +223,9 @@ def add_cover(subparsers: Subparsers) -> None:
         epilog="examples: rvmon run examples/base.rv examples/base.csv --coverage base.cov; "
         "rvmon cover base.cov --holes",
     )
-    add = parser.add_argument
-    add("databases", metavar="DB", nargs="+", help="coverage databases, written by run --coverage")
+    parser.option(
+        "DB", "coverage databases, written by run --coverage", nargs="+", dest="databases"
+    )
     parser.option("--campaign NAME", "show the tests of this campaign only")
     parser.option("--holes", "list the items that are missing or cannot be hit, with the reasons")
     parser.option(
@@ -283,8 +269,7 @@ def add_evidence(subparsers: Subparsers) -> None:
         "0 all checks passed, 1 one failed, 2 something could not be checked.",
         epilog="example: %(prog)s base.zip --sample all",
     )
-    add = parser.add_argument
-    add("file", metavar="FILE", help="the archive")
+    parser.option("FILE", "the archive")
     parser.option(
         "--sample N",
         "number of recordings or tests to evaluate again, or all (%(default)s)",

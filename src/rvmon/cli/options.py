@@ -28,6 +28,9 @@ def _megabytes(text: str) -> int:
 
 
 _ABOUT = {
+    "SPEC": "a .rv file",
+    "DATA": "a recording, as `rvmon run` takes it",
+    "MODEL": "a .ta or .xml file",
     "--only IDS": "only these requirements: R1,R3",
     "--severity LEVELS": "only requirements with one of these severities: high,medium",
     "--tag TAGS": "only requirements with one of these tags: stop,arm; if given twice, with one "
@@ -67,7 +70,7 @@ EVALUATED = ("--const", "--until", *READING, "--allow-missing")
 
 
 def declare(parser: Parser, *names: str) -> None:
-    """Declare options that several commands take."""
+    """Declare options, and arguments, that several commands take."""
     for name in names:
         parser.option(words := _WORDS[name], _ABOUT[words], **_MORE.get(name, {}))
 

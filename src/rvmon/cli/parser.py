@@ -51,15 +51,17 @@ class Parser(argparse.ArgumentParser):
         return parsed, rest
 
     def option(self, words: str, about: str, **how: Any) -> None:
-        """Declare an option.
+        """Declare an option, or an argument that stands by itself.
 
         Args:
             words: its names, and the word for its value, as in `-o --out FILE`; without one it is
-                a flag, or one of some `choices`.
+                a flag, or one of some `choices`. Of an argument that word alone, as in `FILE`.
             about: for its help.
             how: more for `add_argument`.
         """
         *names, last = words.split(" ")
+        if words == last and not last.startswith("-"):
+            names = [how.pop("dest", last.lower())]
         if not last.startswith("-"):
             how["metavar"] = last
         else:

@@ -16,9 +16,8 @@ def add_look(subparsers: Subparsers) -> None:
         epilog="examples: rvmon look examples/base.csv; "
         "rvmon look examples/base.csv examples/base.rv -o look.html",
     )
-    add = parser.add_argument
-    add("data", metavar="DATA", help="a recording, as `rvmon run` takes it")
-    add("spec", metavar="SPEC", nargs="?", help="a .rv file")
+    declare(parser, "DATA")
+    parser.option("SPEC", "a .rv file", nargs="?")
     parser.option("-o --output FILE", "write an HTML page instead")
     declare(parser, "--const", *READING)
 
@@ -38,8 +37,7 @@ def add_init(subparsers: Subparsers) -> None:
         "rvmon init monday.bag --for base.rv > base.toml && rvmon run base.rv monday.bag --binding "
         "base.toml",
     )
-    add = parser.add_argument
-    add("data", metavar="DATA", nargs="?", help="a recording, as `rvmon run` takes it")
+    parser.option("DATA", "a recording, as `rvmon run` takes it", nargs="?")
     parser.option("--for SPEC", "propose a binding for this specification", dest="spec")
     declare(parser, "--const")
     parser.option(
@@ -62,8 +60,7 @@ def add_check(subparsers: Subparsers) -> None:
         description="Report all errors and warnings of each specification.",
         epilog="examples: rvmon check examples/base.rv; rvmon check specs/*.rv --format concise",
     )
-    add = parser.add_argument
-    add("specs", metavar="SPEC", nargs="+", help=".rv files, - for standard input")
+    parser.option("SPEC", ".rv files, - for standard input", nargs="+", dest="specs")
     declare(parser, "--const", "--binding")
     parser.option(
         "--format",
@@ -97,9 +94,8 @@ def add_explain(subparsers: Subparsers) -> None:
         "lists all codes.",
         epilog="examples: rvmon explain examples/base.rv B2; rvmon explain RV001",
     )
-    add = parser.add_argument
-    add("subject", metavar="SPEC|CODE", help="a .rv file, or a code such as RV012")
-    add("ids", metavar="ID", nargs="*", help="one requirement, or two (default: all)")
+    parser.option("SPEC|CODE", "a .rv file, or a code such as RV012", dest="subject")
+    parser.option("ID", "one requirement, or two (default: all)", nargs="*", dest="ids")
     declare(parser, "--const")
     parser.option(
         "--runs N", "number of short runs to try (default: 4000)", type=positive, default=4000
@@ -115,7 +111,7 @@ def add_format(subparsers: Subparsers) -> None:
         "kept. With - as SPEC, standard input is formatted to standard output.",
         epilog="example: rvmon format --check specs/*.rv",
     )
-    parser.add_argument("specs", metavar="SPEC", nargs="+", help=".rv files")
+    parser.option("SPEC", ".rv files", nargs="+", dest="specs")
     parser.option("--check", "do not write; exit with 1 if a file would change")
 
 
@@ -141,13 +137,9 @@ def add_verify(subparsers: Subparsers) -> None:
         epilog="example: rvmon verify examples/models/train_gate.ta --query 'A[] not "
         "deadlock' --trace fastest",
     )
-    add = parser.add_argument
-    add("model", metavar="MODEL", help="a .ta or .xml file")
-    add(
-        "--query",
-        metavar="Q",
-        action="append",
-        help="a query, or the id of one in the model (default: all)",
+    declare(parser, "MODEL")
+    parser.option(
+        "--query Q", "a query, or the id of one in the model (default: all)", action="append"
     )
     instead = parser.add_mutually_exclusive_group()
     instead.add_argument(
@@ -155,12 +147,11 @@ def add_verify(subparsers: Subparsers) -> None:
         metavar="SPEC",
         help="check the requirements of a specification on all runs instead",
     )
-    add(
-        "--bind",
-        metavar="NAME=EXPR",
+    parser.option(
+        "--bind NAME=EXPR",
+        "the expression of the model that a signal of the specification stands for",
         action="append",
         default=[],
-        help="the expression of the model that a signal of the specification stands for",
     )
     instead.add_argument(
         "--suite",
@@ -174,9 +165,7 @@ def add_verify(subparsers: Subparsers) -> None:
         choices=("shortest", "fastest", "likely"),
         default="shortest",
     )
-    add(
-        "--const", metavar="NAME=N", action="append", default=[], help="set a constant of the model"
-    )
+    parser.option("--const NAME=N", "set a constant of the model", action="append", default=[])
     declare(parser, "--format")
     add_budget(parser)
 
@@ -191,9 +180,8 @@ def add_conform(subparsers: Subparsers) -> None:
         "recording cannot be read, or holds no action of the model.",
         epilog="example: rvmon conform examples/models/dock.ta examples/models/dock_monday.csv",
     )
-    add = parser.add_argument
-    add("model", metavar="MODEL", help="a .ta or .xml file")
-    add("traces", metavar="TRACE", nargs="+", help="recordings, or folders of recordings")
+    declare(parser, "MODEL")
+    parser.option("TRACE", "recordings, or folders of recordings", nargs="+", dest="traces")
     declare(parser, "--time")
     parser.option(
         "--observe LABELS",
@@ -227,8 +215,7 @@ def add_export(subparsers: Subparsers) -> None:
         "examples/base.rv --to dot --only B1 | dot -Tsvg -o b1.svg; rvmon export "
         "examples/models/fischer.ta --to uppaal -o fischer.xml",
     )
-    add = parser.add_argument
-    add("subject", metavar="SPEC|MODEL", help="a .rv file; or a .ta or .xml file")
-    add("--to", choices=("c", "dot", "json", "hoa", "uppaal"), required=True)
+    parser.option("SPEC|MODEL", "a .rv file; or a .ta or .xml file", dest="subject")
+    parser.add_argument("--to", choices=("c", "dot", "json", "hoa", "uppaal"), required=True)
     parser.option("-o --output PATH", "output folder (c) or file (default: standard output)")
     declare(parser, *ONLY, "--const")
