@@ -201,7 +201,7 @@ class _Reader:
             if gaps.nan:
                 says[says == UNKNOWN] = NO_UPDATE
             says[~kept(made, gaps) & (says == YES)] = NO_UPDATE
-        cells = Cells(made, None if (says == YES).all() else says)
+        cells = Cells(made, None if says.min() == says.max() == YES else says)
         _ = cells.unknown  # kept, found by the thread that has just written the values
         return cells
 
