@@ -72,7 +72,6 @@ typedef struct {
     int64_t base;              /* the first position that is wanted and not known */
     int64_t swept;             /* from `base` up to here its value is the one it has here */
     int64_t wanted;
-    int64_t earliest[2];       /* by value, the first instant at which something new can become known */
 } operator_state;
 
 typedef struct {
