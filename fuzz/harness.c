@@ -532,7 +532,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         bytes[31 + i] = data[i];
         hash = (hash ^ data[i]) * UINT64_C(0x100000001b3);
     }
-    (void)memcpy(bytes, "rvvshot2", 8);
+    (void)memcpy(bytes, "rvvshot3", 8);
     put_word(&bytes[8], ((const plan_header *)from.plan)->hash);
     put_word(&bytes[16], wanted);
     put_word(&bytes[24], hash);

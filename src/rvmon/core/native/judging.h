@@ -70,7 +70,6 @@ typedef struct {
     ranges known[2];
     ranges added[2];           /* by the last step */
     int64_t base;              /* the first position that is wanted and not known */
-    int64_t swept;             /* from `base` up to here its value is the one it has here */
     int64_t wanted;
 } operator_state;
 

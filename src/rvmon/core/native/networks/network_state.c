@@ -16,7 +16,6 @@ void reset_network(const form *f, network *w, int64_t t, int64_t position)
         ranges_empty(&o->known[0]);
         ranges_empty(&o->known[1]);
         o->base = position;
-        o->swept = position;
         if (n->kind == OP_SINCE) { /* before the first position a `since` is false, its dual true */
             ranges *none = &o->known[n->turned];
             ranges_put(f->monitor, none, 0, -LIMIT, position - 1);
@@ -40,7 +39,6 @@ void copy_network(const form *f, network *made, const network *w)
             ranges_copy(f->monitor, &made->nodes[i].known[value], &o->known[value]);
         }
         made->nodes[i].base = o->base;
-        made->nodes[i].swept = o->swept;
     }
     ranges_copy(f->monitor, &made->samples, &w->samples);
     made->oldest = w->oldest;
@@ -58,8 +56,8 @@ bool networks_agree(const form *f, const network *one, const network *other)
     for (i = 0; found && (i < f->form->operators.count); i++) {
         const operator_state *a = &one->nodes[i];
         const operator_state *b = &other->nodes[i];
-        found = (a->base == b->base) && (a->swept == b->swept)
-                && ranges_alike(&a->known[0], &b->known[0]) && ranges_alike(&a->known[1], &b->known[1]);
+        found = (a->base == b->base) && ranges_alike(&a->known[0], &b->known[0])
+                && ranges_alike(&a->known[1], &b->known[1]);
     }
     return found;
 }
@@ -76,24 +74,6 @@ static int64_t open_from(const operator_state *o, int64_t position)
         without = (i < 0) ? without + 1 : 0;
         at = (i < 0) ? at : o->known[value].at[i].last + 1;
         value ^= 1U;
-    }
-    return at;
-}
-
-/* The first position at or behind another at which `until` is not simply what it is at the next one:
- * left is yes and right is no up to there. Nobody has to keep the operands before it. */
-static int64_t leads_to(const network *w, const operator_plan *n, int64_t position)
-{
-    const ranges *stays = &w->nodes[n->left].known[n->turned ^ 1];
-    const ranges *unmet = &w->nodes[n->right].known[n->turned];
-    int64_t at = position;
-    for (;;) {
-        const int32_t i = range_around(stays, at);
-        const int32_t j = range_around(unmet, at);
-        if ((i < 0) || (j < 0)) {
-            break;
-        }
-        at = least(stays->at[i].last, unmet->at[j].last) + 1;
     }
     return at;
 }
@@ -122,7 +102,6 @@ void prune(const form *f, network *w, int64_t position)
         int64_t kept = o->wanted;
         if (n->kind == OP_SINCE) { /* it needs its last value to go on, whether or not a parent does */
             o->base = open_from(o, o->base);
-            o->swept = o->base;
             kept = least(kept, o->base - 1);
         } else {
             o->base = open_from(o, (o->wanted > o->base) ? o->wanted : o->base);
@@ -143,11 +122,8 @@ void prune(const form *f, network *w, int64_t position)
                                                    : up_to(f, w, o->base, n->low));
             break;
         default:
-            if (n->kind == OP_UNTIL) {
-                o->swept = leads_to(w, n, (o->swept > o->base) ? o->swept : o->base);
-            }
-            want(&w->nodes[n->left], o->swept);
-            want(&w->nodes[n->right], o->swept);
+            want(&w->nodes[n->left], o->base);
+            want(&w->nodes[n->right], o->base);
             break;
         }
     }

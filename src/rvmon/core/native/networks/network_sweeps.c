@@ -52,19 +52,6 @@ void update_until(const form *f, const network *w, const operator_plan *n, opera
         /* The end of the trace: what a release requires "for ever" counts as true (`kept`). */
         j = range_around(&right->known[no], w->last);
         add_known(f, o, no, (j < 0) ? w->last + 1 : right->known[no].at[j].first, w->last);
-        if (o->swept > w->last) {
-            add_known(f, o, no, o->base, w->last);
-        }
-    }
-    if (o->swept > o->base) {
-        /* From `base` to `swept` the operands only pass on the value at `swept` (network_state.c). */
-        if (knows(o, yes, o->swept)) {
-            add_known(f, o, yes, o->base, o->swept - 1);
-        } else if (knows(o, no, o->swept)) {
-            add_known(f, o, no, o->base, o->swept - 1);
-        } else {
-            /* Not known there either. */
-        }
     }
 }
 

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#define SNAPSHOT_MAGIC UINT64_C(0x32746f6873767672) /* "rvvshot2" */
+#define SNAPSHOT_MAGIC UINT64_C(0x33746f6873767672) /* "rvvshot3" */
 #define HEAD_SIZE ((size_t)32)
 
 static uint64_t hash_of_bytes(const uint8_t *bytes, size_t size)

@@ -284,7 +284,6 @@ static void carry_network(carrier *c, const form *f, network *w)
     for (i = 0; (i < f->form->operators.count) && !is_lost(c); i++) {
         operator_state *o = &w->nodes[i];
         carry_long(c, &o->base, sparse ? w->oldest : -LIMIT, LIMIT);
-        carry_long(c, &o->swept, sparse ? 0 : -LIMIT, LIMIT);
         for (value = 0; value < 2; value++) {
             carry_ranges(c, &o->known[value], sparse ? w->last : LIMIT);
         }
