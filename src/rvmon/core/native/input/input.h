@@ -40,6 +40,7 @@ void apply_update(run *r, int64_t t, const incoming *in);
 
 /* ---- spans.c */
 bool compares_with(const run *r, const atom_plan *a, int32_t local, rv_number *constant);
+bool narrow_span(const run *r, int32_t local, const rv_number *value, span *s);
 void learn_span(run *r, int32_t local);
 
 /* Whether no comparison of a signal comes out otherwise by a value, so that only the held value has to

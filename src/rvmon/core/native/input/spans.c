@@ -67,38 +67,43 @@ static bool bound_span(span *s, double x, const rv_number *constant)
     return true;
 }
 
-/* Set the span of a signal: the open interval around its value, between the nearest numbers that it is
- * compared with, in which no comparison changes. Empty if anything else hangs on the value (another kind
- * of atom, staleness, history, births still to come). The run of an attempt captures nothing itself. */
+/* Narrow a span to the values of a signal by which no comparison comes out otherwise than by `value`: the
+ * open interval between the nearest numbers that it is compared with. False: it is compared with that
+ * value itself, or with what is no number that lasts, or doubles are too coarse. */
+bool narrow_span(const run *r, int32_t local, const rv_number *value, span *s)
+{
+    const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
+    const list atoms = comparisons_between(r, local, value, value);
+    const int32_t *place = LIST(PLAN(r), atoms);
+    bool bounded = (value->kind == RV_REAL) || ((value->kind == RV_WHOLE) && is_exact(value));
+    int32_t i;
+    for (i = 0; bounded && (i < atoms.count); i++) {
+        const atom_plan *a = &r->part->atoms[place[i]];
+        rv_number constant;
+        bounded = (a->tells == 0) && compares_with(r, a, local, &constant) && bound_span(s, x, &constant);
+    }
+    return bounded;
+}
+
+/* Set the span of a signal. Empty if anything else hangs on the value (another kind of atom, staleness,
+ * history, births still to come). The run of an attempt captures nothing itself. */
 void learn_span(run *r, int32_t local)
 {
     const signal_plan *s = &r->part->signals[local];
     const uint32_t flags = (uint32_t)s->flags & ~((r->parent != NULL) ? (uint32_t)SIGNAL_CAPTURED : 0U);
     const rv_number *value = &r->value[local];
-    const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
     const bool may_be_quick = (r->margins == NULL) && (r->part->quick[local].kind != RV_UNKNOWN);
     span found = {-HUGE_VAL, HUGE_VAL};
-    bool bounded = (value->kind == RV_REAL) || ((value->kind == RV_WHOLE) && is_exact(value));
-    list atoms;
-    const int32_t *place;
-    int32_t i;
     r->spans[local] = NO_SPAN;
     /* A signal of take_quickly() has no span: that way replaces the value and would not update it. */
     if (may_be_quick || (flags != 0U) || (s->perishable >= 0) || (r->births[local] < s->births)) {
         return;
     }
-    atoms = comparisons_between(r, local, value, value);
-    place = LIST(PLAN(r), atoms);
-    for (i = 0; bounded && (i < atoms.count); i++) {
-        const atom_plan *a = &r->part->atoms[place[i]];
-        rv_number constant;
-        bounded = (a->tells == 0) && compares_with(r, a, local, &constant) && bound_span(&found, x, &constant);
-    }
-    if (bounded) {
+    if (narrow_span(r, local, value, &found)) {
         r->spans[local] = found;
     } else if ((value->kind == RV_WHOLE) && is_exact(value)) {
-        r->spans[local].low = x - 1.0;
-        r->spans[local].high = x + 1.0;
+        r->spans[local].low = (double)value->as.whole - 1.0;
+        r->spans[local].high = (double)value->as.whole + 1.0;
     } else {
         /* Nothing is known of other values. */
     }

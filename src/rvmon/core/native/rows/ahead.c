@@ -12,23 +12,22 @@ static bool are_alike(const rv_number *a, const rv_number *b)
 }
 
 /* Whether every number compares as the last one does. */
-static inline bool reals_are_within(const double *v, int32_t count, double low, double high, double last)
+static inline bool reals_are_within(const double *v, int32_t count, span s, double last)
 {
     int32_t beyond = 0;
     int32_t i;
     for (i = 0; i < count; i++) {
-        beyond |= (int32_t)(((v[i] > low) & (v[i] < high)) | (v[i] == last)) ^ 1;
+        beyond |= (int32_t)(((v[i] > s.low) & (v[i] < s.high)) | (v[i] == last)) ^ 1;
     }
     return beyond == 0;
 }
 
-static inline bool wholes_are_within(const int64_t *v, int32_t count, int64_t low, int64_t high,
-                                     int64_t last)
+static inline bool wholes_are_within(const int64_t *v, int32_t count, span s, int64_t last)
 {
     int32_t beyond = 0;
     int32_t i;
     for (i = 0; i < count; i++) {
-        beyond |= (int32_t)(((v[i] > low) & (v[i] < high)) | (v[i] == last)) ^ 1;
+        beyond |= (int32_t)((((double)v[i] > s.low) & ((double)v[i] < s.high)) | (v[i] == last)) ^ 1;
     }
     return beyond == 0;
 }
@@ -65,14 +64,14 @@ static bool stays(const column_watch *w, int64_t first, int32_t count)
     if ((w->how == BY_CONSTANTS) && (c->kind == RV_COLUMN_WHOLE)) {
         const int64_t *v = &((const int64_t *)c->values)[first];
         const int64_t last = w->last.as.whole;
-        return all ? wholes_are_within(v, TOGETHER, w->floor, w->ceiling, last)
-                   : wholes_are_within(v, count, w->floor, w->ceiling, last);
+        return all ? wholes_are_within(v, TOGETHER, w->between, last)
+                   : wholes_are_within(v, count, w->between, last);
     }
     if (w->how == BY_CONSTANTS) {
         const double *v = &((const double *)c->values)[first];
         const double last = w->last.as.real;
-        return all ? reals_are_within(v, TOGETHER, w->low, w->high, last)
-                   : reals_are_within(v, count, w->low, w->high, last);
+        return all ? reals_are_within(v, TOGETHER, w->between, last)
+                   : reals_are_within(v, count, w->between, last);
     }
     if (c->kind == RV_COLUMN_BYTE) {
         const uint8_t *v = &((const uint8_t *)c->values)[first];

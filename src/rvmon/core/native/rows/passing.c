@@ -189,7 +189,7 @@ void note_judged(batch *s, int64_t end)
 
 /* Which updates of a name can change something, and the interval of values that compare alike. */
 
-static bool all_with_constants(const run *r, const signal_plan *s, int32_t local, int32_t kind)
+static bool all_with_constants(const run *r, const signal_plan *s, int32_t local)
 {
     const list atoms = s->on_change[r->at.phase];
     const int32_t *place = LIST(PLAN(r), atoms);
@@ -197,7 +197,7 @@ static bool all_with_constants(const run *r, const signal_plan *s, int32_t local
     int32_t i;
     for (i = 0; i < atoms.count; i++) {
         if (!compares_with(r, &r->part->atoms[place[i]], local, &constant)
-            || (constant.kind == RV_UNKNOWN) || ((kind == RV_COLUMN_REAL) && (constant.kind != RV_REAL))) {
+            || (constant.kind == RV_UNKNOWN)) {
             return false;
         }
     }
@@ -218,7 +218,7 @@ static int32_t signal_matters(const home *h, const column_watch *w, int32_t loca
     }
     if (apart || ((s->flags & SIGNAL_CAPTURED) != 0)
         || (w->column->kind == RV_COLUMN_BYTE)
-        || !all_with_constants(r, s, local, w->column->kind)) {
+        || !all_with_constants(r, s, local)) {
         return EACH_VALUE;
     }
     return BY_CONSTANTS;
@@ -248,77 +248,20 @@ void learn_how(const batch *s, column_watch *w)
     w->is_plain = is_plain_column(s, w);
 }
 
-static void bound_real(column_watch *w, double constant)
-{
-    if (w->last.as.real <= constant) {
-        w->high = (constant < w->high) ? constant : w->high;
-    }
-    if (w->last.as.real >= constant) {
-        w->low = (constant > w->low) ? constant : w->low;
-    }
-}
-
-/* The same for whole numbers and a constant of either kind. */
-static void bound_whole(column_watch *w, const rv_number *constant)
-{
-    const int64_t last = w->last.as.whole;
-    int64_t below; /* the largest whole number that is not above the constant */
-    bool is_whole = true;
-    if (constant->kind == RV_WHOLE) {
-        below = constant->as.whole;
-    } else if (!(constant->as.real >= -0x1p62) || !(constant->as.real <= 0x1p62)) {
-        w->floor = last; /* rounding could matter: only an equal value compares alike */
-        w->ceiling = last;
-        return;
-    } else {
-        const double rounded = floor(constant->as.real);
-        below = (int64_t)rounded;
-        is_whole = rounded == constant->as.real;
-    }
-    if (!is_whole) {
-        w->ceiling = (last <= below) ? least(w->ceiling, below + 1) : w->ceiling;
-        w->floor = ((last > below) && (below > w->floor)) ? below : w->floor;
-    } else {
-        w->ceiling = (last <= below) ? least(w->ceiling, below) : w->ceiling;
-        w->floor = ((last >= below) && (below > w->floor)) ? below : w->floor;
-    }
-}
-
-/* Set the interval of values that compare as the last one does; see learn_span in input/values.c. */
+/* Find the values that compare as the last one does. */
 void learn_between(const batch *s, column_watch *w)
 {
-    rv_number constant;
+    bool bounded = true;
     int32_t i;
-    int32_t k;
-    w->low = -HUGE_VAL;
-    w->high = HUGE_VAL;
-    w->floor = INT64_MIN;
-    w->ceiling = INT64_MAX;
-    for (i = 0; (w->last.kind != RV_UNKNOWN) && (i < w->reader_count); i++) {
-        const run *r = root_of(s, w, i);
-        const int32_t local = w->readers[i].local;
-        const list atoms = comparisons_between(r, local, &w->last, &w->last);
-        const int32_t *place = LIST(PLAN(r), atoms);
-        for (k = 0; k < atoms.count; k++) {
-            (void)compares_with(r, &r->part->atoms[place[k]], local, &constant);
-            if (w->last.kind == RV_REAL) {
-                bound_real(w, constant.as.real);
-            } else {
-                bound_whole(w, &constant);
-            }
-        }
+    w->between.low = -HUGE_VAL;
+    w->between.high = HUGE_VAL;
+    for (i = 0; bounded && (i < w->reader_count); i++) {
+        bounded = narrow_span(root_of(s, w, i), w->readers[i].local, &w->last, &w->between);
     }
+    w->between = bounded ? w->between : NO_SPAN;
 }
 
 bool compares_alike(const column_watch *w, const rv_number *value)
 {
-    const double x = value->as.real;
-    if ((value->kind == RV_UNKNOWN) || (value->kind != w->last.kind)) {
-        return value->kind == w->last.kind;
-    }
-    if (value->kind == RV_REAL) {
-        return ((w->low < x) && (x < w->high)) || (x == w->last.as.real);
-    }
-    return ((w->floor < value->as.whole) && (value->as.whole < w->ceiling))
-           || (value->as.whole == w->last.as.whole);
+    return stays_in_span(&w->between, &w->last, value) || same_number(&w->last, value);
 }

@@ -37,10 +37,7 @@ typedef struct {
     bool is_plain;             /* its comparisons influence attempts only: measured.c */
     bool is_idle;              /* and no attempt is open */
     rv_number last;            /* its last value in the rows examined so far */
-    double low;                /* a value in (low, high), or equal to `last`, compares as `last` does */
-    double high;
-    int64_t floor;             /* the same for whole numbers: (floor, ceiling) */
-    int64_t ceiling;
+    span between;              /* a value in it, or equal to `last`, compares as `last` does */
     uint64_t said;             /* rows with an update, as bits */
     uint64_t needed;           /* those the core has to see */
 } column_watch;
