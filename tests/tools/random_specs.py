@@ -1,6 +1,7 @@
 """Random formulas and specifications that the general generator seldom makes, or never.
 
-Future formulas over truth values, windows within windows, many letters, coverpoints and crosses.
+Future formulas over truth values, windows within windows, many letters, coverpoints and crosses;
+traces in which little is new.
 """
 
 import random
@@ -30,6 +31,8 @@ from rvmon.testing.generate import BOOLS, NUMBERS, Rng, chance, pick
 from rvmon.testing.generate.formula import formula
 from rvmon.testing.generate.numbers import Shape
 from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.trace import Case
+from rvmon.trace.sample import Sample, Value
 from tests.tools.build import with_operands
 
 _SHAPE = Shape(past=False, numbers=False, events=False, constants=0, longest=3)
@@ -168,3 +171,21 @@ def truths_plan(compiled: CompiledSpec) -> Plan:
         names = [one.name for one in requirement.captures]
         captured |= dict.fromkeys(names if each is None else [each.name, *names], 1)
     return plan_of_truths(compiled.checked, list(required), captured)
+
+
+def with_few_news(rng: random.Random, case: Case) -> Case:
+    """A case in which most samples say again what was said, and events seldom occur."""
+    news = rng.choice([0.02, 0.1, 0.5])
+    now: dict[str, Value] = {}
+    actions: list[Sample | int] = []
+    for action in case.actions:
+        if isinstance(action, Sample):
+            told = {**action.values}
+            for name in case.spec.signals.keys() & told.keys():
+                if name not in now or rng.random() < news:
+                    now[name] = told[name]
+                told[name] = now[name]
+            gone = [n for n in told if n not in case.spec.signals and rng.random() > news]
+            action = Sample(action.t, {n: one for n, one in told.items() if n not in gone})
+        actions.append(action)
+    return replace(case, actions=tuple(actions))

@@ -11,7 +11,7 @@ from tests.tools.forms import Compiler, Maker
 from tests.tools.law import judge
 
 import rvmon
-from rvmon.testing.generate.trace import Case
+from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.trace.sample import Sample
 
 HEAD = "signal ok : bool\nevent order(id: int)\nevent done(id: int)\n"
@@ -76,17 +76,6 @@ COMPARED = {
 }
 
 
-def values(rng, count):
-    """Samples whose numbers meet each other often; some are not known."""
-    t = 0
-    for _ in range(count):
-        t += rng.choice([1, 2, 5])
-        numbers = {name: rng.choice([0.0, 0.5, 1.0, 1.5, 2.0, 3.0, None]) for name in "xy"}
-        held = {name: value for name, value in numbers.items() if rng.random() < 0.6}
-        found = {**held, "n": rng.randrange(4)} if rng.random() < 0.4 else held
-        yield Sample(t, {**found, "e": True} if rng.random() < 0.3 else found)
-
-
 @pytest.mark.law
 @pytest.mark.parametrize("each", ["upon e", "upon rise(y > 1)", "whenever x > 1"])
 @pytest.mark.parametrize("required", COMPARED)
@@ -104,7 +93,7 @@ requirement R
     checked = rvmon.loads(text).checked
     compiler = Compiler()
     for seed in range(6):
-        case = Case(checked, tuple(values(random.Random(seed), 25)), None)
+        case = random_trace(random.Random(seed), checked, TraceProfile(samples=25, fewest=20))
         for form in ("c", "c+interrupt"):
             assert disagreements(case, Maker(form, compiler)) == []
 

@@ -7,8 +7,7 @@ from tests.tools.differential import disagreements
 from tests.tools.forms import FORMS, Compiler, Maker
 
 import rvmon
-from rvmon.testing.generate.trace import Case
-from rvmon.trace.sample import Sample
+from rvmon.testing.generate.trace import TraceProfile, random_trace
 
 NAMES = "signal p, q : bool\nevent e\n"
 REQUIRED = [
@@ -25,6 +24,7 @@ IN_RUNS = ["F[0 ns, 40 ns] p", "F[7 ns, 40 ns] p", "p U[2 ns, 30 ns] q", "G[0 ns
 """With one clock, from the trigger: attempts are moved in runs."""
 
 
+TRACES = TraceProfile(samples=40, fewest=30, span=90)
 WHEN = ["upon e", "whenever p", "whenever q or e"]
 
 
@@ -37,22 +37,9 @@ def test_attempts_in_a_queue_are_judged_as_one_by_one(time):
             text = f"time {time}\n{NAMES}requirement R\n  {when}\n  then {required}\n"
             spec = rvmon.loads(text).checked
             for place, form in enumerate(forms):
-                case = random_case(spec, random.Random(f"{time} {when} {required} {place}"))
+                case = random_trace(
+                    random.Random(f"{time} {when} {required} {place}"), spec, TRACES
+                )
                 online = place == 0 and when == WHEN[0]
                 wrong = disagreements(case, Maker(form, compiler), online=online)
                 assert wrong == [], (required, when, form)
-
-
-def random_case(spec, rng):
-    """Triggers at most samples; signals that change often, seldom, or are unknown now and then."""
-    hold, unknown = rng.choice([0.2, 0.7, 0.95]), rng.choice([0, 0, 0.15])
-    now, said, actions = 0, {}, []
-    for _ in range(40):
-        for name in "pq":
-            if name not in said or rng.random() > hold:
-                said[name] = None if rng.random() < unknown else rng.random() < 0.6
-        actions.append(Sample(now, {**said, **({"e": True} if rng.random() < 0.8 else {})}))
-        now += rng.choice([1, 1, 1, 2, 3, 11])
-        if rng.random() < 0.1:
-            actions.append(now - 1)
-    return Case(spec, tuple(actions), now + rng.choice([0, 2, 30]))

@@ -5,13 +5,16 @@ import random
 
 import numpy as np
 import pytest
-from tests.rvmon.core.tables import planned_for, random_table, rows_differ
-from tests.tools.compare import outcomes
+from tests.tools.compare import differences, outcomes
+from tests.tools.differential import cases_of
+from tests.tools.drive import drive
 from tests.tools.each import each
-from tests.tools.forms import Compiler
+from tests.tools.forms import FORMS, Compiler, Maker
+from tests.tools.random_specs import with_few_news
 
 import rvmon
-from rvmon.testing.generate.spec import Profile, random_spec
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 
 
 def spec_of(declared: str, required: str) -> rvmon.Spec:
@@ -72,18 +75,18 @@ def test_a_signal_is_not_born_by_nan():
 
 
 @pytest.mark.law
-def test_rows_equal_steps():
-    compiler = Compiler()
-    judged = 0
-    for seed in range(6):
-        rng = random.Random(f"rows equal steps {seed}")
-        spec = random_spec(rng, Profile(many=8, wide=10))
-        planned = planned_for(spec, compiler)
-        for _ in range(4):
-            table = random_table(rng, spec, planned.single_payloads, 200)
-            assert not rows_differ(planned, spec, table), f"seed {seed}"
-            judged += len(table.rows)
-    assert judged > 1_000
+def test_long_recordings_say_in_rows_what_their_samples_say():
+    """Rows in which nothing changes are passed over; what is lost ends a block."""
+    compiler, judged = Compiler(), 0
+    traces = TraceProfile(samples=300, fewest=100, span=900, outages=20)
+    for seed in range(12):
+        rng = random.Random(f"long {seed}")
+        for case in cases_of(f"long/{seed}", Profile(many=8, wide=10), traces, 3):
+            for one in (case, with_few_news(rng, case)):
+                steps, rows = (drive(Maker(form, compiler)(one), one)[0] for form in FORMS)
+                assert differences(steps, rows) == [], seed
+                judged += len(one.samples)
+    assert judged > 5_000
 
 
 @pytest.mark.parametrize("limit", [0, 2, 2.5, 2**53 + 1, -(2**62) + 1, 1e19])

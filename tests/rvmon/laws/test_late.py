@@ -6,16 +6,16 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from tests.rvmon.laws.tried import TRIED
-from tests.tools.build import always, p, probe, q, requirement, spec_of, timeline, true
 from tests.tools.compare import outcomes
 from tests.tools.law import after_late, is_touched, judge
 
-from rvmon.language.checked.specification import TimeModel
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
 from rvmon.verdicts import Verdict
+
+pytestmark = pytest.mark.law
 
 
 @st.composite
@@ -28,7 +28,6 @@ def late_cases(draw: st.DrawFn) -> tuple[Case, Case, Sample]:
     return whole, replace(whole, actions=judged), late
 
 
-@pytest.mark.law
 @TRIED
 @given(late_cases())
 def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
@@ -42,7 +41,6 @@ def test_no_green_hides_a_failure(cases_: tuple[Case, Case, Sample]) -> None:
         assert (verdict is Verdict.FAIL) is (verdicts[name] is Verdict.FAIL)
 
 
-@pytest.mark.law
 @TRIED
 @given(late_cases())
 def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None:
@@ -54,26 +52,3 @@ def test_what_reads_none_of_its_names(cases_: tuple[Case, Case, Sample]) -> None
     with_late, without = (outcomes(judge(one)) for one in (whole, judged))
     kept = [{k: v for k, v in one.items() if not touched[k[0]]} for one in (with_late, without)]
     assert kept[0] == kept[1]
-
-
-@pytest.mark.parametrize("time", TimeModel)
-def test_by_hand(time: TimeModel) -> None:
-    spec = spec_of(
-        requirement(p, whenever=true, name="A"),
-        requirement(q, whenever=true, name="B"),
-        requirement(always(q, 0, 3), upon=probe("updated", "p"), name="C"),
-        requirement(p, upon=q, name="D"),
-        time=time,
-        period=1 if time is TimeModel.CLOCKED else None,
-    )
-    judged = timeline(p="1.1.0.1", q="1")
-    verdicts = judge(Case(spec, judged)).verdicts
-    assert "".join(verdict.value for verdict in verdicts.values()) == "FPIP"
-    for late, expected in (
-        (Sample(3, {"p": False}), "FPII"),
-        (Sample(3, {}), "FPIP"),
-        (Sample(-1, {"e": True}), "FIII"),
-    ):
-        found = after_late(spec, verdicts, judged, [late])
-        values = "".join(verdict.value for verdict in found.values())
-        assert values == ("FIII" if time is TimeModel.SAMPLED else expected)

@@ -4,54 +4,17 @@ import random
 
 import numpy as np
 import pytest
+from tests.tools.differential import case_of
+from tests.tools.doors import content_of, whole
+from tests.tools.random_specs import with_few_news
 
 import rvmon
+from rvmon.language.checked.specification import TimeModel
 from rvmon.recordings.source import Source
+from rvmon.session import Spec
+from rvmon.testing.generate.spec import Profile
+from rvmon.testing.generate.trace import TraceProfile
 from rvmon.trace.sample import Trace
-
-PAIRS = 40
-COMPARED = ("<", "<=", "==", "!=", ">=", ">")
-STEPS = ("X", "Y")
-TIMED = ("F", "G", "O", "H", "U", "S", "R")
-
-
-def random_formula(rng, depth, others):
-    """The text of a formula over two numbers and an event, with other operators beside."""
-    if not depth:
-        number = f"{rng.choice('xy')} {rng.choice(COMPARED)} {rng.randint(-3, 3)}"
-        return "e" if rng.random() < 0.2 else number
-    op = rng.choice(("not", "and", "or", *TIMED, *others))
-    low = rng.choice((0, 0, 2))
-    high = rng.choice(("inf)", f"{low} ns]", f"{low + 3} ns]"))
-    window = f"[{low} ns, {high}" if op in TIMED else ""
-    one = random_formula(rng, depth - 1, others)
-    if op in ("not", *STEPS, *TIMED[:4]):
-        return f"({op}{window} ({one}))"
-    return f"(({one}) {op}{window} ({random_formula(rng, rng.randrange(depth), others)}))"
-
-
-def random_case(rng, time, unknown):
-    """A specification, and a trace of many rows as columns, in which little occurs."""
-    trigger = rng.choice(("upon start", "upon end", "upon x > 1", "whenever y <= 0", "upon e"))
-    required = random_formula(rng, rng.randint(0, 3), STEPS if time == "sampled" else ())
-    spec = rvmon.loads(
-        f"spec whole\ntime {time}\nsignal x, y : real\nevent e\n"
-        f"requirement R\n  {trigger}\n  then {required}\n"
-    )
-    gaps = rng.choice(((1, 1, 2, 3, 5), (1,), (2,), (3,)))  # evenly spaced rows go another way
-    times = np.cumsum(rng.choices(gaps, k=rng.randint(70, 300)))
-    columns = {
-        name: [np.nan if rng.random() < unknown else float(rng.randint(-4, 4)) for _ in times]
-        for name in "xy"
-    }
-    columns["e"] = [rng.random() < 0.01 for _ in times]
-    return spec, times.tolist(), columns
-
-
-def rows_of(times, columns):
-    """The same trace as pairs."""
-    for row, t in enumerate(times):
-        yield t * 1e-9, {name: column[row] for name, column in columns.items()}
 
 
 def arrays_of(times, columns):
@@ -64,15 +27,28 @@ def figures_of(margins):
 
 
 @pytest.mark.law
-@pytest.mark.parametrize("time", ["held", "sampled"])
-@pytest.mark.parametrize("unknown", [0.0, 0.01])
-def test_many_rows_that_change_no_verdict_are_measured_as_their_samples_are(time, unknown):
-    for number in range(PAIRS // 4):
+@pytest.mark.parametrize("time", TimeModel)
+@pytest.mark.parametrize("unknowns", [False, True])
+def test_a_recording_is_judged_and_measured_alike_by_columns_and_by_rows(time, unknowns):
+    """Also where most rows change no verdict; evenly spaced rows go another way."""
+    traces = TraceProfile(samples=300, fewest=70, span=900, unknowns=unknowns)
+    measured = 0
+    for number in range(8):
         rng = random.Random(f"long {time} {number}")
-        spec, times, columns = random_case(rng, time, unknown)
-        found = spec.robustness(arrays_of(times, columns))
-        expected = spec.robustness(rows_of(times, columns))
-        assert figures_of(found) == figures_of(expected), f"{spec}\n{times}\n{columns}"
+        case = case_of(f"long {time} {number}", Profile(time=time), traces)
+        content = whole(content_of(rng, with_few_news(rng, case)))
+        times = [t for t, _ in content.rows] if number % 2 else [*range(len(content.rows))]
+        arrays = arrays_of(times, {n: [c[n] for _, c in content.rows] for n in content.columns})
+        spec = Spec(case.spec)
+        read = spec.recording(arrays, allow_missing=True)
+        rows = Trace((*read,), read.names, read.end)
+        found = spec.robustness(arrays, allow_missing=True)
+        assert figures_of(found) == figures_of(spec.robustness(rows)), number
+        found, expected = (spec.judge(Source(one), robustness=True) for one in (read, rows))
+        assert found == expected
+        assert found.to_json() == expected.to_json()
+        measured += sum(one.robustness is not None for one in found.attempts)
+    assert measured > 10
 
 
 def test_without_requirements_there_is_nothing_to_measure():
@@ -100,26 +76,3 @@ def test_a_stream_of_arrays_is_a_sequence():
     assert len(stream) == 3
     assert list(stream[1:]) == list(stream)[1:]
     assert stream[-1] == list(stream)[-1]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("time", "end"), [("held", None), ("sampled", 1_200_500_000_000)])
-def test_a_recording_is_judged_and_measured_alike_by_columns_and_by_rows(time, end, tmp_path):
-    spec = rvmon.loads(
-        f"spec s\ntime {time}\nsignal x : real\nsignal p : bool\n"
-        "requirement R1\n  upon rise(p)\n  then within 3 s x > 9\n"
-        "requirement R2\n  whenever p\n  then x < 9.5\nrequirement R3\n  always x < 9.99\n"
-    )
-    rng = random.Random(1)
-    path = tmp_path / "run.csv"
-    rows = (f"{3 * t // 2},{rng.uniform(0, 10):.3f},{rng.randrange(2)}" for t in range(1000))
-    path.write_text("\n".join(["t,x,p", *rows, ""]))
-
-    def judged(recording):
-        return spec.judge(Source(recording, end, is_cut=True), robustness=True)
-
-    read = spec.recording(path)
-    found, expected = judged(spec.recording(path)), judged(Trace((*read,), read.names, read.end))
-    assert found == expected
-    assert found.to_json() == expected.to_json()
-    assert all(one.robustness is not None for one in found.attempts if one.decided is not None)

@@ -48,6 +48,7 @@ def value(expression: Numeric, *values: dict[str, Any]) -> Any:
         (of("/", 7, 0), None),
         (of("sqrt", -1), None),
         (of("*", 1e200, 1e200), None),
+        (of("hypot", 3, 4), 5.0),
     ],
 )
 def test_arithmetic(expression: Numeric, expected: Any) -> None:
