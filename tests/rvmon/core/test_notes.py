@@ -50,21 +50,6 @@ def test_a_reason_can_be_read_long_after(tmp_path):
     assert pickle.loads(pickle.dumps(copies[1])) == failed  # noqa: S301
 
 
-@pytest.mark.slow
-def test_many_open_attempts_say_what_they_wait_for():
-    spec = spec_of("event p\nsignal q : bool\nrequirement R\n  upon p\n  then within 200 s q\n")
-    monitor = spec.monitor()
-    for t in range(2_000):
-        monitor.step_ns(t * MS, {"p": True, "q": False})
-    waiting = monitor.open
-    assert [one.deadline for one in waiting] == [(t + 200_000) * MS for t in range(2_000)]
-    assert waiting[7].required == "`within 200 s q` by 200.007 s"
-    assert dict(waiting[7].at_trigger) == {"p": True, "q": False}
-    counts, oldest = monitor.open_counts(1)
-    assert counts == {"R": 2_000}
-    assert [one.number for one in oldest] == [1]
-
-
 def test_what_an_endless_run_owes_is_told_by_its_last_part():
     """An attempt that is open all the time says why it failed, long after what it saw first."""
     spec = spec_of(

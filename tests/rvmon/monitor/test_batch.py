@@ -103,35 +103,31 @@ def test_two_columns_of_a_name_are_refused(name):
         rvmon.loads(BOUND).evaluate(table)
 
 
-@pytest.mark.parametrize("unit", ["s", "ns"])
-@pytest.mark.parametrize("time", ["t", "t_ns"])
+@each("unit", ["s", "ns"])
+@each("time", ["t", "t_ns"])
 def test_durations_count_from_their_start_and_dates_are_instants(time, unit, tmp_path):
-    spec = rvmon.loads(BOUND)
-    values = np.array([1.0, 1.0])
-    path = tmp_path / "a.parquet"
-    for kind in ("datetime64", "timedelta64"):
-        table = {time: np.array([3, 4], f"{kind}[{unit}]"), "x": values}
+    spec, path = rvmon.loads(BOUND), tmp_path / "a.parquet"
+
+    def traces(name, times, **others):
+        table = {name: times, "x": np.array([1.0, 1.0]), **others}
         parquet.write_table(pyarrow.table(table), path)
-        for trace in (table, pyarrow.table(table), path):
-            end = 4 * (10**9 if unit == "s" else 1)
-            assert spec.evaluate(trace, time=time).end == end
-    table = {"t": np.array([3, "NaT"], f"timedelta64[{unit}]"), "x": values}
-    parquet.write_table(pyarrow.table(table), path)
-    for trace in (table, pyarrow.table(table), path):
+        return table, pyarrow.table(table), path
+
+    for kind in ("datetime64", "timedelta64"):
+        for trace in traces(time, np.array([3, 4], f"{kind}[{unit}]")):
+            assert spec.evaluate(trace, time=time).end == 4 * (10**9 if unit == "s" else 1)
+    for trace in traces("t", np.array([3, "NaT"], f"timedelta64[{unit}]")):
         assert "row " in told(spec, trace, "t")
-    table = {"t": [0, 1], "x": np.array([3, 4], f"datetime64[{unit}]")}
-    for trace in (table, pyarrow.table(table)):
+    for trace in traces("t", [0, 1], x=np.array([3, 4], f"datetime64[{unit}]"))[:2]:
         assert "`x`: expected a number, found '1970" in told(spec, trace, "t")
 
 
-@pytest.mark.parametrize("kind", ["datetime64", "timedelta64"])
+@each("kind", ["datetime64", "timedelta64"])
 def test_dates_are_no_instants_of_pairs(kind):
-    spec = rvmon.loads(BOUND)
-    when = np.array([3], f"{kind}[ns]")[0]
-    with pytest.raises(TraceError, match="give seconds as a number"):
-        spec.evaluate([(when, {"x": 1.0})])
-    with pytest.raises(TraceError, match="give seconds as a number"):
-        spec.monitor().step(when, {"x": 1.0})
+    spec, when = rvmon.loads(BOUND), np.array([3], f"{kind}[ns]")[0]
+    for judge in (lambda: spec.evaluate([(when, {})]), lambda: spec.monitor().step(when, {})):
+        with pytest.raises(TraceError, match="give seconds as a number"):
+            judge()
 
 
 @each("wrong", [5, None, 2.5, "soon", b"1", np.array(3), np.float64(1)])

@@ -2,6 +2,7 @@
 
 import pytest
 from tests.tools.build import actions
+from tests.tools.drive import feed
 from tests.tools.each import each
 
 import rvmon
@@ -186,26 +187,25 @@ def test_what_was_left_open_and_what_ended_an_episode_is_told(name):
         assert left.deadline == (4 * S if name == "what is owed, and till when" else None)
 
 
-def test_what_time_has_ruled_out_is_owed_no_more():
-    """An I leaves out what time alone has settled, also where no position came with it."""
-    monitor = rvmon.loads(
-        "spec s\ntime sampled\nsignal p, q : bool\nevent go\n"
-        "requirement R1\n  upon go\n  then (within 3 ns p) or (within 9 ns q)\n"
-    ).monitor()
-    monitor.step_ns(0, {"p": False, "q": False, "go": True})
-    monitor.advance_ns(6)
-    [left] = monitor.finish_ns().attempts
-    assert left.required == "`within 9 ns q` by 9 ns"
-
-
-def test_what_is_owed_is_told_once():
-    """What is required at each position, and required now, stands once, with its deadline."""
-    text = "spec s\nsignal p, q : bool\nrequirement R\n  whenever p\n  then within 5 s q\n"
-    monitor = rvmon.loads(text).monitor()
-    monitor.step(0, {"p": False, "q": False})
-    monitor.step(2, {"p": True})
-    [required] = monitor.open
-    assert required.required == "`within 5 s q` by 7 s"
+@each(
+    ("time", "required", "told", "owed"),
+    [
+        # What time alone has settled is left out, also where no position came with it.
+        (
+            *("sampled", "upon e then (within 3 ns p) or (within 9 ns q)"),
+            *("0 -p -q e; 6!", "`within 9 ns q` by 9 ns"),
+        ),
+        # What is required at each position, and required now, stands once, with its deadline.
+        ("held", "whenever p then within 5 ns q", "0 -p -q; 2 p", "`within 5 ns q` by 7 ns"),
+    ],
+)
+def test_what_is_still_owed_is_told_once(time, required, told, owed):
+    names = "signal p, q : bool\nevent e\n"
+    monitor = rvmon.loads(f"time {time}\n{names}requirement R\n  {required}\n").monitor()
+    for one in actions(told):
+        feed(monitor, one)
+    [left] = monitor.open
+    assert left.required == owed
 
 
 @pytest.mark.parametrize("advances", [(), (10**9,), (2 * 10**9,), (2 * 10**9 + 1,)])

@@ -229,5 +229,6 @@ def test_of_much_that_is_open_the_oldest_is_enough():
     assert counts["U1"] == 4
     assert sum(counts.values()) == len(monitor.open)
     assert {one.name: one.deadline for one in records} == {"L1#1": None, "U1#1": 9_000_000_000}
+    assert [one.required for one in records if one.deadline] == ["`within 9 s stop` by 9 s"]
     assert all(one in monitor.open for one in records)
     assert monitor.open_counts() == (counts, monitor.open)
