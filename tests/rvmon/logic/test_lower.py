@@ -19,7 +19,7 @@ from tests.tools.build import (
 from tests.tools.each import each
 
 import rvmon
-from rvmon.logic.formula import Factory, Literal, Release, Sense, Since, Until, horizon
+from rvmon.logic.formula import Factory, Literal, Since, Until, horizon
 from rvmon.logic.lower import UnmonitorableError, lower
 
 
@@ -51,21 +51,6 @@ def test_present_and_past_become_one_proposition():
     )
     assert isinstance(node, Until)
     assert isinstance(node.right, Literal)
-
-
-def test_what_is_decided_late_is_not_folded():
-    """`G[0,3] true` is decided when its window is over, `p or not p` may be unknown."""
-    assert isinstance(required(always(two(p, "or", no(p)), 0, 3)), Release)
-    tautology = required(two(p, "or", no(p)))
-    assert isinstance(tautology, Literal)
-
-
-def test_an_episode_ends_where_its_trigger_is_known_to_be_false():
-    """`whenever θ then ψ` is a release by the two-valued reading of not θ."""
-    node = required(eventually(q, 0, 2), whenever=p)
-    assert isinstance(node, Release)
-    assert isinstance(node.left, Literal)
-    assert node.left.sense is Sense.KNOWN_FALSE
 
 
 @each(

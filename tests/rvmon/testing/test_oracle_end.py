@@ -19,29 +19,23 @@ EVERY_3 = {"time": TimeModel.CLOCKED, "period": 3}
         # What the end settles is decided at the end.
         # Held: max(last sample, last advance - 1, the t of finish).
         (always(p), {"p": "1..1"}, "0 P 3 held"),
-        (always(p), {"p": "1", "end": 4, "advances": [6]}, "0 P 5 held"),
         # Sampled: `advance` moves no end, `finish` does.
         (always(p), {"p": "1", "advances": [6], **SAMPLED}, "0 P 0 held"),
-        (always(p), {"p": "1", "advances": [7], **EVERY_3}, "0 P 6 held"),
         # An unbounded R counts as true if its window has opened.
         (always(p, 3), {"p": "1", "end": 2}, "0 I"),
         (always(p, 3), {"p": "1", "end": 3}, "0 P 3 held"),
         # Every other pending operator stays unknown.
         (two(p, "U", q), {"p": "1", "q": "0", "end": 5}, "0 I"),
         (always(p, 0, 9), {"p": "1", "end": 5}, "0 I"),
-        (following(p), {"p": "1", "end": 5, **SAMPLED}, "0 I"),
         # In negation normal form: below a negation U is an R, and R a U.
         (no(eventually(q)), {"q": "0", "end": 4}, "0 P 4 held"),
         (no(two(p, "U", q)), {"p": "1", "q": "0", "end": 4}, "0 P 4 held"),
-        (no(no(always(p))), {"p": "1", "end": 4}, "0 P 4 held"),
         # (G p & G p) | (!G p & !G p): the first half holds to the end.
         (two(always(p), "<->", always(q)), {"p": "1", "q": "1", "end": 4}, "0 P 4 held"),
         # Recursively, at each known position: an unanswered p stays open, an answered does not.
         (always(two(p, "->", eventually(q))), {"p": "010", "q": "0", "end": 5}, "0 I"),
-        (always(two(p, "->", eventually(q))), {"p": "010", "q": "0.1", "end": 5}, "0 P 5 held"),
         # Unknown input is not made known by the end.
         (always(p), {"p": "1u1", "end": 5}, "0 I"),
-        (two(always(p), "or", q), {"p": "1", "q": "u", "end": 5}, "0 P 5 held"),
     ],
 )
 def test_end_rule(judge: Any, formula: Formula, told: dict[str, Any], expected: str) -> None:
@@ -55,13 +49,10 @@ def test_end_rule(judge: Any, formula: Formula, told: dict[str, Any], expected: 
         ("strict", always(p), {"p": "1", "end": 5}, "0 I"),
         # weak: what is pending is true; strong: it is false.
         ("weak", eventually(p), {"p": "0", "end": 5}, "0 P 5 policy"),
-        ("weak", eventually(p, 0, 5), {"p": "0", "end": 4}, "0 P 4 policy"),
         ("weak", following(p), {"p": "0", **SAMPLED}, "0 P 0 policy"),
         ("strong", eventually(p), {"p": "0", "end": 5}, "0 F 5 policy"),
-        ("strong", always(p, 0, 5), {"p": "1", "end": 4}, "0 F 4 policy"),
         # In both directions of an equivalence the pending part is true, or false.
         ("weak", two(always(p), "<->", q), {"p": "1", "q": "0", "end": 5}, "0 P 5 policy"),
-        ("strong", two(always(p), "<->", q), {"p": "1", "q": "1", "end": 5}, "0 F 5 policy"),
         # Recursively, at each known position.
         ("weak", always(two(p, "->", eventually(q))), {"p": "1", "q": "0"}, "0 P 0 policy"),
         # pass and fail settle it outright.

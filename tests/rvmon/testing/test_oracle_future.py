@@ -35,7 +35,6 @@ UNTIL, WEAK, STRONG = two(p, "U", q, 2, 4), two(p, "W", q, 0, 3), two(p, "M", q,
         (eventually(p, 0, 3), {"p": "0", "advances": [4]}, "0 F 4"),
         # What is held counts between samples, from the opening of the window on.
         (eventually(p, 2, 3), {"p": "1", "end": 9}, "0 P 2"),
-        (eventually(p, 2, 3), {"p": "1", "advances": [3]}, "0 P 2"),
         # A window of one point.
         (eventually(p, 0, 0), {"p": "1"}, "0 P 0"),
         # Without an upper bound nothing is ever missed.
@@ -67,7 +66,6 @@ UNTIL, WEAK, STRONG = two(p, "U", q, 2, 4), two(p, "W", q, 0, 3), two(p, "M", q,
         (WEAK, {"p": "10", "q": "0.1"}, "0 F 1"),
         # `p M[0,3] q` is `q U[0,3] (p & q)`: q up to p, with it, and p within 3 ticks.
         (STRONG, {"p": "0.1", "q": "1"}, "0 P 2"),
-        (STRONG, {"p": "0.1", "q": "1.0"}, "0 F 2"),
         (STRONG, {"p": "0", "q": "1", "end": 3}, "0 F 4"),
         # Nested operators are decided as soon as their operands leave one value:
         # F[0,2] G[0,2] p: p from 1 to 3 makes G true at 1, known at 4.
@@ -115,7 +113,6 @@ def test_release(judge: Any, low: int, told: dict[str, Any], expected: str) -> N
         (eventually(p, 0, 2), {"p": "0.1", "advances": [2]}, "0 P 2"),
         # X is the next sample, whenever it comes; `finish` makes none.
         (following(p), {"p": "0.1"}, "0 P 2"),
-        (following(following(p)), {"p": "0.0.1"}, "0 P 4"),
         (always(two(p, "->", following(q)), 0, 3), {"p": "1.0", "q": "0.1", "end": 9}, "0 P 4"),
     ],
 )

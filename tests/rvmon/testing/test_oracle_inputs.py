@@ -72,7 +72,6 @@ def of_updates(function: str, name: str = "x") -> Numeric:
         # An update is any entry in a sample; `changed` compares the last two.
         (probe("updated", "x"), 1, {"x": ".5"}, "P"),
         (probe("updated", "e"), 1, {"e": ".1"}, "P"),
-        (probe("known", "x"), 2, {"x": "u5n"}, "F"),
         # The first update changes nothing; the same value neither; then only at its tick.
         (probe("changed", "x"), 0, {"x": "5"}, "F"),
         (probe("changed", "x"), 2, {"x": "5.5"}, "F"),
@@ -91,7 +90,6 @@ def of_updates(function: str, name: str = "x") -> Numeric:
         (compared(of_updates("prev"), "==", 5), 2, {"x": "5..7"}, "I"),
         (compared(of_updates("prev"), "==", 5), 2, {"x": "57u"}, "I"),
         (compared(of_updates("prev"), "==", 5), 3, {"x": "57", "stale": {"x": 2}}, "P"),
-        (compared(of_updates("prev"), "==", 5), 4, {"x": "57", "stale": {"x": 2}}, "I"),
         # What has no source is unknown throughout, an event as well, and never false.
         (p, 2, {"q": "1", "names": ABSENT}, "I"),
         (no(e), 2, {"q": "1", "names": ABSENT}, "I"),
