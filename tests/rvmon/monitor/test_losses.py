@@ -5,17 +5,19 @@ from dataclasses import replace
 
 import pytest
 from msgspec import structs
-from tests.tools.drive import Found, Lost, told
+from tests.tools.compare import differences
+from tests.tools.drive import drive
+from tests.tools.forms import Interrupted
+from tests.tools.law import judge
 
 import rvmon
 from rvmon.errors import TraceError, UnknownNameError
 from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.monitor import build_monitor, restore
 from rvmon.testing.generate.spec import Profile, random_spec
-from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
+from rvmon.testing.generate.trace import TraceProfile, random_trace
 from rvmon.testing.law.word import Outage
-from rvmon.testing.oracle import evaluate
-from rvmon.trace.sample import HealthKind, Sample
+from rvmon.trace.sample import HealthKind
 
 SPEC = """spec s
 {more}
@@ -42,61 +44,29 @@ def said(report):
     return "".join(str(verdict) for verdict in report.verdicts.values())
 
 
-def drawn(seed):
-    rng = random.Random(seed)
-    while True:
+def lossy_cases(kind):
+    """Cases of which only samples are told, and when they ended; something is lost in each."""
+    for seed in range(20):
+        rng = random.Random(f"{kind} {seed}")
         spec = random_spec(rng, Profile(requirements=2, depth=2))
-        case = random_trace(rng, spec, TraceProfile(outages=100))
+        case = random_trace(rng, spec, TraceProfile(outages=100, advances=False))
         if case.outages:
-            return case
-
-
-def law(case, outages):
-    """What the oracle says of a case in which other stretches are lost."""
-    samples = [one for one in case.actions if isinstance(one, Sample)]
-    return told_of(evaluate(case.spec, samples, end=case.end, names=case.names, outages=outages))
-
-
-def told_of(report):
-    """What a report says of attempts, but for reasons."""
-    fields = ("requirement", "number", "triggered", "decided", "verdict", "decision", "in_doubt")
-    return [[getattr(one, field) for field in fields] for one in report.attempts]
-
-
-def in_order(case):
-    """A case of which only samples are told, and when it ended."""
-    samples = tuple(one for one in case.actions if isinstance(one, Sample))
-    last = max((one.last for one in case.outages), default=0)
-    end = max([last, *(one.t for one in samples), case.end or 0])
-    return Case(case.spec, samples, end, case.names, case.outages)
+            last = [one.last for one in case.outages] + [one.t for one in case.samples]
+            yield rng, replace(case, end=max([*last, case.end or 0]))
 
 
 @pytest.mark.law
 def test_samples_that_are_held_back_are_lost_in_the_same_order():
     """With settle='next', by a snapshot now and then, each stretch is that of the oracle."""
-    for seed in range(20):
-        case = in_order(drawn(f"next {seed}"))
-        compiled = compile_spec(case.spec)
-        monitor = build_monitor(compiled, sources=case.names, settle="next")
-        rng = random.Random(seed)
-        for action in told(case):
-            match action:
-                case Lost(names, t):
-                    monitor.lose_ns(names, t)
-                case Found(names, t):
-                    monitor.found_ns(names, t)
-                case Sample(t, values):
-                    monitor.step_ns(t, values)
-            if rng.random() < 0.2:
-                monitor = restore(compiled, monitor.snapshot())
-        assert told_of(monitor.finish_ns(case.end)) == law(case, case.outages)
+    for rng, case in lossy_cases("next"):
+        monitor = build_monitor(compile_spec(case.spec), sources=case.names, settle="next")
+        report, _ = drive(Interrupted(monitor, rng, share=0.2), case)
+        assert differences(judge(case), report) == []
 
 
 @pytest.mark.law
 def test_a_stretch_is_wider_by_the_delay_that_samples_may_have():
-    for seed in range(20):
-        case = in_order(drawn(f"delay {seed}"))
-        rng = random.Random(seed)
+    for rng, case in lossy_cases("delay"):
         delay = rng.randint(1, 5)
         case = replace(case, spec=structs.replace(case.spec, max_delay=delay))
         monitor = build_monitor(compile_spec(case.spec), sources=case.names)
@@ -112,7 +82,8 @@ def test_a_stretch_is_wider_by_the_delay_that_samples_may_have():
                 monitor.step_ns(one.t, one.values)
         end = max(case.end, max(one.last for one in wider))
         report = monitor.finish_ns(end)
-        assert told_of(report) == law(replace(case, end=end), tuple(wider))
+        expected = judge(replace(case, end=end, outages=tuple(wider)))
+        assert differences(expected, report) == []
 
 
 def test_what_is_lost_fails_nothing_and_passes_nothing():
