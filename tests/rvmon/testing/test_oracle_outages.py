@@ -23,6 +23,7 @@ from tests.tools.build import (
     two,
     x,
 )
+from tests.tools.each import each
 
 from rvmon.language.checked.formula import Captured, Formula, UpdateFunction, UpdateValue
 from rvmon.language.checked.specification import Capture, EndPolicy, ForEach, TimeModel
@@ -38,58 +39,49 @@ def at(t: int, formula: Formula) -> Formula:
     return eventually(formula, t, t)
 
 
-@pytest.mark.parametrize(
-    ("told", "known"),
+UPDATES = {"p": "11...0.1", "lost": [("p", 2, 3)], "end": 8}
+TWO_UPDATES = {"x": "11...2.3", "lost": [("x", 2, 3)], "end": 8}
+
+
+@each(
+    ("formula", "told", "expected"),
     [
         # Within it, whatever was read there; behind it, from the first update at its end or later.
-        ({"p": "1....1", "lost": [("p", 2, 3)]}, "++--- +"),
-        ({"p": "1..1", "lost": [("p", 2, 3)], "end": 5}, "++--++"),
-        ({"p": "1..1", "lost": [("p", 3, 3)], "end": 5}, "+++---"),
+        (p, {"p": "1....1", "lost": [("p", 2, 3)]}, "PPIIIP"),
+        (p, {"p": "1..1", "lost": [("p", 2, 3)], "end": 5}, "PPIIPP"),
+        (p, {"p": "1..1", "lost": [("p", 3, 3)], "end": 5}, "PPPIII"),
         # What ends one outage may lie in another.
-        ({"p": "1..1.1", "lost": [("p", 2, 3), ("p", 3, 5)], "end": 6}, "++----+"),
+        (p, {"p": "1..1.1", "lost": [("p", 2, 3), ("p", 3, 5)], "end": 6}, "PPIIIIP"),
+        # `known` is unknown until what was lost last would be stale.
+        (
+            probe("known", "p"),
+            {"p": "1", "lost": [("p", 2, 3)], "stale": {"p": 2}, "end": 8},
+            "PPIIIIFF",
+        ),
+        # An event is unknown within, seen or not, and known again at once.
+        (e, {"p": "1.....", "e": "..1", "lost": [("e", 1, 3)], "end": 5}, "FIIIFF"),
+        # What is asked of updates is unknown within; the first one behind it may be no change.
+        (probe("updated", "p"), UPDATES, "PPIIFPFP"),
+        (probe("changed", "p"), UPDATES, "FFIIFIFP"),
+        (probe("known", "p"), UPDATES, "PPIIIPPP"),
+        # `prev`, `delta` and `rate` are unknown until the second update behind it.
+        *(
+            (compared(UpdateValue(function, "x"), ">=", 0), TWO_UPDATES, "IPIIIIIP")
+            for function in UpdateFunction
+        ),
     ],
 )
-def test_a_signal(judge: Any, told: dict[str, Any], known: str) -> None:
-    """Its value is known where a mark says so."""
-    for t, mark in enumerate(known.replace(" ", "")):
-        assert judge(at(t, p), **told) == [f"0 P {t}" if mark == "+" else "0 I"]
+def test_when_it_is_known_again(judge: Any, formula: Formula, told: Any, expected: str) -> None:
+    """What is so at each instant from 0 on: what passes is decided there, what fails behind it."""
+    found = [judge(at(t, formula), **told)[0] for t in range(len(expected))]
+    decided = {"P": " {0}", "F": " {1}", "I": ""}
+    assert found == [f"0 {one}{decided[one].format(t, t + 1)}" for t, one in enumerate(expected)]
 
 
-def test_a_signal_that_becomes_stale_is_surely_unknown_then(judge: Any) -> None:
-    """`known` is unknown until what was lost last would be stale."""
-    told = {"p": "1", "lost": [("p", 2, 3)], "stale": {"p": 2}, "end": 8}
-    for t, expected in enumerate(["P 0", "P 1", "I", "I", "I", "I", "F 7", "F 8"]):
-        assert judge(at(t, probe("known", "p")), **told) == [f"0 {expected}"]
-
-
-def test_an_event(judge: Any) -> None:
-    """It is unknown within, seen or not, and known again at once."""
+def test_an_attempt_may_begin_within(judge: Any) -> None:
     told = {"p": "1.....", "e": "..1", "lost": [("e", 1, 3)], "end": 5}
-    expected = ["F 1", "I", "I", "I", "F 5", "F 6"]
-    assert [judge(at(t, e), **told)[0] for t in range(6)] == [f"0 {one}" for one in expected]
     assert judge(requirement(q, upon=e), **told) == ["1 I"]
     assert judge(requirement(q, upon=e), **told, q="1") == []
-
-
-@pytest.mark.parametrize("what", ["updated", "changed", "known"])
-def test_what_is_asked_of_updates(judge: Any, what: str) -> None:
-    """It is unknown within; the first update behind it may be no change."""
-    told = {"p": "11...0.1", "lost": [("p", 2, 3)], "end": 8}
-    expected = {
-        "updated": ["P 0", "P 1", "I", "I", "F 5", "P 5", "F 7", "P 7"],
-        "changed": ["F 1", "F 2", "I", "I", "F 5", "I", "F 7", "P 7"],
-        "known": ["P 0", "P 1", "I", "I", "I", "P 5", "P 6", "P 7"],
-    }
-    found = [judge(at(t, probe(what, "p")), **told)[0] for t in range(8)]
-    assert found == [f"0 {one}" for one in expected[what]]
-
-
-def test_what_looks_at_two_updates(judge: Any) -> None:
-    """`prev`, `delta` and `rate` are unknown until the second update behind it."""
-    told = {"x": "11...2.3", "lost": [("x", 2, 3)], "end": 8}
-    for function in UpdateFunction:
-        grew = compared(UpdateValue(function, "x"), ">=", 0)
-        assert [judge(at(t, grew), **told)[0][2] for t in range(1, 8)] == list("PIIIIIP")
 
 
 def test_an_age_is_an_interval(judge: Any) -> None:
