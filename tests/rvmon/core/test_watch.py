@@ -26,50 +26,49 @@ from rvmon.trace.sample import Sample
 AHEAD = "signal p : bool\nsignal x : real\nrequirement R\n  upon p\n  then within 3 ns x > 1\n"
 
 
-def required(text):
-    """The specification, and what its requirement owes."""
+def truths(text, values, end):
+    """Where what the requirement owes is surely true, and surely false."""
     checked = rvmon.loads(text).checked
     consequent = checked.requirements["R"].consequent
-    return checked, Lowering(Factory(), checked.period, False).core(consequent, True)
-
-
-def truths(text, values, end):
-    """Where what is required is surely true, and surely false."""
-    checked, core = required(text)
+    core = Lowering(Factory(), checked.period, False).core(consequent, True)
     samples = [Sample(t, one) for t, one in values.items()]
     (found,) = known_truths(checked, [core], samples, end)
     return tuple(tuple(map(tuple, one.tolist())) for one in (found.true, found.false))
 
 
-@pytest.mark.parametrize(
-    ("time", "expected"),
+VALUES = {2: {"x": 0.0}, 7: {"x": 2.0}, 10: {"x": 0.0}}
+AT_START = "signal p : bool\nrequirement R\n  upon start\n  then p\n"
+
+
+@each(
+    ("text", "values", "end", "expected"),
     [
-        ("held", (((4, 9),), ((2, 3),))),
-        ("sampled every 2 ns", (((3, 4),), ((1, 2),))),
-        ("sampled", (((1, 1),), ((0, 0),))),
+        # What looks ahead is known where the recording decides it: of its last instants it is not.
+        (f"time held\n{AHEAD}", VALUES, 12, (((4, 9),), ((2, 3),))),
+        (f"time sampled every 2 ns\n{AHEAD}", VALUES, 12, (((3, 4),), ((1, 2),))),
+        (f"time sampled\n{AHEAD}", VALUES, 12, (((1, 1),), ((0, 0),))),
+        # An unknown value is neither true nor false: it ends what is known.
+        (
+            *(AT_START, {0: {"p": True}, 4: {"p": None}, 6: {"p": False}}),
+            *(8, (((0, 3),), ((6, 8),))),
+        ),
     ],
 )
-def test_truths_reach_as_far_as_they_are_known(time, expected):
-    """What looks ahead is known where the recording decides it: of its last instants it is not."""
-    values = {2: {"x": 0.0}, 7: {"x": 2.0}, 10: {"x": 0.0}}
-    assert truths(f"time {time}\n{AHEAD}", values, 12) == expected
+def test_truths_reach_as_far_as_they_are_known(text, values, end, expected):
+    assert truths(text, values, end) == expected
 
 
-def test_an_unknown_value_is_neither_true_nor_false():
-    """It ends what is known, and parts the two readings."""
-    text = "signal p : bool\nrequirement R\n  upon start\n  then p\n"
-    values = {0: {"p": True}, 4: {"p": None}, 6: {"p": False}}
-    assert truths(text, values, 8) == (((0, 3),), ((6, 8),))
+def truths_run(text):
+    """A run that keeps truths, and the place of the only one."""
+    checked = rvmon.loads(text).checked
+    plan = truths_plan(compile_spec(checked))
+    planned = planned_as(checked, (), Kept(pack(plan).data, frozenset(), frozenset()))
+    place = plan_of_all(plan.truths, plan.gap).places[plan.truths[0]]
+    return planned.monitor(frozenset()), place
 
 
 def test_another_run_begins_anew():
-    text = "signal p : bool\nrequirement R\n  upon start\n  then p\n"
-    checked = rvmon.loads(text).checked
-    compiled = compile_spec(checked)
-    plan = truths_plan(compiled)
-    planned = planned_as(checked, (), Kept(pack(plan).data, frozenset(), frozenset()))
-    place = plan_of_all(plan.truths, plan.gap).places[plan.truths[0]]
-    run = planned.monitor(frozenset())
+    run, place = truths_run(AT_START)
     seen = []
     for values in ([None, True], [True, None], [None, True]):
         for t, value in enumerate(values):
@@ -80,16 +79,9 @@ def test_another_run_begins_anew():
     assert seen[0] == seen[2] != seen[1]
     assert seen[0] == (struct.pack("=qq", 1, 3), b"")
     assert run.truths(place) == (b"", b"")
-
-
-@pytest.mark.parametrize("place", [-1, 99, 1 << 40])
-def test_an_operator_that_is_none(place):
-    compiled = compile_spec(rvmon.loads(AHEAD).checked)
-    planned = planned_as(
-        compiled.checked, (), Kept(pack(truths_plan(compiled)).data, frozenset(), frozenset())
-    )
-    with pytest.raises(ValueError, match="keeps no truths"):
-        planned.monitor(frozenset()).truths(place)
+    for wrong in (-1, 99, 1 << 40):
+        with pytest.raises(ValueError, match="keeps no truths"):
+            run.truths(wrong)
 
 
 BINS = """signal p, q : bool
