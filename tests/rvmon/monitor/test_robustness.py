@@ -211,17 +211,6 @@ def test_what_captures_values_and_what_does_not_is_given_in_order():
     assert len({one.requirement for t, one in together if t is not None}) == 3
 
 
-@each("op", ["==", "!="])
-@each("other", ["b", "left"])
-def test_labels_have_no_difference(op, other):
-    """One that is another is as far from it as can be, be it written out or of a signal."""
-    head = "signal a, b : {left, right}\nevent e\nrequirement R1\n  upon e then "
-    monitor = rvmon.loads(f"{head}a {op} {other}\n").robustness_monitor()
-    monitor.step(0, {"a": "right", "b": "left"})
-    [found] = monitor.step(1, {"e": True})
-    assert found.robustness.low == (INFINITE if op == "!=" else -INFINITE)
-
-
 def test_what_began_in_doubt_and_became_sure_in_one_call_has_its_own_number():
     """Not that which it had among those in doubt."""
     spec = rvmon.loads(
