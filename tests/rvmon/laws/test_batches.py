@@ -1,4 +1,4 @@
-"""Samples that come in pieces, or out of order, are judged as if they had come whole, in order."""
+"""Samples that come out of order are judged as if they had come in order."""
 
 from dataclasses import replace
 
@@ -12,29 +12,8 @@ from tests.tools.compare import differences
 from rvmon.session import Spec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.strategies import cases
-from rvmon.trace.sample import Sample
 
 DELAY = 9
-
-
-@pytest.mark.law
-@settings(max_examples=12, deadline=None)
-@given(data=st.data())
-def test_the_order_inside_a_batch(data: st.DataObject) -> None:
-    """A sample in pieces with equal stamps, in any order, is the same as the whole sample."""
-    case = data.draw(cases(Profile(mixed=False)))
-    expected = judge(case)
-    monitor = Spec(case.spec).monitor(settle="next", sources=case.names)
-    for action in case.actions:
-        if not isinstance(action, Sample):
-            monitor.advance_ns(action)
-            continue
-        pieces = data.draw(st.permutations([{name: x} for name, x in action.values.items()]))
-        for piece in pieces or [{}]:
-            monitor.step_ns(action.t, piece)
-    report = monitor.finish_ns(case.end)
-    assert differences(expected, report) == []
-    assert report.health == expected.health
 
 
 @pytest.mark.law

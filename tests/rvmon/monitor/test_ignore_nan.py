@@ -2,7 +2,6 @@
 
 import math
 
-import numpy as np
 import pytest
 
 import rvmon
@@ -47,10 +46,6 @@ def spec(request):
     return rvmon.loads(SPEC.format(time=request.param))
 
 
-def without(rows):
-    return [(t, {n: v for n, v in row.items() if v is not None and v == v}) for t, row in rows]
-
-
 def records(report):
     """What was judged, without its reasons."""
     return report.verdicts, [
@@ -69,15 +64,6 @@ def test_it_is_unknown_a_while_after_its_last_good_value(spec):
     assert [a.verdict for a in report.attempts if a.requirement == "Heard"] == ["P", "P", "I"]
     assert report.verdicts["Near"] in ("P", "I")
     assert {one.kind for one in report.health} == {HealthKind.STALE}
-
-
-@pytest.mark.parametrize("value", [NAN, None, np.float32("nan")])
-def test_samples_are_judged_as_without_what_they_ignore(spec, value):
-    rows = [(t, {n: value if v != v else v for n, v in row.items()}) for t, row in ROWS]
-    told, expected = (spec.monitor(sources=["range", "free", "look"]) for _ in "12")
-    for (t, row), (_, bare) in zip(rows, without(rows), strict=True):
-        assert [str(a) for a in told.step(t, row)] == [str(a) for a in expected.step(t, bare)]
-    assert told.finish() == expected.finish()
 
 
 def test_files_are_judged_as_samples(spec, tmp_path):

@@ -7,7 +7,6 @@ import random
 from types import MappingProxyType
 
 import pytest
-from tests.tools.forms import Interrupted
 
 import rvmon
 from rvmon.errors import RvmonError, SnapshotError
@@ -51,21 +50,6 @@ def opened(spec, samples):
         return head.rpartition(b" ")[0] + b" " + seal + b"\n" + text
 
     return json.loads(body), sealed
-
-
-@pytest.mark.parametrize("text", ["max delay 2 s\n", ""])
-def test_samples_held_back_are_kept(text):
-    spec = rvmon.loads(TEXT.replace("spec door\n", f"spec door\n{text}"))
-    plain = spec.monitor(settle="next")
-    other = Interrupted(spec.monitor(settle="next"), random.Random(1), share=1)
-    stream = [*SAMPLES, (9, {"width": 2.5}), (9, {"closed": True})]
-    if text:
-        stream = [stream[1], stream[0], *stream[2:], (1, {"closed": False})]
-    for t, values in stream:
-        assert plain.step_ns(t * 10**9, values) == other.step_ns(t * 10**9, values)
-    report = plain.finish_ns(20 * 10**9)
-    assert report == other.finish_ns(20 * 10**9)
-    assert {"late", "conflict"} & {one.kind.value for one in report.health}
 
 
 def test_another_specification_is_refused():
