@@ -164,6 +164,11 @@ class Results:
     # by group and item, why items cannot be hit; further ones than the campaign names
     unreachable: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
+    def counting(self, robot: str) -> list[Played]:
+        """The tests of a robot as it is: a planted fault says nothing about it."""
+        own = (played for played in self.played if played.job.robot == robot)
+        return [played for played in own if played.job.test.mutation is None]
+
 
 def accepted_failures(played: Played, expected: Sequence[ExpectedFailure]) -> dict[str, str]:
     """The requirements that may fail in a test, each with the reason."""

@@ -126,7 +126,7 @@ def write_coverage(
 ) -> dict[str, CoverageFigures]:
     """Write the database of each robot's tests, and a page beside it; the code for other tools.
 
-    A planted fault says nothing about the robot. `pages` has the addresses of pages of runs.
+    `pages` has the addresses of pages of runs.
 
     Raises:
         RvmonError: a file cannot be written.
@@ -134,11 +134,7 @@ def write_coverage(
     campaign = results.plan.campaign
     figures = {}
     for robot, path in database_paths(folder, campaign.robots).items():
-        played = [
-            played
-            for played in results.played
-            if played.job.robot == robot and played.job.test.mutation is None
-        ]
+        played = results.counting(robot)
         write_database(path, robot, played, results)
         up = "../" * len(path.parent.relative_to(folder).parts)
         addresses = {test: f"{up}{page}" for (of, test), page in pages.items() if of == robot}

@@ -98,8 +98,8 @@ def judge_campaign(
     checks: dict[str, str] = {}
     if not results.cut_short:
         checks |= _expected_failures(expected, results.played)
-        checks |= dict(_contradicted(campaign, results.played))
-        checks |= dict(_gated(campaign, requirements, results.played)) if strict else {}
+        checks |= dict(_contradicted(results))
+        checks |= dict(_gated(results, requirements)) if strict else {}
         for (robot, name), by_strategy in decisions.items():
             known = (one.requirement == name and one.robot in ("", robot) for one in expected)
             if not any(known):
@@ -180,8 +180,9 @@ def _named(why: ExpectedFailure) -> str:
     return " of ".join([why.requirement, *named])
 
 
-def _contradicted(campaign: Campaign, played: Sequence[Played]) -> Iterator[tuple[str, str]]:
+def _contradicted(results: Results) -> Iterator[tuple[str, str]]:
     """Whether what the campaign calls unreachable was not hit."""
+    campaign = results.plan.campaign
     if not campaign.closing.unreachable:
         return
     for robot in campaign.robots:
@@ -189,8 +190,7 @@ def _contradicted(campaign: Campaign, played: Sequence[Played]) -> Iterator[tupl
         first = {
             f"{group}: {item}": test_run.job.test.name
             # Reversed, so that of several tests the first stays.
-            for test_run in reversed(played)
-            if test_run.job.robot == robot and test_run.job.test.mutation is None
+            for test_run in reversed(results.counting(robot))
             for group, items in test_run.outcome.hits.items()
             for item in items
             if (group, item) in out
@@ -206,13 +206,14 @@ def _gate_name(campaign: Campaign, played: Played) -> str:
 
 
 def _gated(
-    campaign: Campaign, requirements: Mapping[str, Sequence[str]], played: Sequence[Played]
+    results: Results, requirements: Mapping[str, Sequence[str]]
 ) -> Iterator[tuple[str, str]]:
     """The conditions of gates on all tests together, each with its complaint."""
+    campaign = results.plan.campaign
     groups: dict[tuple[str, str], list[Played]] = {}
-    for test_run in played:
-        if test_run.job.test.mutation is None:  # a planted fault says nothing about the robot
-            key = test_run.job.robot, _gate_name(campaign, test_run)
+    for robot in campaign.robots:
+        for test_run in results.counting(robot):
+            key = robot, _gate_name(campaign, test_run)
             groups.setdefault(key, []).append(test_run)
     for (robot, strategy), tests in groups.items():
         gate = campaign.gates.get(strategy, Gate())

@@ -28,7 +28,9 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> campaign_summary.C
         groups = without(measured, unreachable_items(campaign, name, measured)).groups
         requirements = {} if (spec := specs.get(name)) is None else spec.requirements
         played = [played for played in results.played if played.job.robot == name]
-        by_strategy = _by_strategy(played)
+        by_strategy: dict[str, list[Played]] = {}
+        for test_run in results.counting(name):
+            by_strategy.setdefault(test_run.job.test.strategy, []).append(test_run)
         robots[name] = campaign_summary.RobotSummary(
             title=robot.title or name,
             spec=robot.spec_name or _shown(robot.spec),
@@ -76,15 +78,6 @@ def _shown(path: str | Path | None) -> str:
     if path is None or not Path(path).is_relative_to(here):
         return str(path or "")
     return str(Path(path).relative_to(here))
-
-
-def _by_strategy(played: Sequence[Played]) -> dict[str, list[Played]]:
-    """Tests of the robot as it is: a planted fault says nothing about the robot."""
-    groups: dict[str, list[Played]] = {}
-    for test_run in played:
-        if test_run.job.test.mutation is None:
-            groups.setdefault(test_run.job.test.strategy, []).append(test_run)
-    return groups
 
 
 def _strategy(

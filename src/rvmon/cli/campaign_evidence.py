@@ -57,11 +57,7 @@ def write_campaign(
     covered = {
         robot: (
             coverage_model(campaign, robot),
-            [
-                played.outcome.hits
-                for played in results.played
-                if played.job.robot == robot and played.job.test.mutation is None
-            ],
+            [played.outcome.hits for played in results.counting(robot)],
         )
         for robot in campaign.robots
     }
