@@ -168,33 +168,13 @@ def _clip_ros1(
 ) -> Copied:
     from rosbags.rosbag1 import Writer
 
-    def declared(connection: Any) -> dict[str, Any]:
-        own = connection.ext
-        return {"md5sum": connection.digest, "callerid": own.callerid, "latching": own.latching}
-
-    def is_latched(connection: Any) -> bool:
-        return bool(connection.ext.latching) and connection.topic not in happening
-
-    return _clip_bag("ros1", path, piece, brought, (is_latched, declared, Writer(out)))
+    return _clip_bag("ros1", path, piece, brought, happening, Writer(out))
 
 
 def _clip_ros2(
     path: Path, piece: Piece, brought: Collection[str], happening: Collection[str], out: Path
 ) -> Copied:
-    from rosbags.interfaces import QosDurability
     from rosbags.rosbag2 import StoragePlugin, Writer
-
-    def declared(connection: Any) -> dict[str, Any]:
-        return {
-            "rihs01": connection.digest,
-            "serialization_format": connection.ext.serialization_format,
-            "offered_qos_profiles": connection.ext.offered_qos_profiles,
-        }
-
-    def is_latched(connection: Any) -> bool:
-        offered = connection.ext.offered_qos_profiles
-        late = any(one.durability is QosDurability.TRANSIENT_LOCAL for one in offered)
-        return late and connection.topic not in happening
 
     is_folder = path.is_dir()
     is_mcap = is_folder and any(path.glob("*.mcap*"))
@@ -202,10 +182,24 @@ def _clip_ros2(
     # A database alone is what the folder of a bag has in it.
     folder = out if is_folder else out.with_name(f"{out.name}.bag")
     writer = Writer(folder, version=9, storage_plugin=plugin)
-    copied = _clip_bag("ros2", path, piece, brought, (is_latched, declared, writer))
+    copied = _clip_bag("ros2", path, piece, brought, happening, writer)
     if not is_folder:
         next(folder.glob("*.db3")).replace(out)
     return copied
+
+
+def _said_of(form: str, connection: Any) -> tuple[dict[str, Any], bool]:
+    """What is said of a connection in a new bag; whether it serves late subscribers."""
+    own = connection.ext
+    if form == "ros1":
+        said = {"md5sum": connection.digest, "callerid": own.callerid, "latching": own.latching}
+        return said, bool(own.latching)
+    from rosbags.interfaces import QosDurability
+
+    offered = own.offered_qos_profiles
+    said = {"rihs01": connection.digest, "serialization_format": own.serialization_format}
+    is_latched = any(one.durability is QosDurability.TRANSIENT_LOCAL for one in offered)
+    return {**said, "offered_qos_profiles": offered}, is_latched
 
 
 def _clip_bag(
@@ -213,19 +207,15 @@ def _clip_bag(
     path: Path,
     piece: Piece,
     brought: Collection[str],
-    made: tuple[Callable[[Any], bool], Callable[[Any], dict[str, Any]], Any],
+    happening: Collection[str],
+    writer: Any,
 ) -> Copied:
-    """Write a piece of a bag.
-
-    `made`: whether the last message of a connection comes along; what is said of one in the new
-    bag; its writer.
-    """
-    is_latched, declared, writer = made
+    """Write a piece of a bag."""
     with bag_errors(form), bag_readers()[form](path) as reader, writer:
         latched = {
             (connection.topic, connection.id)
             for connection in reader.connections
-            if is_latched(connection)
+            if connection.topic not in happening and _said_of(form, connection)[1]
         }
         # All, in their order: by it messages of one instant are read again, and a topic without
         # messages is there all the same. Publishers that are distinguished by nothing are one.
@@ -234,7 +224,7 @@ def _clip_bag(
         for one in reader.connections:
             key = (one.topic, one.msgtype, one.digest, repr(one.ext))
             if key not in alike:
-                said = declared(one)
+                said, _ = _said_of(form, one)
                 alike[key] = writer.add_connection(
                     one.topic, one.msgtype, msgdef=one.msgdef.data, **said
                 )
