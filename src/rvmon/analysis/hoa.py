@@ -1,4 +1,4 @@
-"""Untimed requirements as automata in the Hanoi Omega-Automata format.
+"""Requirements as automata: in the Hanoi Omega-Automata format, as DOT, as data.
 
 Source: Babiak et al., The Hanoi Omega-Automata Format, CAV 2015; version 1.
 """
@@ -7,7 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 
-from rvmon.analysis.graph import ANY, Cube, graph_of, inputs_of, letters_of, proposition_texts
+from rvmon.analysis.graph import (
+    ANY,
+    Cube,
+    graph_dot,
+    graph_of,
+    inputs_of,
+    letters_of,
+    proposition_texts,
+)
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.logic.automaton import FAILED, PASSED, Automaton
@@ -31,9 +39,7 @@ def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
     Letters that inputs cannot bring about lead anywhere: no label speaks of them, nor is a
     proposition listed that none of the others needs.
     """
-    name, automaton = compiled.requirement.id, compiled.automaton
-    if automaton is None:
-        raise RvmonError(f"error: {name} has no automaton: {compiled.refusal}")
+    name, automaton = compiled.requirement.id, _automaton_of(compiled)
     if automaton.clocks:
         raise RvmonError(
             f"error: {name} has windows of time, which HOA cannot express: write `--to dot` or "
@@ -183,11 +189,15 @@ def _label(cube: Sequence[int]) -> str:
     return "&".join(parts) or "t"
 
 
+def automaton_dot(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
+    """The automaton of a requirement as DOT, for Graphviz."""
+    graph = graph_of(compiled, _automaton_of(compiled), spec)
+    return graph_dot(graph, compiled.requirement.id)
+
+
 def automaton_json(compiled: CompiledRequirement, spec: CheckedSpec) -> dict[str, object]:
     """Locations with what is required there, edges with their conditions; ages in ticks."""
-    requirement, automaton = compiled.requirement, compiled.automaton
-    if automaton is None:
-        raise RvmonError(f"error: {requirement.id} has no automaton: {compiled.refusal}")
+    requirement, automaton = compiled.requirement, _automaton_of(compiled)
     graph = graph_of(compiled, automaton, spec)
     locations = [
         {
@@ -213,3 +223,10 @@ def automaton_json(compiled: CompiledRequirement, spec: CheckedSpec) -> dict[str
             for edge in graph.edges
         ],
     }
+
+
+def _automaton_of(compiled: CompiledRequirement) -> Automaton:
+    if compiled.automaton is None:
+        name = compiled.requirement.id
+        raise RvmonError(f"error: {name} has no automaton: {compiled.refusal}")
+    return compiled.automaton

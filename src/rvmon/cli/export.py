@@ -14,8 +14,6 @@ from rvmon.files import write_file
 from rvmon.texts import shown_json
 
 if TYPE_CHECKING:
-    from rvmon.language.checked.specification import CheckedSpec
-    from rvmon.monitor.compile import CompiledRequirement
     from rvmon.session import Spec
 
 _OF_MODELS = ("dot", "uppaal")
@@ -86,48 +84,28 @@ def _write_c(spec: Spec, ids: Sequence[str] | None, output: str | None) -> None:
 
 
 def _automata(spec: Spec, ids: Sequence[str] | None, form: str) -> str:
-    from rvmon.monitor.compiled_spec import compile_spec
-
-    chosen = compile_spec(spec.checked).chosen(ids)
-    if form == "hoa":
-        return _hoa_texts(chosen, spec.checked)
-    if form == "json":
-        import msgspec
-
-        from rvmon.analysis.hoa import automaton_json
-
-        automata = [automaton_json(compiled, spec.checked) for compiled in chosen]
-        encoded = msgspec.json.format(msgspec.json.encode(automata), indent=1)
-        return f"{shown_json(encoded.decode())}\n"
-    from rvmon.analysis.graph import graph_dot, graph_of
-
-    texts = []
-    for compiled in chosen:
-        if compiled.automaton is None:
-            raise RvmonError(
-                f"error: {compiled.requirement.id} has no automaton: {compiled.refusal}"
-            )
-        graph = graph_of(compiled, compiled.automaton, spec.checked)
-        texts.append(graph_dot(graph, compiled.requirement.id))
-    return "".join(texts)
-
-
-def _hoa_texts(chosen: Sequence[CompiledRequirement], spec: CheckedSpec) -> str:
     """The automata that can be written; of the others it is said why they are left out.
 
     Raises:
         RvmonError: there is none; the message says why of the first.
     """
-    from rvmon.analysis.hoa import hoa
+    from rvmon.analysis.hoa import automaton_dot, automaton_json, hoa
+    from rvmon.monitor.compiled_spec import compile_spec
 
-    texts, faults = [], []
-    for compiled in chosen:
+    write = {"dot": automaton_dot, "hoa": hoa, "json": automaton_json}[form]
+    made, faults = [], []
+    for compiled in compile_spec(spec.checked).chosen(ids):
         try:
-            texts.append(hoa(compiled, spec))
+            made.append(write(compiled, spec.checked))
         except RvmonError as error:
             faults.append(error)
-    if not texts:
+    if not made:
         raise faults[0]
     for fault in faults:
         warn(f"left out: {str(fault).removeprefix('error: ')}")
-    return "".join(texts)
+    if form == "json":
+        import msgspec
+
+        encoded = msgspec.json.format(msgspec.json.encode(made), indent=1)
+        return f"{shown_json(encoded.decode())}\n"
+    return "".join(map(str, made))

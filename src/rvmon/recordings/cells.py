@@ -167,7 +167,7 @@ def cells_of_values(cells: Sequence[Any], kind: Kind, gaps: Gaps, nothing: objec
             if not fits(value, kind):
                 raise NotPlainError("a column holds other values than were declared")
             said = YES if value is not None else UNKNOWN
-            if kind is Kind.LABEL:
+            if kind is Kind.LABEL and value is not None:
                 value = labels.setdefault(value, len(labels))
         values.append(value or 0)
         says.append(said)

@@ -11,6 +11,7 @@ from rvmon.recordings.starter.observed_values import Column, Profile, Stretch
 from rvmon.report.html import e, render
 from rvmon.report.printer import Printer
 from rvmon.report.time_axis import View, moment, round_instants
+from rvmon.report.tracks import names_of_requirement, share_of
 from rvmon.report.wording import duration_text, first_of
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
@@ -56,8 +57,6 @@ def grouped(
     profile: Profile, requirements: Sequence[Requirement]
 ) -> Iterator[tuple[str, list[Column]]]:
     """The columns by title: of each requirement, then of each topic, constant ones last."""
-    from rvmon.report.tracks import names_of_requirement
-
     by_name = {column.name: column for column in profile.columns}
     read: set[str] = set()
     for requirement in requirements:
@@ -129,16 +128,17 @@ def spark(column: Column, profile: Profile) -> str:
     for place in range(_WIDTH):
         first = place * len(stretches) // _WIDTH
         place_stretches = stretches[first : max(first + 1, (place + 1) * len(stretches) // _WIDTH)]
-        numbers = [
-            (stretch.low + stretch.high) / 2
+        shares = [
+            share_of(bound, low, high)
             for stretch in place_stretches
-            if stretch.low is not None and stretch.high is not None
+            for bound in (stretch.low, stretch.high)
+            if bound is not None and not column.is_event
         ]
         occurs = any(stretch.updates and stretch.high != 0.0 for stretch in place_stretches)
         if column.is_event and occurs:
             drawn += "│"
-        elif numbers and not column.is_event:
-            share = (sum(numbers) / len(numbers) - low) / (high - low) if high > low else 0.5
+        elif shares:
+            share = sum(shares) / len(shares)
             drawn += _BARS[min(len(_BARS) - 1, int(share * len(_BARS)))]
         else:
             drawn += " "
@@ -245,8 +245,7 @@ def _area(first: int, run: Sequence[Stretch], stretches: Sequence[Stretch]) -> s
     high = max(stretch.high for stretch in stretches if stretch.high is not None)
 
     def y(number: float) -> str:
-        share = (number - low) / (high - low) if high > low else 0.5
-        return f"{_HEIGHT - _EDGE - share * (_HEIGHT - 2 * _EDGE):.1f}"
+        return f"{_EDGE + share_of(number, high, low) * (_HEIGHT - 2 * _EDGE):.1f}"
 
     above, below = [], []
     for place, stretch in enumerate(run, first):

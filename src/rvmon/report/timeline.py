@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
@@ -17,6 +18,7 @@ from rvmon.report.tracks import (
     occurrences,
     polylines,
     readable,
+    share_of,
     stretches,
 )
 from rvmon.report.wording import MARKS, duration_text
@@ -27,6 +29,7 @@ WIDTH, HEIGHT = 1000, 100
 
 SIGNS = {"<=": "≤", ">=": "≥", "==": "=", "!=": "≠"}  # comparison signs for display
 EDGE = 0.12  # the margin above and below, relative to a number's range
+MOST = sys.float_info.max
 LABELLED = 0.25  # the share of the width, at the right, taken by the label of a threshold
 
 LOWEST_UNDER = 0.75
@@ -117,8 +120,8 @@ def _add_number(
     pieces = stretches(track, view, end)
     others = [] if reference is None else stretches(reference, view, reference_end)
     low, high = _range([*pieces, *others], track)
-    edge = (high - low) * EDGE
-    lowest, highest = low - edge, high + edge
+    edge = high * EDGE - low * EDGE
+    lowest, highest = max(low - edge, -MOST), min(high + edge, MOST)
     drawing = e(
         "svg",
         {"viewBox": f"0 0 {WIDTH} {HEIGHT}", "preserveAspectRatio": "none", "aria-hidden": "true"},
@@ -131,13 +134,13 @@ def _add_number(
     constants = {threshold.value for threshold in track.thresholds}
     # A threshold has a label of its own, at the same height.
     for bound in sorted({low, high} - constants):
-        top = (highest - bound) / (highest - lowest)
+        top = share_of(bound, highest, lowest)
         plot.append(e("span", {"class": "scale", "style": f"top:{top:.2%}"}, f"{bound:.3g}"))
     for piece in pieces:
         if piece.value is None:
             plot.append(_unknown(piece.left, piece.right - piece.left))
     for threshold in track.thresholds:
-        top = (highest - threshold.value) / (highest - lowest)
+        top = share_of(threshold.value, highest, lowest)
         text = f"{SIGNS.get(threshold.op, threshold.op)} {threshold.value:g} {track.unit}".rstrip()
         # Where the line runs above the threshold, a label above it would cover the line.
         side = " under" if top < LOWEST_UNDER and _is_above(pieces, threshold.value) else ""
@@ -146,7 +149,7 @@ def _add_number(
     for instant in blamed:
         at = track.value_at(instant)
         if isinstance(at, int | float) and view.start <= instant <= view.end:
-            x, y = view.fraction(instant), (highest - at) / (highest - lowest)
+            x, y = view.fraction(instant), share_of(at, highest, lowest)
             plot.append(e("span", {"class": "sample", "style": f"left:{x:.2%};top:{y:.2%}"}, "✗"))
 
 
@@ -162,7 +165,10 @@ def _range(pieces: Sequence[Stretch], track: Track) -> tuple[float, float]:
     values = [value for value in values if math.isfinite(value)]
     values += [threshold.value for threshold in track.thresholds]
     low, high = min(values, default=0.0), max(values, default=1.0)
-    return (low, high) if low < high else (low - 1.0, high + 1.0)
+    if low < high:
+        return low, high
+    around = max(1.0, abs(low) * EDGE)  # 1 would be lost beside a large number
+    return max(low - around, -MOST), min(high + around, MOST)
 
 
 def _ring(place: float) -> ET.Element:

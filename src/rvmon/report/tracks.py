@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from enum import StrEnum
 from itertools import groupby, pairwise
@@ -195,11 +196,21 @@ def polylines(pieces: Sequence[Stretch], lowest: float, highest: float) -> list[
         if known:
             points = []
             for piece in group:
-                value = min(max(float(piece.value or 0), lowest), highest)
-                y = (highest - value) / (highest - lowest)
+                y = share_of(float(piece.value or 0), highest, lowest)
                 points += [(piece.left, y), (piece.right, y)]
             lines.append(points if len(points) <= 2 * PLACES else _outlined(points))
     return lines
+
+
+def share_of(value: float, first: float, last: float) -> float:
+    """The place of a number between two different ones: 0 at the first or beyond it, 1 at the last.
+
+    >>> share_of(3.0, 1.0, 5.0), share_of(0.0, 1.7e308, -1.7e308), share_of(-2.0, 0.0, 1.0)
+    (0.5, 0.5, 0.0)
+    """
+    within = min(max(value, min(first, last)), max(first, last))
+    scale = 1.0 if math.isfinite(last - first) else 0.5
+    return (within * scale - first * scale) / (last * scale - first * scale)
 
 
 def _outlined(points: Sequence[Point]) -> list[Point]:

@@ -49,6 +49,22 @@ def test_hoa(spec, says):
     assert told.err.startswith("left out: D1 has windows of time")
 
 
+@pytest.mark.parametrize("form", ["dot", "json", "hoa"])
+def test_what_has_no_automaton_is_left_out_with_the_reason(form, tmp_path, says):
+    path = tmp_path / "both.rv"
+    path.write_text(
+        "signal p : bool\nrequirement L\n  always p\n"
+        "requirement N\n  upon p then once[0 s, 1 s] F[0 s, 1 s] p\n"
+    )
+    told = says(0, "export", path, "--to", form)
+    assert (
+        told.err
+        == "left out: N has no automaton: something of the future below an operator of the past\n"
+    )
+    assert told.out
+    assert "N has no automaton" in says(2, "export", path, "--to", form, "--only", "N").err
+
+
 @pytest.mark.slow
 def test_c_is_the_core_and_a_plan(spec, tmp_path, capsys):
     """The files are named; the core's are the same for each plan, whose requirements are chosen."""

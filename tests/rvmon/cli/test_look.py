@@ -111,6 +111,31 @@ def test_a_course_is_bounded_and_loses_no_peak():
     assert max(one.high for one in stretches if one.high is not None) == 9.0
 
 
+@pytest.mark.parametrize("most", [1.7e308, 5e-324])
+def test_numbers_of_any_size_have_a_place(most, tmp_path, says):
+    path = tmp_path / "sizes.jsonl"
+    path.write_text(f'{{"t": 0, "x": {most}}}\n{{"t": 1, "x": {-most}}}\n{{"t": 2, "x": 0.0}}\n')
+    assert says(0, "look", path).out.split()[-3:] == ["█", "▁", "▅"]
+    says(0, "look", path, "-o", tmp_path / "sizes.html")
+    drawn = re.findall(r'd="M([^"]+)Z', (tmp_path / "sizes.html").read_text())
+    assert drawn
+    assert {point.split()[1] for one in drawn for point in one.split("L")} == {
+        "3.0",
+        "20.0",
+        "37.0",
+    }
+
+
+def test_null_is_no_label_and_a_name_without_any_value_is_left_out(tmp_path, says):
+    path = tmp_path / "null.jsonl"
+    path.write_text(
+        '{"t": 0, "mode": "blue", "gone": null}\n{"t": 1, "mode": null}\n{"t": 2, "mode": "red"}\n'
+    )
+    told = " ".join(says(0, "look", path).out.split())
+    assert "mode label blue, red" in told
+    assert "left out: gone: no value in the recording" in told
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("odd", ["word", "1" * 100_000 + "x", "1.5\n2.5"])
 def test_a_column_is_looked_at_to_its_last_cell(odd, tmp_path, says):

@@ -205,6 +205,18 @@ def test_the_offending_sample_and_the_threshold_are_marked():
     assert section.count('class="sample"') == 1
 
 
+@pytest.mark.parametrize(("most", "limit"), [(1.7e308, 0), (5e-324, 0), (2**62 + 1, 2**62)])
+def test_numbers_of_any_size_have_a_place(most, limit):
+    spec = rvmon.loads(f"signal x : real\nrequirement R\n  always x > {limit}\n")
+    samples = [(0.0, {"x": most}), (1.0, {"x": -most if limit == 0 else limit})]
+    text = run_page(content(judged("sizes", samples, spec)))
+    heights = [
+        float(y) for y in re.findall(r"[\d.]+,([^ \"]+)", *re.findall(r'points="([^"]+)', text))
+    ]
+    assert len({*heights}) == (1 if limit else 2)
+    assert all(0 <= height <= 100 for height in heights)
+
+
 def test_a_window_ends_with_the_decision_if_nothing_else_ends_it():
     page = run_page(content(judged("t", [(0.0, {"closed": True, "gap": 1.0})])))
     for number, classes in (("D2-1", ["window"]), ("D3-1", ["window"])):

@@ -172,18 +172,18 @@ class Column(Struct):
     def updates_in(self, times: NDArray[np.int64], cells: Cells) -> Updates:
         """The updates of a signal in rows."""
         values: NDArray[Any] = cells.values
+        known = values == values
+        if cells.says is not None:
+            said = cells.says != NO_UPDATE
+            known = (known & (cells.says == YES))[said]
+            times, values = times[said], values[said]
         if cells.labels is not None:
             numbers = self.course.labels
-            first_seen = dict.fromkeys(values.tolist())
-            places = [0] * (max(first_seen, default=0) + 1)
-            for place in first_seen:
+            places = [0] * len(cells.labels)
+            for place in dict.fromkeys(values[known].tolist()):
                 places[place] = numbers.setdefault(cells.labels[place], len(numbers))
             values = np.array(places)[values]
-        known = values == values
-        if cells.says is None:
-            return times, values, known
-        said = cells.says != NO_UPDATE
-        return times[said], values[said], (known & (cells.says == YES))[said]
+        return times, values, known
 
     def take(
         self, times: NDArray[np.int64], values: NDArray[Any], known: NDArray[np.bool_]

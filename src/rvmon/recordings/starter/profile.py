@@ -163,6 +163,8 @@ def _collect(fields: Mapping[str, Any], prefix: str, seen: dict[str, SeenValues]
     for key, value in fields.items():
         name = prefix + key
         if value is None:
+            if not prefix:  # it is listed as left out, if it never says more
+                seen.setdefault(name, SeenValues())
             continue
         entry = seen.setdefault(name, SeenValues())
         if isinstance(value, dict):
