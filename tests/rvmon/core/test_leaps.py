@@ -63,6 +63,30 @@ def test_what_is_counted_is_what_would_be_told(form, time):
         assert len(some) == len(all_) - sum(counted.dropped.get(name, {}).values())
 
 
+@pytest.mark.parametrize(
+    "form",
+    [
+        "count(p, 1 s) - x < 2000",
+        "-count(p, 1 s) < x",
+        "share(p, 1 s) * x < 2",
+        "sum(x, 1 s) * x < 2000",
+        "count(max(x, 1 s) < 10, 3 s) - x < 4000",
+    ],
+)
+def test_a_window_of_which_as_much_goes_as_comes_is_at_rest(form):
+    """Looked at on each tick, a leap of years would take years."""
+    spec = rvmon.loads(
+        "time sampled every 1 ms\nsignal p : bool\nsignal x : real\n"
+        f"requirement R\n  always {form}\n"
+    )
+    monitor = spec.monitor()
+    monitor.step(0, {"p": True, "x": 1})
+    monitor.step(1_700_000_000, {"x": 10_000})
+    assert [a.decided for a in monitor.finish().attempts if a.verdict == "F"] == (
+        [] if "-" in form else [1_700_000_000 * 10**9]
+    )
+
+
 def test_a_stamp_that_leaps_by_years_is_told_in_bounded_memory():
     """Of more failures than a count has room for, those are counted that have."""
     report = run(spec_of("always within 100 ms hb"), 1_700_000_000, in_steps=False)

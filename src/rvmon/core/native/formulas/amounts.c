@@ -141,6 +141,9 @@ static int64_t moves_at(const window *w, bool known)
         return alone ? NEVER : gone_from(first->end, w->n->high);
     default: break;
     }
+    if (alone && (w->t + w->unit >= gone_from(first->begin, w->n->high))) {
+        return NEVER; /* as much comes as goes */
+    }
     if (s->growing && !is_level(w, known)) {
         return w->t + w->unit;
     }
