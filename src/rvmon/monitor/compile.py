@@ -7,6 +7,7 @@ from functools import cached_property, partial
 
 from rvmon.errors import RvmonError
 from rvmon.language.checked.formula import BoundAtom, Compare, Constant
+from rvmon.language.checked.names_read import names_in
 from rvmon.language.checked.specification import CheckedSpec, Mode, Requirement
 from rvmon.logic.alphabet import Alphabet, alphabet_of
 from rvmon.logic.automaton import Automaton, moves_in_runs
@@ -19,7 +20,7 @@ from rvmon.logic.network_plan import NetworkPlan, plan_of
 from rvmon.logic.normal_form import expanded
 from rvmon.logic.reduce import reduce
 from rvmon.logic.residual import Residual
-from rvmon.logic.state_formula import State, events_of, inputs_of
+from rvmon.logic.state_formula import State, events_of
 from rvmon.logic.state_graph import graph_of, leaf_texts
 from rvmon.logic.window_chains import reach_of
 from rvmon.monitor.obligation_words import Words
@@ -189,7 +190,7 @@ class CompiledRequirement:
         """The signals and events that it reads."""
         graph = graph_of(state for state, _ in self.leaves)
         return frozenset(graph.by_name) | frozenset(
-            name for capture in self.requirement.captures for name in inputs_of(capture.value)
+            name for capture in self.requirement.captures for name in names_in(capture.value)
         )
 
     @cached_property

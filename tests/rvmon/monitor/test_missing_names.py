@@ -47,6 +47,18 @@ def without(name):
     return {own: column for own, column in COLUMNS.items() if own != name}
 
 
+@pytest.mark.parametrize("value", ["x", "sum(x, 1 s)", "max(x, 2 s) + 1", "count(x > 1, 2 s)"])
+def test_what_is_captured_is_read_by_the_requirement(value):
+    spec = rvmon.loads(
+        "time sampled\nsignal p : bool\nsignal x : real\nevent e\n"
+        f"requirement R\n  upon e\n  let v = {value}\n  then p\n"
+    )
+    monitor = spec.monitor()
+    monitor.step(0, {"e": True, "p": True})
+    (missing,) = monitor.finish().health
+    assert (missing.name, missing.kind, missing.requirements) == ("x", "missing", ("R",))
+
+
 def test_updates_of_a_missing_name_are_not_known():
     """That a column is missing says neither that something came nor that nothing did."""
     conditions = ("not updated(beat) or p", "not updated(e) or p", "age(beat) <= 1 s")
