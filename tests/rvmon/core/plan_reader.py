@@ -17,28 +17,9 @@ _COMMENT = re.compile(r"/\*.*?\*/", re.DOTALL)
 _STRUCT = re.compile(r"typedef struct \{(.*?)\} (\w+);", re.DOTALL)
 _UNION = re.compile(r"union \{.*?\} (\w+);", re.DOTALL)
 _ENUM = re.compile(r"enum \{(.*?)\};", re.DOTALL)
+_SECTION = re.compile(r"SECTION\((\w+), \w+, (\w+)\)")
 _FIELD = re.compile(r"(\w+) (\w+)(?:\[(\d+)\])?;")
 _LETTERS = {"int32_t": "i", "uint32_t": "I", "int64_t": "q", "uint64_t": "Q", "double": "d"}
-
-SECTIONS = {
-    "SUBSCRIPTIONS": "subscription",
-    "PARTS": "part_plan",
-    "SIGNALS": "signal_plan",
-    "EVENTS": "event_plan",
-    "ATOMS": "atom_plan",
-    "NODES": "node_plan",
-    "LINKS": "link_plan",
-    "JUDGES": "judge_plan",
-    "AUTOMATA": "automaton_plan",
-    "FORMS": "form_plan",
-    "OPERATORS": "operator_plan",
-    "WATCHES": "watch_plan",
-    "GROUPS": "group_plan",
-    "NUMBERS": "number_plan",
-    "MARGINS": "margin_plan",
-    "MEASURES": "measure_plan",
-}
-"""What type of C the records of a section have; of the others they are numbers."""
 
 
 @cache
@@ -48,9 +29,15 @@ def _text() -> str:
 
 
 @cache
+def record_types() -> Mapping[str, str]:
+    """By name of a section, in order, what type of C its records have."""
+    return dict(_SECTION.findall(_text()))
+
+
+@cache
 def enumerators() -> Mapping[str, int]:
     """The names that plan.h enumerates."""
-    found: dict[str, int] = {}
+    found = {f"SEC_{name}": number for number, name in enumerate(record_types())}
     for body in _ENUM.findall(_text()):
         value = 0
         for entry in filter(None, (part.strip() for part in body.split(","))):
@@ -92,6 +79,9 @@ def size_of_form(form: str) -> int:
 
 
 def size_of(name: str) -> int:
+    """The bytes of a type of C: of a record, or of a number."""
+    if name in _LETTERS:
+        return size_of_form(_LETTERS[name])
     return sum(size_of_form(form) for _, form in layouts()[name])
 
 
@@ -116,20 +106,17 @@ class Plan:
     def __init__(self, data: bytes) -> None:
         self.data = data
         self.header = record("plan_header", data, 0)
-        names = list(enumerators())
-        first = names.index("SEC_FIELD_FIRST")
-        self.names = [one[4:] for one in names[first : names.index("SECTIONS")]]
+        self.names = list(record_types())
         self.places = []
         self.records: dict[str, list[dict[str, Any]]] = {}
         self.numbers: dict[str, Sequence[int]] = {}
-        for number, name in enumerate(self.names):
+        for number, (name, type_) in enumerate(record_types().items()):
             at = size_of("plan_header") + number * size_of("section")
             offset, count = record("section", data, at).values()
-            type_ = SECTIONS.get(name)
-            size = (8 if name == "TICKS" else 4) if type_ is None else size_of(type_)
+            letter = _LETTERS.get(type_)
+            size = size_of(type_)
             self.places.append((offset, offset + count * size))
-            if type_ is None:
-                letter = "q" if name == "TICKS" else "i"
+            if letter is not None:
                 self.numbers[name] = struct.unpack_from(f"={count}{letter}", data, offset)
             else:
                 self.records[name] = [

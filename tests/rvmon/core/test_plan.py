@@ -14,10 +14,10 @@ from types import SimpleNamespace
 import pytest
 from tests.rvmon.core.plan_reader import (
     HEADER,
-    SECTIONS,
     Plan,
     enumerators,
     layouts,
+    record_types,
     size_of,
     size_of_form,
     with_numbers,
@@ -171,7 +171,7 @@ def test_records_have_the_layout_that_c_gives_them(tmp_path):
                 assert int(found.pop(f"{type_}.{own}")) == offset
                 offset += size_of_form(form)
     assert not found
-    for name, type_ in SECTIONS.items():
+    for name, type_ in record_types().items():
         assert Section[name].record.size == size_of(type_)
 
 
@@ -237,7 +237,7 @@ def test_the_core_refuses_what_measures_lead_out_of_their_bounds(check):
     plan = Plan(data)
     for name, skipped in (("MARGINS", {"spare"}), ("MEASURES", {"factor", "turned", "spare"})):
         offset = plan.places[plan.names.index(name)][0]
-        for own, form in layouts()[SECTIONS[name]]:
+        for own, form in layouts()[record_types()[name]]:
             end = offset + size_of_form(form)
             places = () if own in skipped else range(offset, end, 4)
             for at, value in product(places, (1 << 30, -7)):

@@ -6,14 +6,9 @@
 
 #include <string.h>
 
-/* Record size of each section, in the order of SEC_*. */
-static const size_t RECORD[SECTIONS] = {
-    sizeof(int32_t),       sizeof(int32_t),        sizeof(subscription), sizeof(part_plan),
-    sizeof(signal_plan),   sizeof(event_plan),     sizeof(atom_plan),    sizeof(node_plan),
-    sizeof(link_plan),     sizeof(judge_plan),     sizeof(automaton_plan), sizeof(form_plan),
-    sizeof(operator_plan), sizeof(watch_plan),     sizeof(group_plan),   sizeof(number_plan),
-    sizeof(int32_t),       sizeof(int32_t),        sizeof(int32_t),      sizeof(int64_t),
-    sizeof(margin_plan),   sizeof(measure_plan)};
+/* Record size of each section. */
+#define SECTION_SIZE(name, field, record) sizeof(record),
+static const size_t RECORD[SECTIONS] = {PLAN_SECTIONS(SECTION_SIZE)};
 
 /* No section is wrong: what rv_plan_check returns for a valid plan. */
 #define FINE (-1)
@@ -61,43 +56,21 @@ static bool is_whole(const void *bytes, size_t size)
     return true;
 }
 
-static const void *section_at(const plan_header *h, int32_t which)
-{
-    return (const char *)h + table_of(h)[which].offset;
-}
+#define SECTION_VIEW(name, field, record) \
+    p->field = (const record *)(const void *)((const char *)bytes + table[SEC_##name].offset);
 
 bool plan_view(plan *p, const void *bytes, size_t size)
 {
-    const plan_header *h = bytes;
+    const section *table;
     int32_t i;
     if (!is_whole(bytes, size)) {
         return false;
     }
-    p->header = h;
-    p->field_first = section_at(h, SEC_FIELD_FIRST);
-    p->subscription_first = section_at(h, SEC_SUBSCRIPTION_FIRST);
-    p->subscriptions = section_at(h, SEC_SUBSCRIPTIONS);
-    p->parts = section_at(h, SEC_PARTS);
-    p->signals = section_at(h, SEC_SIGNALS);
-    p->events = section_at(h, SEC_EVENTS);
-    p->atoms = section_at(h, SEC_ATOMS);
-    p->nodes = section_at(h, SEC_NODES);
-    p->links = section_at(h, SEC_LINKS);
-    p->judges = section_at(h, SEC_JUDGES);
-    p->automata = section_at(h, SEC_AUTOMATA);
-    p->forms = section_at(h, SEC_FORMS);
-    p->operators = section_at(h, SEC_OPERATORS);
-    p->watches = section_at(h, SEC_WATCHES);
-    p->groups = section_at(h, SEC_GROUPS);
-    p->numbers = section_at(h, SEC_NUMBERS);
-    p->code = section_at(h, SEC_CODE);
-    p->lists = section_at(h, SEC_LISTS);
-    p->ints = section_at(h, SEC_INTS);
-    p->ticks = section_at(h, SEC_TICKS);
-    p->margins = section_at(h, SEC_MARGINS);
-    p->measures = section_at(h, SEC_MEASURES);
+    p->header = bytes;
+    table = table_of(p->header);
+    PLAN_SECTIONS(SECTION_VIEW)
     for (i = 0; i < SECTIONS; i++) {
-        p->counts[i] = table_of(h)[i].count;
+        p->counts[i] = table[i].count;
     }
     p->part_count = (int32_t)p->counts[SEC_PARTS];
     return true;

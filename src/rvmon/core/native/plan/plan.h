@@ -9,31 +9,33 @@
 
 #include "core.h"
 
-enum {
-    SEC_FIELD_FIRST,           /* int32[events + 1]: the first field of each event */
-    SEC_SUBSCRIPTION_FIRST,    /* int32[names + 1] */
-    SEC_SUBSCRIPTIONS,         /* subscription[]: which parts read a name */
-    SEC_PARTS,                 /* part_plan[] */
-    SEC_SIGNALS,               /* signal_plan[] */
-    SEC_EVENTS,                /* event_plan[] */
-    SEC_ATOMS,                 /* atom_plan[] */
-    SEC_NODES,                 /* node_plan[] */
-    SEC_LINKS,                 /* link_plan[] */
-    SEC_JUDGES,                /* judge_plan[] */
-    SEC_AUTOMATA,              /* automaton_plan[] */
-    SEC_FORMS,                 /* form_plan[] */
-    SEC_OPERATORS,             /* operator_plan[] */
-    SEC_WATCHES,               /* watch_plan[] */
-    SEC_GROUPS,                /* group_plan[] */
-    SEC_NUMBERS,               /* number_plan[]: constants of programs */
-    SEC_CODE,                  /* int32[]: programs of expressions */
-    SEC_LISTS,                 /* int32[]: all lists of indices */
-    SEC_INTS,                  /* int32[]: tables of automata and diagrams */
-    SEC_TICKS,                 /* int64[]: clock bounds of automata */
-    SEC_MARGINS,               /* margin_plan[]: by judge over all parts; or empty */
-    SEC_MEASURES,              /* measure_plan[] */
-    SECTIONS
-};
+/* The sections in order: of each its name, the pointer to it in `plan` (plan_view.h), its records. */
+#define PLAN_SECTIONS(SECTION) \
+    SECTION(FIELD_FIRST, field_first, int32_t)                     /* [events + 1]: its first field */ \
+    SECTION(SUBSCRIPTION_FIRST, subscription_first, int32_t)       /* [names + 1]: the first subscription */ \
+    SECTION(SUBSCRIPTIONS, subscriptions, subscription)            /* which parts read a name */ \
+    SECTION(PARTS, parts, part_plan) \
+    SECTION(SIGNALS, signals, signal_plan) \
+    SECTION(EVENTS, events, event_plan) \
+    SECTION(ATOMS, atoms, atom_plan) \
+    SECTION(NODES, nodes, node_plan) \
+    SECTION(LINKS, links, link_plan) \
+    SECTION(JUDGES, judges, judge_plan) \
+    SECTION(AUTOMATA, automata, automaton_plan) \
+    SECTION(FORMS, forms, form_plan) \
+    SECTION(OPERATORS, operators, operator_plan) \
+    SECTION(WATCHES, watches, watch_plan) \
+    SECTION(GROUPS, groups, group_plan) \
+    SECTION(NUMBERS, numbers, number_plan)                         /* constants of programs */ \
+    SECTION(CODE, code, int32_t)                                   /* programs of expressions */ \
+    SECTION(LISTS, lists, int32_t)                                 /* all lists of indices */ \
+    SECTION(INTS, ints, int32_t)                                   /* tables of automata and diagrams */ \
+    SECTION(TICKS, ticks, int64_t)                                 /* clock bounds of automata */ \
+    SECTION(MARGINS, margins, margin_plan)                         /* by judge over all parts; or empty */ \
+    SECTION(MEASURES, measures, measure_plan)
+
+#define SECTION_NUMBER(name, field, record) SEC_##name,
+enum { PLAN_SECTIONS(SECTION_NUMBER) SECTIONS };
 
 #define PLAN_MAGIC "rvmonpl1"
 #define PLAN_ORDER UINT32_C(0x01020304)

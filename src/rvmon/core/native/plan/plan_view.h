@@ -109,30 +109,10 @@ typedef struct {
     bool is_watched;           /* it has watches or records truths over time */
 } part;
 
+#define SECTION_POINTER(name, field, record) const record *field;
 typedef struct {
     const plan_header *header;
-    const int32_t *field_first;
-    const int32_t *subscription_first;
-    const subscription *subscriptions;
-    const part_plan *parts;
-    const signal_plan *signals;
-    const event_plan *events;
-    const atom_plan *atoms;
-    const node_plan *nodes;
-    const link_plan *links;
-    const judge_plan *judges;
-    const automaton_plan *automata;
-    const form_plan *forms;
-    const operator_plan *operators;
-    const watch_plan *watches;
-    const group_plan *groups;
-    const number_plan *numbers;
-    const int32_t *code;
-    const int32_t *lists;
-    const int32_t *ints;
-    const int64_t *ticks;
-    const margin_plan *margins; /* by judge over all parts */
-    const measure_plan *measures;
+    PLAN_SECTIONS(SECTION_POINTER)
     int64_t counts[SECTIONS];  /* records of each section */
     int32_t part_count;
 } plan;
