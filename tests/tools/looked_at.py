@@ -24,14 +24,19 @@ def faults(chromium: str, folder: Path, pages: Mapping[str, str]) -> list[str]:
     place = folder / "looked-at.html"
     content = f"<!DOCTYPE html><meta charset=utf-8><body>{''.join(frames)}"
     place.write_text(f"{content}<script>{_SCRIPT}</script>", encoding="utf-8")
+    found = dumped(chromium, f"file://{place}")[0].partition("<body>")[2].partition("</body>")[0]
+    read: list[str] = json.loads(html.unescape(found))
+    return read
+
+
+def dumped(chromium: str, address: str) -> tuple[str, str]:
+    """A page after its script ran, and what the browser says of it."""
     words = ["--headless", "--no-sandbox", "--disable-gpu", "--virtual-time-budget=2000"]
     done = subprocess.run(  # noqa: S603 - the browser of the fixture
-        [chromium, *words, "--dump-dom", f"file://{place}"],
+        [chromium, *words, "--enable-logging=stderr", "--dump-dom", address],
         capture_output=True,
         text=True,
         check=True,
         timeout=60,
     )
-    found = done.stdout.partition("<body>")[2].partition("</body>")[0]
-    read: list[str] = json.loads(html.unescape(found))
-    return read
+    return done.stdout, done.stderr

@@ -28,6 +28,17 @@ def _judged(**options):
     return Judged(gymnasium.make("CartPole-v1"), loads(SPEC), observe, step_s=0.02, **options)
 
 
+def _played(env):
+    """Rewards and what is said of an episode of pushes to the right, and how long it was."""
+    env.reset(seed=1)
+    steps, over = [], False
+    while not over:
+        _, reward, terminated, truncated, info = env.step(1)
+        steps.append((reward, info["rv"]))
+        over = terminated or truncated
+    return steps
+
+
 def test_a_wrapped_environment_is_a_good_one():
     from gymnasium.utils.env_checker import check_env
 
@@ -41,41 +52,23 @@ def test_each_episode_is_a_run():
     for _ in range(2):
         _, info = env.reset(seed=1)
         assert set(info["rv"]["verdicts"].values()) == {Verdict.NOT_TRIGGERED}
-        decided, over = [], False
-        while not over:
-            _, _, terminated, truncated, info = env.step(1)
-            decided += info["rv"]["decided"]
-            over = terminated or truncated
-        assert info["rv"]["verdicts"]["P1"] is Verdict.FAIL
-        assert "P1#1" in {attempt.name for attempt in decided}
+        told = [one for _, one in _played(env)]
+        assert told[-1]["verdicts"]["P1"] is Verdict.FAIL
+        assert "P1#1" in {attempt.name for one in told for attempt in one["decided"]}
 
 
 def test_a_failure_can_end_the_episode():
-    lengths = {}
-    for ends in (True, False):
-        env = _judged(ends_on_failure=ends)
-        env.reset(seed=1)
-        steps, over = 0, False
-        while not over:
-            _, _, terminated, truncated, info = env.step(1)
-            over, steps = terminated or truncated, steps + 1
-        lengths[ends] = steps
-    assert lengths[True] < lengths[False]
-    assert info["rv"]["verdicts"]["P1"] is Verdict.FAIL
+    ended, whole = (_played(_judged(ends_on_failure=ends)) for ends in (True, False))
+    assert len(ended) < len(whole)
+    assert ended[-1][1]["verdicts"]["P1"] is Verdict.FAIL
 
 
 def test_the_reward_can_be_shaped_by_robustness():
     """Each figure counts once, when nothing can change it any more."""
-    env = _judged(shaping=lambda figures: 100.0 * len(figures))
-    env.reset(seed=1)
-    total, steps, figures, over = 0.0, 0, 0, False
-    while not over:
-        _, reward, terminated, truncated, info = env.step(1)
-        total, steps = total + reward, steps + 1
-        figures += len(info["rv"]["margins"])
-        over = terminated or truncated
-    assert figures >= 2
-    assert total == steps + 100.0 * figures
+    steps = _played(_judged(shaping=lambda figures: 100.0 * len(figures)))
+    figures = [len(one["margins"]) for _, one in steps]
+    assert sum(figures) >= 2
+    assert [reward for reward, _ in steps] == [1 + 100.0 * count for count in figures]
 
 
 def test_samples_within_a_step_have_their_instants():

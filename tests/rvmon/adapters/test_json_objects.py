@@ -146,23 +146,17 @@ def test_lines_that_come_after_the_end_are_nobodys(live):
 
 
 def test_lines_are_read_as_they_come():
-    """A pipe gives them in pieces; the last one may lack its end."""
+    """A pipe gives them in pieces, and the last one may lack its end.
+
+    Programs of Windows begin files with a mark, which is no part of a line.
+    """
     read, write = os.pipe()
     lines = read_lines(read)
-    os.write(write, b'{"t": 1}\n{"t"')
+    os.write(write, b'\xef\xbb\xbf{"t": 1}\n{"t"')
     assert next(lines) == b'{"t": 1}'
     os.write(write, b": 2}")
     os.close(write)
     assert list(lines) == [b'{"t": 2}']
-    os.close(read)
-
-
-def test_a_byte_order_mark_is_no_part_of_a_line():
-    """Programs of Windows begin files with it."""
-    read, write = os.pipe()
-    os.write(write, b'\xef\xbb\xbf{"t": 1}\n{"t": 2}')
-    os.close(write)
-    assert list(read_lines(read)) == [b'{"t": 1}', b'{"t": 2}']
     os.close(read)
 
 
@@ -193,20 +187,16 @@ def test_a_line_longer_than_any_is_given_up(tmp_path, monkeypatch):
     assert b"".join(lines[1:-1]) == b"x" * (1 << 20)
 
 
-def test_what_is_no_object_says_what_is_wanted():
-    """Rows of a CSV, which a pipe gives as well, lead to what reads them."""
-    with pytest.raises(TraceError, match="`rvmon run` reads CSV"):
-        decoded_object(b"t,speed\n")
-    with pytest.raises(TraceError) as told:
-        decoded_object(b'{"t": 0, ')
-    assert "CSV" not in str(told.value)
-
-
-@pytest.mark.parametrize(
+@each(
     ("text", "why"),
-    [(b'{"x": ' + b"[" * 100_000, "too deeply"), (b'{"x": "\\ud800"}', "half of a surrogate pair")],
+    [
+        (b"t,speed\n", "`rvmon run` reads CSV"),
+        (b'{"t": 0, ', "^(?!.*CSV)"),
+        (b'{"x": ' + b"[" * 100_000, "too deeply"),
+        (b'{"x": "\\ud800"}', "half of a surrogate pair"),
+    ],
 )
-def test_what_json_cannot_hold_is_named(text, why):
-    """As `rvmon run` does."""
+def test_what_is_no_object_says_what_is_wanted(text, why):
+    """As `rvmon run` does; rows of a CSV, which a pipe gives as well, lead to what reads them."""
     with pytest.raises(TraceError, match=why):
         decoded_object(text)

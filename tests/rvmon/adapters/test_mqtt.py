@@ -48,6 +48,15 @@ def publish(broker):
     client.loop_stop()
 
 
+@contextmanager
+def _heard(port, **callbacks):
+    """What is judged of all that a broker gives, and what reads its messages."""
+    live = Live(loads(SPEC), **callbacks)
+    objects = JsonObjects(live)
+    with live, MqttSource(objects, address_of(f"mqtt://127.0.0.1:{port}/#")):
+        yield live, objects
+
+
 @pytest.mark.process
 def test_messages_are_judged_by_robot_and_verdicts_come_back(broker, publish):
     """A value under a topic, an object above it, an event; each robot by itself."""
@@ -81,12 +90,8 @@ def test_messages_are_judged_by_robot_and_verdicts_come_back(broker, publish):
 
 @pytest.mark.process
 def test_what_is_published_while_the_broker_is_away_is_unknown(broker, publish):
-    spec = loads(SPEC)
     failed = threading.Event()
-    live = Live(spec, on_failure=lambda _: failed.set())
-    objects = JsonObjects(live)
-    address = address_of(f"mqtt://127.0.0.1:{broker.port}/#")
-    with live, MqttSource(objects, address):
+    with _heard(broker.port, on_failure=lambda _: failed.set()) as (live, _):
         publish("arm", '{"speed": 0.5}')
         until(lambda: live.status()[""].samples == 1 if live.status() else False)
         broker.stop()
@@ -101,10 +106,7 @@ def test_what_is_published_while_the_broker_is_away_is_unknown(broker, publish):
 
 @pytest.mark.process
 def test_a_message_that_is_no_json_is_lost_and_told(broker, publish):
-    spec = loads(SPEC)
-    live = Live(spec)
-    objects = JsonObjects(live)
-    with live, MqttSource(objects, address_of(f"mqtt://127.0.0.1:{broker.port}/#")):
+    with _heard(broker.port) as (live, objects):
         publish("arm/speed", "0.5")
         publish("arm/speed", "fast!")
         until(lambda: objects.unread == 1)
@@ -113,8 +115,7 @@ def test_a_message_that_is_no_json_is_lost_and_told(broker, publish):
 
 def test_what_a_broker_has_dropped_may_have_been_ours():
     """It says how many of all clients; between two of its reports nobody knows what was lost."""
-    spec = loads(SPEC)
-    driver = Driver(spec, clock=(clock := SimulatedClock()))
+    driver = Driver(loads(SPEC), clock=(clock := SimulatedClock()))
     source = MqttSource(JsonObjects(driver), address_of("mqtt://127.0.0.1:1/#"))
     source.hear("arm/speed", b"0.5")
     for t, dropped in ((1, b"7"), (2, b"7"), (3, b"9")):
@@ -130,11 +131,9 @@ def test_what_a_broker_has_dropped_may_have_been_ours():
 @pytest.mark.process
 def test_what_a_broker_has_kept_did_not_happen_now(broker, publish):
     """The value of a signal holds; an event, of some time ago, is none of now."""
-    spec = loads(SPEC)
-    live = Live(spec)
     for topic, text in (("stop", "true"), ("arm/speed", "5")):
         publish(topic, text, retain=True).wait_for_publish(LONG)
-    with live, MqttSource(JsonObjects(live), address_of(f"mqtt://127.0.0.1:{broker.port}/#")):
+    with _heard(broker.port) as (live, _):
         until(lambda: live.status() and live.status()[""].samples == 2)
     assert live.close()[""][0].verdicts == {"R1": "F", "R2": "NT"}
 
@@ -182,12 +181,7 @@ def test_a_message_that_no_broker_should_let_through_is_lost():
 
 
 def test_a_broker_that_is_not_there_is_told():
-    spec = loads(SPEC)
-    with (
-        Live(spec) as live,
-        pytest.raises(RvmonError, match=r"answers at 127\.0\.0\.1:1"),
-        MqttSource(JsonObjects(live), address_of("mqtt://127.0.0.1:1/#")),
-    ):
+    with pytest.raises(RvmonError, match=r"answers at 127\.0\.0\.1:1"), _heard(1):
         pass
 
 

@@ -97,9 +97,9 @@ def test_topics_of_ros_2_are_judged_over_dds(tmp_path):
     assert found == [("B1#1", "F"), ("B2#1", "F")]
 
 
-@pytest.mark.process
-def test_a_second_publisher_of_another_type_cannot_be_heard_over_dds(monkeypatch):
-    """What the topic feeds is unknown for good, also where something of it was lost and found."""
+@pytest.fixture
+def robots(monkeypatch):
+    """A domain of DDS, a topic of it that is a real signal, and what publishes it by a type."""
     pytest.importorskip("cyclonedds")
     from cyclonedds.domain import DomainParticipant
     from cyclonedds.pub import DataWriter
@@ -109,24 +109,32 @@ def test_a_second_publisher_of_another_type_cannot_be_heard_over_dds(monkeypatch
 
     monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
     domain, topic = 100 + os.getpid() % 100, f"speed{os.getpid()}"
+
+    def publisher(name):
+        kind, robot = dds._idl_type(f"std_msgs/msg/{name}", ()), DomainParticipant(domain)
+        made.kept.append((robot, DataWriter(robot, DdsTopic(robot, f"rt/{topic}", kind))))
+        return kind, made.kept[-1][1]
+
     spec = loads(f"signal {topic} : real\nrequirement R\n  always {topic} <= 1")
-    live = Live(spec)
-    robots = [DomainParticipant(domain) for _ in range(2)]
+    made = SimpleNamespace(domain=domain, spec=spec, publisher=publisher, kept=[])
+    return made
 
-    def published(robot, name):
-        kind = dds._idl_type(f"std_msgs/msg/{name}", ())
-        return kind, DataWriter(robots[robot], DdsTopic(robots[robot], f"rt/{topic}", kind))
 
-    kind, writer = published(0, "Float64")
-    with live, dds.DdsSource(MessageFeed(live, spec.schema), domain=domain):
+@pytest.mark.process
+def test_a_second_publisher_of_another_type_cannot_be_heard_over_dds(robots):
+    """What the topic feeds is unknown for good, also where something of it was lost and found."""
+    from rvmon.adapters.dds import DdsSource
+
+    live = Live(robots.spec)
+    kind, writer = robots.publisher("Float64")
+    with live, DdsSource(MessageFeed(live, robots.spec.schema), domain=robots.domain):
         until(writer.get_matched_subscriptions)
         writer.write(kind(data=0.5))
         until(lambda: live.status() and live.status()[""].samples == 1)
-        others = published(1, "Float32")
+        robots.publisher("Float32")
         until(lambda: live.status()[""].lost == 1)
         writer.write(kind(data=0.5))
         until(lambda: live.status()[""].samples == 2)
-    del others
     assert live.close()[""][0].verdicts == {"R": Verdict.INCONCLUSIVE}
 
 
@@ -165,20 +173,12 @@ def test_sources_that_begin_at_once_hear_alike():
 
 
 @pytest.mark.process
-def test_what_finds_no_room_in_dds_is_lost(monkeypatch):
+def test_what_finds_no_room_in_dds_is_lost(robots, monkeypatch):
     """Of what its topic feeds, since the last message; as the queue is empty it is known again."""
-    pytest.importorskip("cyclonedds")
-    from cyclonedds.domain import DomainParticipant
-    from cyclonedds.pub import DataWriter
-    from cyclonedds.topic import Topic as DdsTopic
-
     from rvmon.adapters import dds
 
-    monkeypatch.setenv("CYCLONEDDS_URI", LOOPBACK)
     monkeypatch.setattr(dds, "_DEPTH", 1)
-    domain, topic = 100 + os.getpid() % 100, f"speed{os.getpid()}"
-    spec = loads(f"signal {topic} : real\nrequirement R\n  always {topic} <= 1")
-    driver, gate, taken = Driver(spec), threading.Event(), []
+    driver, gate, taken = Driver(robots.spec), threading.Event(), []
 
     class Slow(MessageFeed):
         def take(self, topic, content):
@@ -186,10 +186,8 @@ def test_what_finds_no_room_in_dds_is_lost(monkeypatch):
             gate.wait(LONG)
             super().take(topic, content)
 
-    kind = dds._idl_type("std_msgs/msg/Float64", ())
-    robot = DomainParticipant(domain)
-    writer = DataWriter(robot, DdsTopic(robot, f"rt/{topic}", kind))
-    with dds.DdsSource(Slow(driver, spec.schema), domain=domain) as source:
+    kind, writer = robots.publisher("Float64")
+    with dds.DdsSource(Slow(driver, robots.spec.schema), domain=robots.domain) as source:
         until(writer.get_matched_subscriptions)
         # What is sent before the reader knows its writer, too, goes unheard.
         readers = source._readers

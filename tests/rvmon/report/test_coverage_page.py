@@ -1,9 +1,9 @@
 """The page of coverage: what it says, where its links lead, and that names are only names."""
 
 import re
-from html.parser import HTMLParser
 
 import pytest
+from tests.rvmon.report.reader import Reader
 from tests.tools.covered import SECOND, door_model, fill, hits_of
 from tests.tools.hostile import hostile_names
 
@@ -12,29 +12,6 @@ from rvmon.coverage.database import Database
 from rvmon.report import coverage_page as pages
 from rvmon.report.coverage_page import coverage_page
 from rvmon.report.coverage_summary import Summary
-
-
-class Reader(HTMLParser):
-    """Elements with their attributes, and the text of the page."""
-
-    def __init__(self, page):
-        super().__init__()
-        self.tags = []
-        self.words = []
-        self.feed(page)
-        self.text = " ".join(" ".join(self.words).split())
-
-    def handle_starttag(self, tag, attrs):
-        self.tags.append((tag, dict(attrs)))
-
-    def handle_data(self, data):
-        self.words.append(data)
-
-    def dangling(self):
-        """Addresses within the page that are nowhere on it."""
-        ids = {attributes.get("id") for _, attributes in self.tags}
-        links = {attributes["href"] for tag, attributes in self.tags if tag == "a"}
-        return {link for link in links if link.removeprefix("#") not in ids}
 
 
 @pytest.fixture

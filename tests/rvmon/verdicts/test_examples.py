@@ -28,14 +28,6 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("path", sorted(NIGHTLY.iterdir()), ids=lambda path: path.name)
-def test_each_is_short(path):
-    text = path.read_text(encoding="utf-8")
-    if path.suffix == ".ipynb":
-        text = "\n".join("".join(cell["source"]) for cell in json.loads(text)["cells"])
-    assert len(text.splitlines()) <= 60
-
-
 @pytest.mark.process
 def test_logs_become_a_table_that_is_asked(folder):
     pytest.importorskip("duckdb")

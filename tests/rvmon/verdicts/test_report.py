@@ -71,21 +71,21 @@ def test_what_was_not_kept_counts() -> None:
 def test_json_shape() -> None:
     assert Report.from_json(report().to_json()) == report()
     document = json.loads(report().to_json())
-    entry = document["requirements"]["R2"]
     assert next(iter(document.items())) == ("law", LAW)
-    assert document["trace"] == "run.csv"
-    assert entry["verdict"] == "F"
-    assert entry["counts"] == {"P": 0, "F": 1, "I": 1}
-    failed = entry["attempts"][0]
-    assert failed["number"] == 1
-    assert failed["triggered"] == 1_000_000_000
-    assert failed["decided"] == 2_500_000_000
-    assert failed["triggered_s"] == 0.5
-    assert failed["decided_s"] == 2.0
-    assert failed["verdict"] == "F"
-    assert failed["reason"] == "window closed"
-    assert entry["attempts"][1]["decided"] is None
-    assert document["health"][0]["kind"] == "stale"
+    assert (document["trace"], document["health"][0]["kind"]) == ("run.csv", "stale")
+    entry = document["requirements"]["R2"]
+    assert (entry["verdict"], entry["counts"]) == ("F", {"P": 0, "F": 1, "I": 1})
+    failed, undecided = entry["attempts"]
+    assert undecided["decided"] is None
+    assert failed.items() >= {
+        ("number", 1),
+        ("triggered", 1_000_000_000),
+        ("decided", 2_500_000_000),
+        ("triggered_s", 0.5),
+        ("decided_s", 2.0),
+        ("verdict", "F"),
+        ("reason", "window closed"),
+    }
 
 
 def test_a_report_of_the_first_law_is_read() -> None:
