@@ -86,7 +86,7 @@ def test_late_rows_of_a_file_are_put_in_order_under_max_delay(tmp_path):
     late = rvmon.loads("max delay 200 ms\n" + text).evaluate(files)
     assert late.verdicts["R"].value == "P"
     assert attempts(late) == attempts(rvmon.loads(text).evaluate(tmp_path / "c.csv"))
-    with pytest.raises(rvmon.TraceError, match=r"csv: line 4: time goes backwards"):
+    with pytest.raises(rvmon.TraceError, match=r"a\.csv: line 4: time goes backwards"):
         rvmon.loads(text).evaluate(files)
 
 
@@ -99,9 +99,6 @@ def test_a_file_says_where_its_error_is(tmp_path, capsys, says):
     (tmp_path / "a.csv").write_text("t,speed\n0,1\n")
     words = ["run", str(tmp_path / "s.rv"), str(tmp_path), "--join", "--report"]
     assert says(0, *words, tmp_path / "pages").out.startswith(f"{tmp_path} + ")
-    (tmp_path / "a.csv").write_text("t,speed\n1,1\n0,1\n")
-    with pytest.raises(rvmon.TraceError, match=r"a\.csv: line 3: time goes backwards"):
-        rvmon.load(tmp_path / "s.rv").evaluate([tmp_path / "a.csv", tmp_path / "b.csv"])
 
 
 def test_a_name_of_two_files_is_asked_for(tmp_path):

@@ -26,19 +26,6 @@ def read(tmp_path: Path, name: str, text: str | bytes, *, ordered: bool = True):
     return recording, [(sample.t, dict(sample.values)) for sample in recording]
 
 
-def test_csv_gives_each_updated_cell_as_its_declared_kind(tmp_path):
-    _, samples = read(
-        tmp_path,
-        "a.csv",
-        "t,ok,hand.distance,mode,n,go\n0,true,0.5,idle,3,\n0.25,,nan,,,1\n1,0,,,,false\n",
-    )
-    assert samples[0] == (0, {"ok": True, "hand.distance": 0.5, "mode": "idle", "n": 3})
-    assert samples[1][0] == 250_000_000
-    assert samples[1][1]["go"] is True
-    assert samples[1][1]["hand.distance"] != samples[1][1]["hand.distance"]
-    assert samples[2] == (1_000_000_000, {"ok": False, "go": False})
-
-
 def test_undeclared_columns_are_ignored_and_counted(tmp_path):
     recording, samples = read(tmp_path, "a.csv", "t,ok,battery\n0,1,7\n")
     assert samples == [(0, {"ok": True})]
@@ -268,24 +255,6 @@ def test_rows_before_a_broken_end_of_a_text_are_given_out(tmp_path):
     with pytest.raises(TraceError, match="not UTF-8 text"):
         samples.extend(FileRecording(path, SCHEMA))
     assert samples == [Sample(0, {"ok": True})]
-
-
-@pytest.mark.parametrize("rows", ["0,1\n1,0\n1,0\n", "0,1\n1,0\n1,1\n", "0,1\n", "0,1\n1,1\n0,1\n"])
-def test_the_last_instant_of_a_whole_text_is_merged_as_any_other(tmp_path, rows, monkeypatch):
-    """Columns end with the last instant where no row follows, and tell the same of it."""
-    spec = rvmon.loads("spec s\nsignal ok : bool\nrequirement R\n  always ok\n")
-    path = tmp_path / "a.csv"
-    path.write_text(f"t,ok\n{rows}")
-
-    def judged():
-        try:
-            return spec.evaluate(path).to_json()
-        except TimeOrderError as error:
-            return str(error)
-
-    whole = judged()
-    monkeypatch.setattr(places, "BLOCK", 9)
-    assert judged() == whole
 
 
 @pytest.mark.parametrize("name", ["a.csv", "a.parquet"])

@@ -32,16 +32,6 @@ def test_columns_are_aligned_by_what_is_shown():
     ]
 
 
-def test_the_last_column_is_wrapped_where_it_does_not_fit():
-    rows = [("R1", "P", "the hand is held still"), ("R2", "F", "short")]
-    assert printed(34, rows)[3:] == [
-        " R1   P         the hand is held",
-        "                still",
-        " R2   F         short",
-        "",
-    ]
-
-
 def test_counts_end_below_each_other():
     assert printed(80, [("R1", "5", ""), ("R2", "1995", "")], right=(1,))[3:5] == [
         " R1         5",

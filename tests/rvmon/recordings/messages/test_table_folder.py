@@ -1,9 +1,7 @@
 """A folder of tables as one recording: joined by time, each file with its own absence."""
 
 import gzip
-import json
 import math
-import random
 
 import pytest
 
@@ -69,45 +67,6 @@ def test_each_file_says_what_it_says_at_its_own_instants(tmp_path):
         "battery.count": 3,
     }
     assert found[3:] == [(15 * 10**8, {"battery.armed": True}), (2 * 10**9, {"mode": "fly"})]
-
-
-@pytest.mark.slow
-def test_the_same_report_as_of_one_file_of_all(tmp_path):
-    rng = random.Random(3)
-    kinds = {
-        "pose.x": lambda: rng.randrange(5),
-        "speed": lambda: rng.choice([0.0, 0.5, 1.0]),
-        "battery.armed": lambda: rng.random() < 0.5,
-        "battery.count": lambda: rng.randrange(9),
-        "mode": lambda: rng.choice(["idle", "fly"]),
-    }
-    for number in range(30):
-        rows = {"pose.csv": [], "speed.csv": [], "battery.csv": [], "mode.csv": []}
-        lines = []
-        for t in sorted(rng.choices(range(40), k=30)):
-            name = rng.choice([*kinds])
-            value = kinds[name]()
-            cells = json.dumps(value).strip('"')
-            file = f"{name.partition('.')[0]}.csv"
-            if name == "battery.armed":
-                cells += ","
-            elif name == "battery.count":
-                cells = f",{cells}"
-            rows[file].append(f"{t / 10},{cells}\n")
-            lines.append(((t, [*rows].index(file)), {"t": t / 10, name: value}))
-        heads = {"pose": "t,x", "speed": "t,speed", "battery": "t,armed,count", "mode": "t,mode"}
-        files = {
-            f"{name}.csv": f"{head}\n{''.join(rows[f'{name}.csv'])}" for name, head in heads.items()
-        }
-        # As the files are called, where instants are equal.
-        order = sorted(rows)
-        lines.sort(key=lambda one: (one[0][0], order.index([*rows][one[0][1]])))
-        path = tmp_path / f"{number}.jsonl"
-        path.write_text("".join(f"{json.dumps(one)}\n" for _, one in lines))
-        spec = rvmon.loads(SPEC)
-        allowed = {"allow_missing": True}
-        place = folder(tmp_path / str(number), files)
-        assert spec.evaluate(place, **allowed).attempts == spec.evaluate(path, **allowed).attempts
 
 
 def test_a_file_says_which_is_which(tmp_path, says):
