@@ -11,7 +11,6 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from tests.rvmon.adapters.talkers import SIMULATOR
 from tests.tools.servers import LOOPBACK, SYSTEM, master_of_ros1, missing, rosmaster, until
 
 from rvmon import RvmonError, Verdict, loads
@@ -117,7 +116,8 @@ def robots(monkeypatch):
 
     spec = loads(f"signal {topic} : real\nrequirement R\n  always {topic} <= 1")
     made = SimpleNamespace(domain=domain, spec=spec, publisher=publisher, kept=[])
-    return made
+    yield made
+    made.kept.clear()  # they leave the domain
 
 
 @pytest.mark.process
@@ -342,6 +342,30 @@ def test_the_clock_follows_the_topic_of_that_name():
     first, second = driver.close()[""]
     assert [one.decided for one in first.attempts] == [1000 * 10**9 + 5]
     assert (first.verdicts["R1"], second.verdicts["R1"]) == ("F", "P")
+
+
+SIMULATOR = """
+import time
+import rospy
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import Bool, Float64
+rospy.init_node("simulator")
+speed = rospy.Publisher("/speed", Float64, queue_size=10, latch=True)
+obstacle = rospy.Publisher("/obstacle", Float64, queue_size=10, latch=True)
+stop_request = rospy.Publisher("/stop_request", Bool, queue_size=10)
+clock = rospy.Publisher("/clock", Clock, queue_size=10)
+speed.publish(0.8)
+obstacle.publish(0.4)
+while not stop_request.get_num_connections():
+    clock.publish(rospy.Time(1000))
+    time.sleep(0.02)
+clock.publish(rospy.Time(2000))
+time.sleep(0.1)
+stop_request.publish(True)
+while not rospy.is_shutdown():
+    time.sleep(0.1)
+    clock.publish(rospy.Time(2001))
+"""
 
 
 @pytest.mark.process

@@ -6,12 +6,13 @@ import struct
 from pathlib import Path
 
 import pytest
-from tests.rvmon.recordings.csv_reference import samples_of_csv
 from tests.tools.each import each
 
 import rvmon
 from rvmon.recordings import csv_batch, places
 from rvmon.recordings.batch import Batch
+from rvmon.recordings.csv_rows import csv_samples, read_layout, split_lines
+from rvmon.recordings.rows import Rows
 
 SPEC = rvmon.loads("""
 spec all "Each kind of value"
@@ -84,6 +85,20 @@ def read(samples) -> list[tuple[int, str]]:
     except rvmon.TraceError as error:
         made.append((-1, str(error)))
     return made
+
+
+def samples_of_csv(spec: rvmon.Spec, path: Path):
+    """The reference: a file read row by row; errors are named as those of a recording are."""
+    try:
+        with open(path, encoding="utf-8-sig", newline="") as text:
+            rows = split_lines(text)
+            layout = read_layout(next(rows)[1], spec.schema)
+            made = Rows(spec.schema, "line", ordered=True)
+            yield from made.samples(csv_samples(rows, layout))
+            if not made.count:
+                raise rvmon.TraceError("holds no sample")
+    except rvmon.TraceError as error:
+        raise type(error)(f"{path}: {error}") from None
 
 
 def of_pieces(path: Path):

@@ -79,9 +79,12 @@ def test_every_door_is_judged_as_its_samples_are(seed, tmp_path):
             if seed % 4 == 0:
                 recording = spec.recording(trace, allow_missing=True, **arguments)
                 one_by_one = Trace(tuple(recording), recording.names, recording.end)
-                with in_pieces(200):
-                    report = judged(spec, trace, **arguments)
-                assert bare(report) == bare(spec.judge(Source(one_by_one))), door
+                for end in (None, content.rows[len(content.rows) // 2][0]):
+                    expected = spec.judge(Source(one_by_one, end, is_cut=end is not None))
+                    with in_pieces(200):
+                        pieces = spec.recording(trace, allow_missing=True, **arguments)
+                        report = spec.judge(Source(pieces, end, is_cut=end is not None))
+                    assert bare(report) == bare(expected), door
         assert len({*found.values()}) == (1 if content.rows else 0)
         assert all(text.startswith("{") for text in found.values())
 

@@ -7,7 +7,6 @@ from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import TimeOrderError, TraceError
-from rvmon.recordings import places
 from rvmon.recordings.recording import FileRecording
 from rvmon.trace.sample import HealthKind, Sample
 from rvmon.trace.schema import Kind, Schema

@@ -59,29 +59,18 @@ def test_every_door_reads_every_unit_exactly(spec, tmp_path, stamps, unit, end):
         ("12", "iso", "no date and time of ISO 8601"),
         ("9999-01-01", "iso", "out of range"),
         ("9" * 20, "ms", "out of range"),
+        # The unit that was meant is told.
+        ("1714557600123", None, "Are these milliseconds. `--time t:ms`"),
+        ("1714557600123456", None, "Are these microseconds. `--time t:us`"),
+        ("1714557600123456789", None, "Are these nanoseconds. `--time t:ns`"),
+        (ISO, None, "is this ISO 8601. `--time t:iso`"),
     ],
 )
 def test_what_is_no_stamp_is_named_with_its_line(spec, tmp_path, stamp, unit, told):
     path = tmp_path / "a.csv"
-    path.write_text(f"at,x\n{stamp},1\n")
-    with pytest.raises(rvmon.TraceError, match=f"line 2: time .*{told}"):
-        spec.evaluate(path, time=f"at:{unit}")
-
-
-@pytest.mark.parametrize(
-    ("stamp", "told"),
-    [
-        ("1714557600123", "Are these milliseconds. `--time t:ms`"),
-        ("1714557600123456", "Are these microseconds. `--time t:us`"),
-        ("1714557600123456789", "Are these nanoseconds. `--time t:ns`"),
-        (ISO, "is this ISO 8601. `--time t:iso`"),
-    ],
-)
-def test_the_unit_that_was_meant_is_told(spec, tmp_path, stamp, told):
-    path = tmp_path / "a.csv"
     path.write_text(f"t,x\n{stamp},1\n")
-    with pytest.raises(rvmon.TraceError, match=told):
-        spec.evaluate(path)
+    with pytest.raises(rvmon.TraceError, match=f"line 2: time .*{told}"):
+        spec.evaluate(path, time=unit and f"t:{unit}")
 
 
 def doubts(spec, trace, time=None):
@@ -180,3 +169,30 @@ def test_a_message_of_1970_in_a_bag_is_a_finding(spec, tmp_path):
     sent = [("/temp", t, {"data": 1.0}) for t in (7, bags.START, bags.START + 5)]
     path = bags.write_ros1(tmp_path / "a.bag", sent)
     assert "53.9 years" in of_clocks(spec.evaluate(path, columns={"x": "/temp"}))[0]
+
+
+NS = np.array([EPOCH, EPOCH + 1, EPOCH + 1_000_000_002], np.int64)
+DATES = NS.astype("datetime64[ns]")
+X = [1.0, 5.0, 1.0]
+
+
+def pandas_frames(module):
+    dates = module.to_datetime(NS)
+    yield module.DataFrame({"t": dates, "x": X})
+    yield module.DataFrame({"x": X}, index=module.Index(dates, name="t"))
+    yield module.DataFrame({"x": X}, index=dates)
+    yield module.DataFrame({"t": dates.tz_localize("UTC").tz_convert("Asia/Tokyo"), "x": X})
+
+
+def test_columns_of_dates_are_read_as_what_they_are(spec, tmp_path):
+    """Without being told: of NumPy and Arrow, pandas and polars, and of Parquet."""
+    table = pyarrow.table({"t": pyarrow.array(DATES), "x": X})
+    parquet.write_table(table, tmp_path / "a.parquet")
+    polars = pytest.importorskip("polars").DataFrame({"t": DATES, "x": X})
+    frames = pandas_frames(pytest.importorskip("pandas"))
+    for trace in ({"t": DATES, "x": X}, table, tmp_path / "a.parquet", polars, *frames):
+        report = spec.evaluate(trace)
+        assert (report.attempts[0].decided, report.end) == (EPOCH + 1, EPOCH + 1_000_000_002)
+    assert spec.evaluate({"at": DATES, "x": X}, time="at") == spec.evaluate({"t": DATES, "x": X})
+    with pytest.raises(rvmon.TraceError, match="row 1: time `NaT`"):
+        spec.evaluate({"t": np.array(["2024-05-01", "NaT"], "datetime64[ns]"), "x": [1.0, 2.0]})
