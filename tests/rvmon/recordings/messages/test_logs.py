@@ -69,17 +69,15 @@ def written(folder, name, rows):
     write, topic, package = FORMS[name]
     pytest.importorskip(package)
     folder.mkdir(exist_ok=True)
-    path = write(folder / name, rows)
-    return path, topic
-
-
-def spec_of(topic, name):
     spec = rvmon.loads(SPEC.format(topic))
-    if name != "a.tlog":
-        return spec
-    return spec.reading(
-        columns={f"{topic}.speed": f"/{topic}.airspeed", f"{topic}.mode": f"/{topic}.throttle"}
-    )
+    if name == "a.tlog":
+        own = {f"{topic}.speed": f"/{topic}.airspeed", f"{topic}.mode": f"/{topic}.throttle"}
+        spec = spec.reading(columns=own)
+    return write(folder / name, rows), spec
+
+
+STEADY = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
+FEW = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
 
 
 @pytest.mark.parametrize("name", FORMS)
@@ -87,12 +85,12 @@ def test_a_log_gives_the_records_that_csv_gives(tmp_path, name):
     verdicts = set()
     for seed in range(2):
         rows = rows_at_random(seed, steps=OF_CAN if name in ("a.asc", "a.blf") else OF_ALL)
-        path, topic = written(tmp_path / str(seed), name, rows)
+        path, spec = written(tmp_path / str(seed), name, rows)
+        topic = FORMS[name][1]
         first = next(messages_of(str(path)).read({f"/{topic}"}))[1] // 1_000 - rows[0][0]
         rows = [(t + first, speed, mode) for t, speed, mode in rows]
         table = write_csv(tmp_path / f"{seed}.csv", rows, topic)
-        spec, plain = spec_of(topic, name), rvmon.loads(SPEC.format(topic))
-        found, expected = spec.evaluate(path), plain.evaluate(table)
+        found, expected = spec.evaluate(path), rvmon.loads(SPEC.format(topic)).evaluate(table)
         assert found.attempts == expected.attempts
         assert (found.verdicts, found.end) == (expected.verdicts, expected.end)
         verdicts |= {str(attempt.verdict) for attempt in found.attempts}
@@ -101,9 +99,8 @@ def test_a_log_gives_the_records_that_csv_gives(tmp_path, name):
 
 @pytest.mark.parametrize("name", FORMS)
 def test_what_is_cut_off_is_never_green(tmp_path, name):
-    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
-    path, topic = written(tmp_path / "a", name, rows)
-    spec, data = spec_of(topic, name), path.read_bytes()
+    path, spec = written(tmp_path / "a", name, STEADY)
+    data = path.read_bytes()
     assert spec.evaluate(path).verdicts["R1"] == "P"
     rng, judged = random.Random(1), 0
     for _ in range(10):
@@ -113,28 +110,27 @@ def test_what_is_cut_off_is_never_green(tmp_path, name):
         except TraceError:
             continue
         judged += 1
-        assert report.verdicts["R1"] == "I" or is_whole(path.read_bytes(), data, name, len(rows))
+        assert report.verdicts["R1"] == "I" or is_whole(path.read_bytes(), data, name)
     assert judged or name in ("a.mf4", "a.h5", "a.mat", "a.blf")
 
 
-def is_whole(cut, data, name, count):
+def is_whole(cut, data, name):
     """Whether it was cut just between two messages, which nothing in such a log can tell."""
     if name in ("a.asc", "a.log"):
         return cut.endswith(b"\n")
-    size = {"a.ulg": 18, "a.bin": 16, "a.tlog": len(data) // count}[name]
+    size = {"a.ulg": 18, "a.bin": 16, "a.tlog": len(data) // len(STEADY)}[name]
     return (len(data) - len(cut)) % size == 0
 
 
 @pytest.mark.parametrize("name", ["a.bin", "a.tlog"])
 def test_what_is_damaged_in_the_middle_is_an_outage(tmp_path, name):
-    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
-    path, topic = written(tmp_path / "a", name, rows)
-    spec, data = spec_of(topic, name), bytearray(path.read_bytes())
+    path, spec = written(tmp_path / "a", name, STEADY)
+    data = bytearray(path.read_bytes())
     middle = len(data) // 2
     data[middle : middle + 40] = bytes(40)
     path.write_bytes(data)
     log = messages_of(str(path))
-    stamps = [message[1] for message in log.read({f"/{topic}"})]
+    stamps = [message[1] for message in log.read({f"/{FORMS[name][1]}"})]
     (lost,) = log.outages
     assert (lost.since, lost.until) == max(pairwise(stamps), key=lambda pair: pair[1] - pair[0])
     report = spec.evaluate(path)
@@ -142,18 +138,16 @@ def test_what_is_damaged_in_the_middle_is_an_outage(tmp_path, name):
     assert any(
         "no message at byte" in one.remark or "no packet" in one.remark for one in report.health
     )
-    rows[3] = (rows[3][0], 7.0, 0)
-    data[: len(path.read_bytes())] = written(tmp_path / "a", name, rows)[0].read_bytes()
+    rows = [*STEADY[:3], (STEADY[3][0], 7.0, 0), *STEADY[4:]]
+    data[:] = written(tmp_path / "a", name, rows)[0].read_bytes()
     data[middle : middle + 40] = bytes(40)
     path.write_bytes(data)
     assert spec.evaluate(path).verdicts["R1"] == "F"
 
 
 def test_what_the_logger_dropped_is_an_outage(tmp_path):
-    pytest.importorskip("pyulog")
-    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
-    spec = spec_of("drive", "a.ulg")
-    path = write_ulog(tmp_path / "a.ulg", rows, drops=[(100, 30)])
+    path, spec = written(tmp_path, "a.ulg", STEADY)
+    write_ulog(path, STEADY, drops=[(100, 30)])
     report = spec.evaluate(path)
     assert report.verdicts["R1"] == "I"
     [found] = [one for one in report.health if one.remark == "the logger dropped messages"]
@@ -164,8 +158,7 @@ def test_what_the_logger_dropped_is_an_outage(tmp_path):
 @pytest.mark.parametrize("drops", [[], [(100, 30)]])
 def test_what_one_of_several_files_lost_is_lost_of_their_recording(tmp_path, drops):
     pytest.importorskip("pyulog")
-    rows = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
-    files = [write_ulog(tmp_path / "a.ulg", rows, drops=drops), tmp_path / "b.csv"]
+    files = [write_ulog(tmp_path / "a.ulg", STEADY, drops=drops), tmp_path / "b.csv"]
     files[1].write_text("t,lamp\n1,true\n1.2,true\n")
     spec = "signal drive.speed : real\nsignal lamp : bool\nrequirement {}\n  always {}"
     found = [
@@ -177,24 +170,22 @@ def test_what_one_of_several_files_lost_is_lost_of_their_recording(tmp_path, dro
 
 @pytest.mark.parametrize("name", ["a.ulg", "a.mf4", "a.h5", "a.mat", "a.blf"])
 def test_a_log_whose_head_is_damaged_is_told(tmp_path, name):
-    path, topic = written(tmp_path / "a", name, rows_at_random(1))
-    data = path.read_bytes()
-    path.write_bytes(bytes(64) + data[64:])
+    path, spec = written(tmp_path / "a", name, FEW)
+    path.write_bytes(bytes(64) + path.read_bytes()[64:])
     with pytest.raises(TraceError, match=re.escape(name)):
-        spec_of(topic, name).evaluate(path)
+        spec.evaluate(path)
 
 
 def test_messages_without_a_stamp_are_lost_and_those_of_other_topics_are_not(tmp_path):
-    pytest.importorskip("pyulog")
-    path = write_ulog(tmp_path / "a.ulg", [(1_000_000, 0.0, 0), (0, 9.0, 0), (1_001_000, 0.0, 0)])
-    report = spec_of("drive", "a.ulg").evaluate(path)
+    rows = [(1_000_000, 0.0, 0), (0, 9.0, 0), (1_001_000, 0.0, 0)]
+    path, spec = written(tmp_path, "a.ulg", rows)
+    report = spec.evaluate(path)
     assert any(one.remark == "messages have no stamp" for one in report.health)
     assert report.verdicts["R1"] == "I"
 
 
 def test_units_that_a_log_says_are_compared(tmp_path):
-    pytest.importorskip("can")
-    path = write_can(tmp_path / "a.asc", rows_at_random(1))
+    path, _ = written(tmp_path, "a.asc", FEW)
     for unit, why in (("rad", "is in [m/s]"), ("km/h", "judged as it is")):
         text = "spec s\nsignal Drive.speed : real [{0}]\nrequirement R\n always Drive.speed < 1 {0}"
         spec = rvmon.loads(text.format(unit))
@@ -204,12 +195,10 @@ def test_units_that_a_log_says_are_compared(tmp_path):
 
 
 def test_a_database_is_named_in_a_binding_or_lies_beside(tmp_path):
-    pytest.importorskip("can")
-    path = write_can(tmp_path / "a.asc", rows_at_random(1))
+    path, spec = written(tmp_path, "a.asc", FEW)
     folder = tmp_path / "elsewhere"
     folder.mkdir()
     (tmp_path / "car.dbc").rename(folder / "car.dbc")
-    spec = spec_of("Drive", "a.asc")
     with pytest.raises(TraceError, match=r"put the database \(\.dbc\) beside it"):
         spec.evaluate(path)
     (tmp_path / "b.toml").write_text('definitions = ["elsewhere/car.dbc"]\n')
@@ -218,7 +207,7 @@ def test_a_database_is_named_in_a_binding_or_lies_beside(tmp_path):
 
 def test_a_group_of_mdf_that_has_fewer_records_than_it_counts_is_told(tmp_path):
     asammdf = pytest.importorskip("asammdf")
-    path = write_mdf(tmp_path / "a.mf4", [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)])
+    path, spec = written(tmp_path, "a.mf4", FEW)
     with asammdf.MDF(path) as file:
         counted = file.groups[0].channel_group.address + 80
     data = bytearray(path.read_bytes())
@@ -226,7 +215,7 @@ def test_a_group_of_mdf_that_has_fewer_records_than_it_counts_is_told(tmp_path):
     struct.pack_into("<Q", data, counted, 7)
     path.write_bytes(data)
     with pytest.raises(TraceError, match="holds 6 records of a group, and says itself that it has"):
-        spec_of("drive", "a.mf4").evaluate(path)
+        spec.evaluate(path)
 
 
 @pytest.mark.slow
@@ -241,9 +230,8 @@ def test_numbers_to_scale_are_the_nearest_doubles(tmp_path):
 
 def test_a_packet_whose_kind_is_damaged_is_lost(tmp_path):
     dialect = pytest.importorskip("pymavlink.dialects.v20.ardupilotmega")
-    rows = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
-    path = write_tlog(tmp_path / "a.tlog", rows)
-    data, spec = path.read_bytes(), spec_of("VFR_HUD", "a.tlog")
+    path, spec = written(tmp_path, "a.tlog", FEW)
+    data = path.read_bytes()
     assert spec.evaluate(path).verdicts["R1"] == "P"
     size = len(data) // 6
     strange = [(data[: 8 + 7] + b"\x60\xea\x00" + data[8 + 10 : size]) for _ in range(2)]
@@ -262,10 +250,9 @@ def test_a_packet_whose_kind_is_damaged_is_lost(tmp_path):
 @pytest.mark.parametrize("ending", ["asc", "trc"])
 def test_a_line_of_can_that_cannot_be_read_is_lost(tmp_path, ending):
     """The library passes over it; what it said may have failed, and at its neighbours' stamps."""
-    pytest.importorskip("can")
-    rows = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
-    path = write_can(tmp_path / f"a.{ending}", rows)
-    spec, text = spec_of("Drive", "a.asc"), path.read_text()
+    _, spec = written(tmp_path, "a.asc", FEW)
+    path = write_can(tmp_path / f"a.{ending}", FEW)
+    text = path.read_text()
     frames = [line for line in text.splitlines() if re.search(r" 0*64 .*3F", line)]
     assert len(frames) == 6
     assert spec.evaluate(path).verdicts["R1"] == "P"
@@ -284,8 +271,7 @@ def test_a_line_of_can_that_cannot_be_read_is_lost(tmp_path, ending):
 
 def test_lines_of_can_that_are_no_frames_are_no_loss(tmp_path):
     """Comments, statistics, the state of the chip; an error frame says that nothing came."""
-    pytest.importorskip("can")
-    path = write_can(tmp_path / "a.asc", [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(3)])
+    path, spec = written(tmp_path, "a.asc", FEW[:3])
     *head, first, second, third, end = path.read_text().splitlines()
     others = [
         "// a comment",
@@ -296,12 +282,9 @@ def test_lines_of_can_that_are_no_frames_are_no_loss(tmp_path):
         "",
     ]
     path.write_text("\n".join([*head, first, *others, second, third, end]) + "\n")
-    report = spec_of("Drive", "a.asc").evaluate(path)
+    report = spec.evaluate(path)
     assert report.verdicts["R1"] == "P"
     assert not any("cannot be read" in one.remark for one in report.health)
-
-
-CAN_ROWS = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
 
 
 @pytest.mark.parametrize(
@@ -319,11 +302,11 @@ CAN_ROWS = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
 )
 def test_what_a_log_of_can_says_of_its_bus(tmp_path, ending, line, verdict):
     """Frames that found no room are lost; in an error frame nobody said anything."""
-    pytest.importorskip("can")
-    path = write_can(tmp_path / f"a.{ending}", CAN_ROWS)
+    _, spec = written(tmp_path, "a.asc", FEW)
+    path = write_can(tmp_path / f"a.{ending}", FEW)
     lines = path.read_text().splitlines()
     path.write_text("\n".join([*lines[:-3], line, *lines[-3:]]) + "\n")
-    report = spec_of("Drive", "a.asc").evaluate(path)
+    report = spec.evaluate(path)
     assert report.verdicts["R1"] == verdict
     lost = [one.remark for one in report.health if "frames were lost" in one.remark]
     assert bool(lost) is (verdict == "I")
@@ -331,16 +314,14 @@ def test_what_a_log_of_can_says_of_its_bus(tmp_path, ending, line, verdict):
 
 @pytest.mark.parametrize("kinds", [{1: 125}, {2: 126}, {1: 125, 4: 126}, {6: 125}])
 def test_what_a_binary_log_of_can_lost_is_unknown(tmp_path, kinds):
-    pytest.importorskip("can")
-    path = write_can(tmp_path / "a.blf", CAN_ROWS, kinds)
-    report = spec_of("Drive", "a.blf").evaluate(path)
+    path, spec = written(tmp_path, "a.blf", FEW)
+    report = spec.evaluate(write_can(path, FEW, kinds))
     assert [one.remark for one in report.health if "frames were lost" in one.remark]
     assert report.verdicts["R1"] == "I"
 
 
 def test_states_have_their_names_and_named_values_of_a_number_are_unknown(tmp_path):
-    pytest.importorskip("can")
-    path = write_can(tmp_path / "a.asc", [(1_000_000, 0.5, 1), (1_001_000, 0.25, 7)])
+    path, _ = written(tmp_path, "a.asc", [(1_000_000, 0.5, 1), (1_001_000, 0.25, 7)])
     text = (tmp_path / "car.dbc").read_text()
     (tmp_path / "car.dbc").write_text(text + 'VAL_ 100 mode 0 "idle" 1 "busy" ;\n')
     content = [dict(one) for _, _, one in messages_of(str(path)).read({"/Drive"})]
@@ -386,3 +367,33 @@ def test_what_points_down_is_no_height_and_no_climbing(tmp_path, says):
     told = says(1, "init", tmp_path / "a.tlog", "--for", tmp_path / "a.rv")
     assert 'value = "vz"' in told.out.partition("[bind.speed_z]")[2]
     assert "`climb_rate` is left open" in told.err
+
+
+NAMED_ALIKE = """VERSION ""
+BS_:
+BU_: ECU
+BO_ {number} Drive: 2 ECU
+ SG_ {signal} : 0|8@1+ ({scale},0) [0|0] "" ECU
+"""
+FRAMES_OF_TWO = (
+    "(1.0) can0 064#0500\n(1.5) can0 0C8#1E00\n(2.0) can0 064#0700\n(2.5) can0 0C8#2000\n"
+)
+
+
+def test_messages_of_one_name_are_told_apart_by_their_identifiers(tmp_path):
+    pytest.importorskip("can")
+    (tmp_path / "a.dbc").write_text(NAMED_ALIKE.format(number=100, signal="speed", scale=1))
+    (tmp_path / "b.dbc").write_text(NAMED_ALIKE.format(number=200, signal="temp", scale=2))
+    (tmp_path / "a.log").write_text(FRAMES_OF_TWO)
+    spec = rvmon.loads(
+        "spec s\nsignal Drive_064.speed, Drive_0C8.temp : real\n"
+        "requirement R1\n  always Drive_064.speed < 10\n"
+        "requirement R2\n  always Drive_0C8.temp > 59\n"
+    )
+    report = spec.evaluate(tmp_path / "a.log")
+    assert report.verdicts == {"R1": "P", "R2": "P"}
+    plain = rvmon.loads("signal Drive.speed : real\nrequirement R1\n  always Drive.speed < 9")
+    with pytest.raises(rvmon.TraceError, match=r"did you mean `/Drive_064\.speed`"):
+        plain.evaluate(tmp_path / "a.log")
+    (tmp_path / "b.dbc").unlink()
+    assert plain.evaluate(tmp_path / "a.log").verdicts == {"R1": "P"}

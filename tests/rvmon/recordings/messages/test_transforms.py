@@ -1,13 +1,14 @@
 """Frames in frames, composed of what was heard; patterns of topics; comparisons of elements."""
 
 import math
+import random
 
 import pytest
 from tests.tools.bags import START, write_ros1
 
 import rvmon
 from rvmon.errors import RvmonError, TraceError
-from rvmon.recordings.messages.transforms import pairs_asked
+from rvmon.recordings.messages.transforms import Transform, pairs_asked
 
 pytest.importorskip("rosbags")
 
@@ -67,10 +68,21 @@ def test_a_frame_is_found_in_another_by_all_that_lies_between(tmp_path):
     )
     assert values(path) == [(2, 7.0), (4, 5.0), (5, 2.0)]
     assert values(path, "tf.tool.base.translation.x") == [(0, -1.0)]
-    assert values(path, "tf.odom.map.translation.y") == [(1, 10.0), (5, 0.0)]
-    assert values(path, "tf.odom.map.rotation.z") == [(1, -0.707107), (5, 0.0)]
     with pytest.raises(TraceError, match="holds no sample"):
         values(path, "tf.map.elsewhere.translation.x")
+
+
+def test_the_way_there_and_back_is_none():
+    rng = random.Random(4)
+    for _ in range(200):
+        turn = [rng.gauss(0, 1) for _ in range(4)]
+        size = math.hypot(*turn)
+        one = Transform(
+            tuple(rng.uniform(-5, 5) for _ in range(3)), tuple(part / size for part in turn)
+        )
+        none = one.then(one.back())
+        assert max(map(abs, none.shift)) < 1e-12
+        assert abs(abs(none.turn[3]) - 1) < 1e-12
 
 
 def test_a_binding_reads_a_heading_and_a_circle_of_frames_is_nowhere(tmp_path):
