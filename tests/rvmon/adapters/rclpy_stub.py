@@ -32,25 +32,8 @@ class QoSProfile:
         return self
 
 
-@dataclass
-class SubscriptionEventCallbacks:
-    message_lost: object = None
-    incompatible_qos: object = None
-
-
 class ClockType(IntEnum):
     STEADY_TIME = 3
-
-
-@dataclass
-class Clock:
-    clock_type: ClockType
-
-
-@dataclass
-class Parameter:
-    name: str
-    value: object = None
 
 
 @dataclass
@@ -146,12 +129,12 @@ def install(monkeypatch):
     modules = {
         "rclpy": {
             "Context": lambda: types.SimpleNamespace(try_shutdown=lambda: None),
-            "Parameter": Parameter,
+            "Parameter": lambda name, value: types.SimpleNamespace(name=name, value=value),
             "create_node": lambda *_, parameter_overrides, **__: Node(graph, parameter_overrides),
             "init": lambda **_: None,
         },
-        "rclpy.clock": {"Clock": Clock, "ClockType": ClockType},
-        "rclpy.event_handler": {"SubscriptionEventCallbacks": SubscriptionEventCallbacks},
+        "rclpy.clock": {"Clock": types.SimpleNamespace, "ClockType": ClockType},
+        "rclpy.event_handler": {"SubscriptionEventCallbacks": types.SimpleNamespace},
         "rclpy.executors": {"SingleThreadedExecutor": lambda **_: Executor(graph)},
         "rclpy.qos": {
             "DurabilityPolicy": DurabilityPolicy,

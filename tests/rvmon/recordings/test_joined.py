@@ -152,30 +152,31 @@ def test_tables_in_memory_are_joined():
     assert spec.evaluate(merged, nan="no update").verdicts["R"].value == "P"
 
 
-def test_no_piece_is_cut_out_of_several_files(tmp_path, capsys, says):
-    for name in "ab":
-        (tmp_path / f"{name}.csv").write_text(f"t,{name}\n0,1\n")
-    (tmp_path / "s.rv").write_text("signal a : real\nrequirement R\n  always a < 9\n")
-    both = f"{tmp_path / 'a.csv'} + {tmp_path / 'b.csv'}"
-    spec, piece = str(tmp_path / "s.rv"), str(tmp_path / "c.csv")
-    words = ["clip", spec, both, "--from", "0", "--to", "1", "-o", piece]
-    assert "clip each of them, by --from" in says(2, *words).err
-    assert main(["clip", spec, both, "R#1", "--reproducer", str(tmp_path / "c.rvcase")]) == 2
-    assert "clip each of them, by --from" in capsys.readouterr().err
-    assert main(["init", both, "--for", spec]) == 2
-    assert "of several files bindings are proposed one by one" in capsys.readouterr().err
-
-
-def test_evidence_of_several_files_is_of_all_of_them(tmp_path, capsys, monkeypatch, says):
+@pytest.fixture
+def both(tmp_path, monkeypatch):
+    """Two files in a folder with a specification."""
     monkeypatch.chdir(tmp_path)
     for name in "ab":
         (tmp_path / f"{name}.csv").write_text(f"t,{name}\n0,1\n")
     (tmp_path / "s.rv").write_text("signal a, b : real\nrequirement R\n  always a <= b\n")
-    assert main(["run", "s.rv", "a.csv", "b.csv", "--join", "--evidence", "e.zip"]) == 0
+    return "a.csv + b.csv"
+
+
+def test_no_piece_is_cut_out_of_several_files(both, says):
+    clip = ["clip", "s.rv", both]
+    for words, told in (
+        ([*clip, "--from", "0", "--to", "1", "-o", "c.csv"], "clip each of them, by --from"),
+        ([*clip, "R#1", "--reproducer", "c.rvcase"], "clip each of them, by --from"),
+        (["init", both, "--for", "s.rv"], "of several files bindings are proposed one by one"),
+    ):
+        assert told in says(2, *words).err
+
+
+def test_evidence_of_several_files_is_of_all_of_them(tmp_path, both, says):
+    says(0, "run", "s.rv", "a.csv", "b.csv", "--join", "--evidence", "e.zip")
     assert "evaluated again: 1 of 1" in says(0, "evidence", "e.zip").out
     (tmp_path / "b.csv").write_text("t,b\n0,2\n")
-    assert main(["evidence", "e.zip"]) == 1
-    assert "a.csv + b.csv is not the recording that was evaluated" in capsys.readouterr().out
+    assert f"{both} is not the recording that was evaluated" in says(1, "evidence", "e.zip").out
 
 
 def test_a_specification_is_begun_from_several_files(tmp_path):

@@ -62,18 +62,13 @@ def test_each_field_of_the_standard_packages_is_listed():
 @each(
     ("type_name", "leaf", "units"),
     [
-        ("nav_msgs/msg/Odometry", "pose.pose.position.z", "m"),
         ("nav_msgs/msg/Odometry", "twist.twist.linear.x", "m/s"),
         ("nav_msgs/Odometry", "twist.twist.angular.z", "rad/s"),
-        ("sensor_msgs/msg/NavSatFix", "latitude", "deg"),
-        ("sensor_msgs/msg/Imu", "linear_acceleration.x", "m/s^2"),
         ("sensor_msgs/msg/JointState", "position[]", "rad m"),
         ("sensor_msgs/msg/BatteryState", "percentage", ""),
         ("mavros_msgs/msg/VfrHud", "heading", "deg"),
         ("mavros_msgs/msg/SysStatus", "voltage_battery", "mV"),
-        ("px4_msgs/msg/VehicleLocalPosition", "vx", "m/s"),
         ("px4_msgs/msg/VehicleLocalPosition", "heading", "rad"),
-        ("px4_msgs/msg/BatteryStatus", "voltage_v", "V"),
         ("control_msgs/msg/JointTrajectoryControllerState", "error.positions[]", "rad m"),
         ("trajectory_msgs/msg/MultiDOFJointTrajectoryPoint", "accelerations[].linear.x", "m/s^2"),
     ],

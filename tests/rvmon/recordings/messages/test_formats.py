@@ -75,15 +75,10 @@ def test_tables_in_tables_and_arrays_of_flatbuffers_are_read(tmp_path):
     pose, later = {"x": 1.5, "frame": "map"}, {"x": 0.0, "frame": "odom"}
     sent = [
         ("/arm", START, {"pose": pose, "ranges": [3.0, 0.5], "on": True}),
-        (
-            "/arm",
-            START + 10**9,
-            {"pose": later, "ranges": [2.0], "on": False},
-        ),
+        ("/arm", START + 10**9, {"pose": later, "ranges": [2.0], "on": False}),
     ]
     path = write_flatbuffer_mcap(tmp_path / "a.mcap", sent)
-    spec = tmp_path / "a.rv"
-    spec.write_text(
+    spec = rvmon.loads(
         "signal x, near : real\nsignal on : bool\nsignal frame : {map, odom}\nrequirement R\n"
         "  always ((on -> x == 1.5 and near == 0.5) and (frame == odom -> x == 0 and near == 2))\n"
     )
@@ -92,13 +87,9 @@ def test_tables_in_tables_and_arrays_of_flatbuffers_are_read(tmp_path):
     binding.write_text(
         "".join(f'[bind.{name}]\ntopic = "/arm"\nvalue = "{own}"\n' for name, own in values.items())
     )
-    report = rvmon.load(spec).evaluate(path, binding=binding)
-    assert report.verdicts["R"] == "P"
-    assert [one.t for one in samples_of(spec, path, binding)] == [START, START + 10**9]
-
-
-def samples_of(spec, path, binding):
-    return list(rvmon.load(spec).recording(path, binding=binding))
+    spec = spec.reading(binding=binding)
+    assert spec.evaluate(path).verdicts["R"] == "P"
+    assert [one.t for one in spec.recording(path)] == [START, START + 10**9]
 
 
 @pytest.mark.slow
