@@ -49,7 +49,7 @@ def test_each_file_says_what_it_says_at_its_own_instants(tmp_path):
         {
             "pose.csv": "t,x,q[0],q[1],Odd name\n0,1,,,7\n1,2,0.5,\n",
             "speed.csv": "t,speed\n0.5,0.25\n1,nan\n",
-            "battery.csv": "t,armed,count\n1,0,3\n1.5,1,\n",
+            "battery.csv": "t,armed,count\n1,0,3\n1.5,true,\n",
             "mode.csv": "t,mode\n2,fly\n",
         },
     )
