@@ -321,6 +321,10 @@ def test_several_recordings_get_a_list(tmp_path):
     assert re.findall(r">(\d)</td>", rows["D1"]) == ["1", "2", "0", "0"]
     assert "severity: high" in rows["D3"]
     assert re.search(r'data-name="week/b/bad.csv d1 d2"', index)
+    assert "in <code>week/" in index
+    apart = [replace(reports[0], trace=f"{name}/x.csv") for name in "ab"]
+    write_run_pages(tmp_path, spec.checked, apart, lambda _: [], str)
+    assert "in <code>" not in (tmp_path / "index.html").read_text()
 
 
 def test_the_place_of_a_requirement_is_that_of_the_line_below_it():
