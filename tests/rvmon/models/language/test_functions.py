@@ -69,6 +69,7 @@ def test_what_functions_compute(functions, update, holds):
         ("S f() { return t; }", "f()", "TA016"),
         ("void f() { clock y; }", "f()", "TA004"),
         ("void f() { int[0,1] k; int[0,1] k; }", "f()", "TA003"),
+        ("int[0,9] f() { return missing; }", "v = f() + f()", "TA002"),
         ("", "t = a", "TA004"),
         ("", "t.r = 1", "TA002"),
     ],

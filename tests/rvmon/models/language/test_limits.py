@@ -75,12 +75,6 @@ def test_each_is_one_finding(text, code, message, monkeypatch):
     assert message in diagnostic.message
 
 
-def test_a_name_whose_declaration_is_wrong_is_told_once():
-    with pytest.raises(ModelError) as caught:
-        loads_network("int v automaton A { location a start a edge a -> a when v == 1 do v = 0 }")
-    assert [d.code for d in caught.value.diagnostics] == ["TA005"]
-
-
 @pytest.mark.slow
 def test_a_wide_quantifier_is_decided():
     network = loads_network("int[0,9] v " + A)
@@ -100,14 +94,6 @@ def test_the_same_mistake_at_many_places_is_told_once():
     (found,) = caught.value.diagnostics
     assert found.message == "two things named `x` (5 places)"
     assert [label.span.start for label in found.spans] == [9, 6, 12, 15]
-
-
-@pytest.mark.slow
-def test_xml_is_read_in_one_go():
-    for text in ("<nta><declaration>" + "\n" * 300_000 + "</declaration></nta>",
-                 "<nta><!-- ü -->" + "<a/>" * 50_000 + "</nta>"):  # fmt: skip
-        with pytest.raises(ModelError, match="there is no automaton"):
-            loads_network(text)
 
 
 def test_a_byte_order_mark_is_passed_over(tmp_path):

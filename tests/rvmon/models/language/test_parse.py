@@ -46,15 +46,20 @@ bool b = true true;
 <system>A1 = A( ; A2 = A(); system A1, A2;</system></nta>"""
 
 
-def lines_of(text):
+def places_of(text):
     with pytest.raises(ModelError) as raised:
         loads_network(text)
-    starts = [one.spans[0].span.start for one in raised.value.diagnostics]
-    return [text.count("\n", 0, start) + 1 for start in starts]
+    spans = [one.spans[0].span for one in raised.value.diagnostics]
+    return [(span.line, span.column) for span in spans]
+
+
+def lines_of(text):
+    return [line for line, _ in places_of(text)]
 
 
 def test_every_part_of_a_text_tells_its_mistake():
-    assert lines_of(TEXT) == [3, 5, 9, 13, 14, 15, 18, 20]
+    found = " ".join(f"{line}:{column}" for line, column in places_of(TEXT))
+    assert found == "3:9 5:19 9:9 13:31 14:27 15:15 18:1 20:1"
 
 
 def test_every_part_of_declarations_tells_its_mistake():

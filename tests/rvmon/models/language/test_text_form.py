@@ -158,6 +158,7 @@ A = "automaton A { location a start a } "
         (A + "query: E<> A == 1", "TA004"),
         ("automaton Q { location a start a } A = Q() system A query: E<> Q", "TA004"),
         ("int v " + A, "TA005"),
+        ("int v automaton A { location a start a edge a -> a when v == 1 do v = 0 }", "TA005"),
         ("int[0,1] v const int N = v " + A, "TA006"),
         ("int[0,1] v = 2 " + A, "TA007"),
         ("int[3,1] v " + A, "TA007"),
@@ -203,29 +204,12 @@ automaton A {
   edge a -> c when x - x < 2
   edge a -> a do w = 1
 }"""
-UNREADABLE = """network n
-clock x
-automaton A {
-  location a, b
-  urgent location c
-  start a
-  edge a -> c when x > > 3
-  edge c -> a when x >= 1
-       do x = = 0
-  edge c -> a when x < 9
-  edge c -> a sometimes
-}
-query Q1: E<> A.c
-query Q2: E<> A.c and
-query Q3: E<> (A.c
-"""
 
 
 @pytest.mark.parametrize(
     ("text", "found"),
     [
         (MISTAKEN, "3:1:10 5:2:1 2:4:24 2:5:9 2:6:13 2:7:18"),
-        (UNREADABLE, "1:4:13 1:7:24 1:9:15 1:12:1 1:15:9 1:16:1"),
         # Those of a template are told once.
         ("automaton T(const int[1,10] i) { location a start b }", "2:1:51"),
     ],

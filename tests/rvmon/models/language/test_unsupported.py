@@ -66,11 +66,6 @@ def test_foreign_queries_are_called_by_their_name(formula, message):
     assert network.queries == ()
 
 
-def test_what_changes_no_run_is_passed_over():
-    charts = "system T; progress { 1; } gantt { T: 1 -&gt; 2; }"
-    assert loads_network(model(system=charts)).warnings == ()
-
-
 def test_steps_may_stand_before_the_variable():
     """`++i` is `i++`."""
     network, same = (
@@ -80,17 +75,16 @@ def test_steps_may_stand_before_the_variable():
 
 
 def test_constants_are_computed_and_copied():
-    network = loads_network("""<nta><declaration>
-    int half(int n) { int k = n; while (k * 2 &gt; n) k--; return k; }
+    network = loads_network(
+        model("""int half(int n) { int k = n; while (k * 2 &gt; n) k--; return k; }
     const int N = half(7) + 1;
     typedef struct { int[0,9] a; int[0,9] b[2]; } pair;
     const pair one = {N, {1, 2}};
     const int[0,9] row[2] = {half(4), N};
     const pair both[2] = {one, {0, row}};
     pair first = both[1];
-    int[0,N] n;
-    </declaration><template><name>A</name><location id="a"/><init ref="a"/></template>
-    <system>system A;</system></nta>""")
+    int[0,N] n;""")
+    )
     assert [(v.name, v.high, v.initial) for v in network.variables] == [
         ("first.a", 9, 0),
         ("first.b[0]", 9, 2),
@@ -118,8 +112,7 @@ def test_constants_are_computed_and_copied():
 def test_what_is_no_constant_is_refused(declared, code):
     """A constant depends on no variable, and an initial value has the parts of its type."""
     with pytest.raises(ModelError) as raised:
-        loads_network(f"""<nta><declaration>{declared}</declaration><template><name>A</name>
-        <location id="a"/><init ref="a"/></template><system>system A;</system></nta>""")
+        loads_network(model(declared))
     assert raised.value.diagnostics[0].code == code
 
 
@@ -153,12 +146,6 @@ def test_a_function_sees_what_is_declared_before_it():
     assert verify(network, "A[] not deadlock").holds
 
 
-def test_a_function_that_is_wrong_is_told_once():
-    with pytest.raises(ModelError) as raised:
-        loads_network(model("int f() { return missing; }", guard="f() == f()"))
-    assert [one.code for one in raised.value.diagnostics] == ["TA002"]
-
-
 def test_an_index_outside_its_array_is_told_when_a_run_gets_there():
     declared = "int a[2]; const int b[2] = {1, 2}; const int N = -1;"
     network = loads_network(model(declared, guard="N &gt;= 0 and b[N] == a[N]"))
@@ -169,8 +156,3 @@ def test_an_index_outside_its_array_is_told_when_a_run_gets_there():
     assert raised.value.diagnostics[0].spans[0].span.text == "b[N + 3]"
     with pytest.raises(ModelError, match="index 2 is outside the array"):
         loads_network(model("clock x[2];", guard="x[2] &gt; 0"))
-
-
-def test_a_query_that_is_a_comment_asks_nothing():
-    queries = "<query><formula>// later: A[] true</formula></query>"
-    assert not loads_network(model(queries=queries)).warnings

@@ -118,7 +118,9 @@ def test_what_changes_no_run_is_passed_over():
     body = ONE.replace("</location>", '<label kind="exponentialrate">1</label></location>') + edge(
         testcode="x"
     ).replace("</transition>", '<nail x="1" y="2"/></transition>')
-    assert loads_network(wrap(body)).warnings == ()
+    charts = "system T; progress { 1; } gantt { T: 1 -&gt; 2; }"
+    queries = "<query><formula>// later: A[] true</formula></query>"
+    assert loads_network(wrap(body, system=charts, queries=queries)).warnings == ()
 
 
 def test_unit_weight_and_label_come_from_comments():
@@ -222,8 +224,10 @@ def branching(*weights):
 
 
 @pytest.mark.slow
-def test_a_branch_point_is_a_choice_with_weights():
-    network = loads_network(branching("N - 3", 3, 0))
+@pytest.mark.parametrize("weights", [("N - 3", 3, 0), (0.25, 0.75, 0.0)])
+def test_a_branch_point_is_a_choice_with_weights(weights):
+    """Also in fractions: nothing but odds depends on them, and such a model is searched as any."""
+    network = loads_network(branching(*weights))
     assert [edge.weight for edge in network.automata[0].edges] == [0.25, 0.75]
     assert verify(network, "E<> T.p1 and v == 4 and x == 2").holds
     assert not verify(network, "E<> (T.p0 and v != 3) or T.p2 or (not T.a and x < 2)").holds

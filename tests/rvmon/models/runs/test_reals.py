@@ -144,19 +144,6 @@ def test_nothing_is_proved_of_them():
             asked_on(plain, query)[1]
 
 
-def test_branches_may_share_out_runs_in_fractions():
-    """Of weights nothing but odds depends: such a model is searched as any other."""
-    label = '<label kind="probability">{}</label>'
-    text = """<nta><template><name>A</name><location id="a"/><location id="b"/><location id="c"/>
-    <branchpoint id="p"/><init ref="a"/><transition><source ref="a"/><target ref="p"/></transition>
-    <transition><source ref="p"/><target ref="b"/>{}</transition>
-    <transition><source ref="p"/><target ref="c"/>{}</transition></template>
-    <system>system A;</system></nta>""".format(label.format("0.25"), label.format("0.75"))
-    network = loads_network(text)
-    assert [edge.weight for edge in network.automata[0].edges] == [0.25, 0.75]
-    assert verify(network, "E<> A.b").holds
-
-
 def test_a_model_with_fractions_is_read_back():
     network = loads_network(MODEL)
     again = loads_network(uppaal_xml(network))

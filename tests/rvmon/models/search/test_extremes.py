@@ -15,7 +15,6 @@ from rvmon.models.network.expressions import ClockCompare, ClockOp, Constant
 from rvmon.models.runs.exact_times import Rules
 from rvmon.models.search.budget import Budget
 from rvmon.models.search.extremes import FARTHEST, extremes
-from rvmon.models.search.verify import verify
 
 LAMP = """
 clock x, y
@@ -110,12 +109,6 @@ def test_values_are_those_of_the_regions(first):
 def test_what_has_no_end_is_refused(query, message):
     with pytest.raises(ModelError, match=message):
         asked(LAMP, query)
-
-
-def test_a_value_is_no_decision():
-    """The search refuses the query, the command answers it, in words and as JSON."""
-    with pytest.raises(ModelError, match="no decision"):
-        verify(loads_network(LAMP), "sup: n")
 
 
 def test_the_command_answers(tmp_path, capsys, says):

@@ -8,7 +8,6 @@ from rvmon.models.language.elaborate import asked_on
 from rvmon.models.language.load import loads_network
 from rvmon.models.runs import Window
 from rvmon.models.runs.statistics import sample
-from rvmon.models.search.budget import Policy
 from rvmon.models.search.verify import verify
 
 PAIR = """
@@ -44,14 +43,6 @@ urgent broadcast chan c
 clock x
 automaton A { location a location b start a edge a -> b on c! }
 automaton B { location a start a edge a -> a on c? }
-"""
-SET = """
-clock x, y
-automaton A { location a location b start a edge a -> b when x <= 1 do x = 5 }
-"""
-STRICT = """
-clock x
-automaton A { location a location b start a edge a -> b when x > 1 and x < 2 }
 """
 ARRAYS = """
 chan c[3]
@@ -115,20 +106,6 @@ RULES = {
         BLOCKED.format(update="do x = 0"),
         {"E<> A.b": True},
     ),
-    "a clock may be set to a number, and runs on from there": (
-        SET,
-        {
-            "E<> A.b and x == 5 and y <= 1": True,
-            "E<> A.b and x < 5": False,
-            "E<> A.b and x == 7 and y > 3": False,
-            "E<> A.b and x == 7 and y == 3": True,
-        },
-    ),
-    "strict bounds exclude the number itself": (
-        STRICT,
-        {"E<> A.b and x <= 1": False, "E<>[<=1] A.b": False, "E<>[<=2] A.b": True},
-    ),
-    "bounds may leave nothing": (STRICT.replace("x < 2", "x <= 1"), {"E<> A.b": False}),
     "elements chosen by a variable are found as if they were named": (
         ARRAYS,
         {"A[] (A.b imply B.got == 2)": True, "A[] (A.b imply list[who] == 0)": True},
@@ -159,21 +136,6 @@ def test_a_run_that_is_drawn_leaves_a_committed_location():
     network = loads_network(TWO.format(kind="committed"))
     leaves = asked_on(network, "Pr[<=9; 20](<> A.b)")[1]
     assert sample(network, leaves).value == 1
-
-
-def test_weights_below_one_make_the_likeliest_run():
-    """The likeliest run avoids an improbable edge even if more steps are needed."""
-    network = loads_network("""
-    automaton A {
-      location a location b location c
-      start a
-      edge a -> c weight 0.1
-      edge a -> b weight 0.9
-      edge b -> c weight 0.5
-    }
-    """)
-    steps = {policy: len(verify(network, "E<> A.c", policy=policy).run.steps) for policy in Policy}
-    assert steps == {Policy.SHORTEST: 1, Policy.FASTEST: 1, Policy.LIKELIEST: 2}
 
 
 def test_a_step_waits_for_those_of_higher_priority():

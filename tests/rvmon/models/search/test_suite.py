@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
+from tests.tools.each import each
 
-from rvmon.errors import ModelError
 from rvmon.models.language.load import load_network, loads_network
 from rvmon.models.runs.exact_times import Rules
 from rvmon.models.search.budget import Budget
@@ -46,48 +46,42 @@ def test_what_is_said_to_be_covered_is(model, criterion):
     assert len(suite.runs) < suite.covered
 
 
-def test_missing_items_are_those_that_cannot_be_reached():
+@each(
+    ("criterion", "missing"),
+    [
+        (Criterion.LOCATIONS, ["A.c"]),
+        (Criterion.EDGES, ["A: a → c", "A: c → b"]),
+        # The pairs: by an edge that cannot be taken, and by one that comes too early for the other.
+        (
+            Criterion.EDGE_PAIRS,
+            [
+                "A: a → c, then c → b",
+                "A: c → b, then b → d",
+                "A: b → d, then d → a",
+                "A: d → a, then a → c",
+            ],
+        ),
+    ],
+)
+def test_missing_items_are_those_that_cannot_be_reached(criterion, missing):
     network = loads_network("""
     clock x
     automaton A {
       location a invariant x <= 1
       location b
       location c
+      location d
       start a
       edge a -> b
       edge a -> c when x > 1
       edge c -> b
+      edge a -> d
+      edge b -> d when x >= 2
+      edge d -> a when x <= 1
     }
     """)
-    edges = build_suite(network, Criterion.EDGES)
-    assert [item_text(network, item, Criterion.EDGES) for item in edges.missing] == [
-        "A: a → c",
-        "A: c → b",
-    ]
-    places = build_suite(network, Criterion.LOCATIONS)
-    assert [item_text(network, item, Criterion.LOCATIONS) for item in places.missing] == ["A.c"]
-
-
-def test_pairs_that_time_forbids_are_missing():
-    network = loads_network("""
-    clock x
-    automaton A {
-      location a
-      start a
-      edge a -> a when x >= 2
-      edge a -> a when x <= 1
-    }
-    """)
-    suite = build_suite(network, Criterion.EDGE_PAIRS)
-    assert [item.numbers for item in suite.missing] == [(0, 1)]
-
-
-def test_a_network_that_cannot_start_has_no_suite():
-    network = loads_network(
-        "int[0,1] v = 1 automaton A { location a invariant v == 0 start a edge a -> a }"
-    )
-    with pytest.raises(ModelError, match="of the initial locations is false at time 0"):
-        build_suite(network, Criterion.EDGES)
+    suite = build_suite(network, criterion)
+    assert [item_text(network, item, criterion) for item in suite.missing] == missing
 
 
 def test_a_budget_is_told():

@@ -7,7 +7,6 @@ import pytest
 from rvmon.models.language.load import loads_network
 from rvmon.models.runs import Run, RunStep, Window
 from rvmon.models.runs.exact_times import InvalidRunError, Rules
-from rvmon.models.runs.timing import TimedStep, earliest, timing_of
 from rvmon.models.search.budget import Policy
 from rvmon.models.search.verify import verify
 
@@ -35,23 +34,6 @@ def test_windows_are_exact():
     assert run.steps[1].delay in run.steps[1].window
 
 
-def test_impossible_paths_have_no_timing():
-    """A path that no run can follow is recognised, also if only strictness forbids it."""
-    above, below = (1, 0, -2 - 2.0**-20), (0, 1, 2.0)
-    assert timing_of([TimedStep(True, (above, below), (), ())]) is None
-    assert timing_of([TimedStep(True, ((1, 0, -2.0), below), (), ())]) is not None
-
-
-def test_earliest_is_the_least_of_all():
-    steps = [
-        TimedStep(True, ((1, 0, -2.0),), (), ()),
-        TimedStep(True, ((1, 0, -3 - 2.0**-20),), (), ()),
-    ]
-    first, second = earliest(timing_of(steps))
-    assert first == 2
-    assert 1 < second < Fraction(3, 2)
-
-
 @pytest.mark.parametrize("position", [0, 1])
 def test_a_wrong_delay_is_no_run(position):
     """The plain rules reject a run with one delay outside its window."""
@@ -65,22 +47,27 @@ def test_a_wrong_delay_is_no_run(position):
         Rules(network).replay(Run(run.start, tuple(steps)))
 
 
-def test_fastest_beats_shortest():
+def test_each_policy_finds_its_run():
+    """The shortest takes long, the fastest is improbable, the likeliest has most steps."""
     network = loads_network("""
     clock x
     automaton A {
-      location a
-      location b
-      location c
+      location a  location b  location c  location d  location e
       start a
-      edge a -> c when x >= 9
-      edge a -> b when x >= 1
+      edge a -> c when x >= 9 weight 0.1
+      edge a -> b when x >= 1 weight 0.2
       edge b -> c when x >= 2
+      edge a -> d when x >= 5 weight 0.7
+      edge d -> e
+      edge e -> c
     }
     """)
     runs = {policy: verify(network, "E<> A.c", policy=policy).run for policy in Policy}
-    assert (len(runs[Policy.SHORTEST].steps), runs[Policy.SHORTEST].duration) == (1, 9)
-    assert (len(runs[Policy.FASTEST].steps), runs[Policy.FASTEST].duration) == (2, 2)
+    assert {policy: (len(run.steps), run.duration) for policy, run in runs.items()} == {
+        Policy.SHORTEST: (1, 9),
+        Policy.FASTEST: (2, 2),
+        Policy.LIKELIEST: (3, 5),
+    }
 
 
 def test_the_fastest_run_counts_the_goal_too():
