@@ -54,18 +54,11 @@ def test_the_number_of_workers_changes_nothing(results):
     once = document(results)
     assert document(execute(small(), jobs=2)) == once
     assert document(execute(small(seed=4), jobs=1)) != once
-
-
-def test_every_test_is_counted_once(results):
-    content = json.loads(document(results))
-    assert not content.keys() & {"model_checking", "partial"}
-    for robot in content["robots"].values():
-        assert set(robot["strategies"]) == {"pseudorandom", "constrained"}
-        for strategy in robot["strategies"].values():
-            assert strategy["tests"] == 2
-            for counts in strategy["requirements"].values():
-                assert list(counts) == ["P", "F", "NT", "I"]
-                assert sum(counts.values()) == 2
+    robots = json.loads(once)["robots"].values()
+    columns = [one["strategies"][name] for one in robots for name in one["strategies"]]
+    assert [column["tests"] for column in columns] == [2] * 4
+    for counts in (row for column in columns for row in column["requirements"].values()):
+        assert sum(counts.values()) == 2
 
 
 def test_random_tests_never_reach_the_release(results):
@@ -86,16 +79,6 @@ def test_tests_whose_signals_got_lost_are_repeated():
     assert all(one.control.verdicts["R5"] == "P" for one in lost)
     summary = summarise(played, SPECS).robots["legacy"]
     assert summary.controls["constrained"]["R5"][Verdict.PASS] == 40
-
-
-def test_directed_tests_end_as_they_should(directed_results):
-    summary = summarise(directed_results, SPECS)
-    for figures in summary.robots.values():
-        assert [one.test.name for one in figures.known if not one.as_expected] == []
-    correct = summary.robots["correct"]
-    planted = [one for one in correct.known if one.test.mutation is not None]
-    assert planted
-    assert correct.strategies["directed"].tests == len(correct.known) - len(planted)
 
 
 def test_without_monitors_nothing_is_judged(results):

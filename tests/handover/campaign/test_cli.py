@@ -24,11 +24,8 @@ from handover.robot import behaviour
 from rvmon.cdv.campaign_plan import plan
 from rvmon.cdv.play import execute
 from rvmon.cdv.test import save
-from rvmon.cli import campaign_run
 
 pytestmark = pytest.mark.campaign
-
-ACTIONS = '[{"type": "send_signal", "signal": "activateRobot"}]'
 
 
 SHOWN = ("legacy-released", "mutant-hurries", "mutant-releases-late", "released")
@@ -228,23 +225,6 @@ def test_a_replay_is_shown_by_foxglove(tmp_path):
     assert layout["layout"]["second"] == "3D!scene"
 
 
-def test_a_campaign_says_why_it_is_not_as_expected(tmp_path, capsys):
-    """Exit 1 with the reason, also as JUnit: two tests do not trigger what they should."""
-    junit = tmp_path / "junit.xml"
-    few = ["run", "--strategy", "pseudorandom", "--tests", "2", "--jobs", "1", "--format", "json"]
-    few += ["--junit", str(junit)]
-    assert main(few) == 0
-    shown = capsys.readouterr()
-    assert json.loads(shown.out)["robots"]["correct"]["strategies"]
-    assert not shown.err
-    assert "<failure" not in junit.read_text()
-    assert main([*few, "--strict"]) == 1
-    lines = capsys.readouterr().err.splitlines()
-    told = "R3 is triggered (pseudorandom, correct): none of 2 tests passed or failed it"
-    assert f"not as expected: {told}" in lines
-    assert told.partition(":")[0] in junit.read_text()
-
-
 @pytest.mark.parametrize("robot", [[], ["--legacy"]])
 def test_the_unmodified_robot_passes_its_gates(robot, capsys):
     """Of what people have written and of what the model says, whatever the seed."""
@@ -261,60 +241,6 @@ def test_a_fault_in_the_robot_is_told(capsys, monkeypatch):
     told = capsys.readouterr()
     assert re.search(r"^ T43 ", told.out, re.MULTILINE)
     assert re.search(r"not as expected: model-based-R1 \(correct\): T43#1 F ", told.err)
-
-
-@pytest.mark.parametrize(
-    ("content", "told"),
-    [
-        ("{", "not JSON"),
-        (
-            f'{{"name":"x","strategy":"directed","seed":1,"actions":{ACTIONS},"mutation":"no"}}',
-            "no",
-        ),
-        ("\udcff\udcfe", "x.json"),
-        (None, "x.json"),
-    ],
-)
-def test_a_bad_test_is_told_in_one_message(tmp_path, capsys, content, told):
-    path = tmp_path / "x.json"
-    if content is not None:
-        path.write_bytes(content.encode("utf-8", "surrogateescape"))
-    assert main(["replay", str(path)]) == 2
-    error = capsys.readouterr().err
-    assert told in error
-    assert "Traceback" not in error
-
-
-def test_a_folder_that_cannot_be_written_to_is_told_first(demo, capsys):
-    test = str(demo / "tests" / "released.json")
-    assert main(["replay", test, "--out", test]) == 2
-    told = capsys.readouterr()
-    assert "cannot write to" in told.err
-    assert not told.out
-
-
-def test_ctrl_c_keeps_what_is_finished(tmp_path, monkeypatch, capsys):
-    """Exit 130; the table says how many of the planned tests it counts, and it counts them all."""
-
-    def interrupted(chosen, **options):
-        def press_ctrl_c(count):
-            options["progress"](count)
-            signal.raise_signal(signal.SIGINT)
-
-        return execute(chosen, **{**options, "progress": press_ctrl_c})
-
-    monkeypatch.setattr(campaign_run, "execute", interrupted)
-    assert main(["run", "--tests", "6", "--jobs", "2", "--out", str(tmp_path)]) == 130
-    content = json.loads((tmp_path / "table.json").read_text())
-    partial = content["partial"]
-    assert partial["why"] == "interrupted"
-    assert 0 < partial["finished"] < partial["planned"] == 12
-    strategies = content["robots"]["correct"]["strategies"].values()
-    assert sum(strategy["tests"] for strategy in strategies) == partial["finished"]
-    assert len(list((tmp_path / "tests").iterdir())) == partial["finished"]
-    assert "the tables are partial" in capsys.readouterr().out
-    assert "PARTIAL" in (tmp_path / "table.txt").read_text()
-    assert "Partial: interrupted" in (tmp_path / "report.html").read_text()
 
 
 _PROGRAM = """

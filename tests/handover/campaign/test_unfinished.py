@@ -1,5 +1,6 @@
 """A campaign that was ended in its midst goes on, and comes to the same as one that was not."""
 
+import json
 import re
 import signal
 import subprocess
@@ -132,7 +133,11 @@ def test_shards_are_joined(whole, here, played, capsys):
     assert len(played) == 1
 
 
-def test_an_interrupted_campaign_goes_on(whole, here, monkeypatch, capsys):
+def test_an_interrupted_campaign_keeps_what_is_finished_and_goes_on(
+    whole, here, monkeypatch, capsys
+):
+    """Exit 130; the table says how many of the planned tests it counts, and it counts them all."""
+
     def interrupted(plan, **options):
         def press_ctrl_c(count):
             if count == 3:
@@ -143,8 +148,15 @@ def test_an_interrupted_campaign_goes_on(whole, here, monkeypatch, capsys):
     with monkeypatch.context() as patch:
         patch.setattr(campaign_run, "execute", interrupted)
         assert main(WORDS) == 130
-    assert "the same command plays the rest" in capsys.readouterr().err
-    assert (here / "table.json").exists()
+    told = capsys.readouterr()
+    assert "the same command plays the rest" in told.err
+    assert "the tables are partial" in told.out
+    content = json.loads((here / "table.json").read_text())
+    assert content["partial"] == {"why": "interrupted", "finished": 3, "planned": 6}
+    assert content["robots"]["legacy"]["strategies"]["constrained"]["tests"] == 3
+    assert len(list((here / "tests").iterdir())) == 3
+    assert "PARTIAL" in (here / "table.txt").read_text()
+    assert "Partial: interrupted" in (here / "report.html").read_text()
     assert main(WORDS) == 0
     assert files(here) == whole[0]
 

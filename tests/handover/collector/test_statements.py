@@ -7,7 +7,7 @@ from handover.driver import run_test
 from handover.generator.abstract_test import directed
 from handover.robot.handover import STATES
 from rvmon.cdv.code_coverage import Meter, code_groups, statements_name
-from rvmon.coverage import merged, score
+from rvmon.coverage import score
 
 TESTS = {test.name: test for test in directed()}
 GROUPS = {group.name: group for group in code_groups(robot_code())}
@@ -48,18 +48,6 @@ def test_a_release_runs_the_whole_release_and_nobody_none_of_it(measured):
     released, nobody = (score(hits[name], release) for name in ("released", "nobody-comes"))
     assert released.covered == released.items > 0
     assert nobody.covered == 0
-
-
-@pytest.mark.campaign
-def test_tests_are_kept_apart(measured):
-    _, hits = measured
-
-    def covered(one):
-        return sum(score(one, group).covered for group in GROUPS.values())
-
-    alone = [covered(one) for one in hits.values()]
-    both = covered(merged(hits.values()))
-    assert max(alone) < both < sum(len(group.items) for group in GROUPS.values())
 
 
 @pytest.mark.campaign

@@ -5,8 +5,6 @@ import itertools
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
 
 import pytest
 from msgspec import structs
@@ -138,35 +136,6 @@ def test_samples_are_in_order_and_say_something() -> None:
     assert stamps[-1] <= run.end_ns == 200_000_000_000
 
 
-@pytest.mark.parametrize("seed", range(4))
-def test_correct_robot_keeps_its_bounds(seed: int) -> None:
-    longest = {
-        "reset": 4.5,
-        "receive_activation": 20.0,
-        "move": 18.0,
-        "send_signal": 0.0,
-        "receive_readiness": 20.0,
-        "sense": 5.0,
-        "decide": 0.5,
-        "release": 2.5,
-        "done": 0.0,
-    }
-    for test in (protocol_test(seed), pseudorandom(seed + 1, seed=2)[seed]):
-        spent = dict.fromkeys(longest, 0.0)
-        run = run_test(test)
-        for (since, state), (until, _) in zip(run.states, run.states[1:], strict=False):
-            spent[state] += (until - since) / 1e9
-        assert {s: t for s, t in spent.items() if t > longest[s] + 1e-6} == {}
-
-
-def test_handover_succeeds_for_both_robots() -> None:
-    for robot in ("correct", "legacy"):
-        run = run_test(protocol_test(7), robot=robot)
-        assert instants(run, "released")
-        assert 10.0 < instants(run, "grip_closed")[0] < 18.5
-        assert 19.0 < instants(run, "done")[0] < 29.5
-
-
 def test_arm_is_slow_and_distance_is_fresh_while_anything_moves() -> None:
     """Near the hand the tool keeps below 250 mm/s, and the distance is never old in motion."""
     run = run_test(protocol_test(4))
@@ -178,20 +147,6 @@ def test_arm_is_slow_and_distance_is_fresh_while_anything_moves() -> None:
             distance, measured = float(values["hand_distance"] or 0.0), t
         speed = float(values.get("tool_speed", speed) or 0.0)
         assert distance >= 0.5 or speed <= 0.25
-
-
-def test_context_is_entered_for_steps_of_the_robot_alone() -> None:
-    entered = 0
-
-    @contextmanager
-    def around() -> Iterator[None]:
-        nonlocal entered
-        entered += 1
-        yield
-
-    run = run_test(protocol_test(1), around_robot_step=around)
-    assert digest(run) == digest(run_test(protocol_test(1)))
-    assert entered >= len(run.states)
 
 
 def test_a_scene_is_kept_on_demand() -> None:

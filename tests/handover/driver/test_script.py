@@ -3,6 +3,7 @@
 import random
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import pytest
 from tests.tools.each import each
@@ -65,56 +66,50 @@ def play(*actions: Action, informed_at: float | None = None, connected: bool = T
     return Played(body, signals, schedule.now_ns / p.NS)
 
 
-def test_sending_takes_time() -> None:
-    """A signal is published 2 s after its action begins, and 0.2 s later the next begins."""
-    played = play(SendSignal("activateRobot"), SendSignal("humanIsReady"))
-    assert played.signals == [(3.0, "activateRobot"), (5.2, "humanIsReady")]
-    assert played.ended == 5.4
-
-
-def test_wait_is_in_units_of_fifty_milliseconds() -> None:
-    """`time = 40` waits 2 s."""
-    assert play(SetParam("time", 40)).ended == 3.0
+INFORM = ReceiveSignal("informHumanOfHandoverStart")
+GRASP = SetParam("hpressureOk", 1)
+NOTHING = (
+    *(SendSignal("setv"), ReceiveSignal("setv")),
+    *(SetParam("honTask", 1), SetParam("setg", 1), SetParam("setp", 0), SetParam("setl", 1)),
+    *(SetParam("h_undefGaze", 1), SetParam("h_undefPress", 1), SetParam("h_undefLoc", 0)),
+)
 
 
 @each(
-    "action",
+    ("actions", "options", "signals", "done", "ended"),
     [
-        SendSignal("setv"),
-        ReceiveSignal("setv"),
-        SetParam("honTask", 1),
-        SetParam("setg", 1),
-        SetParam("setp", 0),
-        SetParam("setl", 1),
-        SetParam("h_undefGaze", 1),
-        SetParam("h_undefPress", 1),
-        SetParam("h_undefLoc", 0),
+        # A signal is published 2 s after its action begins, and 0.2 s later the next begins.
+        (
+            [SendSignal("activateRobot"), SendSignal("humanIsReady")],
+            {},
+            [(3.0, "activateRobot"), (5.2, "humanIsReady")],
+            [],
+            5.4,
+        ),
+        # Waits are in units of 50 ms.
+        ([SetParam("time", 40)], {}, [], [], 3.0),
+        # Some actions of the alphabet do nothing and take no time; nor does to withdraw.
+        (NOTHING, {}, [], [], 1.0),
+        ([Withdraw(), GRASP], {}, [], [(1.0, "withdraw"), (1.0, "grasp")], 1.0),
+        # The script goes on at the first poll after the robot has informed the human.
+        ([INFORM, GRASP], {"informed_at": 7.3}, [], [(7.4, "grasp")], 7.4),
+        # After 500 polls it ends; what comes after is not played.
+        ([INFORM, GRASP], {}, [], [], pytest.approx(101.0)),
+        # Who is not connected publishes nothing.
+        ([SendSignal("activateRobot"), GRASP], {"connected": False}, [], [(3.2, "grasp")], 3.2),
     ],
 )
-def test_actions_without_effect(action: Action) -> None:
-    """Some actions of the alphabet do nothing and take no time."""
-    played = play(action)
-    assert (played.signals, played.body.done, played.ended) == ([], [], 1.0)
-
-
-def test_withdrawing_takes_no_time_of_the_script() -> None:
-    played = play(Withdraw(), SetParam("hpressureOk", 1))
-    assert played.body.done == [(1.0, "withdraw", ()), (1.0, "grasp", (True,))]
-
-
-def test_receiving_waits_for_the_robot() -> None:
-    """The script goes on at the first poll after the robot has informed the human."""
-    played = play(
-        ReceiveSignal("informHumanOfHandoverStart"), SetParam("hpressureOk", 1), informed_at=7.3
-    )
-    assert [(t, what) for t, what, _ in played.body.done] == [(7.4, "grasp")]
-
-
-def test_receiving_in_vain_ends_the_script() -> None:
-    """After 500 polls the script ends; what comes after is not played."""
-    played = play(ReceiveSignal("informHumanOfHandoverStart"), SetParam("hpressureOk", 1))
-    assert played.body.done == []
-    assert played.ended == pytest.approx(101.0)
+def test_actions_take_their_time(
+    actions: list[Action],
+    options: dict[str, Any],
+    signals: list[tuple[float, str]],
+    done: list[tuple[float, str]],
+    ended: float,
+) -> None:
+    played = play(*actions, **options)
+    assert played.signals == signals
+    assert [(t, what) for t, what, _ in played.body.done] == done
+    assert played.ended == ended
 
 
 def test_leaving_the_task_makes_all_postures_bad() -> None:
@@ -142,9 +137,3 @@ def test_bad_location_is_off_on_both_axes_alike() -> None:
     *bad, good = [how for _, _, how in played.body.done]
     assert all(dx == dz and 0.5 <= dx <= 1.0 and not near for dx, dz, near in bad)
     assert good == (*p.LOCATION_OK, True)
-
-
-def test_unconnected_human_publishes_nothing() -> None:
-    played = play(SendSignal("activateRobot"), SetParam("hpressureOk", 1), connected=False)
-    assert played.signals == []
-    assert [what for _, what, _ in played.body.done] == ["grasp"]

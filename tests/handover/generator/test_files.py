@@ -2,25 +2,14 @@
 
 import pickle
 from pathlib import Path
-from typing import get_args
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 from tests.tools.each import each
 
-from handover.generator.abstract_test import (
-    AbstractTest,
-    ReceiveSignal,
-    SendSignal,
-    SetParam,
-    Switch,
-    Withdraw,
-    directed,
-)
-from handover.generator.pseudorandom import constrained
+from handover.generator.abstract_test import AbstractTest, directed
+from handover.generator.disturbed import disturbed
+from handover.generator.pseudorandom import constrained, pseudorandom
 from handover.robot.mutants import MUTATIONS
-from handover.world.faults import SceneFaults, SensorFaults
 from rvmon.cdv import TestError
 from rvmon.cdv.test import from_json, load, save, to_json
 
@@ -29,57 +18,12 @@ CANNOT_OCCUR = {("R4", "F"), ("R4", "NT")}
 """R4 starts with the run and owes something for ever: it can neither fail nor be untriggered."""
 
 
-ACTIONS = st.one_of(
-    st.builds(SendSignal),
-    st.builds(ReceiveSignal),
-    st.builds(Withdraw),
-    st.builds(SetParam, st.just("time"), st.integers(0, 4000)),
-    st.builds(SetParam, st.sampled_from(get_args(Switch)), st.integers(0, 1)),
-)
-TESTS = st.builds(
-    AbstractTest,
-    name=st.text(min_size=1, max_size=20),
-    seed=st.integers(0, 2**63 - 1),
-    actions=st.lists(ACTIONS, max_size=5).map(tuple),
-    text=st.text(max_size=20),
-    robot=st.sampled_from([None, "correct", "legacy"]),
-    horizon_s=st.floats(0.1, 3600),
-    faults=st.builds(
-        SensorFaults,
-        noise_m=st.floats(0, 1),
-        delay_s=st.floats(0, 10),
-        loss=st.floats(0, 1),
-        dropout=st.just(("gaze",)),
-    ),
-    scene=st.builds(
-        SceneFaults,
-        st.floats(0.01, 2),
-        st.floats(0, 1),
-        st.floats(0, 1),
-        st.floats(0, 0.1),
-        st.booleans(),
-    ),
-    arrives_s=st.none() | st.floats(0, 60),
-)
-
-
-@pytest.mark.slow
-@settings(max_examples=50, deadline=None)
-@given(TESTS)
-def test_written_tests_read_back(test: AbstractTest) -> None:
-    assert from_json(to_json(test), AbstractTest) == test
-
-
-def test_another_process_writes_the_same_file() -> None:
-    for test in (*directed(), *constrained(3, 1)):
-        assert to_json(pickle.loads(pickle.dumps(test))) == to_json(test)  # noqa: S301
-
-
-def test_files_carry_the_name(tmp_path: Path) -> None:
-    test = constrained(1, seed=0)[0]
-    path = save(test, tmp_path)
-    assert path.name == "constrained-000.json"
-    assert load(path, AbstractTest) == test
+def test_another_process_writes_the_same_file_and_reads_it_back() -> None:
+    generated = (*pseudorandom(20, 1), *constrained(20, 1), *disturbed(200, 1))
+    for test in (*directed(), *generated):
+        written = to_json(pickle.loads(pickle.dumps(test)))  # noqa: S301
+        assert to_json(test) == written
+        assert from_json(written, AbstractTest) == test
 
 
 GOOD = to_json(constrained(1, seed=0)[0])
@@ -98,20 +42,23 @@ GOOD = to_json(constrained(1, seed=0)[0])
         (GOOD.replace(b'"time"', b'"hgazeOk"', 1), "`hgazeOk` is 0 or 1, not 40"),
         (GOOD.replace(b"40", b"-1", 1), "Expected `int` >= 0"),
         (GOOD.replace(b'"seed"', b'"horizon_s": -1, "seed"'), "Expected `float` > 0.0"),
+        (None, "No such file"),
     ],
 )
-def test_wrong_files_are_told(text: bytes, message: str, tmp_path: Path) -> None:
+def test_wrong_files_are_told(text: bytes | None, message: str, tmp_path: Path) -> None:
     """Each wrong file gives one message with the file, the place and the cause."""
     path = tmp_path / "wrong.json"
-    path.write_bytes(text)
+    path.unlink(missing_ok=True)
+    if text is not None:
+        path.write_bytes(text)
     with pytest.raises(TestError, match=message) as caught:
         load(path, AbstractTest)
     assert "wrong.json" in str(caught.value)
 
 
-def test_missing_file_is_told(tmp_path: Path) -> None:
-    with pytest.raises(TestError, match=r"none\.json: No such file"):
-        load(tmp_path / "none.json", AbstractTest)
+def test_files_carry_the_name(tmp_path: Path) -> None:
+    path = save(constrained(1, seed=0)[0], tmp_path)
+    assert (path.name, path.read_bytes()) == ("constrained-000.json", GOOD)
 
 
 def test_directed_tests_cover_every_verdict() -> None:

@@ -15,7 +15,10 @@ from handover.world.faults import SceneFaults, SensorFaults
 
 
 def test_pseudorandom_actions_are_uniform() -> None:
-    actions = [action for test in pseudorandom(1000, seed=3) for action in test.actions]
+    """Of them there are 4 to 15, each so often; switches are 0 or 1, waits 1 to 100 units."""
+    tests = pseudorandom(1000, seed=3)
+    assert {len(test.actions) for test in tests} == set(range(4, 16))
+    actions = [action for test in tests for action in test.actions]
     kinds = Counter(type(action) for action in actions)
     assert {kind: pytest.approx(1 / 3, abs=0.02) for kind in kinds} == {
         kind: count / len(actions) for kind, count in kinds.items()
@@ -27,24 +30,12 @@ def test_pseudorandom_actions_are_uniform() -> None:
     params = Counter(action.param for action in actions if isinstance(action, SetParam))
     assert len(params) == 11
     assert all(share == pytest.approx(1 / 11, abs=0.02) for share in shares(params))
+    values = {(one.param == "time", one.value) for one in actions if isinstance(one, SetParam)}
+    assert values <= {*((True, units) for units in range(1, 101)), (False, 0), (False, 1)}
 
 
 def shares(counts: Counter[str]) -> list[float]:
     return [count / counts.total() for count in counts.values()]
-
-
-def test_pseudorandom_lengths() -> None:
-    """Lengths are 4 to 15, and every one of them comes."""
-    lengths = {len(test.actions) for test in pseudorandom(500, seed=1)}
-    assert lengths == set(range(4, 16))
-
-
-def test_values_are_in_range() -> None:
-    """Switches are 0 or 1, waits 1 to 100 units."""
-    for test in pseudorandom(300, seed=2):
-        for action in test.actions:
-            if isinstance(action, SetParam):
-                assert action.value in (range(1, 101) if action.param == "time" else range(2))
 
 
 def test_constrained_begin_with_the_protocol() -> None:

@@ -111,73 +111,71 @@ def strapped(newtons: float) -> Callable[[Stage], None]:
     return strap
 
 
+def lift(stage: Stage) -> None:
+    stage.world.scene.head.position += (0.0, 0.3)
+
+
+def turn(stage: Stage) -> None:
+    stage.world.scene.head.position -= (0.0, 0.3)
+    stage.world.scene.head.angle -= 1.0
+
+
+def release(stage: Stage) -> None:
+    stage.world.human.grasp(closed=False)
+
+
 HANDED = (Stage.fetch, Stage.offer, 2.0, Stage.sense)
+OK = Reading(gaze=True, pressure=True, location=True)
+EMPTY = Reading(gaze=True, pressure=False, location=True)
+ELSEWHERE = Reading(gaze=False, pressure=True, location=True)
 UNREAD = Reading(gaze=None, pressure=None, location=None)
+
+READINGS = {
+    "looking, reaching and holding make all true": (HANDED, [OK]),
+    "a hand that is held back gives none": (
+        (strapped(60.0), *HANDED),
+        [Reading(gaze=True, pressure=None, location=None)],
+    ),
+    "its force is limited, not absent: it gets past a weaker strap": (
+        (strapped(10.0), *HANDED),
+        [OK],
+    ),
+    "the human alone holding the piece is no pressure: the robot must hold it, too": (
+        (0.5, Stage.offer, 2.0, Stage.sense),
+        [EMPTY],
+    ),
+    "a gripper that closed beside the piece is none": (
+        (to(-0.15, 0.12), close, 0.5, Stage.offer, 2.0, Stage.sense),
+        [EMPTY],
+    ),
+    "a body that is moved by hand changes them, though the human intends as before": (
+        (*HANDED, lift, Stage.sense, turn, Stage.sense),
+        [OK, ELSEWHERE, ELSEWHERE],
+    ),
+    "none comes of a human who takes no part, or whose hand and head still move": (
+        (Stage.sense, Stage.offer, p.REACTION_S + 0.2, Stage.sense),
+        [UNREAD, UNREAD],
+    ),
+    "who decides to let go still holds for the reaction time, then no longer": (
+        (*HANDED, release, p.REACTION_S - 0.05, Stage.sense, 1.5, Stage.sense),
+        [OK, OK, EMPTY],
+    ),
+}
+
+
+@pytest.mark.parametrize("name", READINGS)
+def test_readings_come_from_bodies(name: str) -> None:
+    what, readings = READINGS[name]
+    stage = Stage()
+    stage.play(steps(*what), 25)
+    assert stage.readings == readings
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("loss", [0.0, 1.0])
-def test_all_is_ok_when_the_human_takes_hold(loss: float) -> None:
-    """Looking, reaching and holding make all readings true; what loses each says nothing of it."""
-    stage = Stage(World(random.Random(1), faults=SensorFaults(loss=loss)))
+def test_what_loses_each_reading_says_nothing_of_it() -> None:
+    stage = Stage(World(random.Random(1), faults=SensorFaults(loss=1.0)))
     stage.play(steps(*HANDED), 25)
-    value = None if loss else True
-    assert stage.readings == [Reading(gaze=value, pressure=value, location=value)]
-
-
-@pytest.mark.parametrize(("newtons", "seen"), [(60.0, None), (10.0, True)])
-def test_a_hand_that_is_held_back_gives_no_reading(newtons: float, *, seen: bool | None) -> None:
-    """Its force is limited, not absent: it gets past a weaker strap."""
-    stage = Stage()
-    stage.play(steps(strapped(newtons), *HANDED), 25)
-    assert stage.readings == [Reading(gaze=True, pressure=seen, location=seen)]
-
-
-def test_empty_gripper_gives_no_pressure() -> None:
-    """The human alone holding the piece is no pressure: the robot must hold it, too."""
-    stage = Stage()
-    stage.play(steps(0.5, Stage.offer, 2.0, Stage.sense), 5)
-    assert stage.readings == [Reading(gaze=True, pressure=False, location=True)]
-
-
-def test_gripper_that_missed_gives_no_pressure() -> None:
-    """It closed beside the piece; a human hand in place is none."""
-    stage = Stage()
-    stage.play(steps(to(-0.15, 0.12), close, 0.5, Stage.offer, 2.0, Stage.sense), 12)
-    assert stage.readings[0].pressure is False
-
-
-def test_readings_follow_the_bodies() -> None:
-    """When a body is moved by hand the reading changes, though the human intends as before."""
-
-    def lift(stage: Stage) -> None:
-        stage.world.scene.head.position += (0.0, 0.3)
-
-    def turn(stage: Stage) -> None:
-        stage.world.scene.head.position -= (0.0, 0.3)
-        stage.world.scene.head.angle -= 1.0
-
-    stage = Stage()
-    stage.play(steps(*HANDED, lift, Stage.sense, turn, Stage.sense), 25)
-    assert [reading.gaze for reading in stage.readings] == [True, False, False]
-
-
-def test_no_reading_before_and_during_a_motion() -> None:
-    """A human who takes no part, or whose hand and head still move, gives no reading."""
-    stage = Stage()
-    stage.play(steps(Stage.sense, Stage.offer, p.REACTION_S + 0.2, Stage.sense), 2)
-    assert stage.readings == [UNREAD] * 2
-
-
-def test_hand_opens_after_its_reaction_time() -> None:
-    """The human who decides to let go still holds for the reaction time, then no longer."""
-    stage = Stage()
-
-    def decide(stage: Stage) -> None:
-        stage.world.human.grasp(closed=False)
-
-    stage.play(steps(*HANDED, decide, p.REACTION_S - 0.05, Stage.sense, 1.5, Stage.sense), 25)
-    assert [reading.pressure for reading in stage.readings] == [True, True, False]
+    assert stage.readings == [UNREAD]
 
 
 def test_grasp_slips_when_it_is_overcome() -> None:
