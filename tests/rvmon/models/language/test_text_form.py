@@ -80,23 +80,18 @@ def test_all_parts_of_a_model_are_read():
     assert verify(network, network.queries[0]).holds
 
 
-def test_templates_without_arguments_are_instantiated_for_all_values():
-    network = loads_network("""
-    automaton T(const int[1,2] i, const bool b) { location a start a }
-    """)
-    assert [a.name for a in network.automata] == ["T(1, 0)", "T(1, 1)", "T(2, 0)", "T(2, 1)"]
-
-
-def test_partial_instances_keep_their_free_parameters():
+def test_templates_are_instantiated_for_all_values_of_their_free_parameters():
     """An instance with parameters of its own binds some arguments and leaves the others."""
     network = loads_network("""
+    automaton U(const int[1,2] i, const bool b) { location a start a }
     automaton T(const int[0,9] i, const int[0,9] j) {
       int[0,99] v = 10 * i + j
       location a start a
     }
     Half(const int[1,2] k) = T(k, 7)
     """)
-    assert [a.name for a in network.automata] == ["Half(1)", "Half(2)"]
+    names = ["U(1, 0)", "U(1, 1)", "U(2, 0)", "U(2, 1)", "Half(1)", "Half(2)"]
+    assert [a.name for a in network.automata] == names
     assert [v.initial for v in network.variables] == [17, 27]
 
 
@@ -261,23 +256,15 @@ def test_deep_nesting_is_refused_politely(text):
 
 
 def test_a_value_outside_its_range_is_told_when_a_run_gets_there():
-    text = """
-    clock x
-    int[0,2] v
-    automaton A {
-      location a {invariant}
-      start a
-      edge a -> a
-      edge a -> a when x >= 1 do v = v + 1, x = 0
-    }
-    """
+    text = """clock x int[0,2] v automaton A { location a invariant x <= 1 start a
+    edge a -> a when x >= 1 do v = v + 1, x = 0 }"""
     with pytest.raises(ModelError) as caught:
-        verify(loads_network(text.replace("{invariant}", "")), "A[] v <= 2")
+        verify(loads_network(text), "A[] v <= 2")
     (diagnostic,) = caught.value.diagnostics
     assert diagnostic.code == "TA007"
     assert "set to 3, outside [0, 2]" in diagnostic.message
     assert diagnostic.spans[0].span.text == "v"
-    assert verify(loads_network(text.replace("{invariant}", "invariant x <= 0")), "A[] v <= 2")
+    assert verify(loads_network(text.replace("x <= 1", "x < 1")), "A[] v <= 2").holds
 
 
 def test_files_that_cannot_be_read_are_findings(tmp_path):

@@ -133,9 +133,15 @@ def test_the_price_of_a_run_changes_no_run():
 
 
 def test_what_uppaal_declares_is_known():
-    network = loads_network(model("int8_t a = INT8_MIN; uint16_t b = UINT16_MAX; int32_t c;"))
+    declared = "int8_t a = INT8_MIN; uint16_t b = UINT16_MAX; int32_t c; int d = -5;"
+    network = loads_network(model(declared))
     ranges = [(v.low, v.high, v.initial) for v in network.variables]
-    assert ranges == [(-128, 127, -128), (0, 65535, 65535), (-(1 << 31), (1 << 31) - 1, 0)]
+    assert ranges == [
+        (-128, 127, -128),
+        (0, 65535, 65535),
+        (-(1 << 31), (1 << 31) - 1, 0),
+        (-32768, 32767, -5),
+    ]
     with pytest.raises(ModelError, match="no type named `int8_t`"):
         loads_network("int8_t a automaton A { location l start l }")
 

@@ -68,11 +68,6 @@ def test_textbook_models_load_and_have_the_known_answers(model, constants):
         assert verify(network, query).holds, query.text
 
 
-def test_ints_without_range_are_sixteen_bits():
-    network = loads_network(wrap(ONE, declaration="int v = -5;"))
-    assert (network.variables[0].low, network.variables[0].high) == (-32768, 32767)
-
-
 def test_names_ids_and_comments():
     body = '<location id="id7"/><init ref="id7"/>'
     query = (
@@ -121,14 +116,6 @@ def test_what_changes_no_run_is_passed_over():
     charts = "system T; progress { 1; } gantt { T: 1 -&gt; 2; }"
     queries = "<query><formula>// later: A[] true</formula></query>"
     assert loads_network(wrap(body, system=charts, queries=queries)).warnings == ()
-
-
-def test_unit_weight_and_label_come_from_comments():
-    """What UPPAAL has no place for is read from the comments that our export writes."""
-    comments = "weight 0.25\nas go"
-    network = loads_network(wrap(ONE + edge(comments=comments), declaration="// unit 50 ms"))
-    assert network.unit == 50_000_000
-    assert (network.automata[0].edges[0].weight, network.automata[0].edges[0].label) == (0.25, "go")
 
 
 @each(
