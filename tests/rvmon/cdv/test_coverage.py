@@ -13,7 +13,6 @@ from rvmon.cdv.play import execute
 from rvmon.coverage import count_of, merged
 from rvmon.coverage.database import read
 from rvmon.errors import RvmonError
-from rvmon.session import load
 
 pytestmark = pytest.mark.slow
 
@@ -117,64 +116,3 @@ def test_one_name_for_two_things(campaign, tmp_path):
     (tmp_path / "further.rv").write_text(FURTHER.replace("place", "pace"))
     with pytest.raises(RvmonError, match="two groups of one name: `pace`"):
         coverage_model(campaign, "new")
-
-
-FORMS = """signal p : bool
-signal x : real
-signal state : {idle, moving, done}
-event e, pick(id: int)
-coverpoint flag = p {yes: true, no: false, off: true => false}
-coverpoint level = x {low: [0, 1), ignore two: 2, high: (2, inf)}
-coverpoint phase = state {idle, moving, goes: idle => moving, illegal back: done => moving}
-coverpoint often {e: e, second: pick.id == 2, late: held(p, 2 s)}
-  goal 3
-coverpoint there = p {yes: true, no: false}
-  upon e
-cross both = flag, phase
-  ignore flag == no and phase == idle
-  illegal flag == off and phase == goes
-  weight 2
-"""
-
-
-class Replayer:
-    """Plays what its seed draws."""
-
-    @staticmethod
-    def samples(seed):
-        """All kinds of values, with dropouts."""
-        rng = random.Random(seed)
-        drawn = {
-            "p": lambda: rng.choice([True, False, None]),
-            "x": lambda: rng.choice([0.5, 2.0, 3.0, float("nan")]),
-            "state": lambda: rng.choice(["idle", "moving", "done"]),
-            "e": lambda: True,
-            "pick": lambda: {"id": rng.randint(1, 2)},
-        }
-        for t in range(30):
-            yield t * 10**9, {n: draw() for n, draw in drawn.items() if rng.random() < 0.5}
-
-    def play(self, test, observer):
-        """Tell all samples."""
-        for t_ns, values in self.samples(test.seed):
-            observer(t_ns, values)
-        return Run(end_ns=31 * 10**9)
-
-
-def test_each_form_counts_as_in_recordings(tmp_path):
-    path = tmp_path / "forms.rv"
-    path.write_text(FORMS)
-    campaign = Campaign("forms", Test, {"any": lifts}, {"one": Robot(Replayer, path)})
-    results = execute(plan(campaign, tests=8), jobs=1)
-    spec = load(path)
-    seen = set()
-    for one in results.played:
-        told = [(t / 1e9, values) for t, values in Replayer.samples(one.job.test.seed)]
-        hits = spec.coverage_model.of(spec.recording(told), 31 * 10**9)
-        groups = {"flag", "level", "phase", "often", "there", "both"}
-        assert {n: one.outcome.hits[n] for n in groups if n in one.outcome.hits} == hits
-        seen |= {(group, item) for group, items in hits.items() for item in items}
-    items = {
-        (name, item) for name, g in spec.coverage_model.model.groups.items() for item in g.items
-    }
-    assert items - seen <= {("both", "off × back"), ("both", "off × goes"), ("often", "late")}

@@ -133,32 +133,22 @@ def test_expected_values():
 
 
 @each(
-    "query",
+    ("query", "message", "fix"),
     [
-        "Pr[<=2](<> A.heads) >= 1.5",
-        "Pr[<=2](<> A.heads) > 0.5",
-        "Q[<=2](<> A.heads)",
-        "E[<=2; 9](max: x)",
-        "E[<=2; 9](sum: n)",
-        "E[<=2; 1](max: n)",
-        "E<> (Pr[<=2](<> A.heads))",
-    ],
-)
-def test_what_has_no_figure_is_refused(query):
-    with pytest.raises(ModelError):
-        sampled(query)
-
-
-@pytest.mark.parametrize(
-    ("query", "reason", "fix"),
-    [
+        ("Pr[<=2](<> A.heads) >= 1.5", "this is no test", "above 0 and below 1"),
+        ("Pr[<=2](<> A.heads) > 0.5", "this is no test", ">= or <="),
+        ("Q[<=2](<> A.heads)", "a bound in runs", "Pr[<=T](<> p)"),
+        ("E[<=2; 9](max: x)", "a clock has no value here", ""),
+        ("E[<=2; 9](sum: n)", "no expected value", "E[<=T; n](max: e)"),
+        ("E[<=2; 1](max: n)", "1 runs", "from 2 to"),
+        ("E<> (Pr[<=2](<> A.heads))", "this form of a statistical query", "Pr[<=T](<> p)"),
         ("Pr[<=2](<> deadlock)", "a lack of moves", "E<> deadlock"),
         ("Pr[<=2](<> A.heads and not deadlock) >= 0.5", "a lack of moves", "E<> deadlock"),
         ("Pr[<=2](<> EF A.heads)", "speaks of other runs", "Pr[<=T](<> p)"),
     ],
 )
-def test_what_one_run_does_not_show_is_refused_with_the_reason(query, reason, fix):
-    with pytest.raises(ModelError, match=reason) as raised:
+def test_what_has_no_figure_is_refused_with_the_reason(query, message, fix):
+    with pytest.raises(ModelError, match=message) as raised:
         sampled(query)
     assert fix in raised.value.diagnostics[0].help
 

@@ -31,3 +31,21 @@ def test_all_kinds_of_parts_are_thrown():
     for part in ("urgent chan", "broadcast chan", "committed location", "urgent location",
                  "invariant x < ", "== ", " > ", "= 1", "v = ", "b = "):  # fmt: skip
         assert part in text
+
+
+@pytest.mark.parametrize(
+    ("seed", "query"),
+    [
+        (730, 7),  # `right` comes just behind the bound: the run left the piece before its end
+        (1163, 5),
+        (2995, 8),  # a difference of two strict bounds was taken for tighter than one strict bound
+        (3108, 9),
+        (4929, 8),
+    ],
+)
+def test_what_once_was_wrong_is_right_now(seed, query):
+    network = loads_network(random_model(seed))
+    asked = network.queries[query]
+    outcome = verify(network, asked)
+    assert outcome.holds == holds_at_start(network, asked)
+    assert outcome.run is None or shows(network, outcome)
