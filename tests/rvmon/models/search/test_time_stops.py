@@ -74,6 +74,16 @@ def test_a_run_that_refutes_is_told_by_how_it_ends(name):
     assert ("Zeno" in outcome.remark) == (ending is Ending.ZENO_LOOP)
 
 
+def test_a_deadlock_in_part_of_a_zone_is_found():
+    """Only some clock values are stuck; simulation would overlook or invent it."""
+    network = loads_network("""clock x, y
+    automaton A { location a invariant y <= 3  location b invariant y <= 3  start a
+    edge a -> b when x >= 1 do x = 0  edge b -> b when x == 2 do x = 0, y = 0 }""")
+    assert verify(network, "E<> A.b and y <= 1 and not deadlock").holds
+    outcome = verify(network, "E<> A.b and deadlock")
+    assert (outcome.holds, outcome.run.steps[0].window.low) == (True, 1)
+
+
 @pytest.mark.parametrize(
     "text",
     [
