@@ -8,9 +8,10 @@ Source: Vardi and Wolper 1994 for the tableau; Bauer, Leucker and Schallhart 201
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
+from typing import Any
 
 from rvmon.language.checked.formula import (
     Binary,
@@ -67,7 +68,7 @@ class Tableau:
         for later in self.states:
             for letter in letters:
                 self.after[self._before(letter, later)].append(later)
-        self.live = self._live()
+        self.live = self.lasting(self.after)
 
     @classmethod
     def of(cls, formula: Formula, most: int) -> Tableau | None:
@@ -137,25 +138,30 @@ class Tableau:
             case _:
                 return True
 
-    def _live(self) -> set[_State]:
-        """The states from which some infinite word comes true as they say."""
+    def begins(self, state: _State) -> bool:
+        """Whether the formula holds on the words that a state stands for."""
+        return self._holds(self.formula, state)
+
+    def lasting(
+        self, after: Mapping[Any, Sequence[Any]], of: Callable[[Any], _State] = lambda node: node
+    ) -> set[Any]:
+        """The nodes from which some infinite path comes true as its states say.
+
+        Args:
+            after: what follows on each node, of this tableau or of a product with it.
+            of: the state of a node.
+        """
         import networkx as nx
 
-        graph = nx.DiGraph(self.after)
-        live: set[_State] = set()
+        graph = nx.DiGraph(after)
+        live: set[Any] = set()
         for component in nx.strongly_connected_components(graph):
-            has_cycle = any(graph.has_edge(state, state) for state in component)
+            has_cycle = any(graph.has_edge(node, node) for node in component)
             if (len(component) > 1 or has_cycle) and all(
-                any(self._is_kept(part, state) for state in component) for part in self.temporal
+                any(self._is_kept(part, of(node)) for node in component) for part in self.temporal
             ):
                 live |= component
-        stack = list(live)
-        while stack:
-            for before in graph.predecessors(stack.pop()):
-                if before not in live:
-                    live.add(before)
-                    stack.append(before)
-        return live
+        return live.union(*(nx.ancestors(graph, node) for node in live))
 
 
 def _is_temporal(part: Formula) -> bool:

@@ -16,7 +16,6 @@ def warned(text):
 @each(
     ("text", "expected"),
     [
-        (f"const T = 3 s\nconst D = 2 s  # D is not T\n{DEMAND}", [("RV017", "D")]),
         (f"const T = 3 s\ndefine near = a\n{DEMAND}", [("RV017", "near")]),
         (f"const T = 3 s\ndefine soon(p) = within T p\n{DEMAND}", [("RV017", "soon")]),
         (f"const D = 1 s\nconst T = 3 * D\n{DEMAND}", []),

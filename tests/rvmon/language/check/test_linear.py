@@ -9,7 +9,7 @@ from tests.tools.ltl3 import Tableau
 from rvmon import loads
 from rvmon.errors import SpecError
 from rvmon.language.check.ctl import linear_form
-from rvmon.language.checked.formula import BinaryOp, UnaryOp
+from rvmon.language.checked.formula import Binary, BinaryOp, SignalAtom, Unary, UnaryOp
 from rvmon.language.checked.properties import (
     PathBinary,
     PathUnary,
@@ -116,23 +116,14 @@ def holds_everywhere(structure, state):
     labels, after = structure
     worlds = frozenset(labels)
 
-    def pre_all(found):
-        return frozenset(w for w in worlds if set(after[w]) <= found)
-
-    def pre_some(found):
-        return frozenset(w for w in worlds if set(after[w]) & found)
-
-    def least(step):
-        found = frozenset()
-        while step(found) != found:
-            found = step(found)
+    def fixed(found, step):
+        while (more := step(found)) != found:
+            found = more
         return found
 
-    def greatest(step):
-        found = worlds
-        while step(found) != found:
-            found = step(found)
-        return found
+    def pre(found, universal=True):
+        quantified = all if universal else any
+        return frozenset(w for w in worlds if quantified(one in found for one in after[w]))
 
     def of(node):
         match node:
@@ -146,66 +137,50 @@ def holds_everywhere(structure, state):
                     return one & two
                 return (one if op is BinaryOp.OR else worlds - one) | two
             case PathUnary(universal=universal, op=op, operand=operand):
-                pre = pre_all if universal else pre_some
                 inner = of(operand)
                 if op is UnaryOp.NEXT:
-                    return pre(inner)
+                    return pre(inner, universal)
                 if op is UnaryOp.EVENTUALLY:
-                    return least(lambda found: inner | pre(found))
-                return greatest(lambda found: inner & pre(found))
+                    return fixed(frozenset(), lambda found: inner | pre(found, universal))
+                return fixed(worlds, lambda found: inner & pre(found, universal))
             case PathBinary(op=op, left=left, right=right):
                 one, two = of(left), of(right)
-                if op is BinaryOp.UNTIL:
-                    return least(lambda found: two | (one & pre_all(found)))
-                if op is BinaryOp.WEAK_UNTIL:
-                    return greatest(lambda found: two | (one & pre_all(found)))
-                return greatest(lambda found: two & (one | pre_all(found)))
+                if op is BinaryOp.RELEASE:
+                    return fixed(worlds, lambda found: two & (one | pre(found)))
+                begin = frozenset() if op is BinaryOp.UNTIL else worlds
+                return fixed(begin, lambda found: two | (one & pre(found)))
 
     return of(state)
 
 
 def _true(formula, label):
-    from rvmon.language.checked.formula import Binary, SignalAtom, Unary
-
     match formula:
         case SignalAtom(name=name):
             return name in label
         case Unary(operand=operand):
             return not _true(operand, label)
-        case Binary(op=BinaryOp.AND, left=left, right=right):
-            return _true(left, label) and _true(right, label)
-        case Binary(op=BinaryOp.OR, left=left, right=right):
-            return _true(left, label) or _true(right, label)
-        case Binary(left=left, right=right):
-            return not _true(left, label) or _true(right, label)
+        case Binary(op=op, left=left, right=right):
+            one, two = _true(left, label), _true(right, label)
+            return one and two if op is BinaryOp.AND else two or one is (op is BinaryOp.OR)
 
 
 def on_all_paths(structure, tableau):
-    import networkx as nx
-
+    """Where no path of a structure is one on which a formula is false."""
     labels, after = structure
-    graph = nx.DiGraph()
-    for world, label in labels.items():
-        letter = frozenset(label) & frozenset(tableau.names)
-        for state in tableau.states:
-            if state.letter == letter:
-                graph.add_node((world, state))
-    for world, state in list(graph):
-        for later in tableau.after[state]:
-            for next_world in after[world]:
-                if (next_world, later) in graph:
-                    graph.add_edge((world, state), (next_world, later))
-    live = set()
-    for component in nx.strongly_connected_components(graph):
-        cyclic = len(component) > 1 or any(graph.has_edge(n, n) for n in component)
-        kept = all(
-            any(tableau._is_kept(part, state) for _, state in component)
-            for part in tableau.temporal
-        )
-        if cyclic and kept:
-            live |= component
-    live |= {node for target in list(live) for node in nx.ancestors(graph, target)}
-    broken = {world for world, state in live if not tableau._holds(tableau.formula, state)}
+    nodes = [
+        (world, state)
+        for world, label in labels.items()
+        for state in tableau.states
+        if state.letter == frozenset(label) & frozenset(tableau.names)
+    ]
+    graph = {
+        (world, state): [
+            one for one in nodes if one[0] in after[world] and one[1] in tableau.after[state]
+        ]
+        for world, state in nodes
+    }
+    live = tableau.lasting(graph, of=lambda node: node[1])
+    broken = {world for world, state in live if not tableau.begins(state)}
     return frozenset(labels) - broken
 
 

@@ -83,7 +83,6 @@ RESPONSE = f"{ROLES}requirement R\n  monitor as response within 3 s\n  property 
     [
         ("property P: A[] (a -> eventually b)", "RV051"),
         ("property P: A[] a until b", "RV051"),
-        ("property P: A[] once a", "RV051"),
         ("property P: A[a and b]", "RV051"),
         ("property P: AX[0, 1 s] a", "RV051"),
         ("property P: A[] (eventually Robot.done)", "RV051"),

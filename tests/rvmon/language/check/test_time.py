@@ -12,7 +12,6 @@ from rvmon.language.checked.specification import TimeModel
         ("within 3 (a)", "RV030"),
         ("within x (a)", "RV030"),
         ("within 3 m (a)", "RV030"),
-        ("within 0.5 ns (a)", "RV031"),
         ("within (1 s / 3) (a)", "RV031"),
         ("F[3 s, 2 s] a", "RV032"),
         ("F(3 ns, 4 ns) a", "RV032"),
@@ -37,15 +36,12 @@ def test_what_is_no_time_is_refused(codes, text, code):
     [
         ("F a", Interval(0, None)),
         ("F <= 3 s a", Interval(0, 3 * 10**9)),
-        ("within 2 min a", Interval(0, 120 * 10**9)),
         ("within 1e-3 s a", Interval(0, 1_000_000)),
         ("F[0, 3 us] a", Interval(0, 3000)),
         ("within 1200000 h a", Interval(0, 1_200_000 * 3600 * 10**9)),
         ("F[3 ns, 4 ns) a", Interval(3, 3)),
         ("F(3 ns, inf) a", Interval(4, None)),
         ("F(3 ns, 5 ns) a", Interval(4, 4)),
-        ("F[0, 0] a", Interval(0, 0)),
-        ("within T a", Interval(0, 3 * 10**9)),
         ("within (T + 2 * 500 ms) a", Interval(0, 4 * 10**9)),
     ],
 )
