@@ -1,6 +1,7 @@
 """`rvmon explain` as a person uses it."""
 
 import pytest
+from tests.tools.each import each
 
 SPEC = """
 spec door "A door"
@@ -45,34 +46,26 @@ def test_words_facts_automaton_and_runs(door, says):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("measured", "said"),
+@each(
+    ("body", "said"),
     [
-        ("count(knock since trigger) >= 2", "2 times or more since the trigger, knock occurs"),
-        ("duration(closed since trigger) >= 3 s", "for 3 s or more since the trigger, closed is"),
-        ("integral(speed since trigger) >= 2 m", "the integral of speed since the trigger is at"),
-        ("duration(closed, 5 s) >= 3 s", "for 3 s or more in the last 5 s, closed is true"),
+        ("{} count(knock since trigger) >= 2", "2 times or more since the trigger, knock occurs"),
+        ("{} duration(closed since trigger) >= 3 s", "for 3 s or more since the trigger, closed"),
+        ("{} integral(speed since trigger) >= 2 m", "integral of speed since the trigger is at"),
+        ("{} duration(closed, 5 s) >= 3 s", "for 3 s or more in the last 5 s, closed is true"),
+        # A truth value among numbers.
+        ("always rung.loud", "rung.loud is true"),
+        ("always not rung.loud", "rung.loud is false"),
+        ("always bit(mode, 3)", "bit(mode, 3) is true"),
     ],
 )
-def test_what_is_measured_is_said(tmp_path, says, measured, said):
-    (tmp_path / "s.rv").write_text(f"{SPEC}requirement W\n upon knock then eventually {measured}\n")
+def test_what_is_measured_is_said(tmp_path, says, body, said):
+    body = body.format("upon knock then eventually")
+    text = f"{SPEC}event rung(loud: bool)\nsignal mode : int\nrequirement W\n {body}\n"
+    (tmp_path / "s.rv").write_text(text)
     text = says(0, "explain", str(tmp_path / "s.rv"), "W").out
     assert said in " ".join(text.split())
     assert "`upon`" not in text
-
-
-@pytest.mark.parametrize(
-    ("formula", "said"),
-    [
-        ("rung.loud", "rung.loud is true"),
-        ("not rung.loud", "rung.loud is false"),
-        ("bit(mode, 3)", "bit(mode, 3) is true"),
-    ],
-)
-def test_a_truth_value_among_numbers_is_said(tmp_path, says, formula, said):
-    spec = f"event rung(loud: bool)\nsignal mode : int\nrequirement L\n  always ({formula})\n"
-    (tmp_path / "l.rv").write_text(spec)
-    assert said in says(0, "explain", str(tmp_path / "l.rv")).out
 
 
 @pytest.mark.slow

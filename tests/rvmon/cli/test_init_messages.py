@@ -121,29 +121,29 @@ def test_json_and_ros_2_give_the_same(tmp_path, capsys):
     assert one.partition("time held")[2] == two.partition("time held")[2]
 
 
-def test_silence_lasts_to_the_end_of_all_topics(tmp_path, monkeypatch):
-    """What falls silent before another topic does is judged to the end of that one."""
-    monkeypatch.chdir(tmp_path)
-    sent = [("/speed", START + n * 10**7, {"data": n / 8}) for n in range(20)]
-    write_json_mcap(tmp_path / "a.mcap", [*sent, ("/pick", START + 10**9, {"items": []})])
-    assert main(["init", "a.mcap"]) == 0
-    assert main(["run", "a.rv", "a.mcap"]) == 0
+@pytest.mark.parametrize(
+    ("sent", "told"),
+    [
+        # What falls silent before another topic does is judged to the end of that one.
+        (
+            [
+                *(("/speed", START + n * 10**7, {"data": n / 8}) for n in range(20)),
+                ("/pick", START + 10**9, {"items": []}),
+            ],
+            "signal speed",
+        ),
+        ([("/mode", START + n * 10**8, {"data": f"line {n}"}) for n in range(40)], "event mode"),
+    ],
+    ids=["silence", "texts"],
+)
+def test_silence_is_judged_and_texts_alone_are_events(tmp_path, capsys, sent, told):
+    assert told in written(tmp_path, write_json_mcap(tmp_path / "a.mcap", sent), capsys)
 
 
-def test_topics_of_texts_alone_are_events(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    sent = [("/mode", START + n * 10**8, {"data": f"line {n}"}) for n in range(40)]
-    write_json_mcap(tmp_path / "a.mcap", sent)
-    assert main(["init", "a.mcap"]) == 0
-    assert "event mode" in (tmp_path / "a.rv").read_text().replace("event  ", "event ")
-    assert main(["run", "a.rv", "a.mcap"]) == 0
-
-
-def test_a_topic_that_cannot_be_read_is_left_out_with_the_reason(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
+def test_a_topic_that_cannot_be_read_is_left_out_with_the_reason(tmp_path, capsys):
     from mcap.writer import Writer
 
-    with open("a.mcap", "wb") as file:
+    with (tmp_path / "a.mcap").open("wb") as file:
         writer = Writer(file)
         writer.start()
         speed, count = (writer.register_channel(name, "json", 0) for name in ("/speed", "/count"))
@@ -152,7 +152,5 @@ def test_a_topic_that_cannot_be_read_is_left_out_with_the_reason(tmp_path, monke
             t = START + n * 10**8
             writer.add_message(speed, t, b'{"data": %d}' % n, t)
         writer.finish()
-    assert main(["init", "a.mcap"]) == 0
-    text = (tmp_path / "a.rv").read_text()
+    text = written(tmp_path, tmp_path / "a.mcap", capsys)
     assert "count" in text.partition("# What cannot be declared as it is:")[2]
-    assert main(["run", "a.rv", "a.mcap"]) == 0

@@ -65,6 +65,19 @@ def traces(request, tmp_path):
     return [str(tmp_path / name) for name in ("a.csv", "b.csv", "a.jsonl")]
 
 
+@pytest.fixture
+def opened(monkeypatch):
+    """The recordings that are read once more."""
+    found, begin = [], post_analysis.opened
+
+    def noted(*given, **more):
+        found.append(given)
+        return begin(*given, **more)
+
+    monkeypatch.setattr(post_analysis, "opened", noted)
+    return found
+
+
 @pytest.mark.law
 @pytest.mark.parametrize("until", [None, 60.0])
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 300 ms"])
@@ -106,7 +119,7 @@ def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("held", "times"), [(10, 1), (90, 0)])
-def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch, held, times):
+def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch, opened, held, times):
     """However many failed or were silent, a file is read once more; a small one is remembered."""
     monkeypatch.setattr(post_analysis, "MOST_HELD", held)
     pairs = range(6)
@@ -121,13 +134,6 @@ def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch, h
     ]
     path = tmp_path / "a.csv"
     path.write_text("\n".join(rows) + "\n")
-    opened = []
-    begin = post_analysis.opened
-    monkeypatch.setattr(
-        post_analysis,
-        "opened",
-        lambda *given, **more: opened.append(given) or begin(*given, **more),
-    )
     report = judge(rvmon.loads(text), str(path), Options()).report
     assert len(opened) == times
     assert {name: dict(found) for name, found in report.late.items()} == {
@@ -159,19 +165,14 @@ READ_AGAIN = {
 @pytest.mark.parametrize("stale", ["", "stale after 300 ms"])
 @pytest.mark.parametrize("time", ["held", "sampled", "sampled every 300 ms", "held\nmax delay 1 s"])
 @pytest.mark.parametrize("awaited", [ON_THE_WAY, READ_AGAIN])
-def test_late_answers_are_noted_on_the_way(awaited, time, stale, traces, monkeypatch):
+def test_late_answers_are_noted_on_the_way(awaited, time, stale, traces, opened, monkeypatch):
     """They are those of a short recording, which is remembered, and so are the values."""
     text = HEAD.format(time=time).replace("x : real", f"x : real {stale}") + "".join(
         f"requirement R{number}\n  upon go or p\n  then within 500 ms ({formula})\n"
         for number, formula in enumerate(awaited.values())
     )
     text += "requirement S\n  whenever q\n  then immediately x < 1\n"
-    spec, opened, begin = rvmon.loads(text), [], post_analysis.opened
-    monkeypatch.setattr(
-        post_analysis,
-        "opened",
-        lambda *given, **more: opened.append(given) or begin(*given, **more),
-    )
+    spec = rvmon.loads(text)
     for trace in traces:
         short = judge(spec, trace, Options()).report
         with monkeypatch.context() as patch:

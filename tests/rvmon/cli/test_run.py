@@ -84,24 +84,17 @@ def test_a_report_names_the_page_to_open(files, capsys):
 
 
 @pytest.mark.slow
-def test_many_recordings_are_counted_in_text_and_junit(files, says):
-    """The same with two processes; a case of JUnit is failed or skipped as judged."""
+def test_many_recordings_are_counted_in_text_json_and_junit(files, says):
+    """The same, in their order, with two processes; a case of JUnit is failed or skipped."""
     words = ["run", "door.rv", "P.csv", "F.csv", "NT.csv", "--junit", "out.xml"]
-    alone = says(1, *words).out
-    assert "3 recordings" in alone
-    cases = ET.parse(files / "out.xml").getroot().findall(".//testcase")  # noqa: S314
-    assert [len(case.findall("failure")) for case in cases] == [0, 1, 0]
-    assert [len(case.findall("skipped")) for case in cases] == [0, 0, 1]
-    assert says(1, *words, "--jobs", "2").out == alone
-
-
-@pytest.mark.slow
-def test_two_processes_print_the_same_json(files, says):
-    """Each writes the reports of what it judged: they are those of one process, in their order."""
-    words = ["run", "door.rv", "P.csv", "F.csv", "NT.csv", "I.csv", "--format", "json"]
-    alone = says(1, *words).out
-    assert [len(one["requirements"]) for one in json.loads(alone)] == [1, 1, 1, 1]
-    assert says(1, *words, "--jobs", "2").out == alone
+    for form, told in ("text", "3 recordings"), ("json", '"P.csv"'):
+        alone = says(1, *words, "--format", form).out
+        assert told in alone
+        cases = ET.parse(files / "out.xml").getroot().findall(".//testcase")  # noqa: S314
+        assert [len(case.findall("failure")) for case in cases] == [0, 1, 0]
+        assert [len(case.findall("skipped")) for case in cases] == [0, 0, 1]
+        assert says(1, *words, "--format", form, "--jobs", "2").out == alone
+    assert [len(one["requirements"]) for one in json.loads(alone)] == [1, 1, 1]
 
 
 @pytest.mark.slow
