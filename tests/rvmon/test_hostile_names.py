@@ -38,7 +38,6 @@ from rvmon.models.language.load import loads_network
 from rvmon.models.uppaal_xml import uppaal_xml
 from rvmon.report.html import component, data, e, table_html
 from rvmon.report.junit import junit_xml
-from rvmon.report.run_text import print_reports
 from rvmon.report.verdict_table import RunGroup, VerdictTable, table_latex, tables_csv
 from rvmon.texts import quoted, shown, shown_json, shown_line
 from rvmon.trace.sample import Health, HealthKind
@@ -91,15 +90,6 @@ class Documents:
         groups = tuple(RunGroup(name, 4, counts) for name in names[:3])
         self.table = VerdictTable(names[0], dict(zip(names, names, strict=True)), groups)
 
-    def json(self) -> bool:
-        """Reports as JSON."""
-        text = shown_json(self.report.to_json())
-        return _calm(text) and list(json.loads(text)["requirements"]) == list(self.names)
-
-    def terminal(self) -> bool:
-        """Reports on a terminal."""
-        return _calm(_printed(lambda: print_reports([self.report], self.spec)))
-
     def junit(self) -> bool:
         """JUnit XML."""
         text = junit_xml([self.report], self.spec, [(name, name) for name in self.names])
@@ -124,7 +114,7 @@ class Documents:
 
     def html(self) -> bool:
         """Pages: the tags, and the names of their attributes, are those of harmless names."""
-        text, harmless = self.html_page(), Documents(_harmless(self.names)).html_page()
+        text, harmless = self._html_page(), Documents(_harmless(self.names))._html_page()
         return _calm(text) and _outline(text) == _outline(harmless)
 
     def script_data(self) -> bool:
@@ -136,7 +126,7 @@ class Documents:
             and json.loads(text) == {"panels": {shown(name): [shown(name)] for name in self.names}}
         )
 
-    def html_page(self) -> str:
+    def _html_page(self) -> str:
         """A page with the table, texts and attributes."""
         texts = [(e("p", {"title": name}, name), name) for name in self.names]
         return component("facts", texts) + table_html(self.table)
@@ -168,18 +158,9 @@ class Documents:
         return _calm("".join(texts)) and read == list(self.names) and lines == len(self.names)
 
 
-WRITERS: tuple[Callable[[Documents], bool], ...] = (
-    Documents.json,
-    Documents.terminal,
-    Documents.junit,
-    Documents.csv,
-    Documents.latex,
-    Documents.html,
-    Documents.script_data,
-    Documents.strings,
-    Documents.uppaal,
-    Documents.messages,
-)
+WRITERS: Sequence[Callable[[Documents], bool]] = [
+    method for name, method in vars(Documents).items() if not name.startswith("_")
+]
 
 
 class _Outline(HTMLParser):

@@ -1,6 +1,7 @@
 """What the facade says when it is used in a wrong way: an error of rvmon, never a raw one."""
 
 import functools
+import re
 
 import numpy as np
 import pytest
@@ -41,19 +42,6 @@ def test_whole_floats_are_ticks(spec):
     table = {"t_ns": np.array([0.0, 2.0]), "gap": np.array([1.0, 5.0])}
     [attempt] = spec.evaluate(table, time="t_ns", only=["D2"]).attempts
     assert (attempt.verdict.value, attempt.decided) == ("F", 2)
-
-
-def test_robustness_of_an_unknown_requirement(spec):
-    for judge in (spec.robustness, spec.evaluate):
-        with pytest.raises(UnknownNameError, match="no requirement `Z`: there are D1, D2"):
-            judge([(0, {"gap": 1.0})], only=["Z"])
-
-
-def test_sources_are_declared(spec):
-    """A source that the specification does not know is most likely a typing error."""
-    with pytest.raises(UnknownNameError, match="`zzz`: there are closed, gap, knock"):
-        spec.monitor(sources=["gap", "zzz"])
-    assert not spec.monitor(sources=["gap"]).step(0, {"gap": 1.0})
 
 
 def test_numpy_numbers_are_seconds(spec):
@@ -101,11 +89,6 @@ def test_a_wrong_trace_is_told(spec, trace):
         spec.evaluate(trace)
 
 
-def test_a_snapshot_is_bytes(spec):
-    with pytest.raises(SnapshotError, match="expected the bytes of a snapshot, found str"):
-        spec.restore("abc")
-
-
 def test_no_requirement_is_judged(spec):
     arrays = {"t": np.array([0.0, 2.0]), "gap": np.array([1.0, 5.0])}
     for trace in (arrays, [(0, {"gap": 1.0}), (2, {"gap": 5.0})]):
@@ -133,50 +116,59 @@ def test_a_recording_is_no_specification(tmp_path):
         rvmon.load(path)
 
 
-@pytest.mark.parametrize(
-    "wrong",
+ONE = [(0, {"gap": 5.0})]
+UNKNOWN = "no requirement `Z`: there are D1, D2"
+ONE_TEXT = "expected names, such as ['{}'], found one text"
+
+
+@each(
+    ("wrong", "error", "message"),
     [
-        lambda spec: spec.monitor(sources="gap"),
-        lambda spec: spec.evaluate([], sources="gap"),
-        lambda spec: spec.evaluate([], only="D1"),
-        lambda spec: Live(spec, only="D1"),
+        (lambda spec: spec.robustness(ONE, only=["Z"]), UnknownNameError, UNKNOWN),
+        (lambda spec: spec.evaluate(ONE, only=["Z"]), UnknownNameError, UNKNOWN),
+        # A report is asked of what it has: a misspelt name has no attempts either.
+        (lambda spec: spec.evaluate(ONE).of("Z", "F"), UnknownNameError, UNKNOWN),
+        (lambda spec: spec.evaluate(ONE).of("D2", "NT"), UnknownNameError, "the verdict 'NT'"),
+        # A source that the specification does not know is most likely a typing error.
+        (
+            lambda spec: spec.monitor(sources=["gap", "zzz"]),
+            UnknownNameError,
+            "`zzz`: there are closed, gap, knock",
+        ),
+        (lambda spec: spec.restore("abc"), SnapshotError, "bytes of a snapshot, found str"),
+        # The letters of one text are not looked for one by one.
+        (lambda spec: spec.monitor(sources="gap"), RvmonError, ONE_TEXT.format("gap")),
+        (lambda spec: spec.evaluate([], sources="gap"), RvmonError, ONE_TEXT.format("gap")),
+        (lambda spec: spec.evaluate([], only="D1"), RvmonError, ONE_TEXT.format("D1")),
+        (lambda spec: Live(spec, only="D1"), RvmonError, ONE_TEXT.format("D1")),
+        (
+            lambda spec: spec.evaluate({"t": [0], "g": [1.0]}, columns="gap=g"),
+            RvmonError,
+            "columns='gap=g': expected columns by name",
+        ),
+        # A specification is text, and so are its constants.
+        (
+            lambda _: rvmon.loads(b"spec door"),
+            RvmonError,
+            "expected the text of a specification, found bytes",
+        ),
+        (lambda _: rvmon.loads(None), RvmonError, "found NoneType"),
+        (
+            lambda _: rvmon.loads("spec door", const={"T": 2}),
+            RvmonError,
+            "expected a text of the language, such as '2 s'",
+        ),
     ],
 )
-def test_one_text_is_no_list_of_names(spec, wrong):
-    """Its letters are not looked for one by one."""
-    with pytest.raises(RvmonError, match=r"expected names, such as \['(gap|D1)'\], found one text"):
+def test_a_wrong_call_is_told(spec, wrong, error, message):
+    with pytest.raises(error, match=re.escape(message)):
         wrong(spec)
 
 
-def test_columns_are_named_by_what_they_feed(spec):
-    """A text as on the command line is none."""
-    with pytest.raises(RvmonError, match="columns='gap=g': expected columns by name"):
-        spec.evaluate({"t": [0], "g": [1.0]}, columns="gap=g")
-
-
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ((b"spec door",), "expected the text of a specification, found bytes"),
-        ((None,), "found NoneType"),
-        (("spec door", 2), "expected a text of the language, such as '2 s'"),
-    ],
-)
-def test_a_specification_is_text_and_so_are_its_constants(arguments, message):
-    """Also where nothing is kept of what was compiled."""
-    text, *value = arguments
-    with pytest.raises(RvmonError, match=message):
-        rvmon.loads(text, const={"T": value[0]} if value else None)
-
-
-def test_a_report_is_asked_of_what_it_has(spec):
-    """A misspelt requirement has no attempts either, and that would look fine."""
-    report = spec.evaluate([(0, {"gap": 5.0})])
-    assert [one.name for one in report.of("D2", rvmon.Verdict.FAIL)] == ["D2#1"]
-    with pytest.raises(UnknownNameError, match="no requirement `D3`: there are D1, D2"):
-        report.of("D3", "F")
-    with pytest.raises(UnknownNameError, match="no attempt has the verdict 'NT'"):
-        report.of("D2", "NT")
+def test_what_is_known_is_answered(spec):
+    assert not spec.monitor(sources=["gap"]).step(0, {"gap": 1.0})
+    [failed] = spec.evaluate(ONE).of("D2", rvmon.Verdict.FAIL)
+    assert failed.name == "D2#1"
 
 
 async def _awaited(_):

@@ -1,5 +1,6 @@
 """The public surface: names, lightness, the facade."""
 
+import ast
 import os
 import subprocess
 import sys
@@ -40,13 +41,22 @@ def test_an_unknown_name_is_an_attribute_error():
         rvmon.lood  # noqa: B018
 
 
+def loaded(names, code, *words, **environment):
+    """Which of some modules a program of its own has loaded at its end."""
+    program = f"import sys; {code}; print([one for one in {names!r} if one in sys.modules])"
+    shown = subprocess.run(  # noqa: S603 - the interpreter itself
+        [sys.executable, "-c", program, *words],
+        capture_output=True,
+        text=True,
+        check=True,
+        env={**os.environ, **environment},
+    )
+    return ast.literal_eval(shown.stdout.splitlines()[-1])
+
+
 def test_import_loads_nothing_heavy():
     heavy = ("lark", "numpy", "networkx", "rich", "msgspec", "pymunk")
-    code = f"import rvmon, sys; print([m for m in {heavy!r} if m in sys.modules])"
-    shown = subprocess.run(  # noqa: S603
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    assert shown.stdout.strip() == "[]"
+    assert loaded(heavy, "import rvmon") == []
 
 
 @pytest.mark.process
@@ -56,32 +66,15 @@ def test_help_loads_nothing_that_reads_or_judges():
         *("numpy", "sqlite3", "msgspec", "rich", "rvmon.analysis", "rvmon.language"),
         *("rvmon.monitor", "rvmon.recordings", "rvmon.session"),
     )
-    code = (
-        "import sys; from rvmon.cli import COMMANDS, main; "
-        "[main([name, '--help']) for name in COMMANDS]; "
-        f"print([one for one in {heavy!r} if one in sys.modules])"
-    )
-    shown = subprocess.run(  # noqa: S603 - the interpreter itself
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    )
-    assert shown.stdout.splitlines()[-1] == "[]"
+    code = "from rvmon.cli import COMMANDS, main; [main([name, '--help']) for name in COMMANDS]"
+    assert loaded(heavy, code) == []
 
 
 @pytest.mark.process
 def test_a_run_loads_what_it_needs(tmp_path):
     """From the second run on no grammar; nothing that it was not asked for."""
-    spec, trace = (ROOT / "examples" / name for name in ("base.rv", "base.csv"))
+    spec, trace = (str(ROOT / "examples" / name) for name in ("base.rv", "base.csv"))
     heavy = ("lark", "numpy.ma", "rich", "rvmon.monitor.robustness", "rvmon.recordings.binding")
-    code = (
-        "import sys; from rvmon.cli import main; main(sys.argv[1:]); "
-        f"print([one for one in {heavy!r} if one in sys.modules])"
-    )
-    words = [sys.executable, "-c", code, "run", str(spec), str(trace)]
-    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
-    parsed = [
-        subprocess.run(  # noqa: S603 - the interpreter itself
-            words, capture_output=True, text=True, check=True, env=environment
-        ).stdout.splitlines()[-1]
-        for _ in range(2)
-    ]
-    assert parsed == ["['lark']", "[]"]
+    code = "from rvmon.cli import main; main(sys.argv[1:])"
+    for expected in (["lark"], []):
+        assert loaded(heavy, code, "run", spec, trace, XDG_CACHE_HOME=str(tmp_path)) == expected

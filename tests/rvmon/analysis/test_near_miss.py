@@ -27,8 +27,6 @@ CASES = {
         [(0, {"a": False, "b": False}), (5, {"e": True})],
         "`a` or `b` was never true while `e` was (first at 5 ns)",
     ),
-    "an event that never occurred": ("e", [(0, {"a": True})], "`e` never occurred"),
-    "a level that was never true": ("a", [(0, {"a": False})], "`a` was never true"),
     "a level that was false, then unknown": (
         "a",
         [(0, {"a": False}), (5, {"a": None})],

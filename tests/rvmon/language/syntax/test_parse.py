@@ -110,22 +110,16 @@ def test_nothing_outside_the_project_is_read(compile_file, tmp_path, target):
     assert "root:" not in str(caught.value)
 
 
-@pytest.mark.parametrize("mark", [".git", "pyproject.toml"])
-def test_a_project_shares_its_specifications(tmp_path, mark):
-    (tmp_path / mark).touch()
+@pytest.mark.parametrize("allowed", [".git", "pyproject.toml", "RVMON_ALLOW_IMPORTS"])
+def test_a_project_shares_its_specifications(tmp_path, monkeypatch, allowed):
+    """So does a folder that is named."""
+    if allowed == "RVMON_ALLOW_IMPORTS":
+        monkeypatch.setenv(allowed, str(tmp_path / "common"))
+    else:
+        (tmp_path / allowed).touch()
     (tmp_path / "common").mkdir()
     (tmp_path / "robot").mkdir()
     (tmp_path / "common" / "x.rv").write_text("signal a : bool")
-    text = 'import "../common/x.rv"\nrequirement R always a'
-    spec, _ = compile_text(text, directory=tmp_path / "robot")
-    assert set(spec.signals) == {"a"}
-
-
-def test_a_folder_that_is_named_may_be_imported_from(tmp_path, monkeypatch):
-    (tmp_path / "common").mkdir()
-    (tmp_path / "robot").mkdir()
-    (tmp_path / "common" / "x.rv").write_text("signal a : bool")
-    monkeypatch.setenv("RVMON_ALLOW_IMPORTS", str(tmp_path / "common"))
     text = 'import "../common/x.rv"\nrequirement R always a'
     spec, _ = compile_text(text, directory=tmp_path / "robot")
     assert set(spec.signals) == {"a"}
