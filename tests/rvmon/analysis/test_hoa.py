@@ -167,16 +167,6 @@ def test_random_formulas(data):
     assert read.run(word) == wanted
 
 
-def test_text_of_propositions_is_quoted():
-    spec = loads(
-        'spec s\nsignal mode : {idle, busy}\nrequirement R1 "a \\"b\\""\n'
-        "  upon start\n  then eventually mode == busy\n"
-    )
-    text = written(spec.checked, "R1")
-    assert Read(text).propositions == ["mode == busy"]
-    assert text.startswith("HOA: v1\n")
-
-
 def test_states_that_differ_only_where_something_is_unknown_are_one():
     """Of `p <-> eventually always p` nothing is ever decided: one state is enough."""
     spec = loads(

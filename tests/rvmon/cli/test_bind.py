@@ -105,21 +105,6 @@ def test_a_starter_of_parquet_runs_on_it(tmp_path, monkeypatch):
     assert main(["run", "a.rv", "a.parquet", "--strict"]) == 0
 
 
-@pytest.mark.process
-def test_of_many_recordings_a_bad_bag_does_not_stop_the_others(words, tmp_path, capsys, says):
-    runs = tmp_path / "runs"
-    runs.mkdir()
-    for number in range(6):
-        write_ros1(runs / f"{number}.bag", SENT)
-    (runs / "3.bag").write_bytes((runs / "3.bag").read_bytes()[:900])
-    (tmp_path / "base.toml").write_text(bound(words, capsys))
-    for jobs in ("1", "2"):
-        binding = ["--binding", str(tmp_path / "base.toml"), "--jobs", jobs]
-        told = says(2, "run", words[0], runs, *binding)
-        assert "3.bag: cannot be read as a bag" in told.err
-        assert all(f"{number}.bag" in told.out.replace("\n", "") for number in (0, 1, 2, 4, 5))
-
-
 @pytest.mark.slow
 def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, capsys, says):
     runs = tmp_path / "runs"

@@ -29,19 +29,6 @@ def shown(capsys, *words):
     return code, [" ".join(line.split()) for line in lines]
 
 
-def test_the_overview(door, capsys):
-    code, lines = shown(capsys, door)
-    assert code == 0
-    assert lines[0] == f"{door} 4 tests: 3 completed, 1 crashed"
-    assert "gaze coverpoint 2 of 2 100 % ████████████████████" in lines
-    assert "situation cross 1 of 4 25 % █████░░░░░░░░░░░░░░░" in lines
-    assert "total 46 % █████████░░░░░░░░░░░" in lines
-    assert "D1 2 · · · · 1 · ·" in lines
-    assert "situation: no × touch 1 hit by 1 test, first wild-1 at 7 s" in lines
-    assert "crashed: ZeroDivisionError: the gap is 0 1 test: wild-2" in lines
-    assert lines[-1] == "missing items: --holes"
-
-
 def test_a_group_without_goals_is_no_row(tmp_path, capsys):
     """Neither the terminal nor the page calls that 100 %; requirements stand as in the file."""
     path = tmp_path / "base.cov"

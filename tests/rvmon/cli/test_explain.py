@@ -34,17 +34,6 @@ def door(tmp_path, monkeypatch):
     return tmp_path
 
 
-def test_words_facts_automaton_and_runs(door, says):
-    text = says(0, "explain", "door.rv", "D1").out
-    assert "Each time that knock occurs:" in text
-    assert "within 2 s, closed is false." in text
-    assert "1 clock" in text
-    assert "x > 2 s ─▶ ✗ F" in text
-    for verdict in ("✓ P", "✗ F", "– NT", "? I"):
-        assert verdict in text.split("The shortest run")[1]
-    assert "2 s⁺" in text
-
-
 @pytest.mark.slow
 @each(
     ("body", "said"),
@@ -85,15 +74,6 @@ def test_what_cannot_be_is_said(door, says):
         "not decided"
         in says(0, "explain", "door.rv", "D1", "--runs", "2", "--max-memory", "2000").out
     )
-
-
-@pytest.mark.slow
-def test_the_difference_of_two(door, says):
-    text = says(0, "explain", "door.rv", "D1", "D2", "--runs", "300").out
-    difference = text.split("one fails and the other does not")[1]
-    rows = {line.split()[0]: line for line in difference.splitlines() if line.strip()}
-    assert "✗ F" in rows["D1"]
-    assert "✗ F" not in rows["D2"]
 
 
 def test_a_requirement_differs_not_from_its_twin(tmp_path, says):

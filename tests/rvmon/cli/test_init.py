@@ -77,21 +77,6 @@ def _random_column(rng, length):
     return cells if any(cells) else ["1", *cells[1:]]
 
 
-def test_what_was_seen_stands_beside_the_names(tmp_path, says):
-    path = tmp_path / "a.csv"
-    path.write_text("t,speed,go,mode\n0,0.5,,idle\n0.5,1.5,1,busy\n2,1,,idle\n")
-    lines = says(0, "init", path, "-o", "-").out.splitlines()
-    assert any(
-        line.startswith("signal speed : real") and "0.5 … 1.5" in line and "1 Hz" in line
-        for line in lines
-    )
-    assert any("longest gap 1500 ms" in line for line in lines)
-    assert "# event  go  # once; a guess: true in single samples" in lines
-    assert any(line.startswith("signal mode  : {idle, busy}") for line in lines)
-    (tmp_path / "a.rv").write_text("\n".join(lines) + "\n")
-    assert main(["format", "--check", str(tmp_path / "a.rv")]) == 0
-
-
 def test_a_response_is_timed_from_the_recording(tmp_path, says):
     """The first skeleton bounds an event by the longest wait for the one that follows it."""
     path = tmp_path / "a.jsonl"

@@ -1,7 +1,7 @@
 """`rvmon init` with recordings of messages: it writes what they can support, and that runs."""
 
 import pytest
-from tests.tools.bags import START, write_json_mcap, write_ros1, write_ros2
+from tests.tools.bags import START, write_json_mcap, write_ros1
 
 from rvmon.cli import main
 
@@ -112,13 +112,6 @@ def test_topics_on_which_nothing_was_said_are_left_out(tmp_path, capsys, plugin)
 def test_a_recording_of_nothing_is_told(tmp_path, says):
     write_json_mcap(tmp_path / "a.mcap", [])
     assert "a.mcap" in says(2, "init", tmp_path / "a.mcap", "-o", "-").err
-
-
-def test_json_and_ros_2_give_the_same(tmp_path, capsys):
-    sent = [("/temp", START + tick * 10**8, {"data": tick + 0.5}) for tick in range(9)]
-    one = written(tmp_path, write_ros2(tmp_path / "one", sent, "mcap"), capsys)
-    two = written(tmp_path, write_json_mcap(tmp_path / "two.mcap", sent), capsys)
-    assert one.partition("time held")[2] == two.partition("time held")[2]
 
 
 @pytest.mark.parametrize(

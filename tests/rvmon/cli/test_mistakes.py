@@ -1,5 +1,6 @@
 """What each command says of words that are wrong: what is the matter, and what is done about it."""
 
+import os
 import shlex
 
 import pytest
@@ -49,6 +50,7 @@ NO_PIECE = "no piece can be cut out of this format, as out of CSV"
 def folder(door):
     """An input of each kind."""
     (door / "bag").mkdir()
+    os.mkfifo(door / "pipe")
     for name, text in FILES.items():
         (door / name).write_bytes(text.encode("latin1"))
     for name, target in {"link.csv": "P.csv", "link.rv": "door.rv"}.items():
@@ -96,6 +98,7 @@ MISTAKES = {
         *((f"door.rv a.{end} D1 -o b.csv", NO_PIECE) for end in ("ulg", "blf", "mf4", "h5")),
         ("door.rv a.ulg D1 --reproducer a.rvcase", NO_PIECE),
     ],
+    "compare": [("gone.csv P.csv", "there is no file gone.csv")],
     "conform": [
         ("gone.ta P.csv", "gone.ta: No such file or directory"),
         ("lamp.ta gone.csv", "gone.csv: No such file or directory"),
@@ -245,7 +248,7 @@ MISTAKES = {
         ("door.rv P.csv", "by `rvmon run door.rv P.csv`"),
         ("door.rv a.mcap --state kept", "by `rvmon run door.rv a.mcap`"),
         ("door.rv bag", "by `rvmon run door.rv bag`"),
-        ("door.rv text.jsonl --state /dev/null", "is no regular file"),
+        ("door.rv text.jsonl --state pipe", "is no regular file"),
         ("door.rv text.jsonl --state door.rv", "door.rv: it is an input: name another"),
         ("door.rv text.jsonl --only D2", "D2"),
         ("door.rv text.jsonl --map clsed=x", "did you mean `closed`?"),

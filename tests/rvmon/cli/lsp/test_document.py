@@ -191,14 +191,6 @@ def test_the_page_of_a_code_is_there_once_it_can_be_kept(monkeypatch, tmp_path):
     assert Path(to_fs_path(described().href)).is_relative_to(tmp_path)
 
 
-def test_findings_of_other_files():
-    of = document('import "a.rv"\nrequirement R always p\n', {"a.rv": "signal p : boo\n"})
-    assert [(uri, len(found)) for uri, found in of.diagnostics.items()] == [
-        (of.uri, 0),
-        ("file:///demo/a.rv", 1),
-    ]
-
-
 @pytest.mark.slow
 def test_fixes_mend():
     """Where a fix is offered, what was found is gone with it; the usual slips have one."""

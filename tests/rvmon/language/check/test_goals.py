@@ -54,12 +54,6 @@ def test_cross(checked):
     assert cross.illegal == {("no", "moving"), ("yes", "idle")}
 
 
-def test_cover(checked):
-    assert format_formula(checked("cover C = a and e").covers["C"].formula) == (
-        "eventually (a and e)"
-    )
-
-
 @each(
     ("text", "codes_found"),
     [

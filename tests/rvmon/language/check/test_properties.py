@@ -10,7 +10,6 @@ from rvmon.language.checked.properties import (
     StateAtom,
     StateBinary,
 )
-from rvmon.language.checked.specification import Role
 from rvmon.language.print import format_formula
 
 ROLES = """signal ok, near : bool input
@@ -135,8 +134,3 @@ def response(checked, body):
 def test_response_monitor(checked, body, trigger, consequent):
     """Inputs trigger, positive outputs are awaited together, negated ones stay away."""
     assert response(checked, body) == (trigger, consequent)
-
-
-def test_roles(checked):
-    assert checked(ROLES).signals["ok"].role is Role.INPUT
-    assert checked(ROLES).signals["both"].role is None

@@ -171,10 +171,6 @@ def test_a_choice_is_laid_out_on_one_line():
     assert format_text(text) == text
 
 
-def test_a_choice_is_no_captured_value(codes):
-    assert "RV020" in codes("requirement R upon a then b let v = if a then 1 else 2")
-
-
 @each(
     ("text", "code"),
     [
