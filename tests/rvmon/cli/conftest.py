@@ -23,3 +23,15 @@ def door(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "door.rv").write_text(DOOR)
     return tmp_path
+
+
+@pytest.fixture
+def put(tmp_path, monkeypatch):
+    """Write a file into what is the current folder from then on, and give its name."""
+    monkeypatch.chdir(tmp_path)
+
+    def written(name, text):
+        (tmp_path / name).write_text(text, encoding="utf-8")
+        return name
+
+    return written

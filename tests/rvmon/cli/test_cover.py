@@ -257,11 +257,6 @@ def test_names_steer_no_terminal(tmp_path, says):
         assert not STEERING.search(says(0, "cover", path, *words).out)
 
 
-def test_a_page_is_written(door, capsys):
-    assert main(["cover", door, "--report", "door.html"]) == 0
-    assert "46 % covered" in Path("door.html").read_text(encoding="utf-8")
-
-
 def test_an_empty_database_is_shown_and_reaches_no_share(tmp_path, capsys, says):
     """A gate does not pass because nobody said what is to be covered."""
     path = str(tmp_path / "a.cov")

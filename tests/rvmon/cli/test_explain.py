@@ -48,11 +48,10 @@ def door(tmp_path, monkeypatch):
         ("always bit(mode, 3)", "bit(mode, 3) is true"),
     ],
 )
-def test_what_is_measured_is_said(tmp_path, says, body, said):
+def test_what_is_measured_is_said(put, says, body, said):
     body = body.format("upon knock then eventually")
     text = f"{SPEC}event rung(loud: bool)\nsignal mode : int\nrequirement W\n {body}\n"
-    (tmp_path / "s.rv").write_text(text)
-    text = says(0, "explain", str(tmp_path / "s.rv"), "W").out
+    text = says(0, "explain", put("s.rv", text), "W").out
     assert said in " ".join(text.split())
     assert "`upon`" not in text
 
@@ -76,8 +75,7 @@ def test_what_cannot_be_is_said(door, says):
     )
 
 
-def test_a_requirement_differs_not_from_its_twin(tmp_path, says):
-    path = tmp_path / "twins.rv"
-    path.write_text("event a\nrequirement R1\n upon a\n then immediately a\n"
-                    "requirement R2\n upon a\n then immediately a\n")  # fmt: skip
-    assert "No run was found" in says(0, "explain", str(path), "R1", "R2").out
+def test_a_requirement_differs_not_from_its_twin(put, says):
+    twin = "\n upon a\n then immediately a\n"
+    path = put("twins.rv", f"event a\nrequirement R1{twin}requirement R2{twin}")
+    assert "No run was found" in says(0, "explain", path, "R1", "R2").out

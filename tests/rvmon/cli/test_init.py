@@ -34,10 +34,8 @@ RECORDINGS = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", RECORDINGS)
-def test_what_is_written_runs_at_once(name, tmp_path, monkeypatch, says):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / name).write_text(RECORDINGS[name], encoding="utf-8")
-    assert main(["init", name, "-o", "made.rv"]) == 0
+def test_what_is_written_runs_at_once(name, put, says):
+    assert main(["init", put(name, RECORDINGS[name]), "-o", "made.rv"]) == 0
     told = says(0, "run", "made.rv", name, "--format", "json")
     assert "warning" not in told.err
     shown = json.loads(told.out)
@@ -77,12 +75,12 @@ def _random_column(rng, length):
     return cells if any(cells) else ["1", *cells[1:]]
 
 
-def test_a_response_is_timed_from_the_recording(tmp_path, says):
+def test_a_response_is_timed_from_the_recording(put, says):
     """The first skeleton bounds an event by the longest wait for the one that follows it."""
-    path = tmp_path / "a.jsonl"
-    path.write_text(
+    path = put(
+        "a.jsonl",
         '{"t":0,"x":1}\n{"t":1,"events":["go"]}\n{"t":1.4,"events":["done"]}\n'
-        '{"t":5,"events":["go"]}\n{"t":5.7,"events":["done"]}\n'
+        '{"t":5,"events":["go"]}\n{"t":5.7,"events":["done"]}\n',
     )
     shown = says(0, "init", path, "-o", "-").out
     assert "upon go\n  then within 800 ms done" in shown
@@ -115,12 +113,10 @@ def test_bad_recordings_are_refused_with_their_place(name, text, said, tmp_path,
     assert not (tmp_path / "made.rv").exists()
 
 
-def test_nothing_is_overwritten(tmp_path, monkeypatch, says):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "a.csv").write_text("t,x\n0,1\n1,2\n")
-    (tmp_path / "a.rv").write_text("mine")
+def test_nothing_is_overwritten(tmp_path, put, says):
+    put("a.csv", "t,x\n0,1\n1,2\n")
+    put("a.rv", "mine")
     assert "--force" in says(2, "init", "a.csv").err
-    assert (tmp_path / "a.rv").read_text() == "mine"
     assert main(["init", "a.csv", "--force"]) == 0
     assert "requirement R1" in (tmp_path / "a.rv").read_text()
 
@@ -134,22 +130,18 @@ def test_nothing_is_overwritten(tmp_path, monkeypatch, says):
         ("a.csv", "when,x\n2024-05-01T12:00:00Z,1\n2024-05-01T12:00:01Z,2\n", "when:iso"),
     ],
 )
-def test_stamps_have_a_name_and_a_unit(name, text, time, tmp_path, monkeypatch, says):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / name).write_text(text)
-    shown = says(0, "init", name, "-o", "made.rv", "--time", time).out
+def test_stamps_have_a_name_and_a_unit(name, text, time, put, says):
+    shown = says(0, "init", put(name, text), "-o", "made.rv", "--time", time).out
     assert f"--time {time}" in shown
     assert {"x"} <= set(rvmon.load("made.rv").schema.signals) <= {"x", "t"}
     [command] = [line for line in shown.splitlines() if line.startswith("try:")]
     assert main([*command.split()[2:], "--format", "json"]) == 0
 
 
-def test_a_number_that_is_infinite_somewhere_has_no_range(tmp_path, monkeypatch):
+def test_a_number_that_is_infinite_somewhere_has_no_range(tmp_path, put):
     """A range of the finite ones would fail on the recording that it was made of."""
-    monkeypatch.chdir(tmp_path)
     rows = [f"{t / 10},{'-inf' if t == 7 else t % 5},{t % 3}" for t in range(40)]
-    (tmp_path / "a.csv").write_text("\n".join(["t,x,y", *rows, ""]))
-    assert main(["init", "a.csv"]) == 0
+    assert main(["init", put("a.csv", "\n".join(["t,x,y", *rows, ""]))]) == 0
     assert main(["run", "a.rv", "a.csv"]) == 0
     text = (tmp_path / "a.rv").read_text()
     assert "y stays in its range" in text

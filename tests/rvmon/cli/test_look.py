@@ -83,10 +83,9 @@ def test_what_a_log_lost_is_told_and_shaded(tmp_path, says):
     assert '<code title="drive.speed">speed</code>' in page  # it stands under its topic
 
 
-def test_what_falls_silent_is_drawn_up_to_there(tmp_path, monkeypatch, says):
-    monkeypatch.chdir(tmp_path)
+def test_what_falls_silent_is_drawn_up_to_there(put, says):
     rows = [f"{k / 100},{k % 7}," for k in range(100)] + [f"{1 + k},,{k}" for k in range(200)]
-    Path("a.csv").write_text("\n".join(["t,early,late", *rows, ""]))
+    put("a.csv", "\n".join(["t,early,late", *rows, ""]))
     early, late = says(0, "look", "a.csv").out.splitlines()[1:3]
     assert [sum(one in "▁▂▃▄▅▆▇█" for one in line) for line in (early, late)] == [1, 20]
     assert main(["look", "a.csv", "-o", "a.html"]) == 0
@@ -138,11 +137,9 @@ def test_null_is_no_label_and_a_name_without_any_value_is_left_out(tmp_path, say
 
 @pytest.mark.slow
 @pytest.mark.parametrize("odd", ["word", "1" * 100_000 + "x", "1.5\n2.5"])
-def test_a_column_is_looked_at_to_its_last_cell(odd, tmp_path, says):
+def test_a_column_is_looked_at_to_its_last_cell(odd, put, says):
     rows = "".join(f"{t},{t / 7},{t % 3}\n" for t in range(20_000))
-    path = tmp_path / "long.csv"
-    path.write_text(f't,x,n\n{rows}20000,"{odd}",1\n')
-    told = says(0, "look", path).out
+    told = says(0, "look", put("long.csv", f't,x,n\n{rows}20000,"{odd}",1\n')).out
     assert "x: numbers and text" in " ".join(told.split())
     assert "0 … 2" in told
 
@@ -155,9 +152,8 @@ def test_a_column_is_looked_at_to_its_last_cell(odd, tmp_path, says):
     ],
     ids=["a double", "larger than one"],
 )
-def test_a_whole_number_of_more_than_64_bits_is_a_real_one(number, code, told, tmp_path, says):
-    path = tmp_path / "large.jsonl"
-    path.write_text("".join(f'{{"t": {t}, "id": {number}}}\n' for t in range(3)))
+def test_a_whole_number_of_more_than_64_bits_is_a_real_one(number, code, told, put, says):
+    path = put("large.jsonl", "".join(f'{{"t": {t}, "id": {number}}}\n' for t in range(3)))
     assert told in " ".join("".join(says(code, "look", path)).split())
 
 

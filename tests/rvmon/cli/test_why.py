@@ -6,8 +6,6 @@ import pytest
 from tests.rvmon.cli.conftest import DOOR
 from tests.tools.logs import write_ulog
 
-from rvmon.cli import main
-
 SPEC = f"""{DOOR}
 requirement D2
   upon fall(closed)
@@ -34,78 +32,68 @@ def test_attempts_are_shown_with_their_verdict(door, says, named, verdict):
     assert any(line.strip() == "required" for line in lines)
 
 
-def test_rows_show_truth_over_the_window(tmp_path, says):
+def test_rows_show_truth_over_the_window(put, says):
     """A second a column: edges, moments, and what is not known in a part of it or wholly."""
-    spec, trace = tmp_path / "a.rv", tmp_path / "a.jsonl"
-    spec.write_text(
-        "spec a\nsignal p, q : bool\nevent go\n"
-        "requirement R\n  upon go then within 44 s (p and q)\n"
-    )
     steps = {0: False, 3: True, 4.5: False, 6.2: True, 6.4: False, 9: True, 12.3: False}
     steps |= {12.6: True, 14.5: False, 14.7: True, 14.9: False, 17.5: None, 20: True, 22.5: None}
     steps |= {25: True, 26.5: False, 30.5: True, 46: True}
-    trace.write_text(
-        "".join(
-            json.dumps({"t": t, "p": p, "q": False} | ({"go": True} if t == 0 else {})) + "\n"
-            for t, p in steps.items()
-        )
-    )
-    lines = says(0, "why", spec, trace, "R").out.splitlines()
+    samples = [{"t": t, "p": p, "q": False, "go": t == 0} for t, p in steps.items()]
+    text = "requirement R\n  upon go then within 44 s (p and q)\n"
+    put("a.rv", f"spec a\nsignal p, q : bool\nevent go\n{text}")
+    put("a.jsonl", "\n".join(map(json.dumps, samples)) + "\n")
+    lines = says(0, "why", "a.rv", "a.jsonl", "R").out.splitlines()
     rows = {line[:34].strip(): line[34:] for line in reversed(lines)}
     assert rows["go"] == "●" + "▁" * 45
     assert rows["p"] == "▁▁▁▇╲▁●▁▁▇▇▇○▇╲▁▁???▇▇▇??▇╲▁▁▁╱" + "▇" * 15
 
 
-def test_an_attempt_in_doubt_has_a_name_of_its_own(door, capsys, says):
+def test_an_attempt_in_doubt_has_a_name_of_its_own(door, says):
     (door / "a.jsonl").write_text(
         '{"t": 0, "closed": true, "knock": true}\n{"t": 1, "knock": null}\n{"t": 9}\n'
     )
     for name, verdict in (("D1#1", "F"), ("D1?1", "I")):
         assert says(0, "why", "door.rv", "a.jsonl", name).out.split()[:2] == [name, verdict]
-    assert main(["why", "door.rv", "a.jsonl", "D1?2"]) == 2
-    assert "no attempt D1?2: there are D1#1 to D1?1" in capsys.readouterr().err
+    told = says(2, "why", "door.rv", "a.jsonl", "D1?2").err
+    assert "no attempt D1?2: there are D1#1 to D1?1" in told
 
 
-def test_signals_are_told_as_they_were(tmp_path, capsys, says):
+def test_signals_are_told_as_they_were(put, says):
     """With unit at the trigger and the end, once where these are one; what is lost is so."""
-    (tmp_path / "a.rv").write_text(
+    put(
+        "a.rv",
         "spec a\nsignal force : real [N] input\nsignal grip : {open, closed} output\n"
         "event go input\nrequirement A1\nupon go then within 1 s (grip = closed and force > 3 N)\n"
-        "requirement B1\nupon go then immediately grip = closed\n"
+        "requirement B1\nupon go then immediately grip = closed\n",
     )
-    (tmp_path / "a.csv").write_text(
-        "t,force,grip,go\n0,0.30000000000000004,open,1\n0.5,nan,closed,\n3,,,\n"
-    )
-    paths = [str(tmp_path / "a.rv"), str(tmp_path / "a.csv")]
-    rows = [line.split("  ") for line in says(0, "why", *paths, "A1").out.splitlines()]
+    put("a.csv", "t,force,grip,go\n0,0.30000000000000004,open,1\n0.5,nan,closed,\n3,,,\n")
+    rows = [line.split("  ") for line in says(0, "why", "a.rv", "a.csv", "A1").out.splitlines()]
     told = [[cell.strip() for cell in row if cell.strip()] for row in rows][-3:]
     assert told == [
         ["values", "at the trigger", "at the end"],
         ["grip", "open", "closed"],
         ["force", "0.3 N", "not known"],
     ]
-    assert main(["why", *paths, "B1", "--format", "json"]) == 0
-    assert json.loads(capsys.readouterr().out)["values"] == {"grip": ["open"]}
+    told = says(0, "why", "a.rv", "a.csv", "B1", "--format", "json").out
+    assert json.loads(told)["values"] == {"grip": ["open"]}
 
 
-def test_late_samples_are_put_in_order(tmp_path, says):
+def test_late_samples_are_put_in_order(put, says):
     text = SPEC.replace('"A door"\n', '"A door"\nmax delay 5 s\n')
-    (tmp_path / "a.rv").write_text(text)
-    (tmp_path / "a.csv").write_text("t,closed,knock\n0,1,\n2,0,\n1,,1\n9,,\n")
-    assert says(0, "why", tmp_path / "a.rv", tmp_path / "a.csv", "D1#1").out.startswith("D1#1  P")
+    put("a.rv", text)
+    put("a.csv", "t,closed,knock\n0,1,\n2,0,\n1,,1\n9,,\n")
+    assert says(0, "why", "a.rv", "a.csv", "D1#1").out.startswith("D1#1  P")
 
 
-def test_what_was_not_triggered_or_not_decided_says_what_lacked(tmp_path, says):
+def test_what_was_not_triggered_or_not_decided_says_what_lacked(put, says):
     """There is no attempt to show, but there is a nearest miss; `--until` is the end."""
-    spec, trace = tmp_path / "s.rv", tmp_path / "t.csv"
-    head = "spec s\nsignal a, b : bool\nevent e, f\n"
-    spec.write_text(f"{head}requirement R1\n  upon e and a then within 1 s b\n")
-    trace.write_text("t,a,b,e,f\n0,false,false,,\n1,,,1,\n3,,,,1\n")
-    words = ["why", str(spec), str(trace), "R1"]
-    assert "`a` was never true while `e` was (first at 1 s)" in says(2, *words).err
-    spec.write_text(f"{head}requirement R1\n  upon e then within 5 s f\n")
-    told = " ".join(says(0, *words, "--until", "2").out.split())
-    assert "a recording more than 4 s longer would have decided it" in told
+    text = "spec s\nsignal a, b : bool\nevent e, f\nrequirement R1\n  upon {}\n"
+    put("t.csv", "t,a,b,e,f\n0,false,false,,\n1,,,1,\n3,,,,1\n")
+    put("s.rv", text.format("e and a then within 1 s b"))
+    told = says(2, "why", "s.rv", "t.csv", "R1").err
+    assert "`a` was never true while `e` was (first at 1 s)" in told
+    put("s.rv", text.format("e then within 5 s f"))
+    told = says(0, "why", "s.rv", "t.csv", "R1", "--until", "2").out
+    assert "a recording more than 4 s longer would have decided it" in " ".join(told.split())
 
 
 def test_what_a_log_lost_is_known_to_nobody(door, says):
@@ -128,12 +116,12 @@ def test_what_a_log_lost_is_known_to_nobody(door, says):
     assert second + 5 * second // 10 in lost
 
 
-def test_an_attempt_at_the_end_has_no_row_for_its_trigger(tmp_path, says):
+def test_an_attempt_at_the_end_has_no_row_for_its_trigger(put, says):
     """`end` is no part that would be true at some instants; `true` as a trigger says nothing."""
-    (tmp_path / "a.csv").write_text("t,p\n0,1\n1,0\n")
     for trigger in ("upon end", "whenever true"):
         text = f"spec a\nsignal p : bool\nrequirement R\n{trigger} then immediately p\n"
-        (tmp_path / "a.rv").write_text(text)
-        command = ["why", str(tmp_path / "a.rv"), str(tmp_path / "a.csv"), "R", "--format", "json"]
-        rows = json.loads(says(0, *command).out)["part_truths"]
-        assert [row["text"] for row in rows] == ["immediately p", "p"][-len(rows) :], trigger
+        put("a.rv", text)
+        put("a.csv", "t,p\n0,1\n1,0\n")
+        told = says(0, "why", "a.rv", "a.csv", "R", "--format", "json").out
+        texts = [row["text"] for row in json.loads(told)["part_truths"]]
+        assert texts == ["immediately p", "p"][-len(texts) :], trigger

@@ -49,13 +49,6 @@ def answer(text):
 
 
 @pytest.mark.slow
-@settings(max_examples=60, deadline=None)
-@given(st.text(max_size=100))
-def test_any_text(text):
-    answer(text)
-
-
-@pytest.mark.slow
 @settings(max_examples=100, deadline=None)
 @given(st.lists(st.sampled_from(WORDS), max_size=60))
 def test_any_words(words):
