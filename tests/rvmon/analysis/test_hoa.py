@@ -213,25 +213,3 @@ def test_letters_that_cannot_be(data):
             decided = decided or (attempt.number == 1 and attempt.verdict.value) or None
         if decided is not None:
             assert read.names[state] == decided
-
-
-def test_what_cannot_be_stands_in_no_label():
-    """Above 3 it is above 2: a label tells the values apart, with no word of what cannot be."""
-    spec = loads(
-        "spec s\ntime sampled\nsignal x : real\nrequirement R\n"
-        "  upon x > 3 then always (x > 3 -> next x > 2)\nrequirement S\n"
-        "  upon x > 3 then eventually (x > 2) or always x < 1\n"
-    )
-    assert "[!0&!1] 0\n[0&!1 | 0&1] 1" not in written(spec.checked)
-    assert Read(written(spec.checked)).propositions == ["x > 2", "x > 3"]
-    assert "AP: 0\n" in written(spec.checked, "S")
-
-
-def test_a_trigger_that_cannot_be():
-    """What would be required is written for words that begin with anything."""
-    spec = loads(
-        "spec s\ntime sampled\nsignal x : real\nrequirement R\n"
-        "  upon x > 3 and x < 2 then eventually x > 1\n"
-    )
-    read = Read(written(spec.checked))
-    assert [read.run([set(), {"x > 1"}]), read.run([set()])] == ["P", "?"]

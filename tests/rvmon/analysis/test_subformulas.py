@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import pytest
 
-from rvmon.analysis.interval_sets import hold, joined, within
 from rvmon.analysis.subformulas import dissect
 from rvmon.analysis.truths import look_through, parts_of, subformulas, truths_of_parts
 from rvmon.language.checked.specification import TimeModel
@@ -60,25 +59,6 @@ def _shown(true, false, t):
     if any(low <= t <= high for low, high in true):
         return Truth.TRUE
     return Truth.FALSE if any(low <= t <= high for low, high in false) else Truth.UNKNOWN
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", range(3))
-def test_spans_are_sets(seed):
-    rng = random.Random(seed)
-    for _ in range(200):
-        edges = sorted(rng.sample(range(2, 19), 2 * rng.randint(0, 4)))
-        spans = joined(list(zip(edges[::2], edges[1::2], strict=True)))
-        own = {
-            t
-            for low, high in zip(edges[::2], edges[1::2], strict=True)
-            for t in range(low, high + 1)
-        }
-        assert ticks(spans) == own
-        assert all(low > high + 1 for high, low in zip(spans[:-1, 1], spans[1:, 0], strict=True))
-        low, high = sorted(rng.choices(range(21), k=2))
-        assert ticks(within(spans, low, high)) == own & set(range(low, high + 1))
-        assert [t for t in range(21) if hold(spans, t)] == sorted(own)
 
 
 def test_an_attempt_of_an_instance_and_with_captures():

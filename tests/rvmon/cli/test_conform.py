@@ -60,11 +60,6 @@ def test_tolerance_and_end(folder, says):
     assert "1 later action is not looked at" in shown.err
 
 
-def test_a_broken_recording_does_not_hide_the_others(folder, says):
-    files = [str(folder / name) for name in ("lamp.ta", "text.csv", "good.csv")]
-    assert "good.csv: conforms" in says(2, "conform", *files).out
-
-
 def test_an_empty_recording_may_be_a_quiet_run(folder, says):
     """Who says what would be seen may have a recording in which nothing of it is."""
     (folder / "text.jsonl").write_text('{"t": 0, "text": "hello"}\n')

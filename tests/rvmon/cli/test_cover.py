@@ -4,7 +4,7 @@ import json
 from pathlib import Path
 
 import pytest
-from tests.tools.covered import door_model, dump, fill, hits_of
+from tests.tools.covered import door_model, fill, hits_of
 from tests.tools.hostile import STEERING, hostile_names
 
 from rvmon.cli import main
@@ -103,19 +103,6 @@ def test_ucis_is_as_its_schema_has_it(door, tmp_path, capsys):
     capsys.readouterr()
 
 
-@pytest.mark.slow
-def test_bins_and_crosses(door, capsys):
-    _, lines = shown(capsys, door, "--bins=gaze")
-    assert lines[-3:-1] == ["yes 3 2 calm-1 at 1 s", "no 3 2 wild-1 at 7 s"]
-    _, lines = shown(capsys, door, "--bins=situation")
-    grid = lines.index("gaze touch reach far")
-    assert lines[grid + 2 : grid + 4] == ["yes 1 0 –", "no 1 ! 0 0"]
-    _, lines = shown(capsys, "--bins", door)
-    assert "D1 requirement, 1 of 2 covered" in lines
-    assert main(["cover", door, "--bins=gase"]) == 2
-    assert "no group named `gase`: did you mean `gaze`?" in capsys.readouterr().err
-
-
 def test_a_cross_of_three_has_nested_rows(tmp_path, capsys, monkeypatch):
     axes = {"x": ["a", "b"], "y": ["c", "d"], "z": ["e", "f"]}
     names = [combination([x, y, z]) for x in "ab" for y in "cd" for z in "ef"]
@@ -184,24 +171,6 @@ def test_exit_codes(door, says):
     says(0, *week_2, "--require", "20", "--strict")
     says(1, *week_2, "--require", "20.9%")
     says(1, *week_2, "--strict", "--compare", "week 1")  # a loss
-
-
-@pytest.mark.slow
-def test_databases_are_merged(door, capsys):
-    other, out = "other.cov", "out.cov"
-    with Database.open(other) as database:
-        database.declare(door_model())
-        database.record(TestRecord("more", "week 2"), hits_of(("near", "reach")))
-    for _ in range(2):
-        code, lines = shown(capsys, door, other, "--merge", out)
-        assert code == 0
-        assert lines[0].endswith("5 tests of 2 campaigns: 4 completed, 1 crashed")
-    with Database.open(out) as database:
-        assert len(database.coverage().entries) == 5
-        before = dump(database)
-    assert main(["cover", out, door, "--merge", out]) == 0
-    with Database.open(out) as database:
-        assert dump(database) == before
 
 
 def test_campaigns_are_compared(door, capsys, says):

@@ -75,18 +75,6 @@ def _random_column(rng, length):
     return cells if any(cells) else ["1", *cells[1:]]
 
 
-def test_a_response_is_timed_from_the_recording(put, says):
-    """The first skeleton bounds an event by the longest wait for the one that follows it."""
-    path = put(
-        "a.jsonl",
-        '{"t":0,"x":1}\n{"t":1,"events":["go"]}\n{"t":1.4,"events":["done"]}\n'
-        '{"t":5,"events":["go"]}\n{"t":5.7,"events":["done"]}\n',
-    )
-    shown = says(0, "init", path, "-o", "-").out
-    assert "upon go\n  then within 800 ms done" in shown
-    assert "longest wait in the recording was 0.7 s" in shown
-
-
 @each(
     ("name", "text", "said"),
     [

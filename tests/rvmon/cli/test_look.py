@@ -10,7 +10,6 @@ import pytest
 from tests.tools.logs import write_ulog
 
 from rvmon.cli import main
-from rvmon.recordings.starter.observed_values import MOST, Course
 
 SPEC = """
 spec base
@@ -97,17 +96,6 @@ def test_what_falls_silent_is_drawn_up_to_there(put, says):
     ]
     wide = float(re.search(r'viewBox="0 0 ([\d.]+) ', text)[1])
     assert [round(end / wide, 1) for end in ends] == [0.0, 1.0]
-
-
-def test_a_course_is_bounded_and_loses_no_peak():
-    course = Course()
-    times = np.arange(0, 10**9, 10**6)
-    for some in np.array_split(times, 7):
-        course.note(some, np.where(some == 123 * 10**6, 9.0, 1.0))
-    stretches = course.until(10**9)
-    assert len(stretches) <= MOST
-    assert sum(one.updates for one in stretches) == 1000
-    assert max(one.high for one in stretches if one.high is not None) == 9.0
 
 
 @pytest.mark.parametrize("most", [1.7e308, 5e-324])

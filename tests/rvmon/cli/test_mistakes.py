@@ -115,6 +115,7 @@ MISTAKES = {
         (".", "is a folder"),
         ("a.cov --require much", "expected a percentage, such as 95%, not much"),
         ("a.cov --require 101", "expected a percentage"),
+        ("a.cov --bins=D2", "no group named `D2`: there are D1"),
         ("a.cov --compare none", "there is no file none"),
         ("a.cov --merge /none/a.cov", "there is no folder"),
         ("a.cov --report none/a.html", "cannot write none/a.html: No such file"),

@@ -30,14 +30,6 @@ def test_json_has_the_promised_shape(capsys):
     assert (alive["holds"], alive["trace"]) == (True, None)
 
 
-def test_queries_by_id_and_by_text(says):
-    model = str(MODELS / "bridge.ta")
-    texts = ["--query", "quicker", "--query", "E<> Torch.two"]
-    first, second = json.loads(says(1, "verify", model, *texts, "--format", "json").out)["queries"]
-    assert (first["id"], first["holds"]) == ("quicker", False)
-    assert second["holds"] is True
-
-
 LAMP = """
 unit 1 s
 clock x

@@ -77,13 +77,6 @@ def test_signals_are_told_as_they_were(put, says):
     assert json.loads(told)["values"] == {"grip": ["open"]}
 
 
-def test_late_samples_are_put_in_order(put, says):
-    text = SPEC.replace('"A door"\n', '"A door"\nmax delay 5 s\n')
-    put("a.rv", text)
-    put("a.csv", "t,closed,knock\n0,1,\n2,0,\n1,,1\n9,,\n")
-    assert says(0, "why", "a.rv", "a.csv", "D1#1").out.startswith("D1#1  P")
-
-
 def test_what_was_not_triggered_or_not_decided_says_what_lacked(put, says):
     """There is no attempt to show, but there is a nearest miss; `--until` is the end."""
     text = "spec s\nsignal a, b : bool\nevent e, f\nrequirement R1\n  upon {}\n"

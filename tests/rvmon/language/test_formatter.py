@@ -2,7 +2,6 @@
 
 import pytest
 
-from rvmon.language.compile import compile_text
 from rvmon.language.formatter import format_text
 
 EXAMPLE = """# Head
@@ -72,13 +71,6 @@ def test_a_comment_behind_at_end_is_kept(colon):
     head = "spec s\nsignal b : bool\nrequirement R\n  upon b then b\n"
     text = format_text(f"{head}  at end{colon} # why\n  strong\n")
     assert text.endswith("  at end:  # why\n    strong\n")
-
-
-def test_a_name_does_not_become_a_unit():
-    """A name on the line below a number stays there: beside it, it would be read as its unit."""
-    text = "signal s : bool\n\nrequirement R\n  within 0\n    s\n"
-    assert format_text(text) == text
-    assert "R" in compile_text(text)[0].requirements
 
 
 def test_long_lines_are_broken_at_loose_operators():

@@ -214,24 +214,6 @@ def test_fixes_mend():
     assert [fix.title for fix in document(sign).fixes(everywhere)] == ["Write `->`"]
 
 
-def test_no_fix_that_makes_things_worse():
-    text = "signal d : real [kgg]\nrequirement R always d < 5,3 kg\n"
-    everywhere = Range(Position(0, 0), Position(9, 0))
-    assert "did you mean `kg`" in document(text).compiled.findings[0].help
-    assert not list(document(text).fixes(everywhere))
-
-
-def test_outline():
-    text = f'{SPEC}requirement R2 "later" upon\n'
-    names = {symbol.name: symbol.detail for symbol in document(text).symbols()}
-    assert list(names) == ["state", "s", "moving", "pick", "soon", "T", "R1", "phase", "both", "R2"]
-    assert (names["R1"], names["s"]) == ("What is picked moves", "real [m]")
-    assert names["R2"] == "cannot be read"
-    for symbol in document(text).symbols():
-        assert symbol.range.start <= symbol.selection_range.start
-        assert symbol.selection_range.end <= symbol.range.end
-
-
 OFFERED = {
     "requirement R\n  upon pi": (
         "pi",

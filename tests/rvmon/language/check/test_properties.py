@@ -6,9 +6,7 @@ from rvmon.language.checked.formula import Interval, UnaryOp
 from rvmon.language.checked.properties import (
     ModelAtom,
     PathBinary,
-    PathUnary,
     StateAtom,
-    StateBinary,
 )
 from rvmon.language.print import format_formula
 
@@ -39,29 +37,12 @@ def test_path_quantifiers(checked, text, universal, op):
     assert (formula.universal, formula.op) == (universal, op)
 
 
-def test_reach(checked):
-    """`A[]` reaches to the end of the formula, `AG` binds like `not`."""
-    formula = checked("property P: A[] a -> b").properties["P"].formula
-    assert isinstance(formula, PathUnary)
-    formula = checked("property P: (AG a) -> b").properties["P"].formula
-    assert isinstance(formula, StateBinary)
-
-
 def test_bounds_and_until(checked):
     formula = checked("property P: A[a U[0, 3 s] E[b W c]]").properties["P"].formula
     assert isinstance(formula, PathBinary)
     assert formula.interval == Interval(0, 3 * 10**9)
     assert isinstance(formula.right, PathBinary)
     assert checked("property P: AF<=3 s a").properties["P"].formula.interval.high == 3 * 10**9
-
-
-def test_leads_to(checked):
-    """`p --> q` is `AG (p -> AF q)`, with its bound on the second part."""
-    formula = checked("property P: a and b --> c").properties["P"].formula
-    assert (formula.universal, formula.op) == (True, UnaryOp.ALWAYS)
-    assert formula.operand.right.op is UnaryOp.EVENTUALLY
-    formula = checked("property P: a -->[0, 2 s] c").properties["P"].formula
-    assert formula.operand.right.interval == Interval(0, 2 * 10**9)
 
 
 def test_names_of_a_model(checked, codes):

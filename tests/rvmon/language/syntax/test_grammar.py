@@ -188,11 +188,6 @@ def test_what_is_read_in_two_ways_needs_brackets(codes, text, code):
     assert codes(f"requirement R upon start then {text}") == [code]
 
 
-def test_both_readings_are_shown(message):
-    text = message("requirement R always not a and speed < 1 m/s")
-    assert "`always (not a and speed < 1 m/s)` or `(always not a) and speed < 1 m/s`" in text
-
-
 @pytest.mark.slow
 def test_reserved_words_are_no_names(codes):
     """Words of the language cannot be declared, but quoted they can, and dotted they are others."""
@@ -235,17 +230,6 @@ def test_division_by_a_signal_called_like_a_unit(checked):
 def test_tables_of_words_and_grammar_agree(words):
     single = {word for word in words if len(word) == 1} | {"AG", "AF", "AX", "EG", "EF", "EX"}
     assert {word for word in words - single if word not in grammar_text()} == set()
-
-
-def test_property_is_a_clause_or_an_item(checked):
-    spec = checked("requirement R\n  always a\nproperty AG a\nproperty P: AG b")
-    assert spec.requirements["R"].ctl.text == "AG a"
-    assert spec.properties["P"].text == "AG b"
-
-
-def test_items_may_be_indented(checked):
-    spec = checked("    requirement R1 always a\n    requirement R2 always b")
-    assert list(spec.requirements) == ["R1", "R2"]
 
 
 def test_all_errors_of_a_file_appear_at_once(codes):
