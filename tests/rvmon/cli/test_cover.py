@@ -132,18 +132,6 @@ def test_a_cross_that_nobody_could_look_at_is_a_list(tmp_path, capsys):
     assert f"{name} 0" in lines
 
 
-@pytest.mark.slow
-def test_tests_with_what_they_added(door, capsys, monkeypatch):
-    _, lines = shown(capsys, door, "--tests")
-    assert "calm-2 random completed 1 33 % near: touch," in lines
-    assert lines[-1] == "3 of 4 tests cover the same, no fewer do: calm-2, wild-2, wild-1"
-    monkeypatch.setenv("COLUMNS", "40")
-    main(["cover", door, "--tests", "--bins", "--holes"])
-    lines = capsys.readouterr().out.splitlines()
-    assert max(map(len, lines[1:])) <= 40
-    assert not [line for line in lines if "…" in line]
-
-
 def test_json_has_all(door, says):
     document = json.loads(says(0, "cover", door, "--format", "json").out)
     assert document["share"] == pytest.approx(0.4583, abs=1e-4)

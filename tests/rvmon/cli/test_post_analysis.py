@@ -117,34 +117,6 @@ def test_goals_are_those_of_all_samples(until, traces, monkeypatch):
     assert [list(one.goals.values()) for one in by_columns] == [["P", "I", "I"]] * 3
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("held", "times"), [(10, 1), (90, 0)])
-def test_many_requirements_are_looked_up_in_one_reading(tmp_path, monkeypatch, opened, held, times):
-    """However many failed or were silent, a file is read once more; a small one is remembered."""
-    monkeypatch.setattr(post_analysis, "MOST_HELD", held)
-    pairs = range(6)
-    text = "spec s\n" + "".join(f"event e{n}\nsignal p{n} : bool\n" for n in pairs)
-    for n in range(30):
-        text += f"requirement F{n}\n  upon e{n % 5} then within {n + 1} s p{n % 5}\n"
-        text += f"requirement S{n}\n  upon e5 and p{n % 5} then p5\n"
-    rows = ["t," + ",".join(f"e{n},p{n}" for n in pairs)]
-    rows += [
-        f"{t}," + ",".join(f"{int(t == n < 5)},{int(t == 50 + n)}" for n in pairs)
-        for t in range(90)
-    ]
-    path = tmp_path / "a.csv"
-    path.write_text("\n".join(rows) + "\n")
-    report = judge(rvmon.loads(text), str(path), Options()).report
-    assert len(opened) == times
-    assert {name: dict(found) for name, found in report.late.items()} == {
-        f"F{n}": {1: (50 + n % 5) * 1_000_000_000} for n in range(30)
-    }
-    assert report.misses == {
-        f"S{n}": f"`e5` was never true while `p{n % 5}` was (first at {50 + n % 5} s)"
-        for n in range(30)
-    }
-
-
 ON_THE_WAY = {
     "a signal": "q and x > 1",
     "what is false": "not q or x < 0",

@@ -14,7 +14,7 @@ from rvmon.language.checked.formula import (
     SignalValue,
 )
 from rvmon.language.compile import compile_text
-from rvmon.language.print import format_duration, format_formula, format_numeric
+from rvmon.language.print import format_formula, format_numeric
 from rvmon.testing.generate.spec import Profile, random_spec
 from rvmon.testing.generate.trace import show_spec
 from rvmon.units import unit_table
@@ -85,11 +85,6 @@ def is_constant_arithmetic(node):
     """Whether an operation or comparison has nothing but literals."""
     args = (node.left, node.right) if isinstance(node, Compare) else node.args
     return all(isinstance(arg, Literal) for arg in args)
-
-
-def test_durations():
-    shown = [format_duration(ticks) for ticks in (3600 * 10**9, 90 * 10**9, 1_500_000, 1001)]
-    assert shown == ["1 h", "90 s", "1500 us", "1001 ns"]
 
 
 def test_literals():

@@ -36,6 +36,8 @@ LINEAR = {
     "a --> b": ("whenever", "a", "eventually b"),
     "a -->[0, 3 s] b": ("whenever", "a", "within 3 s b"),
     "AG AF a": ("whenever", "true", "eventually a"),
+    "A<> a": ("upon", "start", "eventually a"),
+    "A[ ] not (E[] a)": ("whenever", "true", "eventually not a"),
     "A[a U b]": ("upon", "start", "a until b"),
     "A[(a and AF c) U (not a and AF b)]": (
         "upon",

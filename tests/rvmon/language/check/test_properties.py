@@ -2,7 +2,7 @@
 
 from tests.tools.each import each
 
-from rvmon.language.checked.formula import Interval, UnaryOp
+from rvmon.language.checked.formula import Interval
 from rvmon.language.checked.properties import (
     ModelAtom,
     PathBinary,
@@ -16,25 +16,6 @@ signal both : bool
 event sensed input
 event released, stopped output
 """
-
-
-@each(
-    ("text", "universal", "op"),
-    [
-        ("A[] a", True, UnaryOp.ALWAYS),
-        ("E<> a", False, UnaryOp.EVENTUALLY),
-        ("A<> a", True, UnaryOp.EVENTUALLY),
-        ("E[] a", False, UnaryOp.ALWAYS),
-        ("AG a", True, UnaryOp.ALWAYS),
-        ("EF a", False, UnaryOp.EVENTUALLY),
-        ("AX a", True, UnaryOp.NEXT),
-        ("A[ ] a", True, UnaryOp.ALWAYS),
-    ],
-)
-def test_path_quantifiers(checked, text, universal, op):
-    """UPPAAL's signs and CTL's letters."""
-    formula = checked(f"property P: {text}").properties["P"].formula
-    assert (formula.universal, formula.op) == (universal, op)
 
 
 def test_bounds_and_until(checked):

@@ -54,6 +54,11 @@ def test_grammar_has_no_conflicts():
         ("F(1 s, 2 s] a", "eventually[1000000001 ns, 2 s] a"),
         ("F[1 s, 2 s) a", "eventually[1 s, 1999999999 ns] a"),
         ("F[1 s, inf) a", "eventually[1 s, inf) a"),
+        ("F(3 ns, inf) a", "eventually[4 ns, inf) a"),
+        ("F[0, 3 us] a", "within 3 us a"),
+        ("F[0, 0] a", "within 0 s a"),
+        ("within 1e-3 s a", "within 1 ms a"),
+        ("within 1200000 h a", "within 1200000 h a"),
         ("F(a)", "eventually a"),
         ("within (2 * 3 s) (a or b)", "within 6 s (a or b)"),
         ("a U[1 s, 2 s] b", "a until[1 s, 2 s] b"),
@@ -206,11 +211,6 @@ def test_reserved_words_are_no_names_of_requirements(codes):
         assert codes(f"requirement `{name}`\n  always a") == []
 
 
-@pytest.mark.parametrize("text", ["always a", "\n  upon\n  a then b", "not a"])
-def test_a_requirement_without_a_name_is_told_so(message, text):
-    assert "its name comes first" in message(f"requirement {text}")
-
-
 @pytest.mark.slow
 def test_infix_and_clause_words_may_be_names(codes):
     """Where an operand stands, infix words and clause words are names."""
@@ -288,13 +288,3 @@ def test_words_in_texts_and_comments_are_no_operators():
 @pytest.mark.parametrize("many", [90, 99, 150])
 def test_brackets_that_only_enclose_are_no_levels(required, many):
     assert required("(" * many + "a" + ")" * many) == "a"
-
-
-@pytest.mark.parametrize("opening", ["not (", "("])
-def test_what_is_nested_too_deeply_is_shown(opening):
-    text = f"signal a : bool\nrequirement R\n  always {opening * 300}a{')' * 300}\n"
-    with pytest.raises(SpecError) as caught:
-        compile_text(text)
-    (finding,) = caught.value.diagnostics
-    assert finding.code == "RV005"
-    assert finding.spans[0].span.start > text.index("always") + 90

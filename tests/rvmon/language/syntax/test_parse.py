@@ -70,13 +70,6 @@ def test_double_name_over_files_shows_both_files(compile_file):
     assert len({label.span.source.name for label in finding.spans}) == 2
 
 
-def test_error_in_imported_file_names_it(compile_file):
-    with pytest.raises(SpecError) as caught:
-        compile_file(main='import "one.rv"\nrequirement R always z', one="signal a boool")
-    names = [f.spans[0].span.source.name.rpartition("/")[2] for f in caught.value.diagnostics]
-    assert names == ["main.rv", "one.rv"]
-
-
 @pytest.mark.parametrize("target", ['"missing.rv"', '"."', "nolibrary", '"a\x00b"'])
 def test_what_cannot_be_read_is_said(compile_file, target):
     with pytest.raises(SpecError) as caught:
