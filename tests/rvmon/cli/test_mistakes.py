@@ -264,7 +264,7 @@ MISTAKES = {
         ("door.rv P.csv D1#9", "there is D1#1 only"),
         ("door.rv P.csv D9", "no requirement `D9`"),
         ("door.rv P.csv D1#x", "names no attempt"),
-        ("door.rv gone.csv D1", "gone.csv: No such file or directory"),
+        ("door.rv gone.ulg D1", "gone.ulg: No such file or directory"),
         ("gone.rv P.csv D1", "gone.rv: No such file or directory"),
         ("door.rv - D1", "save the recording"),
         ("door.rv cut.csv D1", "line 3"),
