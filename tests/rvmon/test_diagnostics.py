@@ -27,23 +27,6 @@ FINDING = Diagnostic(
 BARE = Diagnostic("RV006", "too-many-findings", Severity.WARNING, "so much")
 
 
-def test_full():
-    assert render_full([FINDING, BARE]) == (
-        "error[RV012 unknown-signal]: no signal or event named `relased`\n"
-        "  --> specs/demo.rv:3:19\n"
-        "   |\n"
-        " 3 |   then within 3 s relased\n"
-        "   |                   ^^^^^^^\n"
-        "  ::: specs/demo.rv:2:7\n"
-        "   |\n"
-        " 2 | event released\n"
-        "   |       -------- declared here\n"
-        "help: did you mean `released`?\n"
-        "\n"
-        "warning[RV006 too-many-findings]: so much"
-    )
-
-
 def test_concise():
     assert render_concise([FINDING, BARE]).splitlines() == [
         "specs/demo.rv:3:19: error[RV012 unknown-signal]: no signal or event named `relased`"
