@@ -47,32 +47,21 @@ def check(peer: Played, ns_per_row: float) -> Agreement:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("blind", [False, True])
-def test_past_is_stepped_and_disagreement_is_seen(blind: bool) -> None:
-    """A long bound of the past is compared by stepping, and ours is FALSE among the rows."""
+@pytest.mark.parametrize(
+    ("rows", "blind"), [(ROWS, False), (ROWS, True), (ROWS // 2, False), (BOUND, False)]
+)
+def test_past_is_stepped_as_far_as_fits_and_disagreement_is_seen(rows: int, blind: bool) -> None:
+    """A peer is asked for so many rows as it steps in the time, the last of them.
+
+    Ours is FALSE among these; where they are no more than the bound nothing is compared.
+    """
     peer = Played(blind=blind)
-    found = check(peer, 1000.0)
-    assert set(peer.kinds) == {"discrete online"}
-    assert found.compared == 2 * ROWS
-    assert (found.equal == found.compared) is not blind
-    assert 0 < found.false < found.compared
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("rows", [ROWS // 2, 3 * ROWS // 4])
-def test_slow_stepping_gets_as_many_rows_as_fit(rows: int) -> None:
-    """A peer that is slow is asked for so many rows as it steps in the time, the last of them."""
-    peer = Played()
     found = check(peer, SECONDS * 1e9 / rows)
+    if rows == BOUND:
+        assert (peer.rows, found.compared) == (0, 0)
+        assert found.remark.startswith("past: no bound fails")
+        return
+    assert set(peer.kinds) == {"discrete online"}
     assert peer.rows == found.compared == 2 * rows
-    assert found.false > 0
-    assert found.equal == found.compared
-
-
-@pytest.mark.slow
-def test_too_slow_to_see_a_failure() -> None:
-    """Where the rows are fewer than the bound nothing is compared, and the reason is told."""
-    peer = Played()
-    found = check(peer, SECONDS * 1e9 / BOUND)
-    assert (peer.rows, found.compared) == (0, 0)
-    assert found.remark.startswith("past: no bound fails")
+    assert (found.equal == found.compared) is not blind
+    assert 0 < found.false < found.compared + (rows < ROWS)
