@@ -198,11 +198,11 @@ def test_what_is_decided_behind_an_outage_has_no_figure_of_before_it():
     spec = rvmon.loads(text)
     judged, measured = spec.monitor(), spec.robustness_monitor()
     for one in (judged, measured):
-        one.step(0, {"x": 2.0})
+        one.step(0, {"x": 4.5})
     judged.lose(["x"], since=2, until=3)
     [figure] = [one for one in measured.lose(["x"], since=2, until=3) if one.t == 0]
     [attempt] = [one for one in judged.step(4, {"x": 9.0}) if one.triggered == 0]
-    assert (attempt.verdict, figure.robustness.high) == (rvmon.Verdict.FAIL, 3.0)
+    assert (attempt.verdict, figure.robustness.high) == (rvmon.Verdict.FAIL, 0.5)
     assert figure.robustness.of(attempt) is None
 
 
