@@ -130,7 +130,7 @@ def test_changed_bytes_are_refused(time):
     assert other.load(data)
     assert other.save() == data
     magic, hash_, size = struct.unpack_from("<8sQQ", data)
-    assert (magic, size) == (b"rvvshot2", len(data))
+    assert (magic, size) == (b"rvvshot3", len(data))
     assert hash_ == struct.unpack_from("<Q", plan.packed.data, 24)[0]
 
 
