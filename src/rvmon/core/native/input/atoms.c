@@ -150,48 +150,62 @@ static uint8_t compare_at(const run *r, const atom_plan *a, const int32_t *at)
     return (uint8_t)compare_numbers(a->compare, &left, &right);
 }
 
-/* ATOM_PAYLOAD: TRUE if the comparison holds for some combination of occurrences, one of each event;
- * Kleene's `or` over all. FALSE where one of the events does not occur. `at` counts through them. */
+/* Choose the first occurrence of each event of a list (`run.chosen`). FALSE: one does not occur; UNKNOWN:
+ * one may have occurred in any way, so that there is nothing to choose. */
+uint8_t first_choice(const run *r, list of)
+{
+    const int32_t *events = LIST(PLAN(r), of);
+    uint8_t found = IS_TRUE;
+    int32_t i;
+    for (i = 0; i < of.count; i++) {
+        const int32_t e = events[i];
+        const uint8_t one = (r->silent[e] == IS_UNKNOWN) ? IS_UNKNOWN : truth_if(r->payloads[e].count > 0);
+        found = (one < found) ? one : found;
+        r->chosen[e] = 0;
+    }
+    return found;
+}
+
+/* Choose the next combination of occurrences, one of each event; false: that was the last. */
+bool next_choice(const run *r, list of)
+{
+    const int32_t *events = LIST(PLAN(r), of);
+    int32_t i;
+    for (i = of.count - 1; i >= 0; i--) {
+        r->chosen[events[i]]++;
+        if (r->chosen[events[i]] < r->payloads[events[i]].count) {
+            return true;
+        }
+        r->chosen[events[i]] = 0;
+    }
+    return false;
+}
+
+/* Whether all of those chosen surely occurred. */
+bool is_sure_choice(const run *r, list of)
+{
+    const int32_t *events = LIST(PLAN(r), of);
+    bool sure = true;
+    int32_t i;
+    for (i = 0; i < of.count; i++) {
+        sure = sure && (r->payloads[events[i]].known[r->chosen[events[i]]] != 0U);
+    }
+    return sure;
+}
+
+/* ATOM_PAYLOAD: TRUE if the comparison holds for some combination of occurrences; Kleene's `or` over all.
+ * FALSE where one of the events does not occur. */
 static uint8_t over_occurrences(const run *r, const atom_plan *a)
 {
-    const int32_t *events = LIST(PLAN(r), a->events);
-    int32_t at[PAYLOAD_EVENTS_MOST];
+    const uint8_t occur = first_choice(r, a->events);
     uint8_t found = IS_FALSE;
-    bool absent = false;
-    bool may_occur = true;
-    int32_t i;
-    for (i = 0; i < a->events.count; i++) {
-        const int32_t e = events[i];
-        absent = absent || (r->silent[e] == IS_UNKNOWN);
-        may_occur = may_occur && ((r->silent[e] == IS_UNKNOWN) || (r->payloads[e].count > 0));
-        at[i] = 0;
+    if (occur != IS_TRUE) {
+        return occur;
     }
-    if (absent || !may_occur) {
-        return may_occur ? IS_UNKNOWN : IS_FALSE;
-    }
-    for (;;) {
-        uint8_t one = IS_UNKNOWN;
-        bool known = true;
-        for (i = 0; i < a->events.count; i++) {
-            const occurrences *o = &r->payloads[events[i]];
-            known = known && (o->known[at[i]] != 0U);
-            r->chosen[events[i]] = at[i];
-        }
-        if (known) {
-            one = compare_at(r, a, r->chosen);
-        }
+    do {
+        const uint8_t one = is_sure_choice(r, a->events) ? compare_at(r, a, r->chosen) : IS_UNKNOWN;
         found = (one > found) ? one : found;
-        for (i = a->events.count - 1; i >= 0; i--) {
-            at[i]++;
-            if (at[i] < r->payloads[events[i]].count) {
-                break;
-            }
-            at[i] = 0;
-        }
-        if (i < 0) {
-            break;
-        }
-    }
+    } while (next_choice(r, a->events));
     return found;
 }
 

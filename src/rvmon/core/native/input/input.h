@@ -59,6 +59,9 @@ list comparisons_between(const run *r, int32_t local, const rv_number *x, const 
 bool recheck(run *r, int32_t atom);     /* whether its truth changed */
 bool recheck_list(run *r, list l);      /* whether one of them did */
 void recheck_amid(run *r, list l);
+uint8_t first_choice(const run *r, list of);
+bool next_choice(const run *r, list of);
+bool is_sure_choice(const run *r, list of);
 uint8_t atom_now(const run *r, const atom_plan *a);
 void recheck_fading(run *r);
 void reread(run *r, int32_t atom, bool pending);

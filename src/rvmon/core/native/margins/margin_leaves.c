@@ -76,52 +76,20 @@ static margin_range of_programs(const run *r, const atom_plan *a, double factor,
     return exactly(signed_by(a->compare, apart(&left, &right) * factor));
 }
 
-/* Go to the next combination of occurrences; false after the last. */
-static bool next_choice(const run *r, const int32_t *events, int32_t count)
-{
-    int32_t i;
-    for (i = count - 1; i >= 0; i--) {
-        r->chosen[events[i]]++;
-        if (r->chosen[events[i]] < r->payloads[events[i]].count) {
-            return true;
-        }
-        r->chosen[events[i]] = 0;
-    }
-    return false;
-}
-
 /* The maximum over all combinations of occurrences; minus infinity if there are none. */
 static margin_range of_occurrences(const run *r, const atom_plan *a, double factor)
 {
-    const int32_t *events = LIST(PLAN(r), a->events);
+    const uint8_t occur = first_choice(r, a->events);
     margin_range found = {-INFINITE, -INFINITE};
-    bool lacks = false;
-    bool may_occur = true;
-    int32_t i;
-    for (i = 0; i < a->events.count; i++) {
-        const bool silent = r->silent[events[i]] == IS_UNKNOWN;
-        lacks = lacks || silent;
-        may_occur = may_occur && (silent || (r->payloads[events[i]].count > 0));
-        r->chosen[events[i]] = 0;
-    }
-    if (!may_occur) {
-        return found;
-    }
-    if (lacks) {
-        return ANYTHING;
+    if (occur != IS_TRUE) {
+        return (occur == IS_FALSE) ? found : ANYTHING;
     }
     do {
-        margin_range one = ANYTHING;
-        bool known = true;
-        for (i = 0; i < a->events.count; i++) {
-            known = known && (r->payloads[events[i]].known[r->chosen[events[i]]] != 0U);
-        }
-        if (known) {
-            one = of_programs(r, a, factor, r->chosen);
-        }
+        const bool sure = is_sure_choice(r, a->events);
+        const margin_range one = sure ? of_programs(r, a, factor, r->chosen) : ANYTHING;
         found.low = fmax(found.low, one.low);
         found.high = fmax(found.high, one.high);
-    } while (next_choice(r, events, a->events.count));
+    } while (next_choice(r, a->events));
     return found;
 }
 
