@@ -184,11 +184,7 @@ class Part:
     def _add_signals(self) -> int:
         """Add the signals; returns how many of them can go stale."""
         plan, sections, count = self._plan, self._sections, len(self.names.signals)
-        atoms = self._atoms.all
-        on_change = [
-            sorted(readers, key=lambda number: atoms[number].constant)
-            for readers in self._readers(count, lambda atom: atom.values)
-        ]
+        on_change = self._readers(count, lambda atom: atom.values)
         on_update = self._readers(count, lambda atom: atom.updates)
         needs = self._readers(count, lambda atom: atom.lone_signals)
         on_birth: list[list[int]] = [[] for _ in range(count)]

@@ -7,8 +7,6 @@
 #include "formulas/formulas.h"
 #include "input/input.h"
 
-#include <math.h>
-
 /* For each comparison the set of orders (IS_LESS ...) for which it is true. */
 enum { LESS = 1 << IS_LESS, EQUAL = 1 << IS_EQUAL, GREATER = 1 << IS_GREATER };
 static const uint8_t HOLDS_FOR[CMPS] = {
@@ -51,56 +49,6 @@ static int32_t kind_compared_only(const plan *all, const part *p, int32_t local)
     return (op == ATOM_REAL) ? RV_REAL : RV_WHOLE;
 }
 
-/* Whether comparisons are many, all with constants, and in the order of these. */
-static bool are_sorted(const plan *all, const part *p, list atoms)
-{
-    double before = -HUGE_VAL;
-    int32_t i;
-    for (i = 0; i < atoms.count; i++) {
-        const atom_plan *a = &p->atoms[LIST(all, atoms)[i]];
-        if ((a->op != ATOM_REAL) || (a->tells != 0) || !(before <= a->constant)) {
-            return false;
-        }
-        before = a->constant;
-    }
-    return atoms.count > QUICK_MOST;
-}
-
-/* How many of some sorted comparisons have a constant below a number, or up to it. */
-static int32_t count_below(const run *r, list sorted, double x, bool or_equal)
-{
-    const int32_t *atoms = LIST(PLAN(r), sorted);
-    int32_t low = 0;
-    int32_t high = sorted.count;
-    while (low < high) {
-        const int32_t middle = low + (high - low) / 2;
-        const double constant = r->part->atoms[atoms[middle]].constant;
-        if ((constant < x) || (or_equal && (constant == x))) {
-            low = middle + 1;
-        } else {
-            high = middle;
-        }
-    }
-    return low;
-}
-
-/* The comparisons of a signal that can come out otherwise for one value than for the other, and where
- * they are sorted the next on either side, which bound the values for which none does. */
-list comparisons_between(const run *r, int32_t local, const rv_number *x, const rv_number *y)
-{
-    list atoms = r->part->signals[local].on_change[r->at.phase];
-    if (r->part->quick[local].is_sorted[r->at.phase] && (x->kind == RV_REAL) && (y->kind == RV_REAL)) {
-        const bool rises = x->as.real < y->as.real;
-        const int32_t below = count_below(r, atoms, rises ? x->as.real : y->as.real, false);
-        const int32_t reached = count_below(r, atoms, rises ? y->as.real : x->as.real, true);
-        const int32_t first = (below > 0) ? below - 1 : 0;
-        const int32_t end = (reached < atoms.count) ? reached + 1 : reached;
-        atoms.first += first;
-        atoms.count = end - first;
-    }
-    return atoms;
-}
-
 /* Find these signals of a part, and prepare their comparisons; false: memory is short. */
 bool find_quick(arena *a, const plan *all, part *p)
 {
@@ -113,8 +61,6 @@ bool find_quick(arena *a, const plan *all, part *p)
         quick_compare *made;
         int32_t i;
         int32_t k;
-        p->quick[local].is_sorted[0] = are_sorted(all, p, p->signals[local].on_change[0]);
-        p->quick[local].is_sorted[1] = are_sorted(all, p, atoms);
         if ((kind == RV_UNKNOWN) || (p->plan->captured > 0)) {
             continue; /* by its spans a run with captured values is known not to be concerned */
         }

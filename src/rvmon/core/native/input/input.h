@@ -55,7 +55,6 @@ void margins_mark_changed(run *r, int32_t what);
 
 /* ---- atoms.c */
 bool find_quick(arena *a, const plan *all, part *p);
-list comparisons_between(const run *r, int32_t local, const rv_number *x, const rv_number *y);
 bool recheck(run *r, int32_t atom);     /* whether its truth changed */
 bool recheck_list(run *r, list l);      /* whether one of them did */
 void recheck_amid(run *r, list l);

@@ -73,7 +73,7 @@ static bool bound_span(span *s, double x, const rv_number *constant)
 bool narrow_span(const run *r, int32_t local, const rv_number *value, span *s)
 {
     const double x = (value->kind == RV_REAL) ? value->as.real : (double)value->as.whole;
-    const list atoms = comparisons_between(r, local, value, value);
+    const list atoms = r->part->signals[local].on_change[r->at.phase];
     const int32_t *place = LIST(PLAN(r), atoms);
     bool bounded = (value->kind == RV_REAL) || ((value->kind == RV_WHOLE) && is_exact(value));
     int32_t i;

@@ -65,7 +65,7 @@ uint8_t remember(history *h, int64_t t, const rv_number *value)
 static void hold(run *r, int64_t t, int32_t local, const rv_number *value)
 {
     if (!same_number(value, &r->value[local])) {
-        const list atoms = comparisons_between(r, local, &r->value[local], value);
+        const list atoms = r->part->signals[local].on_change[r->at.phase];
         if (((value->kind == RV_UNKNOWN) != (r->value[local].kind == RV_UNKNOWN))
             && (r->truth_log != NULL)) {
             note_knowledge(r, t, local, value);

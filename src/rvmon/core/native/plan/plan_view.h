@@ -76,8 +76,6 @@ typedef struct {
     const quick_compare *compares;
     int32_t count;
     int32_t kind;              /* kind of its values; RV_UNKNOWN: it is not such a signal */
-    bool is_sorted[2];         /* by phase: many comparisons read it, in the order of their constants:
-                                * see comparisons_between in input/atoms.c */
 } quick_signal;
 
 /* A part of the plan: its ranges of sections as pointers, and tables derived from them once. */
