@@ -48,7 +48,7 @@ void gauge_begin(const margin_shape *s, gauge *g, int64_t first)
     }
     for (i = 0; i < s->edges; i++) {
         g->edges[i].read = 0;
-        g->edges[i].value = 0.0;
+        g->edges[i].value = s->fixed[i];
     }
     empty_steps(&g->stamps);
     g->first = first;
@@ -138,7 +138,9 @@ void gauge_take(gauging *w, const int64_t *times, int64_t count, const double *v
         note_positions(w, times, count);
     }
     for (i = 0; i < measures; i++) {
-        take_leaf(w, s->leaves[i], times, count, &values[(int64_t)i * apart], &w->g->letter[i]);
+        if (s->leaves[i] >= 0) { /* else it is constant */
+            take_leaf(w, s->leaves[i], times, count, &values[(int64_t)i * apart], &w->g->letter[i]);
+        }
     }
     w->g->begun = true;
 }
@@ -160,6 +162,51 @@ void gauge_run(gauging *w)
 
 /* ---- shapes */
 
+/* Mark leaves that never change and are read only as operands of sweeps: their steps are not needed. */
+static void find_fixed(const plan *p, const margin_shape *s, bool *fixed)
+{
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < s->count; i++) {
+        const operator_plan *n = &s->nodes[i];
+        fixed[i] = (n->kind == OP_LEAF) && (s->measures[n->left].kind == MEASURE_CONSTANT);
+    }
+    for (i = 0; i < s->count; i++) {
+        const operator_plan *n = &s->nodes[i];
+        const int32_t pair[2] = {n->left, n->right};
+        const int32_t *operands = (n->kind == OP_JUNCTION) ? LIST(p, n->operands) : pair;
+        const int32_t count = s->places[i].edge_count;
+        bool all = true;
+        for (k = 0; k < count; k++) {
+            all = (n->kind == OP_JUNCTION) || (all && fixed[operands[k]]);
+        }
+        for (k = 0; all && (k < count); k++) {
+            fixed[operands[k]] = false;
+        }
+    }
+    fixed[s->count - 1] = false;
+}
+
+/* Find operators of which only the values at asked positions matter: the formula and the operands of
+ * junctions at its top. */
+static void find_alone(const margin_shape *s)
+{
+    int32_t i;
+    int32_t k;
+    for (i = 0; i < s->count; i++) {
+        s->places[i].alone = true;
+    }
+    for (i = s->count - 1; i >= 0; i--) {
+        const margin_place *own = &s->places[i];
+        const bool joins = (s->nodes[i].kind == OP_JUNCTION) && own->alone;
+        for (k = 0; !joins && (k < own->edge_count); k++) {
+            if (s->operands[own->edge + k] >= 0) {
+                s->places[s->operands[own->edge + k]].alone = false;
+            }
+        }
+    }
+}
+
 static int32_t operand_count(const operator_plan *n)
 {
     switch (n->kind) {
@@ -171,7 +218,7 @@ static int32_t operand_count(const operator_plan *n)
     }
 }
 
-static void lay_out(const plan *p, margin_shape *s)
+static void lay_out(const plan *p, margin_shape *s, const bool *fixed)
 {
     int32_t i;
     int32_t k;
@@ -180,10 +227,15 @@ static void lay_out(const plan *p, margin_shape *s)
         const int32_t pair[2] = {n->left, n->right};
         const int32_t *operands = (n->kind == OP_JUNCTION) ? LIST(p, n->operands) : pair;
         for (k = 0; k < s->places[i].edge_count; k++) {
-            s->operands[s->places[i].edge + k] = operands[k];
+            const int32_t own = s->places[i].edge + k;
+            s->operands[own] = fixed[operands[k]] ? -1 : operands[k];
+            if (fixed[operands[k]]) {
+                const bool no = s->measures[s->nodes[operands[k]].left].turned != 0;
+                s->fixed[own] = no ? -INFINITE : INFINITE;
+            }
         }
         if (n->kind == OP_LEAF) {
-            s->leaves[n->left] = i;
+            s->leaves[n->left] = fixed[i] ? -1 : i;
         }
         s->passes = s->passes || (n->kind == OP_WINDOW) || (n->kind == OP_SHIFT);
     }
@@ -199,8 +251,10 @@ static int64_t lag_of(const margin_shape *s, int32_t place, const int64_t *lags,
     int64_t found = 0;
     int32_t k;
     for (k = 0; k < own->edge_count; k++) {
-        const int64_t one = lags[s->operands[own->edge + k]];
-        found = (one > found) ? one : found;
+        const int32_t operand = s->operands[own->edge + k];
+        if ((operand >= 0) && (lags[operand] > found)) {
+            found = lags[operand];
+        }
     }
     if ((n->kind == OP_WINDOW) || (n->kind == OP_SHIFT)) {
         found = (ahead > 0) ? moved(found, ahead) : 0;
@@ -213,6 +267,7 @@ bool make_shape(rv_monitor *m, const part *of, const margin_plan *g, margin_shap
 {
     const plan *p = &m->plan;
     const int32_t count = g->operators.count;
+    bool *fixed = taken(m, count, sizeof *fixed);
     int64_t *lags = taken(m, count, sizeof *lags);
     int32_t i;
     s->plan = g;
@@ -222,7 +277,7 @@ bool make_shape(rv_monitor *m, const part *of, const margin_plan *g, margin_shap
     s->places = taken(m, count, sizeof *s->places);
     s->leaves = taken(m, g->measures.count, sizeof *s->leaves);
     s->reals = taken(m, g->measures.count, sizeof *s->reals);
-    if ((lags == NULL) || (s->places == NULL) || (s->leaves == NULL)
+    if ((fixed == NULL) || (lags == NULL) || (s->places == NULL) || (s->leaves == NULL)
         || (s->reals == NULL)) {
         return false;
     }
@@ -238,14 +293,18 @@ bool make_shape(rv_monitor *m, const part *of, const margin_plan *g, margin_shap
         s->edges += s->places[i].edge_count;
     }
     s->operands = taken(m, s->edges, sizeof *s->operands);
-    if (s->operands == NULL) {
+    s->fixed = taken(m, s->edges, sizeof *s->fixed);
+    if ((s->operands == NULL) || (s->fixed == NULL)) {
         return false;
     }
-    lay_out(p, s);
+    find_fixed(p, s, fixed);
+    lay_out(p, s, fixed);
+    find_alone(s);
     for (i = 0; i < count; i++) {
         lags[i] = lag_of(s, i, lags, (p->header->gap > 0) ? p->header->gap : 1);
     }
     s->lag = lags[count - 1];
+    arena_give(&m->memory, fixed, (size_t)(count + 1) * sizeof *fixed);
     arena_give(&m->memory, lags, (size_t)(count + 1) * sizeof *lags);
     return true;
 }

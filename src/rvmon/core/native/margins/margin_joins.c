@@ -73,10 +73,13 @@ static inline void join_operands(gauging *w, int32_t place,
     int64_t next = NEVER;
     int32_t i;
     for (i = 0; i < own->edge_count; i++) {
-        const margin_node *from = &nodes[operands[i]];
-        known = least(known, from->known);
-        edges[i].next = next_of(&from->out, &edges[i]);
-        next = least(next, edges[i].next);
+        edges[i].next = NEVER;
+        if (operands[i] >= 0) { /* else it never changes */
+            const margin_node *from = &nodes[operands[i]];
+            known = least(known, from->known);
+            edges[i].next = next_of(&from->out, &edges[i]);
+            next = least(next, edges[i].next);
+        }
     }
     while (next <= known) {
         const int64_t at = next;
@@ -140,14 +143,15 @@ static void follow_until(gauging *w, int32_t place, int64_t at)
 {
     const margin_edge *edges = &w->g->edges[w->shape->places[place].edge];
     const margin_range bounds = bounds_of(node_plan_of(w, place), edges);
-    parts_follow(w, &w->g->nodes[place].parts, at, bounds.low, bounds.high);
+    parts_follow(w, &w->g->nodes[place].parts, at, bounds.low, bounds.high,
+                 is_thin(w, place));
 }
 
 /* Emit the value of a stretch up to a position. */
 static void emit_stretch(gauging *w, int32_t place, int64_t first, int64_t last, double value)
 {
     margin_node *o = &w->g->nodes[place];
-    if (!w->sparse) {
+    if (!w->sparse || is_thin(w, place)) {
         emit_step(w, place, first, value);
         return;
     }

@@ -50,17 +50,61 @@ int64_t oldest_unread(const gauging *w, int32_t place)
     return (place == shape->count - 1) ? least(found, w->g->read) : found;
 }
 
+/* Whether no reader of a node has read its last step. */
+static bool is_last_unread(const gauging *w, int32_t place)
+{
+    const margin_shape *shape = w->shape;
+    const int64_t last = w->g->nodes[place].out.end - 1;
+    int32_t i;
+    for (i = 0; i < shape->edges; i++) {
+        if ((shape->operands[i] == place) && (w->g->edges[i].read > last)) {
+            return false;
+        }
+    }
+    return true;
+}
+
+/* Whether any position from `left` to `right` is asked. */
+bool is_asked(const gauging *w, int64_t left, int64_t right)
+{
+    const measuring *q = w->q;
+    int64_t low = q->asks.first;
+    int64_t high = q->asks.end;
+    while (low < high) {
+        const int64_t middle = low + (high - low) / 2;
+        if (step_at(&q->asks, middle)->at < left) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return (low < q->asks.end) && (step_at(&q->asks, low)->at <= right);
+}
+
+/* Whether a step has to be added to a node, and there is room for it. If only the values at asked
+ * positions matter and the last step covers none, that step takes the new value instead. */
+bool takes_step(gauging *w, int32_t place, int64_t at, double value)
+{
+    margin_steps *s = &w->g->nodes[place].out;
+    if (is_thin(w, place) && (place < w->shape->count - 1) && (s->end > s->first)
+        && is_last_unread(w, place) && !is_asked(w, step_at(s, s->end - 1)->at, at - 1)) {
+        step_at(s, s->end - 1)->value = value;
+        return false;
+    }
+    return has_room(s, 1) || room_for_steps(w, s, 1, oldest_unread(w, place));
+}
+
 /* The number of the first position without a value of some operator, or that was not reported. */
 static int64_t oldest_position(const gauging *w)
 {
     int64_t found = w->g->stamps.end;
     int32_t i;
-    if (w->streamed) {
+    if (!w->thin) {
         found = least(found, w->q->reported);
     }
     for (i = 0; w->sparse && (i < w->shape->count); i++) {
         const int32_t kind = w->shape->nodes[i].kind;
-        if ((kind == OP_WINDOW) || (kind == OP_SHIFT) || (kind == OP_UNTIL)) {
+        if ((kind == OP_WINDOW) || (kind == OP_SHIFT) || ((kind == OP_UNTIL) && !is_thin(w, i))) {
             found = least(found, w->g->nodes[i].positions);
         }
     }
@@ -213,17 +257,27 @@ bool parts_settled(const margin_parts *s, double *value)
 }
 
 /* Append a stretch. A stretch whose clamp does not narrow the next one is joined to it, so that of
- * `always` and `eventually` only the extremes remain. */
-void parts_follow(gauging *w, margin_parts *s, int64_t start, double low, double high)
+ * `always` and `eventually` only the extremes remain. If `alone`, only values at asked positions matter,
+ * and a stretch without any is joined to the one before. */
+void parts_follow(gauging *w, margin_parts *s, int64_t start, double low, double high, bool alone)
 {
     int64_t first = start;
     while (s->end > s->begin) {
         const margin_part last = s->at[s->end - 1];
-        if ((within(low, last.least, last.most) != low) || (within(high, last.least, last.most) != high)) {
+        const bool leads_on = (within(low, last.least, last.most) == low)
+                              && (within(high, last.least, last.most) == high);
+        if (!leads_on && (!alone || is_asked(w, last.first, first - 1))) {
             break;
         }
         parts_pop(s);
-        first = last.first;
+        if (leads_on || (s->end == s->begin)) {
+            first = last.first;
+        } else {
+            const margin_part before = s->at[s->end - 1];
+            parts_pop(s);
+            parts_push(w->monitor, s, before.first, within(last.least, before.least, before.most),
+                       within(last.most, before.least, before.most));
+        }
     }
     parts_push(w->monitor, s, first, low, high);
 }

@@ -212,8 +212,8 @@ void enter_position(run *r, int32_t index, int64_t t)
         q->active = true;
         q->parted = false;
         q->reported = 0;
-        q->work.streamed = is_streamed(r, index);
-        q->work.aligned = q->work.sparse && q->work.streamed;
+        q->work.thin = !is_streamed(r, index);
+        q->work.aligned = q->work.sparse && !q->work.thin;
         gauge_begin(s, &q->readings[0], position);
         if (q->missed && (s->plan->looks_back != 0)) {
             begin_after_gap(r, index, position);

@@ -66,6 +66,12 @@ static inline double gauge_value(gauge *g, int32_t root, int64_t position)
     return g->reported;
 }
 
+/* Whether only the values of an operator at the positions of attempts matter. */
+static inline bool is_thin(const gauging *w, int32_t place)
+{
+    return w->thin && w->shape->places[place].alone;
+}
+
 static inline const margin_shape *shape_of(const run *r, int32_t index)
 {
     return &r->home->monitor->shapes[r->part->plan->judges.first + index];
@@ -107,10 +113,12 @@ static inline double measured_real(const margin_real *x, double value)
 /* ---- margin_steps.c */
 bool room_for_steps(gauging *w, margin_steps *s, int64_t count, int64_t oldest);
 int64_t oldest_unread(const gauging *w, int32_t place);
+bool takes_step(gauging *w, int32_t place, int64_t at, double value);
+bool is_asked(const gauging *w, int64_t left, int64_t right);
 void note_positions(gauging *w, const int64_t *times, int64_t count);
 bool steps_copy(rv_monitor *m, margin_steps *made, const margin_steps *s);
 bool parts_copy(rv_monitor *m, margin_parts *made, const margin_parts *s);
-void parts_follow(gauging *w, margin_parts *s, int64_t start, double low, double high);
+void parts_follow(gauging *w, margin_parts *s, int64_t start, double low, double high, bool alone);
 bool parts_settled(const margin_parts *s, double *value);
 void parts_leave(margin_parts *s);
 
@@ -138,7 +146,7 @@ static inline void add_steps(margin_steps *s, const int64_t *times, int64_t coun
 static inline void emit_step(gauging *w, int32_t place, int64_t at, double value)
 {
     margin_steps *s = &w->g->nodes[place].out;
-    if (has_room(s, 1) || room_for_steps(w, s, 1, oldest_unread(w, place))) {
+    if ((!w->thin && has_room(s, 1)) || takes_step(w, place, at, value)) {
         add_step(s, at, value);
     }
 }

@@ -73,6 +73,7 @@ typedef struct {
 typedef struct {
     int32_t edge;              /* its first operand */
     int32_t edge_count;
+    bool alone;                /* whether only its values at the asked positions matter */
 } margin_place;
 
 /* The robustness of a leaf that compares a signal with a real constant. */
@@ -88,10 +89,11 @@ typedef struct {
     const operator_plan *nodes;
     const measure_plan *measures;
     margin_place *places;
-    int32_t *operands;         /* by edge */
+    int32_t *operands;         /* by edge; -1: a constant operand */
+    double *fixed;             /* by edge, the value of a constant operand */
     int32_t count;
     int32_t edges;
-    int32_t *leaves;           /* by measure, the place of its leaf */
+    int32_t *leaves;           /* by measure, the place of its leaf; -1: its steps are not read */
     margin_real *reals;        /* by measure */
     int64_t lag;               /* ticks that must pass after a position before its value can be final */
     bool passes;               /* whether time alone can make values final */
@@ -120,7 +122,7 @@ typedef struct gauging {
     int64_t now;               /* the last position with known leaves */
     int64_t reached;           /* the instant that time has reached */
     bool sparse;               /* whether only samples are positions */
-    bool streamed;             /* whether the positions of all samples are asked */
+    bool thin;                 /* whether only the positions of attempts are asked */
     bool aligned;              /* whether each operator has one step per position, of equal number */
 } gauging;
 
