@@ -71,6 +71,7 @@ typedef struct {
     ranges added[2];           /* by the last step */
     int64_t base;              /* the first position that is wanted and not known */
     int64_t wanted;
+    int64_t earliest[2];       /* by value, the first instant at which something new can become known */
 } operator_state;
 
 typedef struct {

@@ -48,6 +48,9 @@ void copy_network(const form *f, network *made, const network *w);
 bool networks_agree(const form *f, const network *one, const network *other);
 void prune(const form *f, network *w, int64_t position);
 
+/* ---- network_search.c: a lower bound of the instant at which something new of a formula is known */
+int64_t earliest_change(const form *f, networks *net, int32_t reading);
+
 /* ---- network_judge.c: attempts that a network judges */
 bool is_networked(const run *r, int32_t index);
 void network_pass(run *r, int32_t index, int64_t now, bool is_position);
@@ -128,7 +131,7 @@ int64_t last_at(const judging *g, int64_t t);
 int64_t step_to_decision(judging *g, int64_t now, int64_t last);
 
 /* ---- network_judge.c */
-int64_t network_next(judging *g, int64_t now);
+int64_t earliest(const judging *g, int64_t now);
 
 /* ---- network_search.c: what becomes of attempts */
 bool judge_attempt(judging *g, int32_t at, int64_t t);

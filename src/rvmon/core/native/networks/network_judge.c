@@ -1,8 +1,9 @@
 /* A judge whose formula is a delay network (network.h): letters, time, attempts, the end.
  *
- * Where a letter stays (gap > 0) the network is not stepped at each position. One step runs ahead as if
- * the letter stayed, the exact instant of the next decision is searched, and the step is undone until
- * that instant or another letter comes. */
+ * Where a letter stays (gap > 0) the network is not stepped at each position. The judge is due at a
+ * lower bound of its next decision (earliest_change); when that comes, one step runs ahead as if the
+ * letter stayed, the exact instant of the next decision is searched, and the step is undone until that
+ * instant or another letter comes. */
 #include "networks/network.h"
 
 #include <string.h>
@@ -103,6 +104,17 @@ static void prune_sometimes(judging *g, int64_t position)
     }
 }
 
+/* The instant, `now` or later, before which nothing is decided if the letter stays. */
+int64_t earliest(const judging *g, int64_t now)
+{
+    int64_t found = NEVER;
+    int32_t i;
+    for (i = 0; i < readings(g); i++) {
+        found = least(found, earliest_change(&g->f, g->net, i));
+    }
+    return (found > now) ? found : now;
+}
+
 /* Up to which instant to look ahead. */
 static int64_t ahead_of(const judging *g, int64_t now)
 {
@@ -122,15 +134,7 @@ static void foresee(judging *g, int64_t until)
     set_due(g, (decided < NEVER) ? decided : until + 1);
 }
 
-/* The next instant behind `now` at which an attempt is decided if the letter stays; NEVER: none is. */
-int64_t network_next(judging *g, int64_t now)
-{
-    set_due(g, now + 1);
-    foresee(g, LIMIT - 1);
-    return (due_of(g) < LIMIT) ? due_of(g) : NEVER;
-}
-
-/* Find the next decision of a judge that is due by `now`: its exact instant matters where a failure starts another
+/* The same for a judge that is due by `now`: its exact instant matters where a failure starts another
  * attempt (clock.c). */
 void network_foresee(run *r, int32_t index, int64_t now)
 {
@@ -156,6 +160,13 @@ static void decide_up_to(judging *g, int64_t now, int64_t last)
 static void pass(judging *g, int64_t now, int64_t last)
 {
     const bool complete = last == last_at(g, now); /* else the letter at `now` is still to be read */
+    if ((g->f.gap > 0) && complete) {
+        const int64_t due = earliest(g, now);
+        if (due > now) {
+            set_due(g, due);
+            return;
+        }
+    }
     decide_up_to(g, now, last);
     if (g->j->first < 0) {
         set_due(g, NEVER);
@@ -272,7 +283,7 @@ static void come_to(judging *g, int64_t t)
     }
     adopt_next_letter(g);
     judge_added(g, t);
-    set_due(g, (g->j->first < 0) ? NEVER : t + 1);
+    set_due(g, (g->j->first < 0) ? NEVER : earliest(g, t + 1));
 }
 
 void network_come_to(run *r, int32_t index, int64_t t)
@@ -298,7 +309,7 @@ bool network_enter(run *r, int32_t index, int32_t at, int64_t t)
         learn_all(&g, t, last_at(&g, t));
         judge_added(&g, t);
     }
-    attempt_of(&g, at)->due = t + 1;
+    attempt_of(&g, at)->due = earliest(&g, t + 1);
     attempt_of(&g, at)->clocks[0] = g.net->readings[0].last;
     return judge_attempt(&g, at, t);
 }

@@ -1,8 +1,9 @@
-/* When a network decides attempts: the exact first instant.
+/* When a network decides attempts: the exact first instant, and a bound before which it cannot.
  *
  * A step may jump over many instants at each of which attempts were decided. What is known depends on
  * (now, last) alone and only grows, so the step is undone, and the first instant at which an attempt
- * is decided is searched by halving, with guesses first, which mostly hit. */
+ * is decided is searched by halving, with guesses first, which mostly hit. The bound (earliest_change)
+ * says how long no search is needed at all. */
 #include "networks/network.h"
 
 /* Guesses per search; then it halves, so that a bad guess costs a bounded number of steps. */
@@ -120,6 +121,96 @@ int64_t step_to_decision(judging *g, int64_t now, int64_t last)
         learn_all(g, high, (high == now) ? last : last_at(g, high));
     }
     return is_spoilt(g) ? NEVER : high;
+}
+
+/* ---- a lower bound: if the letter stays, nothing is added to the root before earliest_change()
+ *
+ * Per operator and value, `earliest` bounds when a position with that value can be added; it is
+ * computed operands first, O(operators). Positions are added from `base` on, the first unknown one. */
+
+/* Whether a value is known at some position at or behind another. */
+static bool has_from(const operator_state *o, uint8_t value, int64_t position)
+{
+    const ranges *known = &o->known[value];
+    return (known->first < known->end) && (known->at[known->end - 1].last >= position);
+}
+
+/* When an operator can have a value somewhere from a position on: now, if it is known to; else when
+ * a position can be added. */
+static int64_t earliest_from(const operator_state *o, uint8_t value, int64_t position, int64_t now)
+{
+    return has_from(o, value, position) ? now : o->earliest[value];
+}
+
+static void earliest_of_junction(const form *f, network *w, const operator_plan *n, operator_state *o)
+{
+    const int32_t *operands = LIST(f->plan, n->operands);
+    const uint8_t all = (uint8_t)n->turned;
+    const uint8_t some = (uint8_t)(all ^ 1U);
+    int32_t i;
+    o->earliest[some] = NEVER;
+    o->earliest[all] = w->now;
+    for (i = 0; i < n->operands.count; i++) {
+        const operator_state *one = &w->nodes[operands[i]];
+        const int64_t met = earliest_from(one, all, o->base, w->now);
+        o->earliest[some] = least(o->earliest[some], one->earliest[some]);
+        o->earliest[all] = (met > o->earliest[all]) ? met : o->earliest[all];
+    }
+}
+
+static void earliest_of_window(const form *f, network *w, const operator_plan *n, operator_state *o)
+{
+    const operator_state *operand = &w->nodes[n->left];
+    const uint8_t all = (uint8_t)n->turned;
+    const int64_t over = moved(instant_of(f, w, o->base), n->over);
+    o->earliest[all] = (over > w->now) ? over : w->now;
+    o->earliest[all ^ 1U] = operand->earliest[all ^ 1U];
+    if ((f->gap == 1) && (n->low <= n->high)) { /* no window is empty: the operand has to be known */
+        const int64_t met = earliest_from(operand, all, moved(o->base, n->low), w->now);
+        o->earliest[all] = (met > o->earliest[all]) ? met : o->earliest[all];
+    }
+}
+
+/* `left until right` becomes yes only where right is (or was); it becomes no only where both are. */
+static void earliest_of_until(network *w, const operator_plan *n, operator_state *o)
+{
+    const operator_state *left = &w->nodes[n->left];
+    const operator_state *right = &w->nodes[n->right];
+    const uint8_t no = (uint8_t)n->turned;
+    const uint8_t yes = (uint8_t)(no ^ 1U);
+    const int64_t failing = earliest_from(left, no, o->base, w->now);
+    o->earliest[yes] = earliest_from(right, yes, o->base, w->now);
+    o->earliest[no] = earliest_from(right, no, o->base, w->now);
+    o->earliest[no] = (failing > o->earliest[no]) ? failing : o->earliest[no];
+}
+
+int64_t earliest_change(const form *f, networks *net, int32_t reading)
+{
+    network *w = &net->readings[reading];
+    const int32_t count = f->form->operators.count;
+    int32_t i;
+    for (i = 0; i < count; i++) {
+        const operator_plan *n = &f->nodes[i];
+        operator_state *o = &w->nodes[i];
+        o->earliest[0] = w->now;
+        o->earliest[1] = w->now;
+        if (n->kind == OP_LEAF) {
+            const uint8_t other = ((net->leaf[n->left] >> reading) & 1U) ^ 1U; /* the letter stays */
+            o->earliest[other] = NEVER;
+        } else if (n->kind == OP_JUNCTION) {
+            earliest_of_junction(f, w, n, o);
+        } else if ((n->kind == OP_WINDOW) && (n->over >= 0)) {
+            earliest_of_window(f, w, n, o);
+        } else if ((n->kind == OP_SHIFT) && (n->low >= 0)) {
+            o->earliest[0] = w->nodes[n->left].earliest[0];
+            o->earliest[1] = w->nodes[n->left].earliest[1];
+        } else if (n->kind == OP_UNTIL) {
+            earliest_of_until(w, n, o);
+        } else {
+            /* Operators of the past: a position may be added at once. */
+        }
+    }
+    return least(w->nodes[count - 1].earliest[0], w->nodes[count - 1].earliest[1]);
 }
 
 /* ---- attempts: each is a position of the root */

@@ -242,7 +242,7 @@ static void put_judge(situation *s, run *r, int32_t index)
         learn_all(&g, s->now, last_at(&g, s->now));
         judge_added(&g, s->now);
         put_networks(s, r, index);
-        s->next = least(s->next, (j->first >= 0) ? network_next(&g, s->now) : NEVER);
+        s->next = least(s->next, (j->first >= 0) ? earliest(&g, s->now + 1) : NEVER);
     }
     start = s->count;
     for (at = j->first; at >= 0; at = attempt_at(r->home, at)->next) {
