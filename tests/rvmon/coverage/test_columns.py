@@ -1,4 +1,4 @@
-"""Coverage of columns, where rows that change nothing are passed over, is that of their samples."""
+"""Coverage of columns, which is counted over many rows at once, is that of their samples."""
 
 import json
 import random

@@ -118,14 +118,14 @@ void keep_truths_of_watches(run *r)
     }
 }
 
-/* Collect the bins of an axis that are true, from a place of `bins` on; returns the place behind. */
-static int32_t collect_bins(covering *c, int32_t first, int32_t count, int32_t used)
+/* Collect the bins of an axis whose bit is set, from a place of `bins` on; returns the place behind. */
+static int32_t collect_bins(covering *c, const uint64_t *bits, int32_t first, int32_t count, int32_t used)
 {
     const int32_t end = first + count;
     int32_t place = used;
     int32_t word;
     for (word = first >> 6; (word << 6) < end; word++) {
-        uint64_t left = c->true_bits[word];
+        uint64_t left = bits[word];
         for (; left != 0U; left &= left - 1) {
             const int32_t number = (word << 6) + lowest_bit(left);
             if ((number >= first) && (number < end)) {
@@ -135,6 +135,24 @@ static int32_t collect_bins(covering *c, int32_t first, int32_t count, int32_t u
         }
     }
     return place;
+}
+
+/* The first combination of bins whose bit, by watch, is set; false: some axis has none. */
+bool first_combination(const run *r, const group_plan *g, const uint64_t *bits, combinations *o)
+{
+    const int32_t *axes = LIST(PLAN(r), g->axes);
+    int32_t used = 0;
+    for (o->count = 0; 2 * o->count < g->axes.count; o->count++) {
+        const int32_t k = o->count;
+        o->begin[k] = used;
+        o->at[k] = used;
+        used = collect_bins(r->home->covering, bits, axes[2 * k], axes[2 * k + 1], used);
+        o->end[k] = used;
+        if (o->begin[k] == used) {
+            return false;
+        }
+    }
+    return true;
 }
 
 /* Whether no bin of an item is false. The bins are digits of the item's number, the last axis the
@@ -153,6 +171,14 @@ static bool may_be_true(const run *r, const group_plan *g, int32_t item)
     return true;
 }
 
+/* Start a stretch of an item. */
+void make_current(covering *c, const group_plan *g, covered *s, int32_t item)
+{
+    c->is_current[item] = 1;
+    c->current_items[g->first + s->current] = item;
+    s->current++;
+}
+
 /* Count an item that is true, unless it is current, i.e. was counted in this stretch. Pulses do not
  * become current. */
 static void count_item(covering *c, const group_plan *g, covered *s, int32_t item, bool passes, int64_t t)
@@ -162,50 +188,58 @@ static void count_item(covering *c, const group_plan *g, covered *s, int32_t ite
         hit->first = (hit->count == 0) ? t : hit->first;
         hit->count++;
         if (!passes && (g->occasion < 0)) {
-            c->is_current[item] = 1;
-            c->current_items[g->first + s->current] = item;
-            s->current++;
+            make_current(c, g, s, item);
         }
     }
 }
 
-/* Count the items that are true: collect the true bins of each axis, then go through all combinations
- * like an odometer. */
+/* Go to the next combination, like an odometer; false: that was the last. */
+bool next_combination(combinations *o)
+{
+    int32_t k;
+    for (k = o->count - 1; (k >= 0) && (o->at[k] + 1 == o->end[k]); k--) {
+        o->at[k] = o->begin[k];
+    }
+    if (k >= 0) {
+        o->at[k]++;
+    }
+    return k >= 0;
+}
+
+/* The number of the item that a combination is. */
+int32_t item_of(const run *r, const group_plan *g, const combinations *o)
+{
+    const int32_t *axes = LIST(PLAN(r), g->axes);
+    int32_t item = 0;
+    int32_t k;
+    for (k = 0; k < o->count; k++) {
+        item = item * axes[2 * k + 1] + r->home->covering->bins[o->at[k]];
+    }
+    return g->first + item;
+}
+
+/* Whether one of the bins of a combination is a pulse. */
+static bool has_pulse(const run *r, const group_plan *g, const combinations *o)
+{
+    const int32_t *axes = LIST(PLAN(r), g->axes);
+    int32_t k;
+    for (k = 0; k < o->count; k++) {
+        if (r->part->watches[axes[2 * k] + r->home->covering->bins[o->at[k]]].is_pulse != 0) {
+            return true;
+        }
+    }
+    return false;
+}
+
+/* Count the items that are true: the combinations of the true bins of each axis. */
 static void count_items(run *r, const group_plan *g, covered *s, int64_t t)
 {
     covering *c = r->home->covering;
-    const int32_t *axes = LIST(PLAN(r), g->axes);
-    int32_t begin[AXES_MOST];
-    int32_t end[AXES_MOST];
-    int32_t at[AXES_MOST];
-    int32_t count = 0;
-    int32_t used = 0;
-    int32_t k;
-    while (2 * count < g->axes.count) {
-        begin[count] = used;
-        used = collect_bins(c, axes[2 * count], axes[2 * count + 1], used);
-        at[count] = begin[count];
-        end[count] = used;
-        if (begin[count] == used) {
-            return;
-        }
-        count++;
-    }
-    for (;;) {
-        int32_t item = 0;
-        bool passes = false;
-        for (k = 0; k < count; k++) {
-            item = item * axes[2 * k + 1] + c->bins[at[k]];
-            passes = passes || (r->part->watches[axes[2 * k] + c->bins[at[k]]].is_pulse != 0);
-        }
-        count_item(c, g, s, g->first + item, passes, t);
-        for (k = count - 1; (k >= 0) && (at[k] + 1 == end[k]); k--) {
-            at[k] = begin[k];
-        }
-        if (k < 0) {
-            break;
-        }
-        at[k]++;
+    combinations o;
+    bool more = first_combination(r, g, c->true_bits, &o);
+    while (more) {
+        count_item(c, g, s, item_of(r, g, &o), has_pulse(r, g, &o), t);
+        more = next_combination(&o);
     }
 }
 

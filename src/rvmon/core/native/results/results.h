@@ -19,6 +19,19 @@ void watch(run *r, int64_t t);
 void end_watch(run *r, int64_t end, int64_t reached);
 
 /* ---- cover.c: hits of coverpoints and crosses */
+/* The combinations of some bins of each axis; the last axis varies fastest. Bins are numbered within
+ * their axis. */
+typedef struct {
+    int32_t begin[AXES_MOST];  /* places in `bins` of coverage */
+    int32_t end[AXES_MOST];
+    int32_t at[AXES_MOST];
+    int32_t count;             /* of axes */
+} combinations;
+
+bool first_combination(const run *r, const group_plan *g, const uint64_t *bits, combinations *o);
+bool next_combination(combinations *o);
+int32_t item_of(const run *r, const group_plan *g, const combinations *o);
+void make_current(covering *c, const group_plan *g, covered *s, int32_t item);
 bool begin_cover(home *h);
 void call_watch(run *r, int32_t number);
 void call_watches(run *r);

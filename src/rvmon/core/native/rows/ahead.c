@@ -85,22 +85,6 @@ static bool stays(const column_watch *w, int64_t first, int32_t count)
     }
 }
 
-/* Pack 64 bytes of 0 or 1 into bits. The multiplication moves the low bits of 8 bytes into the top
- * byte. */
-static uint64_t bits_of(const uint8_t *one)
-{
-    uint64_t word = 0;
-    int32_t i;
-    for (i = 0; i < TOGETHER / 8; i++) {
-        const uint8_t *b = &one[8 * i];
-        const uint64_t x = (uint64_t)b[0] | ((uint64_t)b[1] << 8) | ((uint64_t)b[2] << 16)
-                           | ((uint64_t)b[3] << 24) | ((uint64_t)b[4] << 32) | ((uint64_t)b[5] << 40)
-                           | ((uint64_t)b[6] << 48) | ((uint64_t)b[7] << 56);
-        word |= ((x * UINT64_C(0x0102040810204080)) >> 56) << (8 * i);
-    }
-    return word;
-}
-
 /* The rows whose `says` lies between two bounds. */
 static uint64_t rows_that_say(const rv_column *c, int64_t first, int32_t count, uint8_t least_said,
                               uint8_t most_said)
@@ -206,6 +190,10 @@ static uint64_t look_at_column(const batch *s, column_watch *w, int64_t first, i
         w->needed = (w->how == EACH_UPDATE) ? w->said : w->needed;
         return w->needed;
     }
+    if (s->counts && w->is_counted) {
+        w->needed = w->said;
+        return rows_unknown(c, first, count);
+    }
     w->is_idle = is_idle_now(s, w);
     if (w->is_idle) {
         return rows_unknown(c, first, count);
@@ -296,8 +284,18 @@ void look_ahead(batch *s, int64_t row)
             s->perishes = s->perishes || s->watches[i].perishable;
         }
         s->known = is_settled(s->m);
+        if (s->known && (s->counting != NULL)) {
+            learn_counted(s);
+        }
+    }
+    s->counts = may_count(s);
+    if (!s->counts) {
+        catch_up(s);
     }
     s->moved = odd_rows(s, row, (int32_t)s->together);
+    if (s->counts && (s->together == left)) {
+        s->moved |= UINT64_C(1) << (left - 1); /* the last row is judged: nothing is put off beyond it */
+    }
     for (i = 0; i < s->columns; i++) {
         column_watch *w = &s->watches[i];
         w->said = 0;

@@ -113,7 +113,7 @@ static bool is_unheard(const run *r, int32_t place, bool now, int32_t level)
 }
 
 /* Iterate over the nodes that show the comparisons of a signal; -1 after the last. */
-static int32_t next_shown(const run *r, int32_t local, int32_t *atom, int32_t *at)
+int32_t next_shown(const run *r, int32_t local, int32_t *atom, int32_t *at)
 {
     const list atoms = r->part->signals[local].on_change[r->at.phase];
     for (; *atom < atoms.count; (*atom)++, *at = 0) {

@@ -134,6 +134,9 @@ int64_t pass_over(batch *s, int64_t row)
         next = (ahead != 0U) ? s->first + lowest_bit(ahead) : s->first + s->together;
         due = (next > at) ? first_due(s, at, next) : next;
         if (due > at) {
+            if (s->counts && !count_rows(s, at, due)) {
+                return at;
+            }
             if (s->m->shapes != NULL) {
                 measure_rows(s, at, due);
             }
@@ -161,6 +164,7 @@ void make_ready(batch *s, int64_t row, int64_t end)
         turn_from(s, row);
     }
     refresh(s, row);
+    catch_up(s);
 }
 
 /* Rows up to `end` were judged. What was examined behind them stays valid, unless a signal became

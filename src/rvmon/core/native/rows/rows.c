@@ -192,14 +192,16 @@ static bool begin_rows(batch *s, const rv_column *columns)
     for (i = 0; (s->watches != NULL) && (i < s->columns); i++) {
         begin_column(s, &s->watches[i], &columns[i]);
     }
-    return (s->watches != NULL) && begin_measured(s);
+    return (s->watches != NULL) && begin_measured(s) && begin_counted(s);
 }
 
 static void end_rows(batch *s, int64_t row)
 {
     if (s->watches != NULL) {
         turn_from(s, row);
+        catch_up(s);
         end_measured(s);
+        end_counted(s);
         arena_give(&s->m->memory, s->watches, (size_t)(s->columns + 1) * sizeof *s->watches);
     }
 }

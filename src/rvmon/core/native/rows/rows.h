@@ -36,11 +36,35 @@ typedef struct {
     bool perishable;           /* updates postpone that it goes stale */
     bool is_plain;             /* its comparisons influence attempts only: measured.c */
     bool is_idle;              /* and no attempt is open */
+    bool is_counted;           /* its values reach nothing but bins: counted.c */
     rv_number last;            /* its last value in the rows examined so far */
     span between;              /* a value in it, or equal to `last`, compares as `last` does */
     uint64_t said;             /* rows with an update, as bits */
     uint64_t needed;           /* those the core has to see */
 } column_watch;
+
+/* A node over some rows, as bits: those at which it is TRUE, and at which it is FALSE. */
+typedef struct {
+    uint64_t is_true;
+    uint64_t is_false;
+} node_rows;
+
+/* What the columns that are counted have to do with a node. */
+enum {
+    READS_NONE,
+    READS_COLUMN,              /* one reaches it */
+    READS_MORE                 /* and from it more than bins: such a column is not counted after all */
+};
+
+/* Counting in bulk, in a monitor that only counts. */
+typedef struct {
+    node_rows *rows;           /* by node, of those in `nodes` */
+    uint8_t *reads;            /* by node: READS_... */
+    int32_t *nodes;            /* the nodes that counted columns reach, operands first */
+    uint64_t *bits;            /* by watch, whether it is true in some row */
+    uint8_t *is_bulk;          /* by group, whether it is sampled at all rows, and its bins last */
+    int32_t count;             /* of `nodes` */
+} counting;
 
 /* A sample assembled from rows. */
 typedef struct {
@@ -64,6 +88,9 @@ typedef struct {
     uint64_t moved;            /* rows at which something may change, as bits from `first` */
     bool known;                /* `how` of the columns is final: every part is in phase 1 */
     bool perishes;             /* some column is of a signal that goes stale */
+    counting *counting;        /* NULL: the monitor does more than count */
+    bool counts;               /* the rows examined are counted in bulk */
+    int64_t counted;           /* the end of the rows that the run has yet to catch up with; 0: none */
     double *leaves[2];         /* margins: scratch for the leaves of rows, at least and at most */
     int32_t leaves_room;       /* capacity, in values per row */
     int64_t unsettled;         /* rows since margins were last settled */
@@ -90,6 +117,28 @@ static inline uint64_t bits_before(int64_t place)
     return (place >= TOGETHER) ? ~UINT64_C(0) : ((UINT64_C(1) << place) - 1);
 }
 
+/* Pack 64 bytes of 0 or 1 into bits. The multiplication moves the low bits of 8 bytes into the top
+ * byte. */
+static inline uint64_t bits_of(const uint8_t *one)
+{
+    uint64_t word = 0;
+    int32_t i;
+    for (i = 0; i < TOGETHER / 8; i++) {
+        const uint8_t *b = &one[8 * i];
+        const uint64_t x = (uint64_t)b[0] | ((uint64_t)b[1] << 8) | ((uint64_t)b[2] << 16)
+                           | ((uint64_t)b[3] << 24) | ((uint64_t)b[4] << 32) | ((uint64_t)b[5] << 40)
+                           | ((uint64_t)b[6] << 48) | ((uint64_t)b[7] << 56);
+        word |= ((x * UINT64_C(0x0102040810204080)) >> 56) << (8 * i);
+    }
+    return word;
+}
+
+/* Words of as many bits as a part has watches. */
+static inline size_t words_of_watches(const part_plan *p)
+{
+    return ((size_t)p->watches.count + 63U) / 64U;
+}
+
 /* ---- rows.c */
 rv_number number_in(const rv_column *c, int64_t row);
 
@@ -102,10 +151,21 @@ bool compares_alike(const column_watch *w, const rv_number *value);
 bool begin_measured(batch *s);
 void end_measured(batch *s);
 bool may_pass_measured(const rv_monitor *m);
+int32_t next_shown(const run *r, int32_t local, int32_t *atom, int32_t *at);
 bool is_plain_column(const batch *s, const column_watch *w);
 bool is_idle_now(const batch *s, const column_watch *w);
 void measure_rows(batch *s, int64_t row, int64_t end);
 void settle_rows(batch *s, int64_t rows);
+
+/* ---- counted.c: which columns are counted in bulk */
+bool begin_counted(batch *s);
+void end_counted(batch *s);
+void learn_counted(batch *s);
+bool may_count(const batch *s);
+
+/* ---- count_rows.c */
+bool count_rows(batch *s, int64_t row, int64_t end);
+void catch_up(batch *s);
 
 /* ---- ahead.c: the rows at which something may change */
 void look_ahead(batch *s, int64_t row);
