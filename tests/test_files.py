@@ -17,8 +17,9 @@ MARK = re.compile(r"# (?:noqa: [A-Z\d]++|type: ignore\[[a-z,-]+\])(?! - |  # )")
 
 def test_no_file_is_long():
     """No file has more lines than 400: it would have more than one job, and is split."""
-    tests = {str(path): path.read_text(encoding="utf-8") for path in ROOT.glob("tests/**/*.py")}
-    lines = {name: len(text.splitlines()) for name, text in {**TEXTS, **tests}.items()}
+    others = [path for found in ("tests/**/*.py", "src/**/*.[ch]") for path in ROOT.glob(found)]
+    texts = {**TEXTS, **{str(path): path.read_text(encoding="utf-8") for path in others}}
+    lines = {name: len(text.splitlines()) for name, text in texts.items()}
     assert lines
     assert not {name: n for name, n in lines.items() if n > MOST_LINES}
 

@@ -351,11 +351,9 @@ static void step_queue(const queueing *g, int64_t t, bool is_position)
             count_edge(g, s->location, target, until - from, t);
             if (target <= PASSED) {
                 tell_decided(g, s, from, until, target == PASSED, t);
-            } else if (is_position) {
-                const segment moved = moved_by(g, s, from, until, number, t);
-                keep_items(g, &kept, &moved, from, until, t);
             } else {
-                keep_items(g, &kept, s, from, until, t);
+                const segment moved = is_position ? moved_by(g, s, from, until, number, t) : *s;
+                keep_items(g, &kept, &moved, from, until, t);
             }
             from = until;
         }
@@ -377,12 +375,9 @@ void queue_pass(run *r, int32_t index, int64_t t)
 {
     const queueing g = queueing_of(r, index);
     while ((g.q->count > 0) && (r->rules.due[index] <= t)) {
-        const int64_t due = r->rules.due[index];
+        step_queue(&g, r->rules.due[index], GAP(r) > 0);
         if (GAP(r) == 0) {
-            step_queue(&g, due, false);
             set_restless(r, index);
-        } else {
-            step_queue(&g, due, true);
         }
     }
     if (g.q->count == 0) {

@@ -1,9 +1,7 @@
 /* The binary plan as C structs: sections of fixed-size records. plan.md explains what each section
  * means, `rvmon.core.pack` packs them, and plan.c validates every index and size before anything
- * else reads them.
- *
- * All records consist of int32, int64 and double in an order without padding, so that the layout is
- * the same on every platform. */
+ * else reads them. All records consist of int32, int64 and double in an order without padding, so
+ * that the layout is the same on every platform. */
 #ifndef RVMON_PLAN_H
 #define RVMON_PLAN_H
 
