@@ -45,6 +45,20 @@ def test_a_run_that_is_cut_tells_what_a_whole_one_does(tmp_path, seed):
     assert found == whole
 
 
+@pytest.mark.parametrize("lost", [["p", "go"], None, []])
+def test_a_sample_that_is_lost_leaves_its_names_unknown(tmp_path, lost):
+    """Also to the process that goes on; with nothing lost there is a failure."""
+    told = []
+    monitor = DurableMonitor(SPEC, tmp_path / "run", print)
+    monitor.step_ns(0, {"speed": 0.5, "p": True})
+    if lost != []:
+        monitor.miss(lost)
+    monitor = DurableMonitor(SPEC, tmp_path / "run", lambda *one: told.append(one))
+    monitor.step_ns(9, {"go": True})
+    monitor.step_ns(30_000_000, {})
+    assert bool(told) is (lost == [])
+
+
 def test_what_was_saved_is_not_told_again(tmp_path):
     """So a watch that came to its end tells nothing when it is begun again."""
     told = []
