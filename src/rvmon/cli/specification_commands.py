@@ -210,7 +210,8 @@ def add_export(subparsers: Subparsers) -> None:
         description="Of a specification, write a monitor that does not need rvmon: C99 sources "
         "(the core, the compiled specification, a header for C++) that run in one block of "
         "memory. Or write its automata: dot for Graphviz, json, hoa (the minimal LTL3 monitors "
-        "of requirements without time windows). Of a model, write dot, or XML for UPPAAL.",
+        "of requirements without time windows); a requirement that has none is left out, with "
+        "the reason. Of a model, write dot, or XML for UPPAAL.",
         epilog="examples: rvmon export examples/base.rv --to c -o monitor/; rvmon export "
         "examples/base.rv --to dot --only B1 | dot -Tsvg -o b1.svg; rvmon export "
         "examples/models/fischer.ta --to uppaal -o fischer.xml",
