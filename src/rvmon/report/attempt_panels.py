@@ -15,11 +15,11 @@ from rvmon.analysis.subformulas import PartTruth, TriggerParts, part_truths_of
 from rvmon.analysis.truths import Question, RecordedTruths, look_through, parts_of
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
-from rvmon.report.changes import Changes, changes_of
+from rvmon.report.changes import Changes, Looks, changes_of
 from rvmon.report.html import Child
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt
-from rvmon.report.tracks import Scene, Track, TrackKind, tracks_of
+from rvmon.report.tracks import Scene, Track, TrackKind, names_of_requirement, tracks_of
 from rvmon.trace.sample import Sample
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt
@@ -99,8 +99,7 @@ def nearest_passing(
     passing = (
         (candidate, other)
         for candidate in candidates
-        for other in candidate[0].report.attempts
-        if other.requirement == attempt.requirement and other.verdict is Verdict.PASS
+        for other in candidate[0].report.of(attempt.requirement, Verdict.PASS)
     )
     # Aligned at the triggers, as requirements speak of the time since then.
     for candidate, passed in islice(passing, MOST):
@@ -181,6 +180,17 @@ class _Panels:
             names = frozenset(declared - absent)  # that have a source in the run
             samples = content.run.samples
             self._truths = look_through(content.spec, questions, samples, report.end, names)
+        # By requirement, its attempts with their late responses and views.
+        self._views = {name: self._seen(name, attempts) for name, attempts in shown.items()}
+
+    def _seen(
+        self, name: str, attempts: Sequence[Attempt]
+    ) -> Sequence[tuple[Attempt, int | None, View]]:
+        report, late = self._content.run.report, self._late(name, attempts)
+        # Attempts in doubt are numbered apart: theirs are not the numbers of the late responses.
+        came = [None if one.in_doubt else late.get(one.number) for one in attempts]
+        views = [view_of(one, report, late_at) for one, late_at in zip(attempts, came, strict=True)]
+        return [*zip(attempts, came, views, strict=True)]
 
     def _questions(self, shown: Mapping[str, Sequence[Attempt]]) -> Iterator[Question]:
         for name, attempts in shown.items():
@@ -205,12 +215,7 @@ class _Panels:
             others = (other for other in self._content.others if other.samples)
             # The run itself first: a passing attempt nearby was made under the same conditions.
             candidates = [(run, tracks), *((other, self._tracks(other, name)) for other in others)]
-        late = self._late(name, attempts)
-        for attempt in attempts:
-            # Attempts in doubt are numbered apart: theirs are not the numbers of the late
-            # responses.
-            came = None if attempt.in_doubt else late.get(attempt.number)
-            view = view_of(attempt, report, came)
+        for attempt, came, view in self._views[name]:
             reference = None
             if attempt.verdict is Verdict.FAIL:
                 reference = nearest_passing(attempt, tracks, view, candidates)
@@ -232,8 +237,23 @@ class _Panels:
         spec = self._content.spec
         # By identity, as a run holds lists and has no hash; the content keeps every run alive.
         if id(run) not in self._changes:
-            self._changes[id(run)] = changes_of(spec, run.samples)
+            self._changes[id(run)] = changes_of(spec, run.samples, self._looks(run))
         return tracks_of(spec, spec.requirements[name], self._changes[id(run)], run.report.absent)
+
+    def _looks(self, run: JudgedRun) -> Looks:
+        """Where a run is drawn, or compared with a failed attempt."""
+        requirements, stretches = self._content.spec.requirements, list[tuple[int, int]]()
+        everywhere = set[str]()
+        for name, seen in self._views.items():
+            if not seen:
+                everywhere.update(names_of_requirement(requirements[name]))
+            for attempt, _, view in seen:
+                passing: Iterator[Attempt] = iter(())
+                if attempt.verdict is Verdict.FAIL:
+                    passing = islice(run.report.of(name, Verdict.PASS), MOST)
+                shifts = [attempt.triggered - passed.triggered for passed in passing]
+                stretches += [(view.start - shift, view.end - shift) for shift in (0, *shifts)]
+        return Looks(stretches, everywhere)
 
     def _part_truths(self, attempt: Attempt, view: View) -> tuple[PartTruth, ...]:
         """The truth of each subformula over the part of a view within the run."""

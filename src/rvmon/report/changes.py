@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence, Set
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, overload
+
+from msgspec import Struct
 
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.recordings.coalesce import updates_in
@@ -120,11 +123,25 @@ class Course(Sequence[tuple[int, Scalar]]):
         return Course(times[rows], values[rows], hidden[rows])
 
 
+class Looks(Struct, frozen=True):
+    """Where changes are looked at."""
+
+    # stretches of time, ticks, both ends included; `None`: the whole run
+    stretches: Sequence[tuple[int, int]] | None = None
+    everywhere: Set[str] = frozenset()  # names that are looked at over the whole run
+
+
+EVERYWHERE = Looks()
+
+
 def changes_of(
-    spec: CheckedSpec, samples: Iterable[Sample] | HeldRecording
+    spec: CheckedSpec, samples: Iterable[Sample] | HeldRecording, looks: Looks = EVERYWHERE
 ) -> Mapping[str, Changes]:
-    """By name, the changes of each signal and event of a run."""
-    noted = RunChanges(spec)
+    """By name, the changes of each signal and event of a run, at least where they are looked at.
+
+    There the values are right; of columns elsewhere only some changes are kept, in little memory.
+    """
+    noted = RunChanges(spec, looks)
     names = {*noted.by_name}
     for piece in samples.as_known(names) if isinstance(samples, HeldRecording) else samples:
         noted.add(piece)
@@ -132,9 +149,11 @@ def changes_of(
 
 
 class RunChanges:
-    """Collects the changes of signals and events, piece by piece of a run."""
+    """Collects the changes of signals and events, piece by piece of a run, in order."""
 
-    def __init__(self, spec: CheckedSpec) -> None:
+    def __init__(self, spec: CheckedSpec, looks: Looks) -> None:
+        self._everywhere = looks.everywhere
+        self._to_come = None if looks.stretches is None else deque(sorted(looks.stretches))
         self._signals = spec.signals
         self._ignoring = spec.ignoring
         stale = {name: signal.stale_after for name, signal in spec.signals.items()}
@@ -147,11 +166,24 @@ class RunChanges:
             for name, value in updates_in(piece.values, self._ignoring).items():
                 if name in self.by_name:
                     self.by_name[name].add(piece.t, value, is_signal=name in self._signals)
-        else:
-            for name in self.by_name.keys() & piece.signals.keys():
-                self.by_name[name].add_cells(piece, piece.signals[name])
-            for name in self.by_name.keys() & piece.events.keys():
+            return
+        is_seen = not len(piece.times) or self._looks_at(int(piece.times[0]), int(piece.times[-1]))
+        for name in self.by_name.keys() & piece.signals.keys():
+            cells = piece.signals[name]
+            if is_seen or name in self._everywhere:
+                self.by_name[name].add_cells(piece, cells)
+            elif (row := cells.last_said) is not None:  # its value is that of what comes then
+                self.by_name[name].add_cells(piece.cut(row, row + 1), cells.cut(row, row + 1))
+        for name in self.by_name.keys() & piece.events.keys():
+            if is_seen or name in self._everywhere:
                 self.by_name[name].add_occurrences(piece.times, piece.events[name].says)
+
+    def _looks_at(self, first: int, last: int) -> bool:
+        """Whether anything is looked at from an instant to another; they ascend."""
+        to_come = self._to_come
+        while to_come and to_come[0][1] < first:
+            to_come.popleft()
+        return to_come is None or bool(to_come and to_come[0][0] <= last)
 
 
 class Changes:
@@ -243,7 +275,9 @@ class Changes:
         """All changes of a signal, or all sure and possible occurrences of an event."""
         self._grow_stale(None)
         self._settle()
-        return Course.joined(self._courses or [Course.of(())])
+        if len(self._courses) != 1:
+            self._courses = [Course.joined(self._courses or [Course.of(())])]
+        return self._courses[0]
 
 
 def _plain(value: Any) -> Scalar:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 import rvmon
 from rvmon.recordings import places
 from rvmon.recordings.source import HeldRecording
-from rvmon.report.changes import Course, changes_of
+from rvmon.report.changes import Course, Looks, changes_of
 from rvmon.report.time_axis import View, round_instants, view_of
 from rvmon.report.tracks import (
     PLACES,
@@ -188,10 +188,18 @@ def test_held_columns_give_the_tracks_of_samples(tmp_path, monkeypatch):
         held = HeldRecording(recording.pieces(), lost)
         samples = HeldRecording(list(recording), lost)
         assert repr(list(held)) == repr(list(samples))
+        looked_at = [(at, at + rng.randint(0, SECOND)) for at in rng.sample(range(t), 2)]
+        looks = Looks(looked_at, {"mode"})
         for requirement in (R1, R2):
-            assert tracks_of(SPEC, requirement, changes_of(SPEC, held)) == tracks_of(
-                SPEC, requirement, changes_of(SPEC, samples)
-            )
+            tracks = tracks_of(SPEC, requirement, changes_of(SPEC, samples))
+            assert tracks_of(SPEC, requirement, changes_of(SPEC, held)) == tracks
+            seen = tracks_of(SPEC, requirement, changes_of(SPEC, held, looks))
+            for whole, part in zip(tracks, seen, strict=True):
+                for first, last in [(0, t)] if whole.name == "mode" else looked_at:
+                    assert part.between(first + 1, last) == whole.between(first + 1, last)
+                    assert whole.kind is TrackKind.EVENT or part.value_at(first) == whole.value_at(
+                        first
+                    )
 
 
 def test_a_switch_that_goes_stale_is_on_or_off(tmp_path):
