@@ -18,7 +18,7 @@ from rvmon.monitor.missing_names import expect_names
 from rvmon.recordings.batch import Batch
 from rvmon.recordings.places import name_of
 from rvmon.recordings.source import HeldRecording, Source, pieces_up_to
-from rvmon.report.changes import changes_of
+from rvmon.report.changes import Looks, changes_of
 from rvmon.report.printer import Printer
 from rvmon.report.tracks import tracks_of
 from rvmon.report.why_text import attempt_values, why_lines
@@ -74,9 +74,10 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     with busy(f"taking {attempt.name} apart"):
         breakdown = dissect(spec.checked, samples, report.end, attempt, recording.names)
     requirement = spec.requirements[name]
-    changes = changes_of(spec.checked, samples)
+    last = report.end if attempt.decided is None else attempt.decided
+    changes = changes_of(spec.checked, samples, Looks([(attempt.triggered, last)]))
     tracks = tracks_of(spec.checked, requirement, changes, report.absent)
-    values = attempt_values(tracks, attempt, report.end)
+    values = attempt_values(tracks, attempt, last)
     values |= _window_values(spec.checked, attempt, samples, report, recording.names)
     if arguments.format == "json":
         import msgspec

@@ -48,12 +48,10 @@ def why_lines(
             yield _columns(f"    {name}", texts)
 
 
-def attempt_values(tracks: Sequence[Track], attempt: Attempt, end: int) -> dict[str, Sequence[str]]:
-    """By signal, its value at the trigger, and at the end of the attempt if that is later.
-
-    An open attempt ends with the run, at `end` (ticks).
-    """
-    last = end if attempt.decided is None else attempt.decided
+def attempt_values(
+    tracks: Sequence[Track], attempt: Attempt, last: int
+) -> dict[str, Sequence[str]]:
+    """By signal, its value at the trigger, and at the last instant (ticks) if that is later."""
     texts = [signal_texts(tracks, t) for t in sorted({attempt.triggered, last})]
     return {name: [one[name] for one in texts] for name in texts[0]}
 
