@@ -24,6 +24,7 @@ _NUMBER = re.compile(
 )
 _NUMBERS = re.compile(rf"(?:(?:{_NUMBER.pattern})(?:\n|\Z))+", re.IGNORECASE)
 _WHOLE = re.compile(r"[+-]?\d{1,18}", re.ASCII)
+_WHOLES = re.compile(rf"(?:{_WHOLE.pattern}(?:\n|\Z))+", re.ASCII)
 
 
 class SeenValues:
@@ -56,10 +57,11 @@ class SeenValues:
         """Take cells of CSV, of which those that are empty say nothing."""
         different = dict.fromkeys(cells)
         different.pop("", None)
-        # Of what is known to be real, and has many values, further numbers tell nothing new.
-        if Kind.REAL in self.kinds and len(self.labels) > MOST_LABELS:
+        # Of what is known to be a number, and has many values, further ones tell nothing new.
+        known = _NUMBERS if Kind.REAL in self.kinds else _WHOLES if Kind.INT in self.kinds else None
+        if known is not None and len(self.labels) > MOST_LABELS:
             lines = "\n".join(different)
-            if lines.count("\n") == len(different) - 1 and _NUMBERS.fullmatch(lines):
+            if lines.count("\n") == len(different) - 1 and known.fullmatch(lines):
                 return
         for cell in different:
             self._add_text(cell)
