@@ -167,6 +167,8 @@ class _Panels:
     def __init__(self, content: RunPage, shown: Mapping[str, Sequence[Attempt]]) -> None:
         self._content = content
         report = content.run.report
+        samples = content.run.samples
+        self._begin = samples[0].t if samples else report.origin  # once, as each look takes a block
         self._changes: dict[int, Mapping[str, Changes]] = {}
         self._waits = {
             name: waits_of(content.spec.requirements[name], attempts)
@@ -174,11 +176,10 @@ class _Panels:
             if name not in report.late
         }
         self._truths: RecordedTruths | None = None
-        if content.run.samples and report.end is not None:
+        if samples and report.end is not None:
             questions = list(self._questions(shown))
             declared, absent = {*content.spec.signals, *content.spec.events}, report.absent
             names = frozenset(declared - absent)  # that have a source in the run
-            samples = content.run.samples
             self._truths = look_through(content.spec, questions, samples, report.end, names)
         # By requirement, its attempts with their late responses and views.
         self._views = {name: self._seen(name, attempts) for name, attempts in shown.items()}
@@ -207,7 +208,7 @@ class _Panels:
         report, samples = run.report, run.samples
         tracks = self._tracks(run, name)
         if not attempts:
-            view = whole_run(report, samples[0].t if samples else report.origin)
+            view = whole_run(report, self._begin)
             verdict, miss = report.verdicts[name], self._miss(name)
             yield Panel(panel_id(name, None), name, None, verdict, view, tracks, None, miss=miss)
         candidates: list[Candidate] = []
@@ -260,7 +261,7 @@ class _Panels:
         samples = self._content.run.samples
         if self._truths is None or len(samples) > MOST_DISSECTED:
             return ()
-        start, stop = max(view.start, samples[0].t), min(view.end, self._truths.end)
+        start, stop = max(view.start, self._begin), min(view.end, self._truths.end)
         if start > stop:
             return ()
         requirement = self._content.spec.requirements[attempt.requirement]
