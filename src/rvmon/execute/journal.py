@@ -65,12 +65,18 @@ def add(path: Path, entry: bytes) -> None:
     """Add an entry, a line without its end: from now on it stays, also if the process is killed.
 
     Raises:
-        OSError: it cannot be written.
+        OSError: it cannot be written; nothing has changed.
     """
-    # One write without a buffer: a killed process leaves the whole entry, or a torn last line that
-    # its checksum tells.
+    # Without a buffer: a killed process leaves the whole entry, or a torn last line that its
+    # checksum tells.
     with path.open("ab", buffering=0) as file:
-        file.write(_line(entry))
+        end, rest = file.tell(), _line(entry)
+        try:
+            while rest:  # what a full disk has room for is written, and only the rest refused
+                rest = rest[file.write(rest) :]
+        except OSError:
+            file.truncate(end)
+            raise
 
 
 class Journal(Struct, frozen=True):

@@ -179,15 +179,11 @@ class DurableMonitor:
             line = json.dumps([t, values], default=_plain).encode()
         except (TypeError, ValueError, RecursionError) as error:
             raise TraceError(f"a sample that cannot be kept: {error}") from None
+        if self._kept >= self._every:  # before it is judged: a failure to write changes nothing
+            self.save()
         add(self._path, line)
         self._kept += 1
-        try:
-            self._judge(t, values)
-        finally:
-            # Also after a refusal: the sample is in the file, and would be read again with all
-            # others.
-            if self._kept >= self._every:
-                self.save()
+        self._judge(t, values)
 
 
 def _plain(value: object) -> object:

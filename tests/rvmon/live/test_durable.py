@@ -106,6 +106,28 @@ def test_a_sample_that_is_damaged_in_the_file_is_told(tmp_path):
         DurableMonitor(SPEC, path, print)
 
 
+@pytest.mark.parametrize(("room", "every"), [(0, 99), (1, 99), (20, 99), (30, 2)])
+def test_a_sample_for_which_the_disk_has_no_room_changes_nothing(tmp_path, room, every):
+    """Also where a part of it, or of a snapshot, could be written: the caller may try again."""
+    resource = pytest.importorskip("resource", reason="limits of a process")
+    path, told, before = tmp_path / "run", [], resource.getrlimit(resource.RLIMIT_FSIZE)
+    monitor = DurableMonitor(SPEC, path, print, every=every)
+    for t in range(2):
+        monitor.step_ns(t, {"speed": 0.5})
+    kept = path.read_bytes()
+    resource.setrlimit(resource.RLIMIT_FSIZE, (len(kept) + room, before[1]))
+    try:
+        with pytest.raises(OSError, match="File too large"):
+            monitor.step_ns(2, {"speed": 2.0})
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert (path.read_bytes(), monitor.taken) == (kept, 2)
+    for t in (2, 3):
+        monitor.step_ns(t, {"speed": 2.0})
+    monitor = DurableMonitor(SPEC, path, lambda *one: told.append(one))
+    assert (monitor.taken, [one.name for _, one in told]) == (4, ["R2#1"])
+
+
 @pytest.fixture
 def watched(tmp_path, says):
     """Write lines, and watch them with a state by a command that is to end with a code."""
