@@ -140,12 +140,16 @@ def test_what_a_broker_has_kept_did_not_happen_now(broker, publish):
 
 @contextmanager
 def _answers(*answers):
-    """The port of a broker that says the same to whoever comes, at the second of his messages."""
+    """The port of a broker that says the same to whoever comes, at the second of his messages.
+
+    Beside it what it is told first.
+    """
+    greeting = []
     with socket.create_server(("127.0.0.1", 0)) as server:
 
         def answer():
             with server.accept()[0] as one:
-                one.recv(4096)
+                greeting.append(one.recv(4096))
                 one.sendall(b"\x20\x02\x00\x00")  # connected
                 one.recv(4096)
                 one.sendall(b"".join(answers))
@@ -154,17 +158,22 @@ def _answers(*answers):
 
         answering = threading.Thread(target=answer)
         answering.start()
-        yield server.getsockname()[1]
+        yield server.getsockname()[1], greeting
         answering.join(LONG)
 
 
-def test_a_topic_that_may_not_be_read_is_told():
+@pytest.mark.parametrize("name", ["", "ann:s%20t@"])
+def test_a_topic_that_may_not_be_read_is_told(name):
+    """Not by this name and password, if there are any."""
     driver = Driver(loads(SPEC), clock=SimulatedClock())
-    with _answers(b"\x90\x04\x00\x01\x80\x00") as port:
-        source = MqttSource(JsonObjects(driver), address_of(f"mqtt://127.0.0.1:{port}/arm/#"))
+    with _answers(b"\x90\x04\x00\x01\x80\x00") as (port, greeting):
+        address = address_of(f"mqtt://{name}127.0.0.1:{port}/arm/#")
+        source = MqttSource(JsonObjects(driver), address)
         with pytest.raises(RvmonError, match="the broker allows nobody to read arm/#"):
             source.__enter__()
         source.__exit__()
+    assert greeting[0].endswith(b"\0\3ann\0\3s t") is bool(name)
+    assert greeting[0][9] & 0xC0 == (0xC0 if name else 0)
 
 
 def test_a_message_that_no_broker_should_let_through_is_lost():
@@ -173,7 +182,10 @@ def test_a_message_that_no_broker_should_let_through_is_lost():
     objects = JsonObjects(driver)
     good = b"\x30\x0c\x00\x09arm/speed1"
     answers = b"\x90\x04\x00\x01\x00\x00", good, b"\x30\x05\x00\x02\xff\xfe1", good
-    with _answers(*answers) as port, MqttSource(objects, address_of(f"mqtt://127.0.0.1:{port}/#")):
+    with (
+        _answers(*answers) as (port, _),
+        MqttSource(objects, address_of(f"mqtt://127.0.0.1:{port}/#")),
+    ):
         until(lambda: driver.waiting == 3)
     driver.work()
     assert objects.unread == 1

@@ -15,6 +15,7 @@ RECORDINGS = {
     "only_numbers.csv": "t_ns,x\n0,1\n7,2\n9,nan\n",
     "only_event.csv": "t,go\n0,\n1,1\n2,\n3,1\n4,\n",
     "one_row.csv": "t,x,mode\n5.5,1,idle\n",
+    "largest.csv": "t,x\n0,1.7e308\n1,1.797e308\n2,1.75e308\n",
     "late.csv": "t,x\n0,1\n2,2\n1.5,3\n3,4\n",
     "odd_names.csv": "t,for,a b,source,U,age,rate,always,mode\n0,1,2,3,4.5,1,2,true,for\n"
     "1,1,3,3,4.5,1,2,false,red hot\n",

@@ -23,11 +23,19 @@ def door(door):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("named", "verdict"), [("D1#1", "P"), ("D1#2", "F"), ("D1#3", "I"), ("D1", "F"), ("D2", "P")]
+    ("named", "verdict", "when"),
+    [
+        ("D1#1", "P", "triggered 1 s, decided 2 s"),
+        ("D1#2", "F", "triggered 4 s, decided 6.000000001 s"),
+        ("D1#3", "I", "triggered 8 s"),
+        ("D1", "F", "triggered 4 s, decided 6.000000001 s"),
+        ("D2", "P", "triggered 2 s, decided 2 s"),
+    ],
 )
-def test_attempts_are_shown_with_their_verdict(door, says, named, verdict):
+def test_attempts_are_shown_with_their_verdict(door, says, named, verdict, when):
     lines = says(0, "why", "door.rv", "a.csv", named).out.splitlines()
     assert lines[0].split()[1] == verdict
+    assert f"  {when}" in lines
     assert all(len(line) <= 80 for line in lines)
     assert any(line.strip() == "required" for line in lines)
 

@@ -174,10 +174,18 @@ def test_each_part_of_an_attempt_has_a_row():
     assert 'class="unknown"' in parts.split("within 2 s not closed</code>")[1].split("</div>")[1]
 
 
-def test_the_offending_sample_and_the_threshold_are_marked():
-    section = section_of(content(door(gap=0.01)), "D2-1")
-    assert "≥ 0.05 m" in section
-    assert section.count('class="sample"') == 1
+def test_a_number_is_drawn_in_its_range_with_threshold_and_offending_sample():
+    """Known up to 5 s and from 10 s on, at which it fails; a margin is above and below."""
+    spec = rvmon.loads("signal x : real [m]\nrequirement R\n  always x > 1 m\n")
+    samples = [(0.0, {"x": 3}), (5.0, {"x": None}), (10.0, {"x": 0.5})]
+    row = section_of(content(judged("t", samples, spec)), "R-1").partition("<code>x</code>")[2]
+    assert re.findall('points="(.*?)"', row) == ["40,9.68 440,9.68", "840,90.3 1000,90.3"]
+    ends = re.findall(r'class="scale" style="top:(.*?)%">(.*?)<', row)
+    assert ends == [("90.32", "0.5"), ("9.68", "3")]
+    unknown = re.findall('class="unknown".*?style="(.*?)"', row.partition("threshold")[0])
+    assert unknown == ["left:0.000%;width:4.000%", "left:44.000%;width:40.000%"]
+    assert 'class="threshold" style="top:74.19%"><span>&gt; 1 m<' in row
+    assert re.findall('class="sample" style="(.*?)"', row) == ["left:84.00%;top:90.32%"]
 
 
 @pytest.mark.parametrize(("most", "limit"), [(1.7e308, 0), (5e-324, 0), (2**62 + 1, 2**62)])

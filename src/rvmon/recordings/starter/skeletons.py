@@ -7,6 +7,7 @@ from bisect import bisect_left
 from collections.abc import Iterator, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from itertools import islice
+from math import isfinite
 from pathlib import Path
 
 from msgspec import Struct
@@ -145,7 +146,7 @@ def outward(value: float, *, up: bool) -> float:
     place = Decimal(1).scaleb(exact.adjusted() - 2)
     rounded = exact.quantize(place, ROUND_CEILING if up else ROUND_FLOOR)
     made = float(rounded)
-    return made if (made >= value if up else made <= value) else value
+    return made if isfinite(made) else value
 
 
 def _freshness(column: Column) -> Skeleton:
