@@ -7,8 +7,7 @@ import pickle
 import signal
 import threading
 import time
-from collections import deque
-from collections.abc import Callable, Generator, Iterable, Iterator
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from heapq import heappop, heappush
 from itertools import islice
@@ -47,7 +46,8 @@ def execute(
     The processes are begun, by the thread that asks for them, for the first result. They end with
     the last result, with the iterator, by an interrupt, and with this process, however it ends.
     Tasks go to them in chunks: of so many as take about 0.1 s, so that a task which takes longer
-    holds up no others; of few where few are left, so that all processes end together.
+    holds up no others, but for the results of its chunk; of few where few are left, so that all
+    processes end together.
 
     Args:
         tasks: taken from as processes have time; for several processes what can be pickled.
@@ -95,12 +95,16 @@ class _Worker(Struct, eq=False):
 
     process: BaseProcess  # itself
     connection: Connection  # to it
-    # number and pickle of those that it has and did not answer, ascending
-    tasks: deque[tuple[int, bytes]] = field(default_factory=deque)
-    given: int = 0  # tasks of its last chunk
+    # how many tasks it has begun in all, and when the last, on the monotonic clock
+    begun: Sequence[float]
+    tasks: list[tuple[int, bytes]] = field(default_factory=list)  # numbers, ascending, and pickles
+    answered: int = 0  # tasks before these
     size: int = 1  # tasks of its next chunk
-    since: float = 0.0  # the latest start of the first of these, on the monotonic clock
-    is_ready: bool = False  # whether it has begun at all
+    since: float = 0.0  # when it was given these, on the monotonic clock
+
+    def task_s(self) -> float:
+        """Seconds for which it has had the task that it does, or is to begin with."""
+        return time.monotonic() - max(self.since, self.begun[1])
 
 
 class _Pool:
@@ -161,8 +165,7 @@ class _Pool:
             if not chunk:
                 return
             worker = resting.pop() if resting else self._begun()
-            worker.tasks.extend(chunk)
-            worker.given = len(chunk)
+            worker.tasks = chunk
             worker.since = time.monotonic()
             with suppress(OSError):  # it was ended: no answer will say so
                 worker.connection.send([task for _, task in chunk])
@@ -181,7 +184,8 @@ class _Pool:
         is_main = threading.current_thread() is threading.main_thread()
         parent = os.getpid() if forked and is_main else None
         here, there = self._context.Pipe()
-        arguments = (there, here, self._work.begin, parent)
+        begun = self._context.RawArray("d", 2)
+        arguments = (there, here, self._work.begin, parent, begun)
         process = self._context.Process(target=serve, args=arguments, daemon=True)
         try:
             with _without_interrupts():
@@ -190,7 +194,7 @@ class _Pool:
             message = f"no process can be begun ({error.strerror}): use fewer (jobs)"
             raise RvmonError(message) from None
         there.close()
-        self._workers.append(_Worker(process, here))
+        self._workers.append(_Worker(process, here, begun))
         return self._workers[-1]
 
     def _left(self) -> Iterator[tuple[int, bytes]]:
@@ -217,29 +221,24 @@ class _Pool:
             ) from None
 
     def _take(self, worker: _Worker) -> None:
-        """Take an answer of a worker, or that there will be none."""
+        """Take the answers of a worker, or that there will be none."""
         try:
-            answer = worker.connection.recv()
+            answers = worker.connection.recv()
         except (EOFError, OSError):
             self._lose(worker, timed_out=False)
             return
-        worker.since = time.monotonic()
-        if answer is None:
-            worker.is_ready = True
-            return
-        failed, is_last, result = answer
-        number, _ = worker.tasks.popleft()
-        if failed:
-            self._fail(number, pickle.loads(result))  # noqa: S301 - as above
-        else:
-            self._done[number] = result
-        if is_last and self._fresh:
+        done = len(answers)
+        for (number, _), (failed, result) in zip(worker.tasks, answers, strict=False):
+            if failed:
+                self._fail(number, pickle.loads(result))  # noqa: S301 - as above
+            else:
+                self._done[number] = result
+        worker.answered += done
+        worker.size = done if done < len(worker.tasks) else min(2 * done, MOST_TASKS)
+        self._give_back(worker, worker.tasks[done:])
+        if self._fresh:
             worker.process.kill()
             self._dismiss(worker)
-        elif is_last:
-            done = worker.given - len(worker.tasks)
-            worker.size = done if worker.tasks else min(2 * done, MOST_TASKS)
-            self._give_back(worker)
 
     def _patience(self, busy: Iterable[_Worker]) -> float | None:
         """Seconds until the first task will have taken too long."""
@@ -251,8 +250,9 @@ class _Pool:
         """Seconds that a worker's task may still take."""
         if self._work.timeout_s is None:
             return inf
-        most = self._work.timeout_s if worker.is_ready else self._work.timeout_s + BEGIN_S
-        return worker.since + most - time.monotonic()
+        begun = worker.begun[0]
+        most = self._work.timeout_s if begun else self._work.timeout_s + BEGIN_S
+        return most - worker.task_s()
 
     def _end_if_late(self, worker: _Worker) -> None:
         """End a worker whose task takes too long, unless its answer has just come."""
@@ -262,8 +262,12 @@ class _Pool:
 
     def _lose(self, worker: _Worker, *, timed_out: bool) -> None:
         """Do without a worker that was ended, and without a result of the task that it had."""
+        seconds = worker.task_s()
         self._dismiss(worker)
-        number, task = worker.tasks.popleft()
+        # It did the tasks before, but nobody will get its answers: they are done once more.
+        place = max(0, int(worker.begun[0]) - worker.answered - 1)
+        number, task = worker.tasks.pop(place)
+        self._give_back(worker, worker.tasks)
         if self._work.instead is None:
             message = (
                 f"the process that had {self._work.what} {number + 1} was ended from outside, as "
@@ -276,8 +280,7 @@ class _Pool:
             if timed_out
             else _end_of(worker.process)
         )
-        self._give_back(worker)
-        ended = Ended(timed_out, why, time.monotonic() - worker.since)
+        ended = Ended(timed_out, why, seconds)
         result = self._work.instead(pickle.loads(task), ended)  # noqa: S301 - packed here
         self._done[number] = pickle.dumps(result)
 
@@ -286,9 +289,10 @@ class _Pool:
         worker.connection.close()
         worker.process.join()
 
-    def _give_back(self, worker: _Worker) -> None:
-        while worker.tasks:
-            heappush(self._returned, worker.tasks.pop())
+    def _give_back(self, worker: _Worker, tasks: Iterable[tuple[int, bytes]]) -> None:
+        for task in tasks:
+            heappush(self._returned, task)
+        worker.tasks = []
 
     def _fail(self, number: int, error: Exception) -> None:
         """A task has no result: what comes behind it is not begun."""

@@ -10,7 +10,7 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, MutableSequence
 from contextlib import suppress
 from multiprocessing.connection import Connection
 from queue import SimpleQueue
@@ -29,18 +29,21 @@ def serve(
     other: Connection,
     begin: Callable[[], Callable[[Any], Any]],
     parent: int | None,
+    begun: MutableSequence[float],
 ) -> None:
     """Do the tasks that come, until the other end of the connection is closed.
 
-    What comes are lists of pickled tasks. `None` goes back when the first is begun; for each task,
-    whether it failed, whether no more of its list is going to be done, and its pickled result or
-    error.
+    What comes are lists of pickled tasks. A list goes back for each: of those tasks that were done
+    in `CHUNK_S`, whether each failed, and its pickled result or error. One message for each task
+    would wake the other process, and interrupt this one, hundreds of times a second.
 
     Args:
         connection: to who gives out the tasks.
         other: its other end, which only that process is to hold.
         begin: makes, before the first task, what does them.
         parent: the process whose death Linux is to report; `None`: nobody's.
+        begun: for the other process to read if this one is lost: how many tasks were begun in all,
+            and when the last, on the monotonic clock.
     """
     other.close()
     gc.freeze()  # what a fork has of its parent is not looked through, and so not copied
@@ -49,33 +52,33 @@ def serve(
     threading.Thread(target=_receive, args=(connection, chunks), daemon=True).start()
     work: Callable[[Any], Any] | None = None
 
-    def begun() -> Callable[[Any], Any]:
+    def next_task() -> Callable[[Any], Any]:
         nonlocal work
         if work is None:
             work = begin()
-            connection.send(None)
+        begun[1] = time.monotonic()
+        begun[0] += 1
         return work
 
     with suppress(OSError):  # nobody takes an answer any more
         while True:
-            chunk = chunks.get()
+            answers = []
             end = time.monotonic() + CHUNK_S
-            for left, task in zip(reversed(range(len(chunk))), chunk, strict=True):
-                failed, result = answer(begun, task)
-                is_last = not left or time.monotonic() >= end
-                connection.send((failed, is_last, result))
-                if is_last:
+            for task in chunks.get():
+                answers.append(answer(next_task, task))
+                if time.monotonic() >= end:
                     break
+            connection.send(answers)
 
 
-def answer(begun: Callable[[], Callable[[Any], Any]], task: bytes) -> tuple[bool, bytes]:
+def answer(work: Callable[[], Callable[[Any], Any]], task: bytes) -> tuple[bool, bytes]:
     """Do a task.
 
     Returns:
         Whether it failed, and its result or error, pickled.
     """
     try:
-        return False, pickle.dumps(begun()(pickle.loads(task)))  # noqa: S301 - from the parent
+        return False, pickle.dumps(work()(pickle.loads(task)))  # noqa: S301 - from the parent
     except Exception as error:  # noqa: BLE001 - raised where the result is asked for
         return True, packed_error(error)
 
