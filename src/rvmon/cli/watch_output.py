@@ -294,10 +294,14 @@ def watch_kept(
             spec, arguments.state, report, only=only, keep=_KEEP, settle="next"
         )
         if monitor.taken:
-            warn(f"{arguments.state}: the run continues after {monitor.taken:,} lines")
+            count = f" after {monitor.taken:,} lines"
+            how = count if is_file else "; what came since its last line is lost"
+            warn(f"{arguments.state}: the run continues{how}")
         try:
             if is_file:
                 lines = _behind_taken(monitor, lines, arguments)
+            elif monitor.taken:
+                lines = _behind_gap(monitor, lines)
             _feed(monitor, spec, lines)
         finally:
             monitor.save()
@@ -355,6 +359,16 @@ def _behind_taken(
         yield line if number > taken else b""
     if number < taken:
         raise other
+
+
+def _behind_gap(monitor: DurableMonitor, lines: Iterable[bytes]) -> Iterator[bytes]:
+    """The lines of a pipe; before the first one, what came to no process is reported as lost."""
+    has_come = False
+    for line in lines:
+        if line.strip() and not has_come:
+            monitor.miss()
+            has_come = True
+        yield line
 
 
 def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes]) -> None:

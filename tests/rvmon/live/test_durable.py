@@ -1,6 +1,8 @@
 """A run that goes on where its process was killed: no verdict is lost, changed or of nobody."""
 
+import os
 import random
+from threading import Thread
 
 import pytest
 from tests.rvmon.live import killed_watch
@@ -160,6 +162,20 @@ def test_a_watch_goes_on_in_no_other_file(watched, rows, is_same):
     other = other or f'{text}{{"t": 10, "x": 1}}\n{{"t": 11, "x": 1}}\n'
     told = watched(1 if is_same else 2, other).err
     assert ("is not the file of which 11 lines were evaluated" in told) is not is_same
+
+
+def test_a_watch_that_goes_on_with_a_pipe_has_lost_what_came_meanwhile(watched, tmp_path):
+    """The process before may have taken lines that it did not judge; to a file it is told."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    for t, code, is_told in ((0, 0, False), (9, 1, True)):
+        text = f'{{"t": {t}, "x": 1}}\n{{"t": {t + 1}, "x": 1}}\n'
+        writing = Thread(target=pipe.write_text, args=(text,))
+        writing.start()
+        told = watched(code, "", str(pipe)).err
+        writing.join()
+        assert ("what came since its last line is lost" in told) is is_told
+        assert ("dropped once, first at 1 s" in told) is is_told
 
 
 @pytest.mark.process
