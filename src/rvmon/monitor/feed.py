@@ -47,7 +47,7 @@ class Feed:
         self.losses = Losses(checked, planned, core, self._intake)
         self._planned = planned
         self._core = core
-        self.check = Validator(checked, sources, planned.single_payloads).check
+        self._validator = Validator(checked, sources, planned.single_payloads)
 
     @property
     def is_direct(self) -> bool:
@@ -57,6 +57,14 @@ class Feed:
     def is_too_late(self, t: int) -> bool:
         """Whether a sample at `t` exceeds `max delay`."""
         return self._intake is not None and self._intake.is_too_late(t)
+
+    def check(self, t: int, values: Mapping[str, Any]) -> Mapping[str, Value]:
+        """The sample at `t` ticks as the core takes it.
+
+        Raises:
+            TraceError: it is not as declared, or has a number that the core has no room for.
+        """
+        return self._planned.plain(t, self._validator.check(t, values))
 
     def take(self, t: int, values: Mapping[str, Value]) -> None:
         """Take a sample at `t` ticks; `values` come from `check`.
@@ -116,10 +124,24 @@ class Feed:
             if isinstance(entry, Turn):
                 self.losses.turn(entry)
             else:
-                self._judge(entry.t, entry.values)
+                self._judge(entry.t, self._with_single_payloads(entry))
+
+    def _with_single_payloads(self, sample: Sample) -> Mapping[str, Value]:
+        """The values of a merged sample: of payloads of which one can be judged, what is in all."""
+        values = sample.values
+        for name in self._planned.single_payloads.intersection(values):
+            if isinstance(payloads := values[name], tuple) and len(payloads) > 1:
+                shared = {
+                    field: value if all(one.get(field) == value for one in payloads) else None
+                    for field, value in payloads[0].items()
+                }
+                values = {**values, name: shared}
+                if self._intake is not None and None in shared.values():
+                    self._intake.conflicts.add(name, sample.t)
+        return values
 
     def _judge(self, t: int, values: Mapping[str, Value]) -> None:
-        if not self._core.judge(t, self._planned.plain(t, values), True):
+        if not self._core.judge(t, values, True):
             raise ValueError("the core refused a sample that was validated")
 
     def health(self) -> list[Health]:

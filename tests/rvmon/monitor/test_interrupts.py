@@ -173,7 +173,7 @@ def test_after_a_torn_step_nothing_passes_and_a_monitor_goes_on() -> None:
         monitor.reset()
         monitor.step_ns(0, {"x": 1.0})
         assert monitor.finish_ns(1).verdicts["R1"] == "P"
-    assert torn > len(places) / 2
+    assert torn > len(places) / 3
     assert "monitor  interrupted once, first at 1 s (stamp 2 s)" in lines
 
 

@@ -5,6 +5,7 @@ from tests.tools.each import each
 
 import rvmon
 from rvmon.errors import RvmonError, TraceError
+from rvmon.trace.sample import HealthKind
 
 SPEC = """
 spec watch
@@ -232,3 +233,46 @@ def test_of_much_that_is_open_the_oldest_is_enough():
     assert [one.required for one in records if one.deadline] == ["`within 9 s stop` by 9 s"]
     assert all(one in monitor.open for one in records)
     assert monitor.open_counts() == (counts, monitor.open)
+
+
+_MERGED = rvmon.loads("""
+signal x : real
+signal n : int
+event pick(id: int)
+requirement R
+  always x < 5
+requirement S
+  upon pick
+  then immediately pick.id < 10
+requirement T
+  upon n > 3
+  then false
+""")
+
+
+@each("number", [1 << 63, -(1 << 70)])
+def test_a_number_too_large_is_refused_before_it_waits(number):
+    """Not as the next sample settles it: that one would be refused, and this one lost."""
+    monitor = _MERGED.monitor(settle="next")
+    monitor.step(0, {"x": 1.0, "n": 0})
+    with pytest.raises(TraceError, match="`n` is a number too large for 64 bits"):
+        monitor.step(1, {"x": 9.0, "n": number})
+    monitor.step(1, {"x": 9.0})
+    monitor.step(2, {"n": 0})
+    monitor.step(3, {"x": 1.0})
+    assert monitor.finish().verdicts["R"] == "F"
+
+
+@each(
+    ("ids", "verdict"),
+    [((3,), "P"), ((3, 3), "P"), ((50, 50), "F"), ((3, 50), "I"), ((3, 3, 50), "I")],
+)
+def test_of_two_payloads_at_one_instant_is_known_what_is_in_both(ids, verdict):
+    """A file of them is refused, as a step with both is; of merged samples the fields differ."""
+    monitor = _MERGED.monitor(settle="next", only=["S"])
+    for number in ids:
+        monitor.step(1, {"pick": {"id": number}})
+    report = monitor.finish(2)
+    assert report.verdicts["S"] == verdict
+    conflicts = [one.name for one in report.health if one.kind is HealthKind.CONFLICT]
+    assert conflicts == ["pick"] * (verdict == "I")
