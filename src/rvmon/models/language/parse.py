@@ -60,9 +60,10 @@ def _read(start: str, text: str, place: Place) -> Any:
         return SyntaxBuilder(place).transform(tree)
     except lark.exceptions.UnexpectedInput as error:
         raise _syntax_error(error, text, start, place) from None
-    except lark.exceptions.VisitError as error:
-        raise error.orig_exc from None
-    except RecursionError:
+    except (lark.exceptions.VisitError, RecursionError) as error:
+        found = getattr(error, "orig_exc", error)
+        if not isinstance(found, RecursionError):
+            raise found from None
         raise model_error("TA019", "an expression is nested too deeply", None, "split it") from None
 
 

@@ -63,6 +63,7 @@ EDGE = "clock x automaton T {{ location a start a edge a -> a when {} }}"
         ),
         (A + "query: E<>[<=2147483647] A.a", "TA007", "a bound of 2147483647"),
         (A + "query: A.a -->[<=-1] A.a", "TA007", "a bound of -1"),
+        (EDGE.format("x[" * 600 + "0" + "]" * 600 + " == 0"), "TA019", "nested too deeply"),
     ],
 )  # fmt: skip
 def test_each_is_one_finding(text, code, message, monkeypatch):
