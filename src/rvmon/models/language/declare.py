@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import partial
@@ -28,7 +28,6 @@ MAX_PARTS = 100_000
 WIDE = 1 << 16  # a variable with more values gets a warning; UPPAAL's `int` has so many
 
 Part = TypeVar("Part", Clock, Variable, Channel)
-Read = TypeVar("Read")
 
 
 @dataclass(slots=True)
@@ -66,13 +65,6 @@ class Findings:
         errors = [d for d in self.found.values() if d.severity is Severity.ERROR]
         if errors:
             raise refusal(*_counted(errors))
-
-    def attempt(self, read: Callable[[], Read], default: Read) -> Read:
-        """The result of `read`, or the default if it raises an error, which is noted."""
-        made = [default]
-        with self.collect():
-            made.append(read())
-        return made[-1]
 
     @contextmanager
     def collect(self) -> Iterator[None]:
@@ -182,7 +174,7 @@ class _Placer:
     parts: Parts
     span: Span
 
-    def place(self, kind: sc.ResolvedType, names: Sequence[str], value: symbols.Value) -> sc.Symbol:
+    def place(self, kind: sc.ResolvedType, names: Sequence[str], value: symbols.Value) -> int:
         """Put clocks, variables or channels of some names behind those that are there."""
         parts, span = self.parts, self.span
         match kind.base:
@@ -200,8 +192,7 @@ class _Placer:
                 default = [symbols.default_of(kind)] * len(names)
                 numbers = default if value is None else symbols.flat(value)
                 parts.variables += map(partial(symbols.variable_of, kind), names, numbers)
-        is_real = kind.base is BaseType.DOUBLE
-        return sc.PlacedSymbol(kind.placed_as, Slot(first, kind.extents), is_real)
+        return first
 
 
 def _room(parts: Sequence[Part], count: int, most: int, what: str, span: Span) -> int:

@@ -10,7 +10,7 @@ from rvmon.models import model_error
 from rvmon.models.language import symbols, syntax
 from rvmon.models.language.operations import fitted
 from rvmon.models.language.resolve import Resolver
-from rvmon.models.language.statements import Bodies, number, variable_type
+from rvmon.models.language.statements import Bodies, number
 from rvmon.models.network import expressions as ex
 from rvmon.models.network import scope as sc
 from rvmon.models.network.fractions import marked
@@ -36,7 +36,7 @@ class Functions:
     made: dict[tuple[object, ...], ex.Function] = field(default_factory=dict)
     open: set[tuple[object, ...]] = field(default_factory=set)  # the functions being made
 
-    def place(self, kind: sc.ResolvedType, names: Sequence[str], value: symbols.Value) -> sc.Symbol:
+    def place(self, kind: sc.ResolvedType, names: Sequence[str], value: symbols.Value) -> int:
         """Make room for parameters or local variables."""
         del value  # they are set whenever the function runs
         self.locals += [
@@ -44,13 +44,11 @@ class Functions:
         ]
         if len(self.locals) > MAX_LOCALS:
             raise model_error("TA019", f"more than {MAX_LOCALS:,} local variables", None)
-        slot, is_real = ex.Slot(-len(self.locals), kind.extents), kind.base is ex.BaseType.DOUBLE
-        return sc.PlacedSymbol(ex.BaseType.INT, slot, is_real)
+        return -len(self.locals)
 
-    def variable(self, slot: ex.Slot) -> ex.Variable:
-        """The variable of a slot, or the first of its array."""
-        first = slot.first
-        return self.variables[first] if first >= 0 else self.locals[-first - 1]
+    def variable(self, place: int) -> ex.Variable:
+        """The variable at a place."""
+        return self.variables[place] if place >= 0 else self.locals[-place - 1]
 
     def call(
         self, symbol: sc.FunctionSymbol, written: syntax.Call, scope: sc.Scope, resolver: Resolver
@@ -152,10 +150,8 @@ def _make(
         for index, extent in zip(slot.indices, slot.extents, strict=False):
             if index == _CHOSEN:
                 kind = sc.ResolvedType(ex.BaseType.INT, extent.start, extent.stop - 1)
-                symbol = functions.place(kind, ["index"], None)
-                assert isinstance(symbol, sc.PlacedSymbol), "of numbers"
-                indices.append(symbol.slot.first)
-                index = ex.VariableValue(symbol.slot)
+                indices.append(functions.place(kind, ["index"], None))
+                index = ex.VariableValue(ex.Slot(indices[-1]))
             own.append(index)
         return replace(slot, indices=tuple(own))
 
@@ -164,9 +160,8 @@ def _make(
         if thing is not None:
             inner.symbols[parameter.name] = _with_slots(thing, chosen)
             continue
-        kind = variable_type(resolver.typed(parameter, scope))
         called = [f"{text.name}.{parameter.name}"]
-        symbol = symbols.laid_out(kind, called, None, functions)
+        symbol = symbols.laid_out(resolver.typed(parameter, scope), called, None, functions)
         inner.symbols[parameter.name] = symbol
         parameters += [
             leaf.slot.first for leaf in symbols.leaves(symbol) if isinstance(leaf, sc.PlacedSymbol)
@@ -176,17 +171,15 @@ def _make(
         fix = "let it set a parameter that is passed by reference"
         message = f"`{text.name}` returns an array or record"
         raise model_error("TA016", message, text.span, fix)
-    place = functions.place(replace(result, const=False), [f"{text.name}(…)"], None)
-    assert isinstance(place, sc.PlacedSymbol), "of a number"
+    place = functions.place(result, [f"{text.name}(…)"], None)
     body, goes_on = Bodies(text, resolver).statements(text.body.statements, inner)
     if goes_on:
         missing = ex.Missing(text.name, text.span)
         body.append(ex.Return(ex.Constant(0)) if text.type is None else missing)
     slots = [*parameters, *indices]
     return ex.Function(
-        text.name, tuple((slot, functions.variable(ex.Slot(slot))) for slot in slots),
-        (place.slot.first, functions.variable(place.slot)), tuple(body), len(functions.locals),
-        _changes(body),
+        text.name, tuple((slot, functions.variable(slot)) for slot in slots),
+        (place, functions.variable(place)), tuple(body), len(functions.locals), _changes(body),
     )  # fmt: skip
 
 

@@ -80,7 +80,7 @@ def _copy(
 def _set(target: sc.Symbol, value: ex.Expression, span: Span, resolver: Resolver) -> ex.Statement:
     match target:
         case sc.PlacedSymbol(ex.BaseType.INT, slot) if target.is_single:
-            variable = resolver.functions.variable(slot)
+            variable = resolver.functions.variable(slot.first)
             value = fitted(value, variable.is_real, span)
             return ex.Assignment(replace(slot, span=span), value, variable)
         case _:
@@ -155,7 +155,7 @@ class Bodies:
                 scope.symbols[item.name] = sc.ConstantSymbol(value.value)
                 return []
         name = f"{self.text.name}.{item.name}"
-        symbol = symbols.laid_out(variable_type(kind), [name], None, resolver.functions)
+        symbol = symbols.laid_out(kind, [name], None, resolver.functions)
         statements = self._initial(symbol, initial, kind, scope)
         scope.symbols[item.name] = symbol  # its initial value sees what the name meant before
         return statements
@@ -172,7 +172,7 @@ class Bodies:
         if written is None:
             single = [leaf for leaf in symbols.leaves(symbol) if isinstance(leaf, sc.PlacedSymbol)]
             span = self.text.span
-            initial = [resolver.functions.variable(leaf.slot).initial for leaf in single]
+            initial = [resolver.functions.variable(leaf.slot.first).initial for leaf in single]
             return [
                 _set(leaf, ex.Constant(value), span, resolver)
                 for leaf, value in zip(single, initial, strict=True)
@@ -201,8 +201,8 @@ class Bodies:
         values = symbols.values_of(resolver.type(written.type, scope), written.type.span)
         span = written.span
         kind = sc.ResolvedType(ex.BaseType.INT, values.start, values.stop)
-        symbol = resolver.functions.place(kind, [f"{self.text.name}.{written.name}"], None)
-        assert isinstance(symbol, sc.PlacedSymbol), "of a number"
+        place = resolver.functions.place(kind, [f"{self.text.name}.{written.name}"], None)
+        symbol = sc.PlacedSymbol(ex.BaseType.INT, ex.Slot(place))
         inner.symbols[written.name], inner.places[written.name] = symbol, span
         body, goes_on = self.statements(written.body, inner.inner({}))
         here = ex.VariableValue(symbol.slot)
@@ -212,9 +212,3 @@ class Bodies:
         first = _set(symbol, ex.Constant(values.start), span, resolver)
         test = ex.BinaryOperation(ex.BinaryOp.LT, here, ex.Constant(values.stop))
         return [first, ex.While(test, tuple(body), span)]
-
-
-def variable_type(kind: sc.ResolvedType) -> sc.ResolvedType:
-    """The type of a variable that may be set once, where a constant one is declared."""
-    fields = tuple((name, variable_type(field)) for name, field in kind.fields)
-    return replace(kind, const=False, fields=fields)

@@ -30,8 +30,8 @@ Value = sc.ConstantValue | None
 class Placer(Protocol):
     """Gives things their places."""
 
-    def place(self, kind: sc.ResolvedType, names: Sequence[str], value: Value) -> sc.Symbol:
-        """Make a symbol for things of one type, side by side."""
+    def place(self, kind: sc.ResolvedType, names: Sequence[str], value: Value) -> int:
+        """Make room for things of one type, side by side; where the first is."""
         ...
 
 
@@ -52,7 +52,8 @@ def laid_out(
         real = kind.base is ex.BaseType.DOUBLE
         if kind.const and value is not None and not (real and kind.extents):
             return sc.ConstantSymbol(value, kind.extents, real)
-        return placer.place(kind, names, value)
+        slot = ex.Slot(placer.place(kind, names, value), kind.extents)
+        return sc.PlacedSymbol(kind.placed_as, slot, real)
     fields = []
     for place, (field, written) in enumerate(kind.fields):
         whole = (*kind.extents, *written.extents)
@@ -161,8 +162,8 @@ class Calls(Placer, Protocol):
         """The value of a call."""
         ...
 
-    def variable(self, slot: ex.Slot) -> ex.Variable:
-        """The variable of a slot, or the first of its array."""
+    def variable(self, place: int) -> ex.Variable:
+        """The variable at a place."""
         ...
 
 

@@ -190,9 +190,10 @@ def _text(element: Element | None) -> str:
 
 def _part(element: Element | None, start: str, findings: Findings, default: Any) -> Any:
     """The text of an element, read by a rule of the grammar; `default` if there is none."""
-    if element is None or not element.text.strip():
-        return default
-    return findings.attempt(lambda: _parsed(element, start), default)
+    if element is not None and element.text.strip():
+        with findings.collect():
+            return _parsed(element, start)
+    return default
 
 
 def _parsed(element: Element, start: str) -> Any:
