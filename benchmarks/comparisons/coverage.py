@@ -13,6 +13,7 @@ from rvmon.coverage import combination
 from rvmon.coverage.monitor import SpecCoverage
 from rvmon.language.checked.formula import Formula
 from rvmon.language.checked.properties import Bin
+from rvmon.monitor.compiled_spec import CompiledSpec
 from rvmon.testing.generate.spec import Profile
 from rvmon.testing.generate.trace import Case, TraceProfile, random_trace
 from rvmon.testing.law.attempts import is_pulse
@@ -82,16 +83,15 @@ def by_law(case: Case) -> dict[str, Found]:
 
 def by_monitor(case: Case) -> dict[str, Found]:
     """What a monitor finds: how often, and when first."""
-    monitor = SpecCoverage(case.spec).monitor(sources=case.names, requirements=False)
+    monitor = SpecCoverage(CompiledSpec(case.spec)).monitor(sources=case.names, requirements=False)
     for one in case.actions:
         if isinstance(one, Sample):
             monitor.step_ns(one.t, one.values)
         else:
             monitor.advance_ns(one)
-    hits = monitor.finish_ns(case.end)
     return {
         name: {item: (hit.count, hit.first) for item, hit in own.items()}
-        for name, own in hits.items()
+        for name, own in monitor.finish_ns(case.end).items()
     }
 
 

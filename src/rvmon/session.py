@@ -322,7 +322,7 @@ class Spec:
         """The coverage model: bins, combinations, cover goals, and the outcomes of requirements."""
         from rvmon.coverage.monitor import SpecCoverage
 
-        return SpecCoverage(self.checked)
+        return SpecCoverage(self._compiled)
 
     def coverage(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Hits:
         """The coverage of a trace, as hits by group and item; arguments as `evaluate`."""

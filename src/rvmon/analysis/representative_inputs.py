@@ -11,7 +11,7 @@ from enum import Enum
 from itertools import combinations, islice, pairwise, product
 from typing import TypeVar, assert_never
 
-from msgspec import Struct
+from msgspec import Struct, structs
 
 from rvmon.language.checked.formula import (
     Arithmetic,
@@ -175,6 +175,12 @@ def truths_tried(
     """
     if not leaves or not tried:
         return [()] * len(tried)
+    names = frozenset().union(*map(names_of, leaves))
+    spec = structs.replace(  # a plan takes all names of its specification, read or not
+        spec,
+        signals={name: one for name, one in spec.signals.items() if name in names},
+        events={name: one for name, one in spec.events.items() if name in names},
+    )
     factory = Factory()
     cores = [factory.literal(factory.leaf(leaf), Sense.TRUE) for leaf in leaves]
     # One position per valuation: a sample each, at consecutive ticks or periods.

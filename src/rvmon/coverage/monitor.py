@@ -134,12 +134,13 @@ class _CoverageRun(Monitor):
 class SpecCoverage:
     """The coverage model of a specification, compiled for any number of runs."""
 
-    def __init__(self, spec: CheckedSpec) -> None:
-        self.spec = spec
+    def __init__(self, compiled: CompiledSpec) -> None:
+        self.spec = compiled.checked
+        self._compiled = compiled
 
-    def __reduce__(self) -> tuple[type[SpecCoverage], tuple[CheckedSpec]]:
+    def __reduce__(self) -> tuple[type[SpecCoverage], tuple[CompiledSpec]]:
         # Only the specification is pickled; the other process compiles it again.
-        return SpecCoverage, (self.spec,)
+        return SpecCoverage, (self._compiled,)
 
     @cached_property
     def bins(self) -> Bins:
@@ -152,7 +153,7 @@ class SpecCoverage:
         # Imported on use: a run that adds to no database asks for bins alone.
         from rvmon.coverage.requirements import WatchedRequirements
 
-        return WatchedRequirements(self.spec)
+        return WatchedRequirements(self._compiled)
 
     @cached_property
     def bin_model(self) -> Model:

@@ -192,10 +192,9 @@ def deadline_of(required: rv.Formula) -> int | None:
 class WatchedRequirements:
     """The requirements and cover goals of a specification, compiled for any number of runs."""
 
-    def __init__(self, spec: CheckedSpec) -> None:
-        plain = structs.replace(spec, properties={}, covers={})
-        self._goals = goals_as_requirements(spec).requirements
-        self._own = CompiledSpec(plain, is_kept=True)
+    def __init__(self, compiled: CompiledSpec) -> None:
+        self._own = compiled
+        self._goals = goals_as_requirements(compiled.checked).requirements
         self._watched = {
             name: WatchedRequirement(requirement)
             for name, requirement in self._own.requirements.items()
@@ -213,7 +212,14 @@ class WatchedRequirements:
             for key, variant in variants.items()
         }
         self._others = CompiledSpec(
-            structs.replace(plain, requirements={**others, **self._goals}), is_kept=True
+            structs.replace(
+                compiled.checked,
+                requirements={**others, **self._goals},
+                properties={},
+                covers={},
+            ),
+            is_kept=compiled.is_kept,
+            origin=compiled,
         )
         self.groups = [group for one in self._watched.values() for group in one.groups]
         self.groups += [group_of(name, Subject.GOAL, [Item(SHOWN)]) for name in self._goals]

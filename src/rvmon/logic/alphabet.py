@@ -8,8 +8,8 @@ Source: Bryant, Graph-based algorithms for Boolean function manipulation, 1986.
 from __future__ import annotations
 
 from array import array
-from collections.abc import Callable, Sequence
-from enum import Enum
+from collections.abc import Callable, Mapping, Sequence
+from enum import IntEnum
 from functools import cache, partial
 from typing import TypeAlias
 
@@ -20,7 +20,7 @@ from rvmon.logic.residual import Atom, Residual, decided
 from rvmon.logic.state_formula import State
 
 
-class TruthValue(Enum):
+class TruthValue(IntEnum):
     """The value of a proposition in the pessimistic or the optimistic run of an attempt."""
 
     FALSE = 0
@@ -79,7 +79,7 @@ def alphabet_of(formula: Core) -> Alphabet:
     stride = 1
     strides, all_truths, pessimistic, optimistic = [], [], [], []
     for proposition in propositions:
-        truths, digit = _digits(senses[proposition])
+        truths, digit = _digits(frozenset(senses[proposition]))
         strides.append(stride)
         all_truths.append(truths)
         low, high = digit[TruthValue.FALSE] * stride, digit[TruthValue.TRUE] * stride
@@ -92,12 +92,15 @@ def alphabet_of(formula: Core) -> Alphabet:
     )  # fmt: skip
 
 
-def _digits(senses: set[Sense]) -> tuple[tuple[TruthValue, ...], dict[TruthValue, int]]:
+@cache
+def _digits(
+    senses: frozenset[Sense],
+) -> tuple[tuple[TruthValue, ...], Mapping[TruthValue, int]]:
     """One digit per set of truths that the senses cannot tell apart."""
     seen: dict[tuple[bool, ...], int] = {}
     truths: list[TruthValue] = []
     digit: dict[TruthValue, int] = {}
-    ordered = sorted(senses, key=lambda sense: sense.value)
+    ordered = sorted(senses)
     for truth in TruthValue:
         look = tuple(holds(sense, truth) for sense in ordered)
         if look not in seen:

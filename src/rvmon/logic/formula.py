@@ -11,9 +11,9 @@ trace: `p or not p` stays (Kleene), and so does `G[0,3] true` (decided when its 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from enum import Enum
+from enum import StrEnum
 from itertools import chain
-from typing import Any, TypeVar, assert_never, cast
+from typing import Any, TypeVar, assert_never
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -25,7 +25,7 @@ from rvmon.language.checked.rewrite import without_spans
 from rvmon.logic.state_formula import UNKNOWN, Leaf, Lost, State, StateOp
 
 
-class Sense(Enum):
+class Sense(StrEnum):
     """The senses in which a literal reads its proposition; they are independent of each other."""
 
     TRUE = "is true"
@@ -114,6 +114,7 @@ class Previous(Struct, frozen=True, eq=False):
 Temporal = Next | Until | Release
 Core = Constant | Literal | And | Or | Next | Until | Release | Since | Previous
 N = TypeVar("N", bound=State | Core)
+C = TypeVar("C", bound=Core)
 
 
 def parts_of(node: Core) -> tuple[Core, ...]:
@@ -171,8 +172,8 @@ class Factory:
     def __init__(self) -> None:
         self._known: dict[tuple[Any, ...], Any] = {}
         self._count = 0
-        self.true: Core = self._core(Constant, True)
-        self.false: Core = self._core(Constant, False)
+        self.true = self._core(Constant, True)
+        self.false = self._core(Constant, False)
         self.state_true = self.leaf(ConstantLeaf(True))
         self.state_false = self.leaf(ConstantLeaf(False))
         self.unknown = self.leaf(Lost())
@@ -187,10 +188,10 @@ class Factory:
         self, op: StateOp, args: tuple[State, ...] = (), leaf: Leaf | None = None, **fields: Any
     ) -> State:
         key = (op, args, leaf, *fields.items())
-        found = self._known.get(key)
+        found: State | None = self._known.get(key)
         if found is None:
             found = self._known[key] = State(self._next_id(), op, args, leaf, **fields)
-        return cast("State", found)
+        return found
 
     def leaf(self, leaf: Leaf, unborn: int = UNKNOWN) -> State:
         """An atom over the input; `unborn` is its truth value before the birth of its signals."""
@@ -267,16 +268,16 @@ class Factory:
 
     # Core formulas.
 
-    def _core(self, kind: type[Any], *fields: Any) -> Any:
+    def _core(self, kind: Callable[..., C], *fields: Any) -> C:
         key = (kind, *fields)
-        found = self._known.get(key)
+        found: C | None = self._known.get(key)
         if found is None:
             found = self._known[key] = kind(self._next_id(), *fields)
         return found
 
     def constant(self, value: bool) -> Constant:
         """True or false."""
-        return cast("Constant", self.true if value else self.false)
+        return self.true if value else self.false
 
     def literal(self, proposition: State, sense: Sense) -> Core:
         """A proposition read in one sense; negations move into the sense."""
@@ -287,7 +288,7 @@ class Factory:
         if proposition.op is StateOp.NOT and sense is not Sense.KNOWN_FALSE:
             flipped = Sense.FALSE if sense is Sense.TRUE else Sense.TRUE
             return self.literal(proposition.args[0], flipped)
-        return cast("Core", self._core(Literal, proposition, sense))
+        return self._core(Literal, proposition, sense)
 
     def all_of(self, args: Iterable[Core]) -> Core:
         """All of `args`."""
@@ -300,11 +301,11 @@ class Factory:
     def _junction(self, kind: type[And | Or], args: Iterable[Core], unit: Core, zero: Core) -> Core:
         parts = (arg.args if isinstance(arg, kind) else (arg,) for arg in args)
         first, *more = found = _operands(parts, unit, zero)
-        return cast("Core", self._core(kind, tuple(found)) if more else first)
+        return self._core(kind, tuple(found)) if more else first
 
     def next(self, operand: Core) -> Next:
         """`operand` at the next position, undecided until there is one."""
-        return cast("Next", self._core(Next, operand))
+        return self._core(Next, operand)
 
     def until(self, left: Core, right: Core, low: int, high: int | None) -> Core:
         """`left U[low, high] right`, or an equal simpler formula."""
@@ -313,7 +314,7 @@ class Factory:
         if right is self.true and low == 0:
             return right
         opened = self._core(Until, left, right, 0, high, None) if low else None
-        return cast("Core", self._core(Until, left, right, low, high, opened))
+        return self._core(Until, left, right, low, high, opened)
 
     def release(self, left: Core, right: Core, low: int, high: int | None) -> Core:
         """`left R[low, high] right`, or an equal simpler formula."""
@@ -322,17 +323,17 @@ class Factory:
         if right is self.false and low == 0:
             return right
         opened = self._core(Release, left, right, 0, high, None) if low else None
-        return cast("Core", self._core(Release, left, right, low, high, opened))
+        return self._core(Release, left, right, low, high, opened)
 
     def core_since(
         self, left: Core, right: Core, low: int, high: int | None, *, dual: bool
     ) -> Core:
         """`left S[low, high] right`, or its dual, with a future operator in an operand."""
-        return cast("Core", self._core(Since, left, right, low, high, dual))
+        return self._core(Since, left, right, low, high, dual)
 
     def core_previous(self, operand: Core, *, first: bool) -> Core:
         """`operand` at the position before; at the first position, the constant `first`."""
-        return cast("Core", self._core(Previous, operand, first))
+        return self._core(Previous, operand, first)
 
     def rebuilt(self, node: Core, of: Callable[[Core], Core], *, positive: bool = True) -> Core:
         """A formula, or its dual, with what `of` makes of its operands; a literal has none."""

@@ -36,7 +36,7 @@ class Four:
         parts: Sequence[Four] = (),
     ) -> None:
         self._factory = factory
-        self.read = cache(read if born_late else partial(_same, read(UNKNOWN)))
+        self.read = cache(read) if born_late else partial(_same, read(UNKNOWN))
         self.born_late = born_late
         self.stays_born = stays_born
         self.parts = tuple(parts) or (self,)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from enum import Enum
+from enum import StrEnum
 
 from msgspec import Struct
 
@@ -80,7 +80,7 @@ Leaf = InputState | Shown | rv.Constant | Elapsed
 """A leaf of a state formula; without spans, so that equal leaves are interned as one."""
 
 
-class StateOp(Enum):
+class StateOp(StrEnum):
     """Operators of state formulas, a minimal set that expresses SEMANTICS 1 to 3."""
 
     LEAF = "leaf"

@@ -24,11 +24,25 @@ if TYPE_CHECKING:
 class CompiledSpec:
     """A compiled specification, from which any number of monitors can be built."""
 
-    def __init__(self, checked: CheckedSpec, *, is_kept: bool = False) -> None:
+    def __init__(
+        self,
+        checked: CheckedSpec,
+        *,
+        is_kept: bool = False,
+        origin: CompiledSpec | None = None,
+    ) -> None:
         self.checked = checked
         self.is_kept = is_kept  # whether packed plans are cached in the user's cache folder
+        self._origin = origin  # what it was derived from, in the one way in which that is done
         # derived objects made so far, such as packed plans, by the options they depend on
         self.forms: dict[object, object] = {}
+
+    @cached_property
+    def identity(self) -> str:
+        """A text that two specifications share if they are equal but for where things stand."""
+        if self._origin is None:
+            return identity_text(self.checked)
+        return f"derived from {self._origin.identity}"
 
     @cached_property
     def requirements(self) -> Mapping[str, CompiledRequirement]:
@@ -49,7 +63,7 @@ class CompiledSpec:
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Only the checked specification is pickled; the other process compiles it again.
-        again = partial(CompiledSpec, is_kept=self.is_kept)
+        again = partial(CompiledSpec, is_kept=self.is_kept, origin=self._origin)
         return again, (self.checked,)
 
 
@@ -80,12 +94,12 @@ class Place:
     renamed file is not taken for the entry.
     """
 
-    def __init__(self, spec: CheckedSpec, *how: object) -> None:
+    def __init__(self, spec: CompiledSpec, *how: object) -> None:
         folder = cache_folder()
         if folder is None:
             self._path = None
             return
-        content = json.dumps([this_rvmon(), identity_text(spec), *how])
+        content = json.dumps([this_rvmon(), spec.identity, *how])
         self._key = hashlib.sha256(content.encode()).hexdigest()
         self._path = folder / f"plan-{self._key}.bin"
 

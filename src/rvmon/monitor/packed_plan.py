@@ -209,7 +209,7 @@ def planned_core(
     key = "core", *how
     planned = compiled.forms.get(key)
     if not isinstance(planned, PlannedCore):
-        place = Place(spec, *how) if compiled.is_kept else None
+        place = Place(compiled, *how) if compiled.is_kept else None
         planned = None if place is None else _checked(compiled, ids, place.read())
         if planned is None:
             # Imported on use: with a cached plan the compiler is not needed.

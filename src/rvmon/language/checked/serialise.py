@@ -21,6 +21,7 @@ from rvmon.language.checked.window_measures import Measured
 from rvmon.trace.schema import Kind
 
 
+@cache
 def _class_named(name: str) -> type | None:
     """The class that a specification or its warnings are made of; `None` if there is none."""
     return _classes().get(name) or _rarer_classes().get(name)
