@@ -142,7 +142,7 @@ def ticks_of_column(values: NDArray[Any], stamps: Stamps) -> NDArray[np.int64]:
         return ticks_in_range(values)
     scale = TICKS_PER_UNIT[stamps.unit]
     most = TIME_LIMIT // scale
-    if values.dtype.kind == "i":
+    if values.dtype.kind in "iu":
         _refuse(values, most, stamps)
         return values.astype(np.int64) * scale
     ticks = np.empty(len(values), np.int64)

@@ -209,6 +209,7 @@ def _reading(path: Path, file: Any) -> tuple[Iterable[Any], Any]:
     """The frames of an open log, and what tells of losses between them, as `_Lines` does."""
     with needed("a log of CAN", "python-can"):
         from can import ASCReader, BLFReader, CanutilsLogReader, TRCReader
+    logging.getLogger("can").setLevel(logging.CRITICAL)
 
     class Objects(BLFReader):
         """Objects of BLF, of which the library passes over those that say that some were lost."""

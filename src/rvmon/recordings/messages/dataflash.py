@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from contextlib import redirect_stderr, redirect_stdout
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -13,7 +14,11 @@ import numpy as np
 from rvmon.errors import TraceError, needed
 from rvmon.recordings.messages import Topic, errors_as_damage
 from rvmon.recordings.messages.column_topics import ColumnMessages, Columns, ColumnTopic, leaves_of
+from rvmon.recordings.table_recording import ticks_of_column
 from rvmon.trace.sample import Outage
+from rvmon.trace.schema import Stamps
+from rvmon.trace.stamps import stamps_of
+from rvmon.trace.time import TICKS_PER_UNIT, TIME_LIMIT
 
 _CODES = "i1 u1 <f2 <i2 <u2 <i4 <u4 <f4 S4 S16 S64 <i2 <u2 <i4 <u4 <i4 <f8 u1 <i8 <u8"
 _TYPES = {"a": ("<i2", (32,)), **dict(zip("bBghHiIfnNZcCeELdMqQ", _CODES.split(), strict=True))}
@@ -25,8 +30,8 @@ _PAGE = 528  # bytes behind the last message of a log that is written in pages
 
 _ERASED = 0xFF
 
-_STAMPS = {"T": 1_000_000, "TimeUS": 1_000, "TimeMS": 1_000_000}
-"""Ticks by the field that says when a message was written; `T` where `TimeMS` is of satellites."""
+_STAMPS = tuple(map(stamps_of, ("T:ms", "TimeUS:us", "TimeMS:ms")))
+"""The fields that say when a message was written; `T` where `TimeMS` is of satellites."""
 
 _OF_THE_LOG = frozenset({"FMT", "FMTU", "UNIT", "MULT"})
 """Messages that say how the others are written."""
@@ -36,25 +41,57 @@ def dataflash_messages(path: Path) -> ColumnMessages:
     """Open a log."""
     with needed("DataFlash", "pymavlink"):
         from pymavlink.DFReader import DFReader_binary
+
+    class Indexed(DFReader_binary):  # type: ignore[misc]  # it has no types
+        """The places of the messages of a log."""
+
+        def init_clock(self) -> None:
+            """Nothing: it would go through all messages, and never past one of length 0."""
+
     with open(path, "rb") as file:
         if file.read(2) != _MAGIC:
             raise TraceError("is no DataFlash log: it begins otherwise")
-    quiet = StringIO()
-    with redirect_stdout(quiet), redirect_stderr(quiet), errors_as_damage("DataFlash"):
-        log = DFReader_binary(str(path))
-    data = np.frombuffer(log.data_map, np.uint8)
-    starts = {one: np.asarray(log.offsets[one], np.int64) for one in log.formats}
-    topics = [
-        topic
-        for number, form in log.formats.items()
-        if len(starts[number]) and form.name not in _OF_THE_LOG
-        for topic in _topics(form, data, starts[number])
-    ]
-    loaded = [topic.load()[0] for topic in topics]
-    end = max((int(times.max()) for times in loaded if len(times)), default=0)
-    outages = _damage(log, data, starts, end)
+    with _silent(), errors_as_damage("DataFlash"):
+        log = Indexed(str(path))
+        data = np.frombuffer(log.data_map, np.uint8)
+        starts = {one: _starts(form, data, log.offsets[one]) for one, form in log.formats.items()}
+        topics = [
+            topic
+            for number, form in log.formats.items()
+            if len(starts[number]) and form.name not in _OF_THE_LOG
+            for topic in _topics(form, data, starts[number])
+        ]
+        loaded = [topic.load()[0] for topic in topics]
+        end = max((int(times.max()) for times in loaded if len(times)), default=0)
+        outages = _damage(log, data, starts, end)
     last = max((outage.until for outage in outages), default=end)
     return ColumnMessages(topics, max(end, last), outages, log.filehandle.close)
+
+
+@contextmanager
+def _silent() -> Iterator[None]:
+    """The library, in part in C, writes a line for each byte that is damaged: let nothing show."""
+    said = StringIO()
+    with redirect_stdout(said), redirect_stderr(said), open(os.devnull, "wb") as nowhere:
+        shown = os.dup(2)
+        os.dup2(nowhere.fileno(), 2)
+        try:
+            yield
+        finally:
+            os.dup2(shown, 2)
+            os.close(shown)
+
+
+def _starts(form: Any, data: Any, found: Any) -> Any:
+    """The places of the messages of a format, but for damaged ones, whose stamp is out of range."""
+    starts = np.asarray(found, np.int64)
+    stamps = _stamps_of(form)
+    if stamps is None or not len(starts):
+        return starts
+    is_whole = starts + form.len <= len(data)
+    stamped = _rows(form, data, starts[is_whole])[stamps.column]
+    most = TIME_LIMIT // TICKS_PER_UNIT[stamps.unit]
+    return np.concatenate([starts[is_whole][stamped < most], starts[~is_whole]])
 
 
 def _rows(form: Any, data: Any, starts: Any) -> Any:
@@ -74,10 +111,10 @@ def _rows(form: Any, data: Any, starts: Any) -> Any:
 def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
     """The topics of a message in a log; each instance is a topic of its own."""
     rows = _rows(form, data, starts[starts + form.len <= len(data)])
-    stamp = _stamp_of(form)
-    if stamp is None or not len(rows):
+    stamps = _stamps_of(form)
+    if stamps is None or not len(rows):
         return []
-    times = rows[stamp].astype(np.int64) * _STAMPS[stamp]
+    times = ticks_of_column(rows[stamps.column], stamps)
     scales = dict(zip(form.columns, form.msg_mults, strict=True))
     units = dict(zip(form.columns, form.units or [""] * len(form.columns), strict=False))
     instance = form.instance_field
@@ -89,7 +126,7 @@ def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
         columns = {
             name: _cells(own[name], scales[name])
             for name in form.columns
-            if name not in (stamp, instance)
+            if name not in (stamps.column, instance)
         }
         shown = number.decode("utf-8", "replace") if isinstance(number, bytes) else number
         name = f"/{form.name}" if number is None else f"/{form.name}_{shown}"
@@ -104,13 +141,10 @@ def _topics(form: Any, data: Any, starts: Any) -> list[ColumnTopic]:
     return found
 
 
-def _stamp_of(form: Any) -> str | None:
+def _stamps_of(form: Any) -> Stamps | None:
     """The field of a message that says when it was written."""
-    is_of_satellites = form.name.startswith("GPS")
-    return next(
-        (name for name in _STAMPS if name in form.columns and (name != "T" or is_of_satellites)),
-        None,
-    )
+    known = _STAMPS if form.name.startswith("GPS") else _STAMPS[1:]
+    return next((stamps for stamps in known if stamps.column in form.columns), None)
 
 
 def _cells(column: Any, scale: float | None) -> Any:
@@ -137,11 +171,11 @@ def _damage(log: Any, data: Any, starts: Mapping[int, Any], end: int) -> list[Ou
     times = np.full(len(places), -1, np.int64)
     for number, own in starts.items():
         form = log.formats[number]
-        stamp = _stamp_of(form)
-        if stamp is not None and len(own):
+        stamps = _stamps_of(form)
+        if stamps is not None and len(own):
             inside = own[own + form.len <= len(data)]
-            stamped = _rows(form, data, inside)[stamp].astype(np.int64)
-            times[np.searchsorted(places, inside)] = stamped * _STAMPS[stamp]
+            stamped = _rows(form, data, inside)[stamps.column]
+            times[np.searchsorted(places, inside)] = ticks_of_column(stamped, stamps)
     found = []
     for gap in np.flatnonzero(behind[:-1] != places[1:]).tolist():
         before, after = times[: gap + 1], times[gap + 1 :]

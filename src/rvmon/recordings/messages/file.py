@@ -22,6 +22,7 @@ from rvmon.recordings.places import local_path
 from rvmon.recordings.rows import Row
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Clock, Schema
+from rvmon.trace.time import whole_ticks
 
 
 def open_messages(path: Path, form: str, schema: Schema) -> Messages:
@@ -105,7 +106,8 @@ class MessageFile:
         # also the topics and fields that feed nothing
         self._bounds, self.unread = matched(schema, source.topics)
         self.count = source.count  # of its messages; 0 if nobody knows
-        self.end = source.end  # its last instant; `None` where another clock counts
+        # its last instant; `None` where another clock counts
+        self.end = None if source.end is None else whole_ticks(source.end)
         clocks = {bound.clock or schema.binding.clock for bound in self._bounds.values()}
         if Clock.HEADER in clocks:
             self.end = None

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from functools import partial
 from heapq import merge
+from io import StringIO
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -84,7 +85,7 @@ def mdf_frames(path: Path) -> Iterator[tuple[int, tuple[int, bool], int, bytes]]
 
             def of(name: str, number: int = number, columns: Any = columns) -> Any:
                 with errors_as_damage("MDF"):
-                    return file.get(group=number, index=columns[name]).samples
+                    return _signal(file, number, columns[name]).samples
 
             length = of("DataLength" if "DataLength" in columns else "DLC")
             identifier = of("ID").astype(np.int64)
@@ -134,8 +135,14 @@ def _times(file: Any, group: int) -> Any:
     return times
 
 
+def _signal(file: Any, group: int, index: int, **options: Any) -> Any:
+    """A channel as the library has it, which prints all about one that it cannot read."""
+    with redirect_stdout(StringIO()):
+        return file.get(group=group, index=index, **options)
+
+
 def _channel(file: Any, group: int, index: int) -> tuple[Any, Any]:
-    signal = file.get(group=group, index=index)
+    signal = _signal(file, group, index)
     values, invalid = signal.samples, signal.invalidation_bits
     if values.dtype.kind == "S":
         values = np.char.rstrip(values, b"\0 ")
@@ -158,7 +165,7 @@ def _topic(file: Any, name: str, group: int) -> column_topics.ColumnTopic:
     paths = column_topics.distinct([column_topics.path_of(channel.name) for _, channel in listed])
     columns = {}
     for path, (place, _) in zip(paths, listed, strict=True):
-        first = file.get(group=group, index=place, record_count=1)
+        first = _signal(file, group, place, record_count=1)
         if first.samples.dtype.names:
             continue  # a structure, whose members are channels as well
         read, unit = partial(_channel, file, group, place), (first.unit or "").strip()

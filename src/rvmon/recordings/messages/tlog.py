@@ -14,6 +14,7 @@ from rvmon.errors import TraceError, needed
 from rvmon.recordings.messages import Message, Messages, Topic
 from rvmon.trace.sample import Outage
 from rvmon.trace.schema import Kind
+from rvmon.trace.time import TIME_LIMIT
 
 _STAMP = 8  # bytes before each packet: microseconds since 1970
 
@@ -24,6 +25,7 @@ _Key = tuple[int, int, int, int]
 
 _OURS = -1  # marks a message whose checksum agrees with its definition in the known dialect
 _FAR = 3 * 24 * 3600 * 1_000_000  # microseconds: a stamp so far from the one before is none
+_MOST = TIME_LIMIT // 1_000  # microseconds
 
 
 class TelemetryMessages(Messages):
@@ -63,7 +65,7 @@ class TelemetryMessages(Messages):
         while place + _STAMP < len(data):
             packet = self._packet_at(place)
             micros = int.from_bytes(data[place : place + _STAMP], "big")
-            if packet is None or (last >= 0 and abs(micros - last) > _FAR):
+            if packet is None or micros >= _MOST or (last >= 0 and abs(micros - last) > _FAR):
                 lost = place if lost < 0 else lost
                 place += 1
                 continue

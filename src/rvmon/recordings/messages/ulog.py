@@ -14,9 +14,12 @@ import numpy as np
 from rvmon.errors import TraceError, needed
 from rvmon.recordings.messages import Topic, errors_as_damage
 from rvmon.recordings.messages.column_topics import ColumnMessages, ColumnTopic, joined, leaves_of
+from rvmon.recordings.table_recording import ticks_of_column
 from rvmon.trace.sample import Outage
+from rvmon.trace.stamps import stamps_of
 from rvmon.trace.time import TIME_LIMIT
 
+_STAMPS = stamps_of("timestamp:us")
 _PER_STAMP = 1_000
 _PER_DURATION = 1_000_000
 """Ticks in a microsecond, as stamps count, and in a millisecond, as the lengths of dropouts do."""
@@ -25,7 +28,10 @@ _HEADER = 3  # bytes before each message: its length and its type
 
 
 class _Watched:
-    """A file that notes whether it ended within a message; the library passes that over."""
+    """A file that notes whether it was left within a message; the library passes that over.
+
+    It stops at the end of the file, and at a message that is shorter than its type can be.
+    """
 
     def __init__(self, file: BinaryIO) -> None:
         self._file = file
@@ -33,7 +39,7 @@ class _Watched:
 
     def read(self, size: int) -> bytes:
         data = self._file.read(size)
-        self.is_cut = len(data) < size and not (size == _HEADER and not data)
+        self.is_cut = bool(data) or size != _HEADER
         return data
 
     def seek(self, *place: int) -> int:
@@ -54,11 +60,11 @@ def ulog_messages(path: Path) -> ColumnMessages:
         watched = _Watched(file)
         with errors_as_damage("ULog"):
             log = ULog(watched)
+            start = log.start_timestamp * _PER_STAMP
+            read = [_topic(data, start) for data in log.data_list]
     if log.file_corruption:
         raise TraceError("is damaged: parts of it are no messages of ULog: copy it again")
-    start = log.start_timestamp * _PER_STAMP
-    read = [_topic(data, start) for data in log.data_list]
-    end = max((int(one.data["timestamp"].max()) for one in log.data_list), default=0) * _PER_STAMP
+    end = max((int(one.load()[0].max(initial=0)) for one, _ in read), default=0)
     outages = [outage for _, outage in read if outage is not None]
     outages += [
         Outage(
@@ -82,7 +88,7 @@ def _topic(data: Any, start: int) -> tuple[ColumnTopic, Outage | None]:
     name = f"/{data.name}_{data.multi_id}" if data.multi_id else f"/{data.name}"
     camel = "".join(part.capitalize() for part in re.split(r"[/_]", data.name))
     columns = joined(_texts(data))
-    times = data.data["timestamp"].astype(np.int64) * _PER_STAMP
+    times = ticks_of_column(data.data["timestamp"], _STAMPS)
     topic = Topic(name, f"px4_msgs/msg/{camel}", leaves_of(columns))
     is_stamped = times > 0
     outage = None

@@ -6,7 +6,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from tests.tools.logs import Row
+import pytest
+from tests.tools.logs import Row, write_can, write_ulog
+
+import rvmon
 
 
 def write_csv(path: Path, rows: Sequence[Row], prefix: str) -> Path:
@@ -88,3 +91,48 @@ def write_mat(path: Path, rows: Sequence[Row]) -> Path:
     }
     savemat(path, {"drive": columns})
     return path
+
+
+FORMS = {
+    "a.ulg": (write_ulog, "drive", "pyulog"),
+    "a.bin": (write_dataflash, "DRV", "pymavlink"),
+    "a.tlog": (write_tlog, "VFR_HUD", "pymavlink"),
+    "a.asc": (write_can, "Drive", "can"),
+    "a.blf": (write_can, "Drive", "can"),
+    "a.log": (write_can, "Drive", "can"),
+    "a.mf4": (write_mdf, "drive", "asammdf"),
+    "a.h5": (write_hdf5, "drive", "h5py"),
+    "a.mat": (write_mat, "drive", "scipy"),
+}
+"""By the name of a recording what writes it, what its topic is called, what reads it."""
+
+SPEC = """
+spec drive
+signal {0}.speed : real [m/s]
+signal {0}.mode : int
+
+requirement R1
+  always {0}.speed < 1.25 m/s
+requirement R2
+  upon {0}.mode == 3
+  then within 20 ms {0}.speed < 0.5 m/s
+requirement R3
+  upon {0}.mode == 1
+  then for 5 ms {0}.mode != 2
+"""
+
+
+def written(folder, name, rows):
+    """A recording, and the specification that reads it."""
+    write, topic, package = FORMS[name]
+    pytest.importorskip(package)
+    folder.mkdir(exist_ok=True)
+    spec = rvmon.loads(SPEC.format(topic))
+    if name == "a.tlog":
+        own = {f"{topic}.speed": f"/{topic}.airspeed", f"{topic}.mode": f"/{topic}.throttle"}
+        spec = spec.reading(columns=own)
+    return write(folder / name, rows), spec
+
+
+STEADY = [(t, 0.25, 0) for t in range(1_000_000, 1_300_000, 1_000)]
+FEW = [(1_000_000 + 1_000 * n, 0.5, 1) for n in range(6)]
