@@ -224,7 +224,7 @@ class Diagrams:
             TooManyClassesError: the limit was exceeded.
         """
         product = _Product(self.alphabet, limit)
-        diagram = LetterDiagram(product.tree(tuple(roots), len(self.alphabet.propositions) - 1))
+        diagram = LetterDiagram(product.tree(tuple(roots)))
         found: LetterClasses = diagram
         # The core looks the class up at each change of a proposition: one load where a table fits.
         if self.alphabet.size <= MOST_TABLED:
@@ -261,25 +261,22 @@ class _Product:
         self.alphabet = alphabet
         self.limit = limit
         self.leaves: dict[tuple[Node, ...], int] = {}
-        self.made: dict[tuple[tuple[Node, ...], int], Tree] = {}
+        self.made: dict[tuple[Node, ...], Tree] = {}
 
-    def tree(self, nodes: tuple[Node, ...], level: int) -> Tree:
-        """The classes of all letters over the propositions up to `level`."""
-        # Propositions on which no root decides here make no difference between letters.
-        while level >= 0 and all(node.level != level for node in nodes):
-            level -= 1
+    def tree(self, nodes: tuple[Node, ...]) -> Tree:
+        """The classes of all letters over the propositions on which some of the nodes decide."""
+        level = max([node.level for node in nodes])
         if level < 0:
             found = self.leaves.setdefault(nodes, len(self.leaves))
             if len(self.leaves) * len(nodes) > self.limit:
                 raise TooManyClassesError
             return found
-        key = (nodes, level)
-        known = self.made.get(key)
+        known = self.made.get(nodes)
         if known is None:
             lower = (
                 tuple(node.children[digit] if node.level == level else node for node in nodes)
                 for digit in range(len(self.alphabet.truths[level]))
             )
-            children = tuple([self.tree(own, level - 1) for own in lower])
-            known = self.made[key] = joined(self.alphabet.strides[level], children)
+            children = tuple(map(self.tree, lower))
+            known = self.made[nodes] = joined(self.alphabet.strides[level], children)
         return known
