@@ -69,12 +69,7 @@ class _Draft:
     def __init__(self, automaton: Automaton) -> None:
         self.source = automaton
         self.initial = automaton.initial
-        known: dict[Edge, Edge] = {}
-        edges: list[Edge | None] = [
-            known.setdefault(edge, edge)
-            for edge in zip(automaton.targets, automaton.sources, strict=True)
-        ]
-        edges.append(None)  # for −1
+        edges = [*zip(automaton.targets, automaton.sources, strict=True), None]  # for −1
         width = automaton.classes
         self.drafts: list[_DraftLocation] = []
         for location, base in zip(automaton.locations, automaton.bases, strict=True):
@@ -96,13 +91,10 @@ class _Draft:
             return False
         renamed = {blocks[index]: new for new, index in enumerate(kept)}
         self.initial = renamed[blocks[self.initial]]
-        known: dict[Edge | None, Edge | None] = {None: None}
         self.drafts = [self.drafts[index] for index in kept]
         for draft in self.drafts:
             for regions, (edges, time_value, end_value) in draft.rows.items():
-                for edge in {*edges} - known.keys():
-                    known[edge] = edge and (renamed[blocks[edge[0]]], edge[1])
-                moved = tuple(map(known.__getitem__, edges))
+                moved = tuple(edge and (renamed[blocks[edge[0]]], edge[1]) for edge in edges)
                 draft.rows[regions] = (moved, time_value, end_value)
         return True
 
@@ -117,16 +109,10 @@ class _Draft:
 
     def _moves(self, index: int, blocks: list[int]) -> Hashable:
         """The successors of a location, up to the current partition."""
-        # By `id`, as equal edges are one object (`known`) and each stands in many rows.
-        seen: dict[int, Hashable] = {id(None): None}
-
-        def move(edge: Edge | None) -> Hashable:
-            key = id(edge)
-            if key not in seen and edge is not None:
-                seen[key] = (blocks[edge[0]], edge[1])
-            return seen[key]
-
-        return tuple(tuple(map(move, edges)) for edges, _, _ in self.drafts[index].rows.values())
+        return tuple(
+            tuple(edge and (blocks[edge[0]], edge[1]) for edge in edges)
+            for edges, _, _ in self.drafts[index].rows.values()
+        )
 
     # Regions.
 
@@ -208,7 +194,7 @@ def _merged_row(row: Row, other: Row) -> Row | None:
         return None
     edges = []
     for mine, its in zip(row[0], other[0], strict=True):
-        if mine is not its and mine is not None and its is not None and mine != its:
+        if mine != its and None not in (mine, its):
             return None
         # Where no run can be, any edge will do: that lets regions merge which differ only there.
         edges.append(its if mine is None else mine)
