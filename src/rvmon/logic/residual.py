@@ -107,12 +107,6 @@ def _reduced(clauses: Residual) -> Residual:
     if not ordered[0]:
         return HOLDS
     kept: list[Clause] = []
-    atoms = frozenset[Atom]().union(*ordered)
-    if len(frozenset(map(_family, atoms))) == len(atoms):  # no atom implies another
-        for clause in ordered:
-            if not any(map(clause.issuperset, kept)):
-                kept.append(clause)
-        return frozenset(kept)
     families: dict[Clause, frozenset[Atom | Core]] = {}
     for clause in ordered:
         if any(map(clause.issuperset, kept)):
