@@ -14,6 +14,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from collections import defaultdict
 from collections.abc import Hashable, Iterator, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from itertools import product
 
@@ -102,13 +103,6 @@ def _cuts_of(residual: Residual, gap: int | None) -> Cuts:
     return _Search(gap, differences=True).cuts(residual)
 
 
-def _may_hold(start: Start, gap: int | None) -> bool:
-    try:
-        return is_satisfiable(start, gap)
-    except TooLargeError:
-        return True  # a forecast that is not found never changes a verdict
-
-
 MOST_TRIED = 200
 """The most combinations of clock regions tried in one search, long clauses counted extra."""
 
@@ -159,21 +153,18 @@ def start_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Start 
     return tuple(search.state(clause, known) for clause in residual)
 
 
-def is_satisfiable(start: Start, gap: int | None) -> bool:
+def _may_hold(start: Start, gap: int | None) -> bool:
     """Whether some infinite continuation satisfies one of the states of `start_of` for the gap.
 
     False is exact. True may be wrong for bounded windows, because in wide regions ages are
-    over-approximated by their differences.
-
-    Raises:
-        TooLargeError: the search exceeds its limits even without differences of clocks.
+    over-approximated by their differences, and where the search is too large.
     """
-    try:
-        # Exact differences tell more empty languages, but distinguish more states: only where that
-        # search grows too large, the coarser one.
-        return _Search(gap, differences=True).run(start)
-    except TooLargeError:
-        return _Search(gap, differences=False).run(start)
+    # Exact differences tell more empty languages, but distinguish more states: only where that
+    # search grows too large, the coarser one.
+    for differences in (True, False):
+        with suppress(TooLargeError):
+            return _Search(gap, differences=differences).run(start)
+    return True  # a forecast that is not found never changes a verdict
 
 
 class _Search:
