@@ -8,6 +8,7 @@ import pytest
 
 from rvmon.language.checked.functions import FUNCTIONS
 from rvmon.language.syntax.keywords import INFIX_WORDS, RESERVED
+from tests.tools.findings import findings_of
 
 ROOT = Path(__file__).parents[1]
 VSCODE = ROOT / "editors" / "vscode"
@@ -79,12 +80,9 @@ def test_functions_and_numbers_with_units():
 
 def findings():
     """The findings about a file with an error."""
-    from rvmon.errors import SpecError
     from rvmon.language.compile import compile_text
 
-    with pytest.raises(SpecError) as caught:
-        compile_text('requirement R "a \\"quote\\"" always a', name="a.rv")
-    return caught.value.diagnostics
+    return findings_of(compile_text, 'requirement R "a \\"quote\\"" always a', name="a.rv")
 
 
 def matchers():

@@ -3,10 +3,9 @@
 import io
 import re
 
-import pytest
+from tests.tools.findings import findings_of
 
 from rvmon.diagnostics import SEVERITIES, coloured, render_full, wants_colour
-from rvmon.errors import SpecError
 from rvmon.language.compile import compile_text
 
 
@@ -19,9 +18,8 @@ class Terminal(io.StringIO):
 
 def rendered():
     """Two findings with several places, in full."""
-    with pytest.raises(SpecError) as caught:
-        compile_text("event a\nevent a\nrequirement R\n  upon a or p\n  then within 3 b\n")
-    return render_full(caught.value.diagnostics)
+    text = "event a\nevent a\nrequirement R\n  upon a or p\n  then within 3 b\n"
+    return render_full(findings_of(compile_text, text))
 
 
 def test_only_colours_are_added():

@@ -1,6 +1,5 @@
 """Recordings that the core judges: as the law has it, what is refused, what is missing."""
 
-import math
 import random
 
 import numpy as np
@@ -45,22 +44,6 @@ def test_values_of_another_type_are_refused(name, value):
     trace = {"t": [0.0, 1.0], name: [None, value]}
     with pytest.raises(rvmon.TraceError, match=rf"sample at 1 s: .*`{name}"):
         spec.evaluate(trace, allow_missing=True)
-
-
-@pytest.mark.slow
-def test_a_signal_is_not_born_by_nan():
-    """What passed before all that it speaks of had a value is inconclusive."""
-    declared = "time sampled\nsignal p, q : bool\nsignal x, y : real"
-    spec = spec_of(declared, "whenever q then F[3 ns, 6 ns] ((y >= x) U[0 ns, 3 ns] p)")
-    trace = {
-        "t_ns": np.array([0, 6, 10]),
-        "p": np.array([True, True, True]),
-        "q": np.array([True, False, False]),
-        "x": np.array([math.nan, math.nan, 1.0]),
-        "y": np.array([1.0, 0.0, 0.0]),
-    }
-    (attempt,) = spec.evaluate(trace).attempts
-    assert (attempt.verdict, attempt.decided) == ("I", None)
 
 
 @pytest.mark.law

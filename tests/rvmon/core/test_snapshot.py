@@ -11,14 +11,12 @@ from tests.rvmon.core.test_outages import planned
 from tests.tools.differential import case_of
 from tests.tools.drive import Found, Lost
 from tests.tools.forms import Compiler
-from tests.tools.random_specs import random_chain
 
 from rvmon.language.checked.specification import TimeModel
-from rvmon.monitor.compiled_spec import compile_spec
 from rvmon.monitor.packed_plan import PlannedCore
 from rvmon.monitor.records import report_of_run
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import TraceProfile, random_trace
+from rvmon.testing.generate.trace import TraceProfile
 from rvmon.trace.sample import Sample
 
 REQUIREMENTS = """
@@ -84,17 +82,6 @@ def test_why_a_value_is_unknown_is_part_of_it():
     twins.finish(30)
     (found,) = report_of_run(plan, twins.other, 0, None).attempts
     assert "NaN at 5 ns" in str(found.reason)
-
-
-@pytest.mark.law
-def test_chains_of_windows_taken_up_again_go_on_alike():
-    taken = 0
-    for number in range(14):
-        rng = random.Random(f"chain/{number}")
-        spec = random_chain(rng, untils=number % 3 == 0)
-        one = random_trace(rng, spec, TraceProfile(outages=100 * (number % 2)))
-        taken += put_away(compile_spec(spec), one)
-    assert taken > 80
 
 
 def run_of(planned_: PlannedCore, rng: random.Random, steps: int) -> Twins:

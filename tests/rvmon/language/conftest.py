@@ -1,6 +1,7 @@
 """What the tests of the language share."""
 
 import pytest
+from tests.tools.findings import findings_of
 
 from rvmon.errors import SpecError
 from rvmon.language.compile import compile_text
@@ -53,9 +54,7 @@ def message(codes):
     """The message and help of the only finding."""
 
     def found(text):
-        with pytest.raises(SpecError) as caught:
-            compile_text(NAMES + text)
-        (finding,) = caught.value.diagnostics
+        (finding,) = findings_of(compile_text, NAMES + text)
         return f"{finding.message} | {finding.help}"
 
     return found

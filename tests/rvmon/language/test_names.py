@@ -22,6 +22,8 @@ def warned(text):
         (f"const T = 3 s\nconst `a b` = 1 s\n{DEMAND}", [("RV017", "`a b`")]),
         (f"const T = 3 s\nsignal z : real\n{DEMAND}  let v = z\n", [("RV017", "v")]),
         (f"const T = 3 s\nevent c\n{DEMAND}", [("RV046", "c")]),
+        (f"const T = 3 s\nsignal p : bool\n{DEMAND}", [("RV046", "p")]),
+        (f"const T = 3 s\nevent c\n{DEMAND}cover C = b and c\n", []),
     ],
 )
 def test_unused(text, expected):

@@ -18,6 +18,10 @@ CASES = {
     "a window fails where the left operand holds": (
         *("sampled", "upon start then e R (within 2 ns p)", "0 e -p; 5", 5),
     ),
+    "a signal is not born by NaN": (
+        *("sampled", "whenever q then F[3 ns, 6 ns] ((z >= y) U[0 ns, 3 ns] p)"),
+        *("0 p q y=nan z=1; 6 p -q y=nan z=0; 10 p -q y=1 z=0", 10),
+    ),
     "a row met younger later leads on younger": (
         *("held", "upon start then (always p) R (e R[3 ns, 5 ns] true)", "0", 5),
     ),

@@ -4,6 +4,7 @@ import random
 
 import pytest
 from tests.tools.each import each
+from tests.tools.findings import findings_of
 from tests.tools.ltl3 import Tableau
 
 from rvmon import loads
@@ -73,18 +74,14 @@ REFUSED = {
 @each("text", REFUSED)
 def test_the_rest_is_refused_with_the_reason(text):
     """The diagnostic is RV054, its place the part that is not linear."""
-    with pytest.raises(SpecError) as raised:
-        parts(text)
-    [finding] = raised.value.diagnostics
+    [finding] = findings_of(parts, text)
     assert finding.code == "RV054"
     assert REFUSED[text] in finding.message
 
 
 @pytest.mark.parametrize("text", ["AF[2 s, 5 s] AG a", "AG EF[1 s, 2 s] a", "E<>[1 s, 2 s] AG a"])
 def test_nobody_is_sent_to_a_checker_that_refuses_it(text):
-    with pytest.raises(SpecError) as raised:
-        parts(text)
-    [finding] = raised.value.diagnostics
+    [finding] = findings_of(parts, text)
     assert finding.help.endswith("does not decide a window that opens later either")
 
 

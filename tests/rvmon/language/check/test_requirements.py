@@ -127,13 +127,3 @@ def test_for_each(requirement, codes):
     assert codes("requirement R upon pick and i == 3 then F a for each i in pick.id") == []
     assert codes("requirement R upon e then F a for each i in x") == ["RV021"]
     assert codes("requirement R upon e then F a for each i in pick.z") == ["RV012"]
-
-
-def test_unread_names_are_warned_of(checked):
-    from rvmon.language.compile import compile_text
-
-    text = "signal a, b : bool\nevent e\nrequirement R upon a then eventually a"
-    _, warnings = compile_text(text)
-    assert [(w.code, w.spans[0].span.text) for w in warnings] == [("RV046", "b"), ("RV046", "e")]
-    _, warnings = compile_text(text + "\ncover C = b and e")
-    assert warnings == ()

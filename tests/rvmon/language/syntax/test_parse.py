@@ -3,6 +3,7 @@
 import os
 
 import pytest
+from tests.tools.findings import codes_of, findings_of
 
 from rvmon import load
 from rvmon.errors import SpecError
@@ -55,26 +56,20 @@ def test_file_is_read_once(compile_file):
     ],
 )
 def test_circle_is_an_error_with_both_places(compile_file, texts):
-    with pytest.raises(SpecError) as caught:
-        compile_file(**texts)
-    (finding,) = caught.value.diagnostics
+    (finding,) = findings_of(compile_file, **texts)
     assert finding.code == "RV016"
     assert len(finding.spans) == 2
 
 
 def test_double_name_over_files_shows_both_files(compile_file):
-    with pytest.raises(SpecError) as caught:
-        compile_file(main='import "one.rv"\nsignal a : bool', one="event a")
-    (finding,) = caught.value.diagnostics
+    (finding,) = findings_of(compile_file, main='import "one.rv"\nsignal a : bool', one="event a")
     assert finding.code == "RV011"
     assert len({label.span.source.name for label in finding.spans}) == 2
 
 
 @pytest.mark.parametrize("target", ['"missing.rv"', '"."', "nolibrary", '"a\x00b"'])
 def test_what_cannot_be_read_is_said(compile_file, target):
-    with pytest.raises(SpecError) as caught:
-        compile_file(main=f"import {target}")
-    assert [finding.code for finding in caught.value.diagnostics] == ["RV016"]
+    assert codes_of(compile_file, main=f"import {target}") == ["RV016"]
 
 
 def test_binary_file_is_said(compile_file, tmp_path):

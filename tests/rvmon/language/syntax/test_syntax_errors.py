@@ -2,8 +2,8 @@
 
 import pytest
 from tests.tools.each import each
+from tests.tools.findings import codes_of, findings_of
 
-from rvmon.errors import SpecError
 from rvmon.language.compile import compile_text
 from rvmon.language.syntax.parse import grammar
 from rvmon.language.syntax.syntax_errors import _word
@@ -16,9 +16,7 @@ const T = 3 s
 
 
 def first_finding(text):
-    with pytest.raises(SpecError) as caught:
-        compile_text(HEAD + text)
-    return caught.value.diagnostics[0]
+    return findings_of(compile_text, HEAD + text)[0]
 
 
 @each(
@@ -88,11 +86,8 @@ def test_items(item, fix):
 
 
 def test_a_trigger_and_what_is_owed_are_both_looked_at():
-    with pytest.raises(SpecError) as caught:
-        compile_text(
-            HEAD + "requirement R\n  upon eventually asked\n  then within 1 s no\n  at end: x\n"
-        )
-    assert [found.code for found in caught.value.diagnostics] == ["RV040", "RV012", "RV045"]
+    text = "requirement R\n  upon eventually asked\n  then within 1 s no\n  at end: x\n"
+    assert codes_of(compile_text, HEAD + text) == ["RV040", "RV012", "RV045"]
 
 
 def test_the_expected_is_said_in_words():

@@ -1,9 +1,8 @@
 """All mistakes of a text that cannot be read are told, each with its place."""
 
-import pytest
 from tests.tools.each import each
+from tests.tools.findings import findings_of
 
-from rvmon.errors import ModelError
 from rvmon.models.language.load import loads_network
 from rvmon.models.language.parse import MOST
 
@@ -47,9 +46,7 @@ bool b = true true;
 
 
 def places_of(text):
-    with pytest.raises(ModelError) as raised:
-        loads_network(text)
-    spans = [one.spans[0].span for one in raised.value.diagnostics]
+    spans = [one.spans[0].span for one in findings_of(loads_network, text)]
     return [(span.line, span.column) for span in spans]
 
 

@@ -6,6 +6,7 @@ import random
 import lark
 import pytest
 from tests.tools.each import each
+from tests.tools.findings import findings_of
 
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
@@ -15,19 +16,10 @@ from rvmon.models.search.verify import verify
 
 
 def findings(text):
-    with pytest.raises(ModelError) as caught:
-        loads_network(text)
     return [
         (d.code, d.spans[0].span.line, d.spans[0].span.column) if d.spans else (d.code, 0, 0)
-        for d in caught.value.diagnostics
+        for d in findings_of(loads_network, text)
     ]
-
-
-def one(text):
-    with pytest.raises(ModelError) as caught:
-        loads_network(text)
-    (diagnostic,) = caught.value.diagnostics
-    return diagnostic
 
 
 @pytest.mark.slow
@@ -258,9 +250,7 @@ def test_deep_nesting_is_refused_politely(text):
 def test_a_value_outside_its_range_is_told_when_a_run_gets_there():
     text = """clock x int[0,2] v automaton A { location a invariant x <= 1 start a
     edge a -> a when x >= 1 do v = v + 1, x = 0 }"""
-    with pytest.raises(ModelError) as caught:
-        verify(loads_network(text), "A[] v <= 2")
-    (diagnostic,) = caught.value.diagnostics
+    (diagnostic,) = findings_of(verify, loads_network(text), "A[] v <= 2")
     assert diagnostic.code == "TA007"
     assert "set to 3, outside [0, 2]" in diagnostic.message
     assert diagnostic.spans[0].span.text == "v"
@@ -278,9 +268,7 @@ def test_files_that_cannot_be_read_are_findings(tmp_path):
 @pytest.mark.parametrize("guard", ["1 / v > 0", "1 % v > 0"])
 def test_a_division_by_zero_has_its_place(guard):
     text = f"int[0,3] v automaton A {{ location a start a edge a -> a when {guard} }}"
-    with pytest.raises(ModelError) as caught:
-        verify(loads_network(text), "A[] A.a")
-    (found,) = caught.value.diagnostics
+    (found,) = findings_of(verify, loads_network(text), "A[] A.a")
     assert found.code == "TA007"
     assert found.spans[0].span.text == guard.removesuffix(" > 0")
 
@@ -329,5 +317,5 @@ def test_operators_bind_as_those_of_uppaal(text, bound):
 )
 def test_what_is_said_of_a_mistake(text, said):
     """What was probably meant, and how to write it."""
-    diagnostic = one(text)
+    (diagnostic,) = findings_of(loads_network, text)
     assert said in f"{diagnostic.name}: {diagnostic.message} ({diagnostic.help})"

@@ -2,6 +2,7 @@
 
 import pytest
 from tests.tools.each import each
+from tests.tools.findings import findings_of
 
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
@@ -35,9 +36,7 @@ def model(declaration="", local="", invariant="", system="system T;", queries=""
     ],
 )  # fmt: skip
 def test_what_is_not_supported_is_called_by_its_name(parts, message):
-    with pytest.raises(ModelError) as caught:
-        loads_network(model(**parts))
-    (diagnostic,) = caught.value.diagnostics
+    (diagnostic,) = findings_of(loads_network, model(**parts))
     assert diagnostic.code == "TA016"
     assert message in f"{diagnostic.message}: {diagnostic.help}"
     assert diagnostic.help
@@ -111,9 +110,7 @@ def test_constants_are_computed_and_copied():
 )
 def test_what_is_no_constant_is_refused(declared, code):
     """A constant depends on no variable, and an initial value has the parts of its type."""
-    with pytest.raises(ModelError) as raised:
-        loads_network(model(declared))
-    assert raised.value.diagnostics[0].code == code
+    assert findings_of(loads_network, model(declared))[0].code == code
 
 
 def test_the_price_of_a_run_changes_no_run():

@@ -5,6 +5,7 @@ from xml.sax.saxutils import escape
 
 import pytest
 from tests.tools.each import each
+from tests.tools.findings import findings_of
 
 from rvmon.errors import ModelError
 from rvmon.models.language.elaborate import asked_on
@@ -43,9 +44,7 @@ ENTITIES = (
 
 
 def finding(text):
-    with pytest.raises(ModelError) as caught:
-        loads_network(text)
-    (diagnostic,) = caught.value.diagnostics
+    (diagnostic,) = findings_of(loads_network, text)
     return diagnostic.code, diagnostic.spans[0].span.text if diagnostic.spans else None
 
 
@@ -149,9 +148,7 @@ def test_what_is_wrong_is_told_with_its_place(text, expected):
 def test_places_are_right_behind_entities_and_newlines():
     guard = "\n   x &lt;= 3 &amp;&amp;\r\n  ü == 1"
     text = wrap(ONE + edge(guard=guard.replace("ü", "nobody")), declaration="clock x; // äöü")
-    with pytest.raises(ModelError) as caught:
-        loads_network(text)
-    span = caught.value.diagnostics[0].spans[0].span
+    span = findings_of(loads_network, text)[0].spans[0].span
     assert span.text == "nobody"
     assert span.column == 3
 

@@ -2,6 +2,7 @@
 
 import pytest
 from tests.tools.each import each
+from tests.tools.findings import findings_of
 
 from rvmon.errors import ModelError
 from rvmon.models.language.load import loads_network
@@ -95,9 +96,7 @@ def test_a_model_that_cannot_start_is_refused(text):
     network = loads_network(text)
     with pytest.raises(ModelError, match="of the initial locations is false at time 0"):
         build_suite(network, Criterion.EDGES)
-    with pytest.raises(ModelError) as caught:
-        verify(network, "E<> A.a")
-    (diagnostic,) = caught.value.diagnostics
+    (diagnostic,) = findings_of(verify, network, "E<> A.a")
     assert diagnostic.code == "TA014"
     assert diagnostic.spans
     assert diagnostic.help
