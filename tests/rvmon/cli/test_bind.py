@@ -49,10 +49,9 @@ def words(tmp_path):
     return [str(tmp_path / "base.rv"), str(write_ros1(tmp_path / "a.bag", SENT))]
 
 
-def bound(words, capsys):
+def bound(words, says):
     """What is proposed, with the labels that only a person knows."""
-    assert main(["init", words[1], "--for", words[0]]) == 1
-    told = capsys.readouterr()
+    told = says(1, "init", words[1], "--for", words[0])
     assert "`scan_state` is a number" in told.err
     open_ = '# labels = { 0 = "idle" }  # which number stands for which: it holds 1'
     assert open_ in told.out
@@ -60,8 +59,8 @@ def bound(words, capsys):
 
 
 @pytest.mark.slow
-def test_what_is_proposed_runs(words, tmp_path, capsys, says):
-    proposed = bound(words, capsys)
+def test_what_is_proposed_runs(words, tmp_path, says):
+    proposed = bound(words, says)
     for line in (
         'value = "hypot(twist.twist.linear.x, twist.twist.linear.y)"  # always 1',
         'value = "yaw(pose.pose.orientation)"  # always 1.5',
@@ -112,7 +111,7 @@ def test_a_run_goes_on_from_bags_that_were_judged(words, tmp_path, monkeypatch, 
     for number in range(3):
         write_ros2(runs / str(number), SENT, "mcap")
     binding = tmp_path / "base.toml"
-    binding.write_text(bound(words, capsys))
+    binding.write_text(bound(words, says))
     command = ["run", words[0], str(runs), "--binding", str(binding)]
     command += ["--out", str(tmp_path / "out.csv"), "--resume"]
     interrupted(monkeypatch, command)

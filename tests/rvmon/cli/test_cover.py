@@ -76,7 +76,7 @@ def test_what_cannot_be_hit_stands_apart(door, capsys):
 
 
 @pytest.mark.slow
-def test_ucis_is_as_its_schema_has_it(door, tmp_path, capsys):
+def test_ucis_is_as_its_schema_has_it(door, tmp_path, says):
     ucis = pytest.importorskip("ucis")
     etree = pytest.importorskip("lxml.etree")
     with Database.open(door) as database:
@@ -99,8 +99,7 @@ def test_ucis_is_as_its_schema_has_it(door, tmp_path, capsys):
         one.get("logicalName"): one.get("testStatus") for one in document.iter("historyNodes")
     }
     assert passed["wild-2"] == "false"
-    assert main(["cover", door, "--ucis", str(tmp_path / "no" / "x.xml")]) == 2
-    capsys.readouterr()
+    says(2, "cover", door, "--ucis", tmp_path / "no" / "x.xml")
 
 
 def test_a_cross_of_three_has_nested_rows(tmp_path, capsys, monkeypatch):

@@ -37,21 +37,19 @@ def arm(count=40):
             yield "/done", t + 10**7, {}
 
 
-def written(tmp_path, bag, capsys):
+def written(tmp_path, bag, says):
     """The starter, with spaces as one; it runs without a warning and with no F."""
     made = tmp_path / "made.rv"
     assert main(["init", str(bag), "-o", str(made), "--force"]) == 0
-    assert main(["check", str(made), "--strict"]) == 0
-    capsys.readouterr()
-    assert main(["run", str(made), str(bag), "--strict"]) == 0
-    told = capsys.readouterr()
+    says(0, "check", made, "--strict")
+    told = says(0, "run", made, bag, "--strict")
     assert "warning" not in told.err + told.out
     return " ".join(made.read_text().split())
 
 
-def test_joints_go_by_their_names_and_what_is_always_true_is_no_event(tmp_path, capsys):
+def test_joints_go_by_their_names_and_what_is_always_true_is_no_event(tmp_path, says):
     """With units where messages say them; also where a message has only some of the joints."""
-    text = written(tmp_path, write_ros1(tmp_path / "a.bag", [*arm()], TYPES), capsys)
+    text = written(tmp_path, write_ros1(tmp_path / "a.bag", [*arm()], TYPES), says)
     text = text.replace(" :", ":")
     for joint in ("shoulder_joint", "elbow_joint", "finger_joint"):
         assert f"signal joints.position.{joint}" in text
@@ -65,7 +63,7 @@ def test_joints_go_by_their_names_and_what_is_always_true_is_no_event(tmp_path, 
     assert "signal note: {idle, busy}" in text
 
 
-def test_a_constant_that_comes_seldom_is_no_event_where_others_come_with_it(tmp_path, capsys):
+def test_a_constant_that_comes_seldom_is_no_event_where_others_come_with_it(tmp_path, says):
     """As what is valid in a message of many fields; alone it says that something happened."""
     sent = [one for one in arm() if one[0] != "/battery" and one[0] != "/present"]
     for tick in (3, 4, 5, 6, 7, 8, 37):
@@ -73,21 +71,21 @@ def test_a_constant_that_comes_seldom_is_no_event_where_others_come_with_it(tmp_
         sent.append(("/battery", at + 20, {"present": True, "voltage": 24.0}))
         sent.append(("/present", at + 30, {"data": True}))
     sent.sort(key=lambda one: one[1])
-    text = written(tmp_path, write_ros1(tmp_path / "a.bag", sent, TYPES), capsys)
+    text = written(tmp_path, write_ros1(tmp_path / "a.bag", sent, TYPES), says)
     assert "event battery.present" not in text
     assert "battery.present: bool" in text.replace(" :", ":")
     assert "event present" in text
 
 
-def test_a_joint_whose_name_is_no_word_is_said_to_be_left_out(tmp_path, capsys):
+def test_a_joint_whose_name_is_no_word_is_said_to_be_left_out(tmp_path, says):
     sent = [("/joints", START, {"name": ["a", "wrist.1"], "position": [0.5, 0.25]})]
-    text = written(tmp_path, write_ros1(tmp_path / "a.bag", sent, TYPES), capsys)
+    text = written(tmp_path, write_ros1(tmp_path / "a.bag", sent, TYPES), says)
     assert "joints.position[wrist.1], " in text
     assert ": its name is no word: bind it" in text
 
 
 @pytest.mark.parametrize("plugin", ["sqlite3", "mcap"])
-def test_topics_on_which_nothing_was_said_are_left_out(tmp_path, capsys, plugin):
+def test_topics_on_which_nothing_was_said_are_left_out(tmp_path, says, plugin):
     from rosbags.rosbag2 import StoragePlugin, Writer
     from rosbags.typesys import Stores, get_typestore
 
@@ -102,7 +100,7 @@ def test_topics_on_which_nothing_was_said_are_left_out(tmp_path, capsys, plugin)
         for tick in range(10):
             data = store.serialize_cdr(number(data=float(tick)), "std_msgs/msg/Float64")
             writer.write(connections["/temp"], START + tick * 10**8, data)
-    text = written(tmp_path, tmp_path / "bag", capsys)
+    text = written(tmp_path, tmp_path / "bag", says)
     assert "signal temp" in text
     for name in ("note", "go", "present", "joints"):
         assert f"signal {name}" not in text
@@ -129,11 +127,11 @@ def test_a_recording_of_nothing_is_told(tmp_path, says):
     ],
     ids=["silence", "texts"],
 )
-def test_silence_is_judged_and_texts_alone_are_events(tmp_path, capsys, sent, told):
-    assert told in written(tmp_path, write_json_mcap(tmp_path / "a.mcap", sent), capsys)
+def test_silence_is_judged_and_texts_alone_are_events(tmp_path, says, sent, told):
+    assert told in written(tmp_path, write_json_mcap(tmp_path / "a.mcap", sent), says)
 
 
-def test_a_topic_that_cannot_be_read_is_left_out_with_the_reason(tmp_path, capsys):
+def test_a_topic_that_cannot_be_read_is_left_out_with_the_reason(tmp_path, says):
     from mcap.writer import Writer
 
     with (tmp_path / "a.mcap").open("wb") as file:
@@ -145,5 +143,5 @@ def test_a_topic_that_cannot_be_read_is_left_out_with_the_reason(tmp_path, capsy
             t = START + n * 10**8
             writer.add_message(speed, t, b'{"data": %d}' % n, t)
         writer.finish()
-    text = written(tmp_path, tmp_path / "a.mcap", capsys)
+    text = written(tmp_path, tmp_path / "a.mcap", says)
     assert "count" in text.partition("# What cannot be declared as it is:")[2]
