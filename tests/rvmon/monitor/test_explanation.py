@@ -78,13 +78,14 @@ FAILED = {
         *("fall(always[1 s, 3 s] near)", (0, 0)),
     ),
 }
-"""The last three in sampled time."""
+TIMES = ("held", "sampled", "sampled every 1 s", "sampled every 500 ms")
+"""What is said is the same in each: all is told at whole seconds."""
 
 
+@each("time", TIMES)
 @each("name", FAILED)
-def test_a_failure_names_obligation_window_and_place(name):
+def test_a_failure_names_obligation_window_and_place(time, name):
     requirement, told, end, reason, blamed, window = FAILED[name]
-    time = "sampled" if name in [*FAILED][-3:] else "held"
     spec, attempts = run(requirement, told, end, time)
     [failed] = [a for a in attempts if a.verdict == "F"]
     assert failed.reason == reason
@@ -137,6 +138,17 @@ LEFT = {
         "still required when the recording ended at 1 s: `within 3 s released` by 3 s; "
         "a recording more than 2 s longer would have decided it",
     ),
+    "windows in a window": (
+        *("upon go\nthen within 5 s for 3 s near", "0 -near; 1 go; 3", None),
+        "still required when the recording ended at 3 s: `within 5 s for 3 s near` by 6 s; "
+        "a recording more than 6 s longer would have decided it",
+    ),
+    "the future of a past": (
+        "upon go\nthen within 3 s once (near and within 1 s slow)",
+        *("0 -near -slow; 1 go; 2 near", None),
+        "still required when the recording ended at 2 s: `within 3 s once (near and within 1 s "
+        "slow)` by 4 s; a recording more than 3 s longer would have decided it",
+    ),
     "in doubt, of which it is not said how long it would take": (
         *("upon near\nthen within 3 s released", "0 -near; 1 ?near", None),
         "still required when the recording ended at 1 s: `within 3 s released` by 4 s; "
@@ -177,14 +189,19 @@ LEFT = {
 }
 
 
+DEADLINES = {"what is owed, and till when": 4 * S}
+DEADLINES |= {"windows in a window": 6 * S, "the future of a past": 4 * S}
+
+
+@each("time", TIMES)
 @each("name", LEFT)
-def test_what_was_left_open_and_what_ended_an_episode_is_told(name):
+def test_what_was_left_open_and_what_ended_an_episode_is_told(time, name):
     """The cause of an I is the stretch over which a signal was not known."""
     requirement, told, end, reason = LEFT[name]
-    _, [left] = run(requirement, told, end)
+    _, [left] = run(requirement, told, end, time)
     assert left.reason == reason
     if left.verdict == "I":  # what is in doubt has no deadline of its own
-        assert left.deadline == (4 * S if name == "what is owed, and till when" else None)
+        assert left.deadline == DEADLINES.get(name)
 
 
 @each(
