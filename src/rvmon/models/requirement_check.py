@@ -219,8 +219,9 @@ def signals_of(network: Network) -> dict[str, Evaluator]:
 def _values(network: Network) -> dict[str, ex.Expression]:
     values: dict[str, ex.Expression] = {}
     for name, symbol in network.names.top.symbols.items():
-        if isinstance(symbol, PlacedSymbol) and symbol.kind is ex.BaseType.INT and symbol.is_single:
-            values[name] = ex.VariableValue(symbol.slot)
+        match symbol:
+            case PlacedSymbol(ex.BaseType.INT, slot) if slot.is_single:
+                values[name] = ex.VariableValue(slot)
     for signal in network.signals:
         values[signal.name] = signal.value
     return values

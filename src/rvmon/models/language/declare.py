@@ -228,7 +228,7 @@ def _copied(symbol: sc.Symbol, kind: sc.ResolvedType, span: Span) -> sc.Constant
         pairs = zip(symbol.fields, kind.fields, strict=False)
         return tuple(_copied(own, field, span) for (_, own), (_, field) in pairs)
     match symbol:
-        case sc.ConstantSymbol(int(value)) if not kind.fields:
+        case sc.ConstantSymbol(value) if not kind.fields:
             check_range(value, kind, span)
             return value
         case _:

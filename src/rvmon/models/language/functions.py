@@ -117,7 +117,7 @@ def _with_slots(symbol: sc.Symbol, change: Callable[[ex.Slot], ex.Slot]) -> sc.S
     match symbol:
         case sc.RecordSymbol(fields):
             return sc.RecordSymbol(tuple((name, _with_slots(s, change)) for name, s in fields))
-        case sc.PlacedSymbol(_, slot) | sc.ChosenSymbol(_, slot):
+        case sc.PlacedSymbol(_, slot) | ex.Lookup(_, slot):
             return replace(symbol, slot=change(slot))
         case _:
             return symbol

@@ -15,7 +15,7 @@ from rvmon.models.language.operations import binary, refuse_clocks
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.statements import is_price, updates_of
 from rvmon.models.network import scope as sc
-from rvmon.models.network.expressions import TRUE, BaseType, BinaryOp, Expression
+from rvmon.models.network.expressions import TRUE, BaseType, BinaryOp, Expression, Lookup
 from rvmon.models.network.guards import guards_of, refuse_changes, split_guard
 
 Family = automaton_syntax.Template | automaton_syntax.Instance
@@ -144,7 +144,10 @@ def _argument(
         case sc.RecordSymbol():
             fits = bool(kind.fields) and len(symbols.leaves(symbol)) == symbols.count_of(kind)
         case _:
-            fits = isinstance(symbol, sc.ConstantSymbol) and (kind.const or not parameter.reference)
+            is_constant = isinstance(symbol, sc.ConstantSymbol) or (
+                isinstance(symbol, Lookup) and not symbol.slot.indices
+            )
+            fits = is_constant and (kind.const or not parameter.reference)
     if not fits:
         fix = f"`{parameter.name}` is declared as {parameter.type.span.text}"
         raise model_error("TA015", "this argument is of the wrong kind", written.span, fix)
@@ -332,7 +335,7 @@ def _edge_text(
 
 def _sync(written: automaton_syntax.SyncText, scope: sc.Scope, resolver: Resolver) -> nta.Sync:
     match resolver.symbol(written.channel, scope):
-        case sc.PlacedSymbol(BaseType.CHANNEL, slot) as channel if channel.is_single:
+        case sc.PlacedSymbol(BaseType.CHANNEL, slot) if slot.is_single:
             for index in slot.indices:
                 refuse_changes(index, written.span)
             return nta.Sync(slot, written.sends)

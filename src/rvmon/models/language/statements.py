@@ -79,7 +79,7 @@ def _copy(
 
 def _set(target: sc.Symbol, value: ex.Expression, span: Span, resolver: Resolver) -> ex.Statement:
     match target:
-        case sc.PlacedSymbol(ex.BaseType.INT, slot) if target.is_single:
+        case sc.PlacedSymbol(ex.BaseType.INT, slot) if slot.is_single:
             variable = resolver.functions.variable(slot.first)
             value = fitted(value, variable.is_real, span)
             return ex.Assignment(replace(slot, span=span), value, variable)

@@ -50,8 +50,10 @@ def laid_out(
     names = [name + suffix for name in names for suffix in suffixes]
     if kind.base is not ex.BaseType.RECORD:
         real = kind.base is ex.BaseType.DOUBLE
-        if kind.const and value is not None and not (real and kind.extents):
-            return sc.ConstantSymbol(value, kind.extents, real)
+        if kind.const and isinstance(value, int):
+            return sc.ConstantSymbol(value, real)
+        if kind.const and value is not None and not real:
+            return ex.Lookup(tuple(flat(value)), ex.Slot(0, kind.extents))
         slot = ex.Slot(placer.place(kind, names, value), kind.extents)
         return sc.PlacedSymbol(kind.placed_as, slot, real)
     fields = []
@@ -170,16 +172,16 @@ class Calls(Placer, Protocol):
 def value_of(symbol: sc.Symbol, span: Span) -> ex.Expression:
     """The value that a symbol has in an expression."""
     match symbol:
-        case sc.ConstantSymbol(int(value), _, is_real):
+        case sc.ConstantSymbol(value, is_real):
             return marked(ex.Constant(value), is_real)
-        case sc.PlacedSymbol(ex.BaseType.INT, slot, is_real) if symbol.is_single:
+        case sc.PlacedSymbol(ex.BaseType.INT, slot, is_real) if slot.is_single:
             return marked(ex.VariableValue(replace(slot, span=span)), is_real)
-        case sc.ChosenSymbol(values, slot) if len(slot.indices) == len(slot.extents):
+        case ex.Lookup(values, slot) if slot.is_single:
             return ex.Lookup(values, replace(slot, span=span))
         case sc.PlacedSymbol(ex.BaseType.CLOCK):
             fix = "a clock can only be compared with a number, or be set"
             raise model_error("TA009", "a clock has no value here", span, fix)
-        case sc.PlacedSymbol(ex.BaseType.INT) | sc.ConstantSymbol() | sc.ChosenSymbol():
+        case sc.PlacedSymbol(ex.BaseType.INT) | ex.Lookup():
             raise model_error("TA004", "an array is no value", span, "give an index")
         case sc.RecordSymbol(fields):
             fix = f"name a field, such as {span.text}.{fields[0][0]}"
@@ -193,16 +195,17 @@ def value_of(symbol: sc.Symbol, span: Span) -> ex.Expression:
             assert_never(symbol)
 
 
-def element_of(symbol: sc.Symbol, index: ex.Expression, span: Span) -> sc.Symbol:
+def element_of(symbol: sc.Symbol, index: ex.Expression, span: Span | None) -> sc.Symbol:
     """An element of an array."""
     match symbol:
-        case sc.ConstantSymbol(tuple() as values, (extent, *inner)):
-            if not isinstance(index, ex.Constant) or index.value not in extent:
-                slot = ex.Slot(0, (extent, *inner), (index,), span)
-                return sc.ChosenSymbol(tuple(flat(values)), slot)
-            return sc.ConstantSymbol(values[index.value - extent.start], tuple(inner))
-        case sc.PlacedSymbol(_, slot) | sc.ChosenSymbol(_, slot):
-            if len(slot.indices) == len(slot.extents):
+        case ex.Lookup(values, ex.Slot(_, (extent, *inner), ())) if (
+            isinstance(index, ex.Constant) and index.value in extent
+        ):
+            size, place = len(values) // len(extent), index.value - extent.start
+            own = values[place * size : (place + 1) * size]
+            return ex.Lookup(own, ex.Slot(0, tuple(inner))) if inner else sc.ConstantSymbol(own[0])
+        case sc.PlacedSymbol(_, slot) | ex.Lookup(_, slot):
+            if slot.is_single:
                 raise model_error("TA004", "more indices than the array has dimensions", span)
             deeper = ex.Slot(slot.first, slot.extents, (*slot.indices, index), span)
             return replace(symbol, slot=settle(deeper))
@@ -226,10 +229,8 @@ def is_whole(symbol: sc.Symbol) -> bool:
     match symbol:
         case sc.RecordSymbol():
             return True
-        case sc.PlacedSymbol(ex.BaseType.INT, slot) | sc.ChosenSymbol(_, slot):
-            return len(slot.indices) < len(slot.extents)
-        case sc.ConstantSymbol(value):
-            return isinstance(value, tuple)
+        case sc.PlacedSymbol(ex.BaseType.INT, slot) | ex.Lookup(_, slot):
+            return not slot.is_single
         case _:
             return False
 
@@ -249,23 +250,17 @@ def leaves(symbol: sc.Symbol) -> list[sc.Symbol]:
     match symbol:
         case sc.RecordSymbol(fields):
             return [leaf for _, inner in fields for leaf in leaves(inner)]
-        case sc.ConstantSymbol(tuple() as values, (_, *inner)):
-            return [leaf for v in values for leaf in leaves(sc.ConstantSymbol(v, tuple(inner)))]
-        case sc.PlacedSymbol(_, slot) | sc.ChosenSymbol(_, slot) if len(slot.indices) < len(
-            slot.extents
-        ):
-            extent = slot.extents[len(slot.indices)]
-            deeper = (
-                settle(replace(slot, indices=(*slot.indices, ex.Constant(i)))) for i in extent
-            )
-            return [leaf for slot in deeper for leaf in leaves(replace(symbol, slot=slot))]
+        case sc.PlacedSymbol(_, slot) | ex.Lookup(_, slot) if not slot.is_single:
+            indices = map(ex.Constant, slot.extents[len(slot.indices)])
+            elements = (element_of(symbol, index, slot.span) for index in indices)
+            return [leaf for element in elements for leaf in leaves(element)]
         case _:
             return [symbol]
 
 
 def settle(slot: ex.Slot) -> ex.Slot:
     """The same slot without its array, if its indices are constant and complete."""
-    if len(slot.indices) < len(slot.extents):
+    if not slot.is_single:
         return slot
     offset = 0
     for extent, index in zip(slot.extents, slot.indices, strict=True):
@@ -281,8 +276,7 @@ def clock_of(slot: ex.Slot, span: Span) -> int:
         if isinstance(index, ex.Constant):
             check_index(index.value, extent, span)
     if slot.extents:
-        missing = len(slot.indices) < len(slot.extents)
-        message = "an array of clocks" if missing else "the index of a clock is not constant"
+        message = "the index of a clock is not constant" if slot.is_single else "an array of clocks"
         raise model_error("TA006", message, span, "use a number or a parameter as index")
     return slot.first
 

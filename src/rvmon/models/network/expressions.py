@@ -115,6 +115,11 @@ class Slot:
         """The number of elements of the array; 1 of a single one."""
         return prod(map(len, self.extents))
 
+    @property
+    def is_single(self) -> bool:
+        """Whether it has all its indices, so that it is no array."""
+        return len(self.indices) == len(self.extents)
+
 
 @dataclass(frozen=True, slots=True)
 class VariableValue:

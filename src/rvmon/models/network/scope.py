@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rvmon.diagnostics import Span
-from rvmon.models.network.expressions import BaseType, Slot
+from rvmon.models.network.expressions import BaseType, Lookup, Slot
 
 ConstantValue = int | tuple["ConstantValue", ...]  # a number, or an array of them
 
@@ -35,8 +35,7 @@ class ResolvedType:
 class ConstantSymbol:
     """A constant, a parameter's value, or a bound variable of a quantifier or `select`."""
 
-    value: ConstantValue
-    extents: tuple[range, ...] = ()  # the indices of each dimension, if it is an array
+    value: int
     is_real: bool = False  # whether the value is the bits of a number with a fraction
 
 
@@ -48,25 +47,12 @@ class PlacedSymbol:
     slot: Slot
     is_real: bool = False  # whether its values are the bits of numbers with a fraction
 
-    @property
-    def is_single(self) -> bool:
-        """Whether it is no array."""
-        return len(self.slot.indices) == len(self.slot.extents)
-
 
 @dataclass(frozen=True, slots=True)
 class TypeSymbol:
     """A typedef."""
 
     type: ResolvedType
-
-
-@dataclass(frozen=True, slots=True)
-class ChosenSymbol:
-    """An element of a constant array, chosen by the variables; the slot counts from 0."""
-
-    values: tuple[int, ...]
-    slot: Slot
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +70,8 @@ class FunctionSymbol:
     scope: Scope
 
 
-Symbol = ConstantSymbol | ChosenSymbol | PlacedSymbol | TypeSymbol | RecordSymbol | FunctionSymbol
+Symbol = ConstantSymbol | Lookup | PlacedSymbol | TypeSymbol | RecordSymbol | FunctionSymbol
+"""What a name means; a `Lookup` is a constant array, or an element, chosen by the variables."""
 
 
 @dataclass(slots=True)
