@@ -250,8 +250,8 @@ def _statement(names: Names, statement: ex.Statement) -> Iterator[str]:
             yield f"{names.variable(slot)} = {text(value)};"
         case ex.Reset(clock, value):
             yield f"{names.clock(clock)} = {text(value)};"
-        case ex.Perform(call):
-            yield f"{text(call)};"
+        case ex.Invoke():
+            yield f"{text(statement)};"
         case ex.If(condition, then, otherwise):
             yield from _nested(names, f"if ({text(condition)}) {{", then)
             if otherwise:

@@ -48,7 +48,7 @@ def _update(
     if isinstance(written, syntax.Call):
         match resolver.expression(written, scope):
             case (ex.Invoke() as call) | ex.Fractional("=", (ex.Invoke() as call,)):
-                return [ex.Perform(call)]
+                return [call]
             case _:
                 raise model_error("TA004", "this is no function", written.span)
     if is_price(written.target, scope):

@@ -248,8 +248,8 @@ def _step(statement: ex.Statement) -> Runner:
                 frame.clocks[clock] = check_time(value(locations, frame), span) / steps
 
             return set_clock
-        case ex.Perform(call):
-            perform = caller(call)
+        case ex.Invoke():
+            perform = caller(statement)
 
             def do(locations: Locations, frame: Frame) -> None:
                 perform(locations, frame)

@@ -138,7 +138,7 @@ class Lookup:
 
 @dataclass(frozen=True, slots=True)
 class Invoke:
-    """The value of a function, which runs when it is asked for."""
+    """The value of a function, which runs when it is asked for; a statement: for what it does."""
 
     function: Function
     arguments: tuple[Expression, ...]
@@ -260,13 +260,6 @@ class Reset:
 
 
 @dataclass(frozen=True, slots=True)
-class Perform:
-    """A function called for what it does."""
-
-    call: Invoke
-
-
-@dataclass(frozen=True, slots=True)
 class If:
     """Statements for each truth of a condition."""
 
@@ -299,7 +292,7 @@ class Missing:
     span: Span | None = field(default=None, compare=False)
 
 
-Statement = Assignment | Reset | Perform | If | While | Return | Missing
+Statement = Assignment | Reset | Invoke | If | While | Return | Missing
 
 MOST_ROUNDS = 1_000_000  # rounds that the loops of one computation may go together
 
@@ -338,8 +331,8 @@ def expressions_of(statement: Statement) -> tuple[Expression, ...]:
             return (*slot.indices, value)
         case Reset(_, value) | Return(value):
             return (value,)
-        case Perform(call):
-            return (call,)
+        case Invoke():
+            return (statement,)
         case If(condition) | While(condition):
             return (condition,)
         case Missing():

@@ -113,8 +113,8 @@ class Programs:
             case ex.Reset(clock, value):
                 depth = self._emit(value)
                 code += [CLOCK, clock + 1]
-            case ex.Perform(call):
-                depth = self._emit(call)
+            case ex.Invoke():
+                depth = self._emit(statement)
                 code.append(DROP)
             case ex.If(condition, then, otherwise):
                 first = self._emit(condition)
