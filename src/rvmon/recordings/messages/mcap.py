@@ -124,8 +124,10 @@ class _OtherMessages(Messages):
         language = schema.encoding if schema is not None else ""
         if encoding in _OBJECTS:
             decode_object = partial(_object, _OBJECTS[encoding]())
-            leaves = dict(self._object_leaves(schema, name, decode_object))
-            return Topic(name, type_name, leaves), decode_object
+            kinds = dict(self._object_leaves(schema, name, decode_object))
+            leaves = {path: kind or Kind.REAL for path, kind in kinds.items()}
+            doubtful = frozenset(path for path, kind in kinds.items() if kind is None)
+            return Topic(name, type_name, leaves, doubtful=doubtful), decode_object
         if encoding in ("cdr", "ros1"):
             form, is_ros1 = _ROS.get(language, ("msg", encoding == "ros1"))
             text = schema.data.decode("utf-8", "replace") if schema is not None else ""
@@ -145,7 +147,9 @@ class _OtherMessages(Messages):
         fault = f"its messages are encoded as `{shorten(encoding)}`: there is {known}"
         return Topic(name, type_name, {}, fault), bytes
 
-    def _object_leaves(self, schema: Any, topic: str, decode: Decode) -> Iterator[tuple[str, Kind]]:
+    def _object_leaves(
+        self, schema: Any, topic: str, decode: Decode
+    ) -> Iterator[tuple[str, Kind | None]]:
         """The fields that the first message has, and those that the schema declares.
 
         What is wrong with them does not matter unless the topic is read.
@@ -246,15 +250,15 @@ _FOUND = {bool: Kind.BOOL, int: Kind.REAL, float: Kind.REAL, str: Kind.LABEL}
 """The kinds of values; a number without decimals may have some in the next message."""
 
 
-def _found_leaves(value: Any, path: str) -> Iterator[tuple[str, Kind]]:
+def _found_leaves(value: Any, path: str) -> Iterator[tuple[str, Kind | None]]:
+    """The fields of a message; of one that is null, or an empty array, the kind is not known."""
     if isinstance(value, dict):
         for name, inner in value.items():
             yield from _found_leaves(inner, f"{path}.{name}".lstrip("."))
     elif isinstance(value, list):
-        for inner in value[:1]:
-            yield from _found_leaves(inner, f"{path}[]")
-    elif type(value) in _FOUND:
-        yield path, _FOUND[type(value)]
+        yield from _found_leaves(value[0] if value else None, f"{path}[]")
+    elif value is None or type(value) in _FOUND:
+        yield path, _FOUND.get(type(value))
 
 
 def _protobuf(schema: Any) -> Decode:

@@ -38,12 +38,12 @@ _PATH = re.compile(r"[^\W\d]\w*(\.[^\W\d]\w*)*(\[\d{1,4}\])?")
 
 
 class _Table(Struct, frozen=True):
-    """A file: what it holds, and of which kind the columns are that are no stamps, if known."""
+    """A file: what it holds, and of which kinds the columns may be that are no stamps."""
 
     path: Path
     type: str
     stamps: Stamps | None
-    kinds: Mapping[str, Kind | None]
+    kinds: Mapping[str, Sequence[Kind]]
 
 
 class TableMessages(Messages):
@@ -55,8 +55,9 @@ class TableMessages(Messages):
             name: Topic(
                 name,
                 table.type,
-                {_leaf(column): kind or Kind.REAL for column, kind in table.kinds.items()},
-                doubtful=frozenset(_leaf(one) for one, kind in table.kinds.items() if kind is None),
+                {_leaf(column): kinds[0] for column, kinds in table.kinds.items()},
+                fault=_fault(table.kinds),
+                doubtful=frozenset(_leaf(one) for one, kinds in table.kinds.items() if kinds[1:]),
             )
             for name, table in self._tables.items()
         }
@@ -134,21 +135,22 @@ def _looked_over(table: _Table) -> _Table:
                 if cell:
                     cells[name].append(cell)
         kinds = {
-            name: _kind(own)
+            name: _kinds(own)
             for name, own in cells.items()
             if name != stamps.column and _PATH.fullmatch(name)
         }
     return replace(table, kinds=kinds)
 
 
-def _kind(cells: Sequence[str]) -> Kind | None:
+def _kinds(cells: Sequence[str]) -> Sequence[Kind]:
+    """The kinds of which a column may be; the likely one comes first."""
     if not cells:
-        return None
+        return (Kind.REAL, *Kind)
     if all(_WHOLE.fullmatch(cell) for cell in cells):
-        return Kind.INT
+        return (Kind.INT, Kind.BOOL) if {*cells} <= {"0", "1"} else (Kind.INT,)
     if all(cell in TRUE_WORDS or cell in FALSE_WORDS for cell in cells):
-        return Kind.BOOL
-    return Kind.REAL if all(_number(cell) is not None for cell in cells) else Kind.LABEL
+        return (Kind.BOOL,)
+    return (Kind.REAL if all(_number(cell) is not None for cell in cells) else Kind.LABEL,)
 
 
 def _number(cell: str) -> float | None:
@@ -165,6 +167,17 @@ def _leaf(column: str) -> str:
     return re.sub(r"\[\d+\]$", "[]", column)
 
 
+def _fault(columns: Collection[str]) -> str:
+    """Two columns of which one would be in the other, `q[0]` in `q`, as a fault; empty: none."""
+    for column in columns:
+        above = column.partition("[")[0] if "[" in column else column.rpartition(".")[0]
+        while above:
+            if above in columns:
+                return f"of its columns `{column}` is in `{above}`: rename one"
+            above = above.rpartition(".")[0]
+    return ""
+
+
 def _rows(name: str, table: _Table) -> Iterator[Message]:
     """The rows of a file as messages: what a row leaves empty is not in it."""
     with _lines(table) as rows:
@@ -175,7 +188,7 @@ def _rows(name: str, table: _Table) -> Iterator[Message]:
             if column in table.kinds:
                 path, _, index = column.removesuffix("]").partition("[")
                 at = int(index) if index else None
-                places.append((place, path.split("."), at, table.kinds[column]))
+                places.append((place, path.split("."), at, table.kinds[column][0]))
         last: int | None = None
         for line, row in rows:
             if len(row) != len(header):
@@ -207,7 +220,7 @@ def _put(content: dict[str, Any], steps: Sequence[str], element: int | None, val
     array[element] = value
 
 
-def _value(cell: str, kind: Kind | None) -> Any:
+def _value(cell: str, kind: Kind) -> Any:
     if kind is Kind.BOOL and (cell in TRUE_WORDS or cell in FALSE_WORDS):
         return cell in TRUE_WORDS
     number = None if kind is Kind.LABEL else _number(cell)

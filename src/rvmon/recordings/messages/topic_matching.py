@@ -101,7 +101,8 @@ def _by_name(
     if found is None:
         return None
     topic, value = found
-    if value is not None and topics[topic].leaves.get(str(value)) is not Kind.BOOL:
+    known = topics[topic]
+    if str(value) not in known.doubtful and known.leaves.get(str(value)) is not Kind.BOOL:
         value = None  # each message is an occurrence
     return Bound(topic, value, fields)
 

@@ -92,6 +92,26 @@ def test_tables_in_tables_and_arrays_of_flatbuffers_are_read(tmp_path):
     assert [one.t for one in spec.recording(path)] == [START, START + 10**9]
 
 
+def test_a_field_that_the_first_message_of_json_leaves_unknown_is_there(tmp_path):
+    """Nobody knows of which kind it is; an event is not what each message says."""
+    contents = [
+        {"near": None, "all": [], "data": None},
+        {"near": 0.5, "all": [2.0], "data": False},
+        {"near": 1.5, "all": [3.0], "data": True},
+    ]
+    sent = [("/stop", START + t, {"data": one.pop("data")}) for t, one in enumerate(contents)]
+    sent += [("/scan", START + t, one) for t, one in enumerate(contents)]
+    path = write_json_mcap(tmp_path / "a.mcap", sent, schemas=False)
+    spec = rvmon.loads(
+        "event stop\nsignal scan.near, first : real\nrequirement R\n"
+        "  upon stop\n  then scan.near == 1.5 and first == 3\n"
+    )
+    attempts = spec.evaluate(path, columns={"first": "/scan.all[0]"}).attempts
+    assert [(one.triggered, str(one.verdict)) for one in attempts if not one.in_doubt] == [
+        (START + 2, "P")
+    ]
+
+
 @pytest.mark.slow
 def test_damaged_flatbuffers_are_told(tmp_path):
     rng = random.Random(5)

@@ -94,6 +94,18 @@ def test_a_file_says_which_is_which(tmp_path, says):
     assert '[bind.speed]  # real\ntopic = "/speed"' in says(1, "init", place, "--for", spec).out
 
 
+@pytest.mark.parametrize("rows", ["0,0\n1,1\n2,0\n", "0,\n" * 1001 + "1,1\n2,0\n"])
+def test_a_0_is_no_occurrence_of_an_event(tmp_path, rows):
+    """As in a file by itself; whether a 1 is a number, or true, its declaration says."""
+    place = folder(tmp_path / "a", {"stop.csv": "t,stop\n" + rows})
+    spec = rvmon.loads("event stop\nrequirement R\n  upon stop\n  then always not stop\n")
+    [attempt] = spec.evaluate(place / "stop.csv").attempts
+    assert spec.evaluate(place).attempts == (attempt,)
+    assert attempt.triggered == 10**9
+    spec = rvmon.loads("signal stop : int\nrequirement R\n  always stop < 2\n")
+    assert spec.evaluate(place).verdicts["R"] == "P"
+
+
 @pytest.mark.parametrize(
     ("files", "toml", "message"),
     [
@@ -107,6 +119,8 @@ def test_a_file_says_which_is_which(tmp_path, says):
         ({"speed.csv": "t,speed\nzero,1\n"}, "", r"speed\.csv: line 2: "),
         ({"speed.csv": "t,speed\n0,1e400\n"}, "", r"speed\.csv: `1e400` is too large"),
         ({"speed.csv": "t,speed\n0,1\n1,fast\n"}, "", "`speed` is declared real, .* holds text"),
+        ({"pose.csv": "t,x,x.y\n0,1,2\n"}, "", "topic /pose .* `x.y` is in `x`: rename one"),
+        ({"pose.csv": "t,x,q[0],q\n0,1,2,3\n"}, "", r"topic /pose .* `q\[0\]` is in `q`"),
     ],
 )
 def test_what_is_wrong_is_told_with_its_place(tmp_path, files, toml, message):
