@@ -64,12 +64,14 @@ _CERTAIN: _Rows = (
         for sign in "AW"
     ),
     (
-        rf"[^\0]*(?:{_BEGINNINGS}|\()\s*([^()\0]*[^\s\0])\s*\0for\0[ \t]+(\d[\d.]*[ \t]*\w+)",
+        rf"\A(?=[^\0]*\0for\0)[^\0]*(?:{_BEGINNINGS}|\()"
+        r"\s*([^()\0]*[^\s\0])\s*\0for\0[ \t]+(\d[\d.]*[ \t]*\w+)",
         "",
         "write `held({0}, {1})` for what has held so long, `for {1} ({0})` for what is to",
     ),
     (
-        rf"[^\0]*(?:{_BEGINNINGS})\s*([^\0]*[^\s\0])\s+in\s*\0\[\0\s*([^],]+?)\s*,\s*([^]]+?)\s*\]",
+        rf"\A(?=[^\0]*\0\[\0)[^\0]*(?:{_BEGINNINGS})"
+        r"\s*([^\0]*[^\s\0])\s+in\s*\0\[\0\s*([^],]+?)\s*,\s*([^]]+?)\s*\]",
         *("", "`in` is of labels: write `({0} >= {1} and {0} <= {2})`"),
     ),
     (r"(?<![\w.])(\d+)\0[.,]\0(\d+)", "", "write `{0}.{1}`"),

@@ -47,6 +47,14 @@ def test_what_is_owed(required, fix):
     assert fix in first_finding(f"requirement R\n  upon asked\n  then {required}\n").help
 
 
+@each("word", ["always", "asked and", "(", "not"])
+def test_an_error_behind_thousands_of_words_is_found(word):
+    """What is looked for is found, or not, in one pass: each word tried anew would take hours."""
+    text = f"requirement R\n  upon asked\n  then {f'{word} ' * 2000}$\n"
+    finding = first_finding(text)
+    assert (finding.code, finding.spans[0].span.text) == ("RV001", "$")
+
+
 @each(
     ("item", "fix"),
     [
