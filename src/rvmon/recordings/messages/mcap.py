@@ -74,8 +74,35 @@ def _refuse_damaged_summary(path: Path) -> None:
 def mcap_reader(file: BinaryIO) -> Any:
     """A reader of an open MCAP file of any encodings."""
     with needed("MCAP", "mcap"):
-        from mcap.reader import make_reader
-    return make_reader(file, validate_crcs=True)
+        from mcap.reader import NonSeekingReader, SeekingReader
+
+    class Reader(SeekingReader):
+        """A reader that does not trust an index that lacks something, and compares checksums.
+
+        The library does not where a file has no chunks that are listed.
+        """
+
+        def get_summary(self) -> Any:
+            found = super().get_summary()
+            return found if found is not None and _is_complete(found) else None
+
+        def iter_messages(self, *words: Any, **options: Any) -> Any:
+            summary = self.get_summary()
+            if summary is not None and summary.chunk_indexes:
+                return super().iter_messages(*words, **options)
+            file.seek(0)
+            return NonSeekingReader(file, validate_crcs=True).iter_messages(*words, **options)
+
+    return Reader(file, validate_crcs=True)
+
+
+def _is_complete(summary: Any) -> bool:
+    """Whether a summary has the channels, and the schemas, of all messages that it counts."""
+    counted = {one for chunk in summary.chunk_indexes for one in chunk.message_index_offsets}
+    if summary.statistics is not None:
+        counted |= summary.statistics.channel_message_counts.keys()
+    schemas = {channel.schema_id for channel in summary.channels.values()} - {0}
+    return bool(counted <= summary.channels.keys() and schemas <= summary.schemas.keys())
 
 
 class _OtherMessages(Messages):

@@ -13,7 +13,8 @@ from rvmon.cli import main
 from rvmon.errors import UnknownNameError
 
 pytest.importorskip("rosbags")
-CompressionType = pytest.importorskip("mcap.writer").CompressionType
+writer = pytest.importorskip("mcap.writer")
+CompressionType, IndexType = writer.CompressionType, writer.IndexType
 
 SPEC = """
 spec base
@@ -201,14 +202,28 @@ def test_a_size_beyond_the_memory_is_told(tmp_path, spec):
         spec.evaluate(path)
 
 
-def test_a_value_that_is_not_what_its_checksum_says_is_told(tmp_path, spec):
-    """A chunk of MCAP has one; the value would be a number as any other."""
-    path = write_json_mcap(tmp_path / "a.mcap", SENT, compression=CompressionType.NONE)
+@pytest.mark.parametrize(
+    "options",
+    [{}, {"index_types": IndexType.NONE}, {"use_chunking": False, "enable_data_crcs": True}],
+    ids=["listed chunks", "chunks", "no chunks"],
+)
+def test_a_value_that_is_not_what_its_checksum_says_is_told(tmp_path, spec, options):
+    """A chunk of MCAP has one, or all data; the value would be a number as any other."""
+    options = {"compression": CompressionType.NONE, **options}
+    path = write_json_mcap(tmp_path / "a.mcap", SENT, **options)
     data = path.read_bytes()
     assert data.count(b'{"data": 0.5}') == 1
     path.write_bytes(data.replace(b'{"data": 0.5}', b'{"data": 9.5}'))
     with pytest.raises(rvmon.TraceError, match=r"a\.mcap: cannot be read as MCAP \(crc"):
         spec.evaluate(path)
+
+
+@pytest.mark.parametrize("lacking", ["repeat_channels", "repeat_schemas"])
+def test_a_summary_may_lack_what_the_file_has(tmp_path, spec, lacking):
+    whole = spec.evaluate(write_json_mcap(tmp_path / "a.mcap", SENT))
+    path = write_json_mcap(tmp_path / "b.mcap", SENT, **{lacking: False})
+    found = spec.evaluate(path)
+    assert (found.attempts, found.end) == (whole.attempts, whole.end)
 
 
 @pytest.mark.slow
