@@ -111,7 +111,15 @@ class RecordedAttempts(LazyAttempts):
         kind = number * len(VERDICTS) + VERDICTS.index(verdict)
         kinds, order = self._by_kind
         first, stop = kinds.searchsorted([kind, kind + 1]).tolist()
-        return (self[index] for index in order[first:stop].tolist())
+        return self._each(order[first:stop])
+
+    def _each(self, places: NDArray[np.intp]) -> Iterator[Attempt]:
+        """The attempts at some places: ever more together, as often only the first are asked."""
+        first, count = 0, 1
+        while first < len(places):
+            some = places[first : first + count]
+            yield from map(self._attempt, self._records[some].tolist(), self._numbers[some])
+            first, count = first + count, min(2 * count, _TOGETHER)
 
     @cached_property
     def _by_kind(self) -> tuple[NDArray[np.int64], NDArray[np.intp]]:

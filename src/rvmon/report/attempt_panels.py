@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import islice
-from operator import ne
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -15,7 +14,7 @@ from rvmon.analysis.subformulas import PartTruth, TriggerParts, part_truths_of
 from rvmon.analysis.truths import Question, RecordedTruths, look_through, parts_of
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
-from rvmon.report.changes import Changes, Looks, changes_of
+from rvmon.report.changes import Changes, Looks, ValuesAt, changes_of
 from rvmon.report.html import Child
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt
@@ -24,6 +23,9 @@ from rvmon.trace.sample import Sample
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.report import Report
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 
 class JudgedRun(Struct, frozen=True):
@@ -89,31 +91,32 @@ def nearest_passing(
     their values differ; of numbers the mean distance relative to their range; of events the
     distance of the first occurrences. Distances of all tracks are added.
     """
+    import numpy as np
+
     best: tuple[float, Candidate, Attempt] | None = None
     looks = range(LOOKS)
-    instants = [view.start + (view.end - view.start) * look // (LOOKS - 1) for look in looks]
-    failed_values = [
-        () if track.kind is TrackKind.EVENT else track.changes.values_at(instants)
-        for track in tracks
-    ]
-    passing = (
-        (candidate, other)
-        for candidate in candidates
-        for other in candidate[0].report.of(attempt.requirement, Verdict.PASS)
-    )
-    # Aligned at the triggers, as requirements speak of the time since then.
-    for candidate, passed in islice(passing, MOST):
-        shift = attempt.triggered - passed.triggered
-        moved = [instant - shift for instant in instants]
-        distance = 0.0
-        for mine, values, other in zip(tracks, failed_values, candidate[1], strict=True):
+    instants = np.array([view.start + (view.end - view.start) * k // (LOOKS - 1) for k in looks])
+    left = MOST
+    for candidate in candidates:
+        run, others = candidate
+        passing = [*islice(run.report.of(attempt.requirement, Verdict.PASS), left)]
+        left -= len(passing)
+        if not passing:
+            continue
+        # Aligned at the triggers, as requirements speak of the time since then.
+        shifts = [attempt.triggered - passed.triggered for passed in passing]
+        moved = instants - np.array(shifts)[:, np.newaxis]
+        distances = np.zeros(len(passing))
+        for mine, other in zip(tracks, others, strict=True):
             if mine.kind is TrackKind.EVENT:
-                distance += abs(_first(mine, view, 0) - _first(other, view, shift))
+                first = _first(mine, view, 0)
+                distances += [abs(first - _first(other, view, shift)) for shift in shifts]
             else:
-                is_number = mine.kind is TrackKind.NUMBER
-                distance += _distance(values, other.changes.values_at(moved), numbers=is_number)
-        if best is None or distance < best[0]:
-            best = (distance, candidate, passed)
+                values = mine.changes.values_at(instants), other.changes.values_at(moved)
+                distances += _distances(*values, numbers=mine.kind is TrackKind.NUMBER)
+        nearest = int(distances.argmin())
+        if best is None or distances[nearest] < best[0]:
+            best = (float(distances[nearest]), candidate, passing[nearest])
     return None if best is None else _laid_over(best[1], best[2], attempt)
 
 
@@ -130,16 +133,24 @@ def _laid_over(candidate: Candidate, passed: Attempt, failed: Attempt) -> Refere
     )
 
 
-def _distance(mine: Sequence[Any], other: Sequence[Any], *, numbers: bool) -> float:
-    """The distance of the values of two tracks at the same instants; `None` is unknown."""
-    if not numbers:
-        return float(sum(map(ne, mine, other)) / len(mine))
-    scale = max((abs(value) for value in (*mine, *other) if value is not None), default=0) or 1.0
-    differences = (
-        float(a is not b) if a is None or b is None else min(abs(a - b) / scale, 1.0)
-        for a, b in zip(mine, other, strict=True)
-    )
-    return sum(differences) / len(mine)
+def _distances(mine: ValuesAt, others: ValuesAt, *, numbers: bool) -> NDArray[Any]:
+    """The distances of the values of a track from those of others at the same instants."""
+    import numpy as np
+
+    (values, known), (other_values, other_known) = mine, others
+    both = known & other_known
+    differ = values != other_values
+    if numbers:
+        values, other_values = (
+            np.where(known, values, 0.0),
+            np.where(other_known, other_values, 0.0),
+        )
+        largest = np.maximum(abs(values).max(), abs(other_values).max(axis=1, keepdims=True))
+        with np.errstate(all="ignore"):  # of infinite numbers those differ that are not equal
+            share = abs(values - other_values) / np.where(largest > 0, largest, 1.0)
+        differ = np.where(differ, np.fmin(share, 1.0), 0.0)
+    distances: NDArray[Any] = np.where(both, differ, known != other_known).mean(axis=1)
+    return distances
 
 
 def _first(track: Track, view: View, shift: int) -> float:
@@ -290,19 +301,24 @@ def panel_id(requirement: str, attempt: Attempt | None) -> str:
 
 
 SHOWN = {Verdict.FAIL: 4, Verdict.INCONCLUSIVE: 2, Verdict.PASS: 2}
-"""The most attempts shown per requirement and verdict; the rest is counted."""
+"""The most attempts shown per requirement and verdict, the worst first; the rest is counted."""
+
+MOST_SHOWN = 400
+"""The most attempts on a page, unless there are more requirements; each takes some 20 kB."""
 
 
 def shown_attempts(report: Report) -> dict[str, list[Attempt]]:
     """By requirement, the attempts that are shown, by number."""
+    most_of_one = max(1, MOST_SHOWN // max(1, len(report.verdicts)))
     shown = {}
     for name in report.verdicts:
-        first_of_each = [
+        first_of_each = (
             attempt
             for verdict, most in SHOWN.items()
             for attempt in islice(report.of(name, verdict), most)
-        ]
-        shown[name] = sorted(first_of_each, key=lambda attempt: attempt.number)
+        )
+        first = islice(first_of_each, most_of_one)
+        shown[name] = sorted(first, key=lambda attempt: attempt.number)
     return shown
 
 

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
     from rvmon.recordings.batch import Batch, Cells
 
+ValuesAt = tuple["NDArray[Any]", "NDArray[Any]"]
+"""Values, and whether each is known: it is not before the first change."""
+
 _DENSE = 8  # with more changes per place than this, only extremes are drawn
 
 
@@ -83,17 +86,13 @@ class Course(Sequence[tuple[int, Scalar]]):
         """The number of changes up to an instant, inclusive."""
         return int(self._columns[0].searchsorted(instant, "right"))
 
-    def values_at(self, instants: Sequence[int]) -> Sequence[Scalar]:
-        """The values at some instants; `None` before the first change, and if unknown."""
+    def values_at(self, instants: NDArray[Any]) -> ValuesAt:
+        """The values at some instants, in the same shape."""
         times, values, hidden = self._columns
         places = times.searchsorted(instants, "right") - 1
         if not len(times):
-            return [None] * len(places)
-        unknown = ((places < 0) | hidden[places]).tolist()
-        return [
-            None if is_unknown else value
-            for value, is_unknown in zip(values[places].tolist(), unknown, strict=True)
-        ]
+            return places, places >= 0
+        return values[places], (places >= 0) & ~hidden[places]
 
     @property
     def has_unknown(self) -> bool:

@@ -160,16 +160,23 @@ def _siblings(panels: Sequence[Panel], report: Report, panel: Panel) -> tuple[li
 
 def _bars(report: Report, name: str, view: View) -> Iterator[tuple[float, float, Verdict]]:
     """Left edge, width and verdict of bars over the run; where attempts overlap, the worst."""
+    import numpy as np
+
     places: list[Verdict | None] = [None] * PLACES
     # The worst last, as a later one is drawn over an earlier one.
     for verdict in (Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.FAIL):
-        for attempt in islice(report.of(name, verdict), MOST_DRAWN):
-            until = view.end if attempt.decided is None else attempt.decided
-            first, last = (
-                min(max(int(view.fraction(instant) * PLACES), 0), PLACES - 1)
-                for instant in (attempt.triggered, until)
-            )
-            places[first : last + 1] = [verdict] * (last + 1 - first)
+        spans = [
+            (one.triggered, view.end if one.decided is None else one.decided)
+            for one in islice(report.of(name, verdict), MOST_DRAWN)
+        ]
+        instants = np.array(spans, np.int64).reshape(-1, 2).T
+        shares = (instants - view.start) / (view.end - view.start)
+        first, last = np.clip(shares * PLACES, 0, PLACES - 1).astype(np.int64)
+        # How many begin at each place, and how many ended at the place before.
+        changes = np.bincount(first, minlength=PLACES + 1)
+        changes -= np.bincount(last + 1, minlength=PLACES + 1)
+        for place in np.flatnonzero(changes.cumsum()).tolist():
+            places[place] = verdict
     at = 0
     for shown, group in groupby(places):
         count = len(list(group))

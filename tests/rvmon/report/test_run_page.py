@@ -1,6 +1,7 @@
 """The page of a run: what it opens on, what it says, and that it is safe and small."""
 
 import json
+import math
 import re
 from dataclasses import replace
 
@@ -216,6 +217,39 @@ def test_the_nearest_passing_attempt_is_the_reference():
     page = run_page(content(others=[far[1], near[1]]))
     assert "nearest passing attempt: near, attempt 1" in page
     assert "reference" in page
+
+
+LOOKED_AT = """
+spec looks
+signal gap : real
+signal ok  : bool
+event  look
+"""
+
+
+def looks(name, gaps, spec, *, ok=True):
+    """A run that looks at a gap each second."""
+    samples = [(float(t), {"gap": gap, "ok": ok, "look": True}) for t, gap in enumerate(gaps)]
+    return judged(name, samples, spec, end=float(len(gaps)))[1]
+
+
+def test_an_infinite_number_is_nearest_to_itself():
+    spec = rvmon.loads(
+        LOOKED_AT + "requirement R\n  upon look\n  then immediately gap > 0 and ok\n"
+    )
+    failed = looks("failed", [math.inf], spec, ok=False)
+    others = [looks("wide", [4.0], spec), looks("alike", [math.inf], spec)]
+    page = run_page(RunPage(failed, spec.checked, "x", others))
+    assert "nearest passing attempt: alike, attempt 1" in page
+
+
+def test_a_page_of_many_requirements_shows_the_worst_attempts_of_each():
+    rules = (f"requirement R{k}\n  upon look\n  then immediately gap > 0\n" for k in range(300))
+    spec = rvmon.loads(LOOKED_AT + "".join(rules))
+    page = run_page(RunPage(looks("many", [1, 0, 1, 0, 0], spec), spec.checked, "x"))
+    shown = {one["id"] for tag, one in Reader(page).tags if tag == "section"}
+    assert shown == {f"R{k}-2" for k in range(300)}
+    assert page.count("and 4 more</p>") == 300
 
 
 def test_a_page_needs_nothing_but_itself():
