@@ -116,11 +116,6 @@ def bound_of(number: int, strict: bool) -> float:
     return number - STRICT if strict else float(number)
 
 
-def universe(dim: int) -> Zone:
-    """All valuations."""
-    return [0.0 if x == y or y == 0 else inf for x in range(dim) for y in range(dim)]
-
-
 Constraint = tuple[int, int, float]  # `(p, q, bound)`: `t[q] − t[p] <= bound`, in grid steps
 
 

@@ -33,22 +33,19 @@ class TimedStep:
     enter: tuple[runs.Atom, ...]  # bounds that hold at its instant, after it
 
 
-def timing_of(
-    steps: Sequence[TimedStep], start: runs.Zone | None = None, *, rounds: int = 1
-) -> runs.Timing | None:
+def timing_of(steps: Sequence[TimedStep], start: runs.Zone | None = None) -> runs.Timing | None:
     """The timed runs along a path; `None` if there are none.
 
     Args:
         steps: of the path.
         start: the valuations it may start from; `None`: all clocks are 0. If given, the last rows
             and columns of the result are the instants at which each clock was 0 before.
-        rounds: the number of copies of the path to be joined: the grid is that much finer.
     """
     dim = 1 if start is None else isqrt(len(start))
     size = len(steps) + dim
     # Each strict bound on a path lacks one grid step; with more steps in a unit than bounds on the
     # path no cycle can lose a whole unit.
-    scale = rounds * size + 1
+    scale = size + 1
     found: list[list[runs.Constraint]] = [[] for _ in range(len(steps) + 1)]
     reset_at: dict[int, tuple[int, float]] = {}
     if start is not None:

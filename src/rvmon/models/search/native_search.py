@@ -7,14 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 from functools import cached_property
-from itertools import product
 from math import inf
 from typing import TYPE_CHECKING, NamedTuple
 
 from rvmon.models import model_error
 from rvmon.models.network import Guard, Network
 from rvmon.models.network.guards import together
-from rvmon.models.runs import STRICT, Atom, Ending, Run, Zone, close, universe
+from rvmon.models.runs import STRICT, Atom, Ending, Run, Zone
 from rvmon.models.runs import timing as timings
 from rvmon.models.runs.moves import Space, State, atoms_of, pieces_of
 from rvmon.models.search.budget import Meter
@@ -23,9 +22,6 @@ from rvmon.native import extension
 from rvmon.native.sources import ZONES_FOLDER
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
     from rvmon.native import _zones
 
     search = _zones.search
@@ -279,24 +275,15 @@ def time_passes(loop: Sequence[timings.TimedStep], head: Zone, dim: int) -> bool
     only as long as some clock allows, for else the loop would not be needed for staying on it.
 
     If it does not, the longest time that rounds can take together stops growing: more rounds than
-    there are clocks show it. One round is a relation between the instants at which the clocks were
-    0 before and after it; relations of many rounds are put together from those of fewer.
+    there are clocks show it.
 
-    Source: Comon and Jurski, Timed Automata and the Theory of Real Numbers, CONCUR 1999 (loops as
-    relations); Tripakis, Verifying Progress in Timed Systems, 1999 (strong non-Zenoness).
+    Source: Tripakis, Verifying Progress in Timed Systems, 1999 (strong non-Zenoness).
     """
     sure = surely_passes(loop)
     if sure is not None:
         return sure
-    # 2^doublings rounds are more than there are clocks: if the longest time still grows then, it
-    # grows for ever.
-    doublings = dim.bit_length()
-    rounds = 2 << doublings
-    relation, scale = _one_round(loop, dim, rounds)
-    for _ in range(doublings):
-        relation = _both(relation, relation)
-    fewer = _longest(relation, head, dim, scale)
-    return fewer < _longest(_both(relation, relation), head, dim, scale)
+    rounds = 1 << dim.bit_length()
+    return _longest(loop, head, rounds) < _longest(loop, head, 2 * rounds)
 
 
 def surely_passes(loop: Sequence[timings.TimedStep]) -> bool | None:
@@ -313,51 +300,9 @@ def surely_passes(loop: Sequence[timings.TimedStep]) -> bool | None:
     return None
 
 
-def _one_round(
-    loop: Sequence[timings.TimedStep], dim: int, rounds: int
-) -> tuple[NDArray[np.float64], int]:
-    """The instants now and when each clock was 0, before and after a round; grid steps in a unit.
-
-    Returns:
-        float64[2·dim, 2·dim]: entry (p, q) bounds instant q − instant p from above, closed; the
-        first `dim` are before the round, now first.
-    """
-    import numpy as np
-
-    timing = timings.timing_of(loop, universe(dim), rounds=rounds)
+def _longest(loop: Sequence[timings.TimedStep], head: Zone, rounds: int) -> float:
+    """The longest time that some rounds from a head can take, in whole units; it may be inf."""
+    timing = timings.timing_of([*loop] * rounds, head)
     assert timing is not None, "a loop of symbolic states can be gone round"
-    before = [0, *range(len(loop) + 1, len(loop) + dim)]
-    after, earlier = before[:], [0.0] * dim
-    after[0] = len(loop)
-    for now, step in enumerate(loop, start=1):
-        for clock, value in step.resets:
-            after[clock], earlier[clock] = now, value * timing.scale
-    shift = np.array([*[0.0] * dim, *earlier])
-    relation = timing.relation([*before, *after]) + shift[:, None] - shift[None, :]
-    return relation, timing.scale
-
-
-def _both(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
-    """One relation after the other."""
-    import numpy as np
-
-    dim = len(first) // 2
-    bounds = np.full((3 * dim, 3 * dim), inf)
-    bounds[: 2 * dim, : 2 * dim] = first
-    np.minimum(bounds[dim:, dim:], second, out=bounds[dim:, dim:])
-    close(bounds)
-    ends = np.r_[0:dim, 2 * dim : 3 * dim]
-    together: NDArray[np.float64] = bounds[np.ix_(ends, ends)]
-    return together
-
-
-def _longest(relation: NDArray[np.float64], head: Zone, dim: int, scale: int) -> float:
-    """The longest time from a head that a relation can take, in whole units; it may be inf."""
-    bounds = relation.copy()
-    for x, y in product(range(dim), repeat=2):
-        if head[x * dim + y] < inf:
-            # Clock y − clock x is the instant at which x was 0 less that at which y was.
-            bounds[y, x] = min(bounds[y, x], timings.on_grid(head[x * dim + y], scale))
-    close(bounds)
-    longest = float(bounds[0, dim])
-    return longest if longest == inf else -(-longest // scale)
+    longest = float(timing.relation((0, len(loop) * rounds))[0, 1])
+    return longest if longest == inf else -(-longest // timing.scale)
