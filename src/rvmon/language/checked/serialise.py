@@ -6,15 +6,14 @@ Nothing but the classes of a checked specification is made of it, and nothing is
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Mapping
 from enum import Enum
 from functools import cache, partial
-from types import ModuleType
 from typing import Any
 
 from rvmon import diagnostics
 from rvmon.diagnostics import Source, Span
-from rvmon.language.checked import formula, specification
+from rvmon.language.checked import formula, properties, specification
 from rvmon.language.checked.arithmetic import NumericOp
 from rvmon.language.checked.operators import BinaryOp, Interval, UnaryOp
 from rvmon.language.checked.window_measures import Measured
@@ -22,33 +21,14 @@ from rvmon.trace.schema import Kind
 
 
 @cache
-def _class_named(name: str) -> type | None:
-    """The class that a specification or its warnings are made of; `None` if there is none."""
-    return _classes().get(name) or _rarer_classes().get(name)
-
-
 @cache
 def _classes() -> Mapping[str, type]:
-    modules = (formula, specification, diagnostics)
-    classes = {
-        one.__name__: one for one in (Measured, NumericOp, UnaryOp, BinaryOp, Interval, Kind)
-    }
-    return {**classes, **dict(_own_classes(*modules))}
-
-
-@cache
-def _rarer_classes() -> Mapping[str, type]:
-    """The classes of properties and goals, which few specifications have."""
-    from rvmon.language.checked import properties
-
-    return dict(_own_classes(properties))
-
-
-def _own_classes(*modules: ModuleType) -> Iterator[tuple[str, type]]:
-    for module in modules:
-        for name, one in vars(module).items():
-            if isinstance(one, type) and one.__module__ == module.__name__:
-                yield name, one
+    """By name, the classes that specifications and their warnings are made of."""
+    classes: list[type] = [Measured, NumericOp, UnaryOp, BinaryOp, Interval, Kind]
+    for module in (formula, specification, properties, diagnostics):
+        own = (one for one in vars(module).values() if isinstance(one, type))
+        classes += (one for one in own if one.__module__ == module.__name__)
+    return {one.__name__: one for one in classes}
 
 
 def to_plain(value: Any) -> Any:
@@ -72,7 +52,7 @@ def _to_plain(value: Any, sources: dict[int, int]) -> Any:
             return ["same", sources[id(value)]]
         sources[id(value)] = len(sources)
     name = type(value).__name__
-    if isinstance(value, Enum) and _class_named(name) is type(value):
+    if isinstance(value, Enum) and _classes().get(name) is type(value):
         return [name, value.name]
     class_: Any = type(value)
     names = _attributes(class_)
@@ -108,7 +88,7 @@ def _from_plain(data: Any, sources: list[Source]) -> Any:
             return tuple(values)
         case "frozenset":
             return frozenset(values)
-    class_ = _class_named(name)
+    class_ = _classes().get(name)
     if class_ is None:
         raise LookupError(f"no class `{name}`")
     if issubclass(class_, Enum):
@@ -144,4 +124,4 @@ def _parts(without: Collection[str], value: Any) -> Any:
 def _attributes(class_: type) -> tuple[str, ...] | None:
     """The attributes of objects of a class of a specification; `None`: it is no such class."""
     names: tuple[str, ...] | None = getattr(class_, "__match_args__", None)
-    return names if _class_named(class_.__name__) is class_ else None
+    return names if _classes().get(class_.__name__) is class_ else None
