@@ -85,7 +85,7 @@ class Edge(Struct, frozen=True):
     source: str  # name of its source place
     target: str  # name of its target place
     condition: str  # the condition on the input; "" if there is none
-    when: str  # the guard on the clocks; "" if there is none
+    ages: str  # the guard on the clocks; "" if there is none
     sets: str  # the clocks that are started or renamed, as text
 
 
@@ -336,7 +336,7 @@ def _steps(edges: list[Edge]) -> Iterator[str]:
 
 def label_of(edge: Edge) -> str:
     """The condition of an edge in one line."""
-    return ", ".join(filter(None, (edge.when, edge.condition))) or "anything"
+    return ", ".join(filter(None, (edge.ages, edge.condition))) or "anything"
 
 
 def graph_dot(graph: Graph, title: str) -> str:

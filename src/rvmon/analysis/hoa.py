@@ -7,6 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence, Set
 
+from msgspec.structs import asdict
+
 from rvmon.analysis.graph import (
     ANY,
     Cube,
@@ -212,16 +214,7 @@ def automaton_json(compiled: CompiledRequirement, spec: CheckedSpec) -> dict[str
         "requirement": requirement.id,
         "text": requirement.text,
         "locations": locations,
-        "edges": [
-            {
-                "source": edge.source,
-                "target": edge.target,
-                "condition": edge.condition,
-                "ages": edge.when,
-                "sets": edge.sets,
-            }
-            for edge in graph.edges
-        ],
+        "edges": [*map(asdict, graph.edges)],
     }
 
 

@@ -163,7 +163,7 @@ class WatchedRequirement:
             for edge in self.graph.edges:
                 # A waiting attempt takes a loop at each letter, which is no progress to cover.
                 if edge.source != edge.target:
-                    upon = " at ".join(part for part in (edge.condition, edge.when) if part)
+                    upon = " at ".join(part for part in (edge.condition, edge.ages) if part)
                     edges.setdefault(edge_name((edge.source, edge.target)), []).append(upon)
             # An unbounded `always` passes only at the end of the run: no edge leads to `P`.
             entered = {self.graph.places[0].name, *(edge.target for edge in self.graph.edges)}

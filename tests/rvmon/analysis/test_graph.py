@@ -35,7 +35,7 @@ def test_a_response():
     spec = build.spec_of(build.requirement(build.eventually(build.f, 0, 7), upon=build.e))
     one = compile_spec(spec).requirements["R"]
     edges = [
-        (e.source, e.when, e.condition, e.target) for e in graph_of(one, one.automaton, spec).edges
+        (e.source, e.ages, e.condition, e.target) for e in graph_of(one, one.automaton, spec).edges
     ]
     assert sorted(edges) == [
         ("A", "x ≤ 7 ns", "f", "P"),
