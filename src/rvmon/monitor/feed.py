@@ -93,8 +93,13 @@ class Feed:
             self._judge_all(self._intake.settle(t))
         self._core.advance(t)
 
-    def close(self) -> None:
-        """Note that no further sample will come."""
+    def close(self, end: int | None) -> None:
+        """Note that no further sample will come; the trace goes on up to `end`, if it is given."""
+        _, last, reached = self._core.times()
+        last = last if self._intake is None else self._intake.newest
+        later = [t for t in (end, None if reached is None else reached - 1) if t is not None]
+        if last is not None and all(t <= last for t in later):
+            self.losses.miss_end(last)
         if self._intake is not None:
             self._judge_all(self._intake.close())
 
@@ -292,7 +297,8 @@ class FedMonitor(ABC, Generic[T]):
         """Report that input without a usable stamp was lost between the last sample and the next.
 
         It is `lose_ns` from the one to the other. Before the first sample its beginning is not
-        known, so no requirement is `P` or `NT` any more.
+        known, behind the last one its end, unless time advances or `finish` names a later one: then
+        no requirement is `P` or `NT` any more.
 
         Args:
             names: signals and events that it may have updated; `None`: all.

@@ -218,6 +218,11 @@ class Losses:
         some, self._missed = self._missed, set()
         return self._end(some, t - (self._intake is None))
 
+    def miss_end(self, last: int) -> None:
+        """Report to the core that what was missed may stand anywhere behind the last sample."""
+        if self._missed:
+            self._core.late(self._numbers(self._missed), last)
+
     def come_late(self, names: Iterable[str] | None, t: int, why: str) -> None:
         """Report a late sample at `t` with these names (`None`: unknown) to the core."""
         some = None if names is None else self._named(names)
@@ -227,16 +232,17 @@ class Losses:
     def turn(self, turn: Turn) -> None:
         """Apply a turn to the core; all samples before it must have been judged.
 
-        Outages of a name may overlap: only the first beginning and the last end reach the core.
+        Outages of a name may overlap: only the first beginning and the last end change the core,
+        which hears of the others as of further losses, as the trace goes on to these instants.
         """
         was = {name for name in turn.names if self._stretches[name]}
         self._stretches.update(dict.fromkeys(turn.names, 1 if turn.lost else -1))
-        some = {name for name in turn.names if bool(self._stretches[name]) is not (name in was)}
-        tell = self._core.lose if turn.lost else self._core.found
-        if _UNREAD in some:
-            tell([], turn.t)
-        if numbers := self._numbers(some):
-            tell(numbers, turn.t)
+        now = {name for name in turn.names if self._stretches[name]}
+        for tell, some in ((self._core.lose, now), (self._core.found, was - now)):
+            if _UNREAD in some:
+                tell([], turn.t)
+            if numbers := self._numbers(some):
+                tell(numbers, turn.t)
 
     def _stretch(self, names: set[str], since: int, until: int | None) -> Sequence[Turn]:
         """The turns of an outage, cut to what is not judged yet; what is judged counts as late."""

@@ -184,7 +184,7 @@ class Monitor(FedMonitor[Attempt]):
             return self._report, ()
         if t_ns is not None:
             t_ns = self._checked_time(t_ns)
-        self._feed.close()
+        self._feed.close(t_ns)
         end = self._core.finish(t_ns)
         decided = self._core.flush()
         self._one_call.note_times()

@@ -219,7 +219,7 @@ class RobustnessMonitor(FedMonitor[Measured]):
             return ()
         if t_ns is not None:
             t_ns = whole_ticks(t_ns)
-        self._feed.close()
+        self._feed.close(t_ns)
         self._core.finish(t_ns)
         self._is_over = True
         return self._core.figures()

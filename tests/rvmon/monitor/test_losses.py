@@ -133,6 +133,29 @@ def test_what_is_missed_before_the_first_sample_leaves_nothing_green():
     assert said(monitor.finish(1)) == "III"
 
 
+@pytest.mark.parametrize("time", ["held", "sampled", "sampled every 1 s"])
+@pytest.mark.parametrize("settle", ["now", "next"])
+def test_what_is_missed_behind_the_last_sample_leaves_nothing_green(time, settle):
+    """It may stand at any later instant, and fail there: the trace's end is not known."""
+    for does_miss, expected in ((False, "NTPP"), (True, "III")):
+        monitor = begun(f"time {time}", settle=settle)
+        monitor.step(0.5, {"x": 2.0})
+        if does_miss:
+            monitor.miss()
+        assert said(monitor.finish()) == expected
+
+
+@pytest.mark.parametrize("settle", ["now", "next"])
+def test_the_trace_goes_on_to_a_loss_within_another_one(settle):
+    """Also in what was missed: a clock ticks up to there, and nothing is known at its ticks."""
+    monitor = begun("time sampled every 1 s", settle=settle)
+    monitor.step(0.5, {"x": 2.0})
+    monitor.miss()
+    monitor.lose(["x"], 3, 4)
+    report = monitor.finish()
+    assert (report.end, said(report)) == (4_000_000_000, "III")
+
+
 def test_what_comes_too_late_leaves_nothing_green_that_reads_it():
     monitor = begun("max delay 1 s")
     monitor.step(10, {"go": True, "other": False})
