@@ -135,3 +135,12 @@ def test_a_number_that_is_infinite_somewhere_has_no_range(tmp_path, put):
     text = (tmp_path / "a.rv").read_text()
     assert "y stays in its range" in text
     assert "x stays in its range" not in text
+
+
+def test_between_stamps_of_two_clocks_lies_no_silence_that_is_proposed(put, says):
+    """Rounded up it would be longer than a specification can say."""
+    rows = "0,0.5,,\n1,0.7,1,\n4500000000,0.6,,1\n4500000001,0.6,1,\n4500000002,0.6,,1\n"
+    put("clocks.csv", "t,x,go,done\n" + rows)
+    assert main(["init", "clocks.csv", "-o", "made.rv"]) == 0
+    told = says(0, "run", "made.rv", "clocks.csv").out
+    assert "is one of them of another clock?" in told.replace("\n    ", " ")

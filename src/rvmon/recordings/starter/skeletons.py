@@ -15,6 +15,7 @@ from msgspec import Struct
 from rvmon.language.checked.formula import Literal, SignalAtom
 from rvmon.language.formatter import format_text
 from rvmon.language.print import format_duration, format_formula, format_numeric
+from rvmon.recordings.rows import LEAP
 from rvmon.recordings.starter.observed_values import Column, Profile, reasons_of
 from rvmon.trace.schema import Kind
 from rvmon.trace.time import TICKS_PER_SECOND
@@ -69,7 +70,11 @@ def _ranges(columns: Sequence[Column]) -> Iterator[Skeleton]:
 
 def _sources(columns: Sequence[Column]) -> Iterator[Skeleton]:
     """Skeletons about the rate of reports: one signal of each topic."""
-    signals = [column for column in columns if not column.is_event and column.updates > 1]
+    signals = [
+        column
+        for column in columns
+        if not column.is_event and column.updates > 1 and column.longest_silence <= LEAP
+    ]
     first = {signal.shape.source or signal.name: signal for signal in reversed(signals)}
     chosen = [signal for signal in signals if signal in first.values()]
     chosen.sort(key=lambda column: column.changes)
@@ -79,7 +84,11 @@ def _sources(columns: Sequence[Column]) -> Iterator[Skeleton]:
 def _others(profile: Profile) -> Iterator[Skeleton]:
     """Skeletons that fit any recording."""
     yield from (_range(column) for column in profile.columns if column.is_finite)
-    yield from (_happens(column, profile) for column in profile.columns if column.instants)
+    yield from (
+        _happens(column, profile)
+        for column in profile.columns
+        if column.instants and column.instants[0] - profile.start <= LEAP
+    )
     yield from (_ever(column) for column in profile.columns)
 
 
@@ -93,7 +102,7 @@ def _responses(columns: Sequence[Column]) -> Iterator[Skeleton]:
             once = len(trigger.instants) < FEWEST
             if response is not trigger and not often and not once:
                 wait = _longest_wait(trigger.instants, response.instants)
-                if wait:
+                if wait and wait <= LEAP:
                     found.append((not trigger.is_event, wait, trigger, response))
     for _, wait, trigger, response in sorted(found, key=lambda one: one[:2])[:1]:
         limit, name = round_up(wait), name_text(trigger.name)
