@@ -16,7 +16,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from fractions import Fraction
 from functools import cached_property
-from math import inf, prod
+from math import inf
 from typing import TYPE_CHECKING
 
 from rvmon.models.network import Edge
@@ -47,11 +47,6 @@ class Action:
     """Edges that are taken together, each with the index of its automaton, the sender first."""
 
     edges: tuple[tuple[int, Edge], ...]
-
-    @property
-    def weight(self) -> float:
-        """The product of the edges' weights."""
-        return prod(edge.weight for _, edge in self.edges)
 
 
 @dataclass(frozen=True, slots=True)

@@ -172,7 +172,8 @@ class Space:
             self.network.channels[edge.channels[0]].urgent
             and tried.is_able(edge)
             and (self.network.channels[edge.channels[0]].broadcast or any(tried.receivers(edge)))
-            for edge in tried.senders()
+            for edge in tried.leaving()
+            if edge.sends
         )
 
     def _together(
@@ -229,10 +230,6 @@ class _Tried:
     def leaving(self) -> Iterator[ReadyEdge]:
         """All of them."""
         return (edge for edges in self._edges for edge in edges)
-
-    def senders(self) -> Iterator[ReadyEdge]:
-        """The edges that start a synchronisation."""
-        return (edge for edge in self.leaving() if edge.sends)
 
     def is_able(self, edge: ReadyEdge) -> bool:
         """Whether the guard on the variables holds."""
