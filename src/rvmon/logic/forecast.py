@@ -67,10 +67,11 @@ class Forecaster:
             return residual == HOLDS
         if len(residual) > MOST_CLAUSES:
             return None
-        cuts = self._cuts(residual, gap)
+        unit = gap or 1
+        cuts = self._cuts(residual, unit)
         # Ages of an only clock that are alike certainly have the same future.
         is_one = len(ages) == len(cuts) == 1
-        key = residual, alike(ages[0] // (gap or 1), cuts[0]) if is_one else tuple(ages), gap
+        key = residual, alike(ages[0] // unit, cuts[0]) if is_one else tuple(ages), gap
         if key not in self._values:
             if len(self._values) > _MOST_KNOWN:
                 self._values.clear()
@@ -97,10 +98,6 @@ class Forecaster:
             return True
         start = start_of(residual, ages, gap)
         return start is None or self._may_hold(start, gap)
-
-
-def _cuts_of(residual: Residual, gap: int | None) -> Cuts:
-    return _Search(gap, differences=True).cuts(residual)
 
 
 MOST_TRIED = 200
@@ -194,7 +191,8 @@ class _Search:
         """The state of a clause; the last clock of `ages` is the one that `normalise` calls NOW."""
         made, sources = normalise(frozenset([clause]), len(ages) - 2)
         own = projected(ages, sources)
-        return _State(made, widened(own, self.cuts(made), differences=self.differences))
+        cuts = _cuts_of(made, self.unit)
+        return _State(made, widened(own, cuts, differences=self.differences))
 
     def enter(self, state: _State) -> int:
         """The number of a state."""
@@ -204,13 +202,9 @@ class _Search:
             self.states.append(state)
         return found
 
-    def cuts(self, residual: Residual) -> list[list[int]]:
-        """The ages at which clocks enter their next region, in units, rounded up."""
-        return [[-(-cut // self.unit) for cut in own] for own in location_of(residual).cuts]
-
     def successors(self, state: _State) -> Iterator[tuple[int | None, bool]]:
         """The states after one position (`None`: satisfied), and whether the move is fair."""
-        cuts = self.cuts(state.residual)
+        cuts = _cuts_of(state.residual, self.unit)
         cost = sum((len(clause) // _FEW_ATOMS) ** 2 for clause in state.residual)
         for ages in self.ages_after(cuts, state.ages):
             self.tried += cost
@@ -273,6 +267,11 @@ class _Search:
             and not frozenset.intersection(*(promised[move.target] for move in own))
             for own in within.values()
         )
+
+
+def _cuts_of(residual: Residual, unit: int) -> Cuts:
+    """The ages at which clocks enter their next region, in units, rounded up."""
+    return [[-(-cut // unit) for cut in own] for own in location_of(residual).cuts]
 
 
 def _left_open(literal: Literal) -> Residual:
