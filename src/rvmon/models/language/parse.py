@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from functools import cache, partial
+from functools import cache
 from importlib import resources
 from typing import Any
 
@@ -48,7 +48,7 @@ def parse_part(text: str, start: str, place: Place) -> Any:
     try:
         return _read(start, text, place)
     except ModelError:
-        found = all_mistakes(text, start, place, partial(_read, start))
+        found = all_mistakes(text, start, place)
     raise refusal(*found)
 
 
@@ -169,13 +169,10 @@ _TOKENS = {
 """The patterns at which parts begin and end, by the rule that reads them; others read one part."""
 
 
-def all_mistakes(
-    text: str, rule: str, place: Place, read: Callable[[str, Place], object]
-) -> tuple[Diagnostic, ...]:
+def all_mistakes(text: str, rule: str, place: Place) -> tuple[Diagnostic, ...]:
     """The mistakes that are found when each part with one is left out in turn.
 
-    `rule` should have read the text; `place` maps its offsets to spans; `read` raises `ModelError`
-    for the first mistake of a text.
+    `rule` should have read the text; `place` maps its offsets to spans.
     """
     starts = dict[int, int]()
 
@@ -186,7 +183,7 @@ def all_mistakes(
 
     def first_mistake(text: str) -> ModelError | None:
         try:
-            read(text, noted)
+            _read(rule, text, noted)
         except ModelError as error:
             return error
         return None

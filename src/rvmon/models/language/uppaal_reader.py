@@ -80,57 +80,48 @@ def read_xml(source: Source) -> Element:
     text = source.text
     if len(text) > MAX_CHARACTERS:
         raise model_error("TA019", f"the text has more than {MAX_CHARACTERS:,} characters", None)
-    data = text.encode("utf-8")
-    reader = _Reader(source, data)
+    reader = _Reader(source)
     try:
-        # The text is already decoded, whatever encoding its declaration names.
-        parser = expat.ParserCreate(encoding="utf-8")
-        reader.read(parser, data)
+        reader.parser.Parse(reader.data, True)
     except expat.ExpatError as error:
-        place = reader.position(parser.ErrorByteIndex)
+        place = reader.position(reader.parser.ErrorByteIndex)
         message = f"no well-formed XML: {expat.errors.messages[error.code]}"
         raise model_error("TA018", message, Span(source, place, place)) from None
-    assert reader.root is not None, "well-formed XML has a root"
-    return reader.root
+    (root,) = reader.around.children
+    return root
 
 
 class _Reader:
-    def __init__(self, source: Source, data: bytes) -> None:
-        self.root: Element | None = None
+    def __init__(self, source: Source) -> None:
+        self.data = source.text.encode("utf-8")
+        # The text is already decoded, whatever encoding its declaration names.
+        self.parser = expat.ParserCreate(encoding="utf-8")
+        self.parser.StartElementHandler = self._start
+        self.parser.EndElementHandler = self._end
+        self.parser.CharacterDataHandler = self._characters
+        self.parser.EntityDeclHandler = self._entity
+        self.around = Element("", {}, source, 0)  # what the outermost element stands in
         self._source = source
-        self._data = data
-        self._open: list[Element] = []
-        self._parser: Any = None
+        self._open = [self.around]
         self._reached = (0, 0)
-
-    def read(self, parser: Any, data: bytes) -> None:  # expat's parser type has no public name
-        self._parser = parser
-        parser.StartElementHandler = self._start
-        parser.EndElementHandler = self._end
-        parser.CharacterDataHandler = self._characters
-        parser.EntityDeclHandler = self._entity
-        parser.Parse(data, True)
 
     def position(self, byte: int) -> int:
         """The character that a byte of the file belongs to; asked of later and later bytes."""
-        if len(self._data) == len(self._source.text):
+        if len(self.data) == len(self._source.text):
             return byte
         before, characters = self._reached
-        characters += len(self._data[before:byte].decode("utf-8", errors="ignore"))
+        characters += len(self.data[before:byte].decode("utf-8", errors="ignore"))
         self._reached = (byte, characters)
         return characters
 
     def _here(self) -> int:
-        return self.position(self._parser.CurrentByteIndex)
+        return self.position(self.parser.CurrentByteIndex)
 
     def _start(self, name: str, attributes: dict[str, str]) -> None:
         element = Element(name, attributes, self._source, self._here())
-        if len(self._open) >= MAX_DEPTH:
+        if len(self._open) > MAX_DEPTH:
             raise model_error("TA019", "elements are nested too deeply", element.span())
-        if self._open:
-            self._open[-1].children.append(element)
-        else:
-            self.root = element
+        self._open[-1].children.append(element)
         self._open.append(element)
 
     def _end(self, _name: str) -> None:
