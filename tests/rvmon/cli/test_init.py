@@ -137,6 +137,12 @@ def test_a_number_that_is_infinite_somewhere_has_no_range(tmp_path, put):
     assert "x stays in its range" not in text
 
 
+def test_what_comes_a_century_late_is_allowed_for(put, says):
+    put("late.csv", "t,x\n4611686018,1\n0,2\n1,3\n")
+    assert main(["init", "late.csv", "-o", "made.rv"]) == 0
+    says(0, "run", "made.rv", "late.csv")
+
+
 def test_between_stamps_of_two_clocks_lies_no_silence_that_is_proposed(put, says):
     """Rounded up it would be longer than a specification can say."""
     rows = "0,0.5,,\n1,0.7,1,\n4500000000,0.6,,1\n4500000001,0.6,1,\n4500000002,0.6,,1\n"

@@ -184,12 +184,18 @@ def _implied(value: str, own: Iterable[str], meaning: Meaning, axis: str) -> tup
 def events_of(topics: Mapping[str, Topic]) -> Iterator[Candidate]:
     """Candidates for events: a topic whose only truth value is true, or each of its messages."""
     for topic in topics.values():
-        flags = [leaf for leaf, kind in topic.leaves.items() if kind is Kind.BOOL]
+        if topic.fault:
+            continue
+        flags = [
+            leaf
+            for leaf, kind in topic.leaves.items()
+            if kind is Kind.BOOL or leaf in topic.doubtful
+        ]
         around, meaning = tuple(words_of(topic.name)), Meaning(Sort.CODE)
         if len(flags) == 1 and "[" not in flags[0]:
             own = tuple(words_of(flags[0]))
             yield Candidate(topic, flags[0], Kind.BOOL, own, around, meaning)
-        elif not topic.fault:
+        else:
             yield Candidate(topic, "", None, (), around, meaning)
 
 

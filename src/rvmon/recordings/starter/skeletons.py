@@ -207,6 +207,7 @@ def round_up(ticks: int) -> str:
     return format_duration(rounded)
 
 
+_LONGEST = 4_000_000_000 * TICKS_PER_SECOND  # as an allowance; rows are sorted, however late
 _LISTED = 6  # names that are listed with the reason why they are not declared
 
 
@@ -244,7 +245,8 @@ def _header(profile: Profile) -> Iterator[str]:
     yield "time held"
     if profile.lateness:
         late = profile.lateness / TICKS_PER_SECOND
-        yield f"max delay {round_up(profile.lateness)}  # stamps go back by up to {late:.6g} s"
+        delay = round_up(min(profile.lateness, _LONGEST))
+        yield f"max delay {delay}  # stamps go back by up to {late:.6g} s"
 
 
 def _declaration(column: Column) -> str:

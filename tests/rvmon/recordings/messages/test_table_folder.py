@@ -95,7 +95,7 @@ def test_a_file_says_which_is_which(tmp_path, says):
 
 
 @pytest.mark.parametrize("rows", ["0,0\n1,1\n2,0\n", "0,\n" * 1001 + "1,1\n2,0\n"])
-def test_a_0_is_no_occurrence_of_an_event(tmp_path, rows):
+def test_a_0_is_no_occurrence_of_an_event(tmp_path, rows, says):
     """As in a file by itself; whether a 1 is a number, or true, its declaration says."""
     place = folder(tmp_path / "a", {"stop.csv": "t,stop\n" + rows})
     spec = rvmon.loads("event stop\nrequirement R\n  upon stop\n  then always not stop\n")
@@ -104,6 +104,15 @@ def test_a_0_is_no_occurrence_of_an_event(tmp_path, rows):
     assert attempt.triggered == 10**9
     spec = rvmon.loads("signal stop : int\nrequirement R\n  always stop < 2\n")
     assert spec.evaluate(place).verdicts["R"] == "P"
+    (tmp_path / "a.rv").write_text("event stop\nrequirement R\n  always not stop\n")
+    told = says(0, "init", place, "--for", tmp_path / "a.rv").out
+    assert 'value = "stop"' in told.partition("[bind.stop]")[2]
+
+
+def test_of_a_topic_that_cannot_be_read_nothing_is_proposed(tmp_path, says):
+    place = folder(tmp_path / "a", {"stop.csv": "t,stop,stop.by\n0,true,1\n"})
+    (tmp_path / "a.rv").write_text("event stop\nrequirement R\n  always not stop\n")
+    assert "`stop` is left open" in says(1, "init", place, "--for", tmp_path / "a.rv").err
 
 
 @pytest.mark.parametrize(
