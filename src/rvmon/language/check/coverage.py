@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from fractions import Fraction
 from itertools import pairwise, product
-from math import ceil, floor, inf, prod
+from math import ceil, floor, prod
 
 from msgspec import Struct
 from msgspec.structs import replace
@@ -136,35 +137,22 @@ def _is_empty(formula: rv.Formula, value: Value | None) -> bool:
         parts = formula.left, formula.right
     if not isinstance(value, Quantity):
         return False
-    least: float = -inf
-    most: float = inf
-    open_ = False
+    limits: list[tuple[rv.CompareOp, Fraction]] = []
     for part in parts:
         match part:
-            case rv.Compare(op=op, left=left, right=rv.Literal(value=int() | float() as bound)):
-                if left != value.node:
-                    return False
-                low, high = _ends(op, bound, whole=value.integral)
-                strict = op in (rv.CompareOp.GT, rv.CompareOp.LT) and not value.integral
-                open_, least, most = open_ or strict, max(least, low), min(most, high)
+            case rv.Compare(op=op, left=left, right=rv.Literal(value=int() | float() as bound)) if (
+                left == value.node
+            ):
+                limits.append((op, Fraction(bound)))
             case _:
                 return False
-    return least > most or (open_ and least == most)
-
-
-def _ends(op: rv.CompareOp, bound: float, *, whole: bool) -> tuple[float, float]:
-    """Between which values a comparison with a constant is true, bounds that are open included."""
-    match op:
-        case rv.CompareOp.GT | rv.CompareOp.GE:
-            first = floor(bound) + 1 if op is rv.CompareOp.GT else ceil(bound)
-            return first if whole else bound, inf
-        case rv.CompareOp.LT | rv.CompareOp.LE:
-            last = ceil(bound) - 1 if op is rv.CompareOp.LT else floor(bound)
-            return -inf, last if whole else bound
-        case rv.CompareOp.EQ:
-            return (ceil(bound), floor(bound)) if whole else (bound, bound)
-        case rv.CompareOp.NE:
-            return -inf, inf
+    # If any value is left, so is one that is a bound, beyond all, or in the middle of two.
+    bounds = sorted(bound for _, bound in limits)
+    middles = ((one + other) / 2 for one, other in pairwise(bounds))
+    tried: Iterable[Fraction | int] = (bounds[0] - 1, *bounds, *middles, bounds[-1] + 1)
+    if value.integral:
+        tried = [whole for one in tried for whole in (floor(one), ceil(one))]
+    return not any(all(op.holds(one, bound) for op, bound in limits) for one in tried)
 
 
 class _Point(Struct, frozen=True):

@@ -108,6 +108,8 @@ def test_crosses_are_limited(codes):
         ("= n {b: 2.5}", True),
         ("= n {b: (2, 4), c: [3, 3], d: (1, 3)}", False),
         ("= n {b: x > 5}", False),
+        ("= x {b: x == 2 and x > 1, c: x != 2 and x >= 2}", False),
+        ("= x {b: x == 2 and x != 2}", True),
         ("= state {idle, moving}", False),
     ],
 )
