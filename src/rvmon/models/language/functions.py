@@ -87,11 +87,60 @@ class Functions:
                 raise model_error("TA016", message, written.span, fix)
             self.open.add(key)
             try:
-                function = self.made[key] = _make(text, symbol.scope, bound, resolver)
+                function = self.made[key] = self._make(text, symbol.scope, bound, resolver)
             finally:
                 self.open.discard(key)
         called = ex.Invoke(function, (*values, *chosen), written.span)
         return marked(called, function.result[1].is_real)
+
+    def _make(
+        self,
+        text: syntax.FunctionText,
+        scope: sc.Scope,
+        bound: Sequence[sc.Symbol | None],
+        resolver: Resolver,
+    ) -> ex.Function:
+        """A function with its parameters bound, or given places of their own."""
+        inner, taken = sc.Scope(scope), sc.Scope()
+        parameters: list[int] = []
+        indices: list[int] = []
+
+        def chosen(slot: ex.Slot) -> ex.Slot:
+            """The slot with places for the indices that calls choose."""
+            own: list[ex.Expression] = []
+            for index, extent in zip(slot.indices, slot.extents, strict=False):
+                if index == _CHOSEN:
+                    kind = sc.ResolvedType(ex.BaseType.INT, extent.start, extent.stop - 1)
+                    indices.append(self.place(kind, ["index"], None))
+                    index = ex.VariableValue(ex.Slot(indices[-1]))
+                own.append(index)
+            return replace(slot, indices=tuple(own))
+
+        for parameter, thing in zip(text.parameters, bound, strict=True):
+            symbols.claim(parameter.name, parameter.span, taken)
+            if thing is not None:
+                inner.symbols[parameter.name] = _with_slots(thing, chosen)
+                continue
+            called = [f"{text.name}.{parameter.name}"]
+            symbol = symbols.laid_out(resolver.typed(parameter, scope), called, None, self)
+            inner.symbols[parameter.name] = symbol
+            leaves = symbols.leaves(symbol)
+            parameters += [leaf.slot.first for leaf in leaves if isinstance(leaf, sc.PlacedSymbol)]
+        result = _NOTHING if text.type is None else resolver.type(text.type, scope)
+        if result.extents or result.fields or result.placed_as is not ex.BaseType.INT:
+            fix = "let it set a parameter that is passed by reference"
+            message = f"`{text.name}` returns an array or record"
+            raise model_error("TA016", message, text.span, fix)
+        place = self.place(result, [f"{text.name}(…)"], None)
+        body, goes_on = Bodies(text, resolver).statements(text.body.statements, inner)
+        if goes_on:
+            missing = ex.Missing(text.name, text.span)
+            body.append(ex.Return(ex.Constant(0)) if text.type is None else missing)
+        slots = [*parameters, *indices]
+        return ex.Function(
+            text.name, tuple((slot, self.variable(slot)) for slot in slots),
+            (place, self.variable(place)), tuple(body), len(self.locals), _changes(body),
+        )  # fmt: skip
 
 
 def _check_fit(
@@ -131,56 +180,6 @@ def _without_choice(slot: ex.Slot, chosen: list[ex.Expression]) -> ex.Slot:
             chosen.append(index)
         indices.append(index if isinstance(index, ex.Constant) else _CHOSEN)
     return replace(slot, indices=tuple(indices), span=None)
-
-
-def _make(
-    text: syntax.FunctionText,
-    scope: sc.Scope,
-    bound: Sequence[sc.Symbol | None],
-    resolver: Resolver,
-) -> ex.Function:
-    """A function with its parameters bound, or given places of their own."""
-    functions, inner, taken = resolver.functions, sc.Scope(scope), sc.Scope()
-    parameters: list[int] = []
-    indices: list[int] = []
-
-    def chosen(slot: ex.Slot) -> ex.Slot:
-        """The slot with places for the indices that calls choose."""
-        own: list[ex.Expression] = []
-        for index, extent in zip(slot.indices, slot.extents, strict=False):
-            if index == _CHOSEN:
-                kind = sc.ResolvedType(ex.BaseType.INT, extent.start, extent.stop - 1)
-                indices.append(functions.place(kind, ["index"], None))
-                index = ex.VariableValue(ex.Slot(indices[-1]))
-            own.append(index)
-        return replace(slot, indices=tuple(own))
-
-    for parameter, thing in zip(text.parameters, bound, strict=True):
-        symbols.claim(parameter.name, parameter.span, taken)
-        if thing is not None:
-            inner.symbols[parameter.name] = _with_slots(thing, chosen)
-            continue
-        called = [f"{text.name}.{parameter.name}"]
-        symbol = symbols.laid_out(resolver.typed(parameter, scope), called, None, functions)
-        inner.symbols[parameter.name] = symbol
-        parameters += [
-            leaf.slot.first for leaf in symbols.leaves(symbol) if isinstance(leaf, sc.PlacedSymbol)
-        ]
-    result = _NOTHING if text.type is None else resolver.type(text.type, scope)
-    if result.extents or result.base not in (ex.BaseType.INT, ex.BaseType.BOOL, ex.BaseType.DOUBLE):
-        fix = "let it set a parameter that is passed by reference"
-        message = f"`{text.name}` returns an array or record"
-        raise model_error("TA016", message, text.span, fix)
-    place = functions.place(result, [f"{text.name}(…)"], None)
-    body, goes_on = Bodies(text, resolver).statements(text.body.statements, inner)
-    if goes_on:
-        missing = ex.Missing(text.name, text.span)
-        body.append(ex.Return(ex.Constant(0)) if text.type is None else missing)
-    slots = [*parameters, *indices]
-    return ex.Function(
-        text.name, tuple((slot, functions.variable(slot)) for slot in slots),
-        (place, functions.variable(place)), tuple(body), len(functions.locals), _changes(body),
-    )  # fmt: skip
 
 
 def _changes(body: Sequence[ex.Statement]) -> bool:

@@ -153,11 +153,6 @@ def claim(name: str, span: Span, scope: sc.Scope) -> None:
 class Calls(Placer, Protocol):
     """Functions that can be called, and room for what is local to them (`functions.Functions`)."""
 
-    @property
-    def locals(self) -> Sequence[ex.Variable]:
-        """The parameters and local variables; the first has slot −1."""
-        ...
-
     def call(
         self, symbol: sc.FunctionSymbol, written: syntax.Call, scope: sc.Scope, resolver: Any
     ) -> ex.Expression:
