@@ -18,7 +18,7 @@ from rvmon.language.print import format_formula
 from rvmon.logic.formula import Core, Factory
 from rvmon.logic.normal_form import Lowering
 from rvmon.monitor.formula_truths import TruthsPlan, TruthsRun
-from rvmon.recordings.source import HeldRecording
+from rvmon.recordings.held_recording import HeldRecording, samples_of
 from rvmon.trace.sample import Outage, Payload, Sample, Scalar, Trace, Value, payloads_of
 from rvmon.trace.schema import is_unknown
 from rvmon.verdicts.attempt import Attempt
@@ -106,7 +106,7 @@ def look_through(
             groups[question.whose] = _Group(spec, question)
         groups[question.whose].add(question)
     if isinstance(pieces, HeldRecording):
-        outages, pieces = pieces.outages, pieces.pieces
+        outages, pieces = pieces.outages, pieces.pieces()
     source = Trace((), names, end, outages)
     runs = [group for group in groups.values() if group.begin(source, plans)]
     begin: int | None = None
@@ -121,7 +121,7 @@ def look_through(
             instants.append(times)
         if valueless:
             valueless -= _born(piece, valueless)
-        samples = tuple(HeldRecording([piece])) if of_instances else ()
+        samples = tuple(samples_of(piece)) if of_instances else ()
         for run in runs:
             run.take(piece, samples)
     positions = None if begin is None else _positions(spec, begin, end, instants)

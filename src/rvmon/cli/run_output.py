@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import shlex
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,11 +13,13 @@ from rvmon.cli.evaluation import Judged
 from rvmon.cli.output import say
 from rvmon.cli.reading import reading_words
 from rvmon.files import write_file
-from rvmon.recordings.source import HeldRecording, Source
+from rvmon.recordings.held_recording import HeldRecording
+from rvmon.recordings.source import Source
 from rvmon.session import Spec
 from rvmon.verdicts.serialise import VerdictRow, broken_rows
 
 if TYPE_CHECKING:
+    from rvmon.recordings.batch import Batch
     from rvmon.trace.sample import Sample
     from rvmon.verdicts.known_failures import KnownFailures
 
@@ -63,7 +66,8 @@ def write_files(
         if trace == "-":
             return []
         source = Source(spec.recording(place))
-        return HeldRecording(source.pieces(), source.outages)
+        again = partial(_pieces, spec, place)
+        return HeldRecording(source.pieces(), source.outages, again)
 
     if arguments.mcap:
         from rvmon.report.verdicts_mcap import write_verdicts
@@ -86,6 +90,10 @@ def write_files(
         )
         if written and arguments.format == "text":
             say(f"wrote {written[-1]}")
+
+
+def _pieces(spec: Spec, trace: str) -> Iterator[Batch | Sample]:
+    return Source(spec.recording(trace)).pieces()
 
 
 def _record_coverage(

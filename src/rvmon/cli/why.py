@@ -16,16 +16,17 @@ from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.print import format_window
 from rvmon.monitor.missing_names import expect_names
 from rvmon.recordings.batch import Batch
+from rvmon.recordings.held_recording import MOST_HELD, HeldRecording, rows_of
 from rvmon.recordings.places import name_of
-from rvmon.recordings.source import HeldRecording, Source, pieces_up_to
-from rvmon.report.changes import Looks, changes_of
+from rvmon.recordings.source import Source, pieces_up_to
+from rvmon.report.changes import Looks, RunChanges
 from rvmon.report.printer import Printer
 from rvmon.report.tracks import tracks_of
 from rvmon.report.why_text import attempt_values, why_lines
 from rvmon.report.wording import value_text
 from rvmon.session import load
 from rvmon.trace.sample import Sample, Trace
-from rvmon.trace.time import ticks_of_seconds
+from rvmon.trace.time import TIME_LIMIT, ticks_of_seconds
 from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.report import Report
 
@@ -54,29 +55,39 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
     expect_names(spec.checked, recording, mapped, only=[name], allowed=allowed)
     is_cut = arguments.until is not None
     until = recording.end if arguments.until is None else ticks_of_seconds(arguments.until)
-    pieces: list[Batch | Sample] = []
+    pieces: list[Batch | Sample] | None = []
 
     def kept(parts: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
+        nonlocal pieces
+        rows = 0
         for piece in shown_while_reading(recording, iter(parts)):
-            pieces.append(piece)
+            rows += rows_of(piece)
+            if rows > MOST_HELD and recording.can_be_read_again:
+                pieces = None
+            if pieces is not None:
+                pieces.append(piece)
             yield piece
 
+    def read() -> Iterator[Batch | Sample]:
+        if pieces is None:
+            return Source(reading.opened(spec, arguments.trace), until, is_cut=is_cut).pieces()
+        return pieces_up_to(pieces, TIME_LIMIT if until is None or not is_cut else until)
+
     report = spec.judge(Source(recording, until, is_cut=is_cut, shown=kept), only=[name])
-    if is_cut and until is not None:
-        pieces = list(pieces_up_to(pieces, until))
-    samples = HeldRecording(pieces, recording.outages)
+    samples = HeldRecording(read(), recording.outages, read if pieces is None else None)
     if not report.attempts and report.end is not None:
         requirement = spec.requirements[name]
         miss = why_not_triggered(spec.checked, requirement, samples, report.end, recording.names)
         report = replace(report, misses={name: miss})
     attempt = reading.chosen_attempt(report, name, exact)
     assert report.end is not None, "a recording with an attempt has an end"
-    with busy(f"taking {attempt.name} apart"):
-        breakdown = dissect(spec.checked, samples, report.end, attempt, recording.names)
     requirement = spec.requirements[name]
     last = report.end if attempt.decided is None else attempt.decided
-    changes = changes_of(spec.checked, samples, Looks([(attempt.triggered, last)]))
-    tracks = tracks_of(spec.checked, requirement, changes, report.absent)
+    changes = RunChanges(spec.checked, Looks([(attempt.triggered, last)]))
+    passing = HeldRecording(changes.passing(samples), samples.outages, samples.pieces)
+    with busy(f"taking {attempt.name} apart"):
+        breakdown = dissect(spec.checked, passing, report.end, attempt, recording.names)
+    tracks = tracks_of(spec.checked, requirement, changes.by_name, report.absent)
     values = attempt_values(tracks, attempt, last)
     values |= _window_values(spec.checked, attempt, samples, report, recording.names)
     if arguments.format == "json":
@@ -109,7 +120,7 @@ def _window_values(
     run = WindowValues(
         checked, questions, report.origin, Trace((), names, report.end, samples.outages)
     )
-    for piece in samples.pieces:
+    for piece in samples.pieces():
         run.take(piece)
     values = run.values()
     return {

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
-from itertools import pairwise, takewhile
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
@@ -230,54 +229,3 @@ def _occurrence(value: Any, fields: Mapping[str, Kind], gaps: Gaps) -> Any:
     if isinstance(value, tuple | list):
         return tuple(_occurrence(payload, fields, gaps) for payload in value)
     return as_declared(value, Kind.BOOL)
-
-
-class HeldRecording(Sequence[Sample]):
-    """The samples of a recording; those of columns take a tenth of the memory of samples."""
-
-    def __init__(self, pieces: Iterable[Batch | Sample], outages: Sequence[Outage] = ()) -> None:
-        self.pieces = tuple(pieces)
-        self.outages = tuple(outages)
-
-    def __len__(self) -> int:
-        """The number of rows, of which several may belong to one sample."""
-        return sum(1 if isinstance(piece, Sample) else len(piece.times) for piece in self.pieces)
-
-    def __iter__(self) -> Iterator[Sample]:
-        """The samples."""
-        for piece in self.pieces:
-            if isinstance(piece, Sample):
-                yield piece
-            else:
-                yield from piece.samples()
-
-    def __getitem__(self, place: Any) -> Any:
-        """A sample; all are gone through, but for the first."""
-        return next(iter(self)) if place == 0 else list(self)[place]
-
-    def as_known(self, names: Set[str]) -> Iterator[Batch | Sample]:
-        """The pieces, in which names are unknown while they are lost; `names`: all."""
-        waiting = deque(sorted(self.outages, key=lambda outage: outage.since))
-        turns = sorted({t for outage in waiting for t in (outage.since, outage.until)})
-        lasting: list[tuple[int, Set[str]]] = []
-        for piece in self.pieces:
-            for part in _parts(piece, turns):
-                first = part.t if isinstance(part, Sample) else int(part.times[0])
-                while waiting and waiting[0].since <= first:
-                    loss = waiting.popleft()
-                    lost_names = names if loss.names is None else loss.names
-                    lasting.append((loss.until, lost_names))
-                    yield Sample(loss.since, dict.fromkeys(lost_names))
-                # What comes at the last instant counts behind it.
-                lasting = [(until, lost_names) for until, lost_names in lasting if first < until]
-                lost = {name for _, lost_names in lasting for name in lost_names}
-                yield part.without(lost) if lost else part
-
-
-def _parts(piece: Batch | Sample, turns: Sequence[int]) -> Iterator[Batch | Sample]:
-    """A piece, of which rows are cut apart where something is lost, or found."""
-    if isinstance(piece, Sample) or not turns:
-        yield piece
-        return
-    edges = sorted({0, len(piece.times), *piece.times.searchsorted(turns).tolist()})
-    yield from (piece.cut(start, stop) for start, stop in pairwise(edges))

@@ -14,7 +14,8 @@ from rvmon.analysis.subformulas import PartTruth, TriggerParts, part_truths_of
 from rvmon.analysis.truths import Question, RecordedTruths, look_through, parts_of
 from rvmon.errors import RvmonError
 from rvmon.language.checked.specification import CheckedSpec
-from rvmon.report.changes import Changes, Looks, ValuesAt, changes_of
+from rvmon.recordings.held_recording import held
+from rvmon.report.changes import Changes, Looks, RunChanges, ValuesAt, changes_of
 from rvmon.report.html import Child
 from rvmon.report.time_axis import View, view_of, whole_run
 from rvmon.report.timeline import ReferenceAttempt
@@ -176,9 +177,9 @@ class _Panels:
     """Makes the panels of a page; formulas are evaluated in one pass for all of them."""
 
     def __init__(self, content: RunPage, shown: Mapping[str, Sequence[Attempt]]) -> None:
-        self._content = content
+        self._content, self._shown = content, shown
         report = content.run.report
-        samples = content.run.samples
+        samples = held(content.run.samples)
         self._begin = samples[0].t if samples else report.origin  # once, as each look takes a block
         self._changes: dict[int, Mapping[str, Changes]] = {}
         self._waits = {
@@ -186,12 +187,19 @@ class _Panels:
             for name, attempts in shown.items()
             if name not in report.late
         }
+        self._is_dissected = not samples.is_longer_than(MOST_DISSECTED)
         self._truths: RecordedTruths | None = None
         if samples and report.end is not None:
             questions = list(self._questions(shown))
             declared, absent = {*content.spec.signals, *content.spec.events}, report.absent
             names = frozenset(declared - absent)  # that have a source in the run
-            self._truths = look_through(content.spec, questions, samples, report.end, names)
+            # Both at once, as a long run is read for each time that it is gone through.
+            noted = RunChanges(content.spec, self._looks(content.run))
+            self._changes[id(content.run)] = noted.by_name
+            self._truths = look_through(
+                content.spec, questions, noted.passing(samples), report.end, names,
+                outages=samples.outages,
+            )  # fmt: skip
         # By requirement, its attempts with their late responses and views.
         self._views = {name: self._seen(name, attempts) for name, attempts in shown.items()}
 
@@ -210,7 +218,7 @@ class _Panels:
             yield from self._waits.get(name, {}).values()
             if not attempts and name not in self._content.run.report.misses:
                 yield TriggerParts(self._content.spec, requirement).question
-            if len(self._content.run.samples) <= MOST_DISSECTED:
+            if self._is_dissected:
                 yield from (parts_of(requirement, attempt) for attempt in attempts)
 
     def of(self, name: str, attempts: Sequence[Attempt]) -> Iterator[Panel]:
@@ -253,24 +261,26 @@ class _Panels:
         return tracks_of(spec, spec.requirements[name], self._changes[id(run)], run.report.absent)
 
     def _looks(self, run: JudgedRun) -> Looks:
-        """Where a run is drawn, or compared with a failed attempt."""
+        """Where a run is drawn, or compared with a failed attempt, at least."""
         requirements, stretches = self._content.spec.requirements, list[tuple[int, int]]()
         everywhere = set[str]()
-        for name, seen in self._views.items():
-            if not seen:
+        for name, attempts in self._shown.items():
+            if not attempts:
                 everywhere.update(names_of_requirement(requirements[name]))
-            for attempt, _, view in seen:
-                passing: Iterator[Attempt] = iter(())
+            for attempt in attempts:
+                view, shifts = view_of(attempt, self._content.run.report), [0]
+                start, end = view.start, view.end
                 if attempt.verdict is Verdict.FAIL:
+                    # A late response that is in view makes it at most twice as long.
+                    start, end = start - (end - start), end + (end - start)
                     passing = islice(run.report.of(name, Verdict.PASS), MOST)
-                shifts = [attempt.triggered - passed.triggered for passed in passing]
-                stretches += [(view.start - shift, view.end - shift) for shift in (0, *shifts)]
+                    shifts += [attempt.triggered - passed.triggered for passed in passing]
+                stretches += [(start - shift, end - shift) for shift in shifts]
         return Looks(stretches, everywhere)
 
     def _part_truths(self, attempt: Attempt, view: View) -> tuple[PartTruth, ...]:
         """The truth of each subformula over the part of a view within the run."""
-        samples = self._content.run.samples
-        if self._truths is None or len(samples) > MOST_DISSECTED:
+        if self._truths is None or not self._is_dissected:
             return ()
         start, stop = max(view.start, self._begin), min(view.end, self._truths.end)
         if start > stop:

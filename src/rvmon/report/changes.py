@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping, Sequence, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any, overload
 
@@ -11,8 +11,8 @@ from msgspec import Struct
 
 from rvmon.language.checked.specification import CheckedSpec
 from rvmon.recordings.coalesce import updates_in
+from rvmon.recordings.held_recording import HeldRecording, UnknownWhileLost, held
 from rvmon.recordings.last_updates import known
-from rvmon.recordings.source import HeldRecording
 from rvmon.trace.sample import Sample, Scalar, Value
 
 if TYPE_CHECKING:
@@ -134,16 +134,15 @@ EVERYWHERE = Looks()
 
 
 def changes_of(
-    spec: CheckedSpec, samples: Iterable[Sample] | HeldRecording, looks: Looks = EVERYWHERE
+    spec: CheckedSpec, samples: Iterable[Sample], looks: Looks = EVERYWHERE
 ) -> Mapping[str, Changes]:
     """By name, the changes of each signal and event of a run, at least where they are looked at.
 
     There the values are right; of columns elsewhere only some changes are kept, in little memory.
     """
     noted = RunChanges(spec, looks)
-    names = {*noted.by_name}
-    for piece in samples.as_known(names) if isinstance(samples, HeldRecording) else samples:
-        noted.add(piece)
+    for _ in noted.passing(held(samples)):
+        pass
     return noted.by_name
 
 
@@ -159,8 +158,15 @@ class RunChanges:
         # the changes of each so far
         self.by_name = {name: Changes(stale.get(name)) for name in (*spec.signals, *spec.events)}
 
-    def add(self, piece: Batch | Sample) -> None:
-        """Add the changes in the next piece."""
+    def passing(self, run: HeldRecording) -> Iterator[Batch | Sample]:
+        """The pieces of the run, whose changes are added as they go by."""
+        known = UnknownWhileLost(run.outages, self.by_name.keys())
+        for piece in run.pieces():
+            for part in known.parts(piece):
+                self._add(part)
+            yield piece
+
+    def _add(self, piece: Batch | Sample) -> None:
         if isinstance(piece, Sample):
             for name, value in updates_in(piece.values, self._ignoring).items():
                 if name in self.by_name:

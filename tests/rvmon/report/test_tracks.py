@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import rvmon
 from rvmon.recordings import places
-from rvmon.recordings.source import HeldRecording
+from rvmon.recordings.held_recording import HeldRecording
 from rvmon.report.changes import Course, Looks, changes_of
 from rvmon.report.time_axis import View, round_instants, view_of
 from rvmon.report.tracks import (

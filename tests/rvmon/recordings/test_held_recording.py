@@ -1,0 +1,68 @@
+"""Recordings that are held, and those that are read again as they are too long for that."""
+
+import pytest
+
+from rvmon.cli import why
+from rvmon.recordings import held_recording, places
+from rvmon.recordings.held_recording import HeldRecording, held
+from rvmon.report import attempt_panels
+from rvmon.trace.sample import Sample
+
+SAMPLES = [Sample(t, {"x": float(t)}) for t in range(10)]
+
+
+@pytest.mark.parametrize("most", [4, 9, 10, 100])
+def test_it_is_the_same_each_time_however_much_is_held(monkeypatch, most):
+    monkeypatch.setattr(held_recording, "MOST_HELD", most)
+    readings = []
+
+    def read():
+        readings.append(len(readings))
+        return iter(SAMPLES)
+
+    recording = HeldRecording(read(), (), read)
+    assert recording
+    assert recording[0] is SAMPLES[0]
+    assert readings == [0]
+    next(recording.pieces())  # one that is not gone on with
+    for _ in range(3):
+        assert [*recording] == SAMPLES
+        assert recording[3] is SAMPLES[3]
+        assert len(recording) == 10
+    assert (len(readings) > 1) == (most < 10)
+    assert [recording.is_longer_than(rows) for rows in (most, 0)] == [most < 10, True]
+
+
+def test_without_a_way_to_read_it_again_all_of_it_is_held(monkeypatch):
+    monkeypatch.setattr(held_recording, "MOST_HELD", 1)
+    recording = held(iter(SAMPLES))
+    assert [*recording] == [*recording] == SAMPLES
+    assert held(recording) is recording
+    assert not held([])
+
+
+SPEC = """
+signal gap : real
+signal near : bool
+requirement R
+  upon rise(near)
+  then within 2 s gap > 3
+"""
+
+
+def test_pages_and_reasons_are_those_of_a_recording_that_is_held(monkeypatch, tmp_path, says):
+    (tmp_path / "a.rv").write_text(SPEC)
+    rows = "".join(f"{t},{t * 7 % 5 * 0.9},{int(t % 11 in (2, 3, 7))}\n" for t in range(200))
+    (tmp_path / "a.csv").write_text("t,gap,near\n" + rows)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(places, "BLOCK", 256)
+    monkeypatch.setattr(attempt_panels, "MOST_DISSECTED", 20)  # of more, no page shows the parts
+    words = [1, "run", "a.rv", "a.csv", "--report", "pages"], [0, "why", "a.rv", "a.csv", "R"]
+    found = []
+    for most in (1_000_000, 50):
+        for module in (held_recording, why):
+            monkeypatch.setattr(module, "MOST_HELD", most)
+        said = [says(code, *one).out for code, *one in words]
+        found.append((said, (tmp_path / "pages" / "a.html").read_text()))
+    assert found[0] == found[1]
+    assert "gap" in found[0][1]
