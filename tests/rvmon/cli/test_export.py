@@ -27,10 +27,14 @@ def spec(tmp_path):
     return str(path)
 
 
-def test_dot(spec, says):
+def test_drawings_for_graphviz(spec, says):
+    """Of each requirement, and of a model."""
     shown = says(0, "export", spec, "--to", "dot").out
     assert shown.count("digraph") == 2
     assert "within 2 s not closed" in shown
+    drawn = says(0, "export", MODELS / "dock.ta", "--to", "dot").out
+    assert drawn.startswith("digraph network {")
+    assert "->" in drawn
 
 
 def test_json(spec, tmp_path):
@@ -87,12 +91,6 @@ def test_a_model_for_uppaal_comes_back(tmp_path):
     path = tmp_path / "fischer.xml"
     assert main(["export", str(MODELS / "fischer.ta"), "--to", "uppaal", "-o", str(path)]) == 0
     assert main(["verify", str(path), "--query", "exclusion"]) == 0
-
-
-def test_a_model_for_graphviz(says):
-    drawn = says(0, "export", MODELS / "dock.ta", "--to", "dot").out
-    assert drawn.startswith("digraph network {")
-    assert "->" in drawn
 
 
 def test_queries_that_uppaal_has_not_are_named(tmp_path, says):

@@ -31,28 +31,25 @@ def screen(tmp_path, monkeypatch):
     return Screen()
 
 
-@pytest.mark.parametrize("jobs", ["1", "2"])
-def test_recordings_are_counted(screen, jobs):
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        ("run s.rv one.jsonl two.jsonl --jobs 1", "recordings"),
+        ("run s.rv one.jsonl two.jsonl --jobs 2", "recordings"),
+        ("run s.rv one.jsonl", "one.jsonl"),
+        ("check s.rv --analyse", "analysing s.rv"),
+    ],
+)
+def test_long_work_says_how_far_it_is_and_short_work_nothing(screen, monkeypatch, words, told):
+    """Recordings are counted, a single one by what was read; what nobody can count is named.
+
+    That at once, as it may last.
+    """
     with redirect_stderr(screen):
-        assert main(["run", "s.rv", "one.jsonl", "two.jsonl", "--jobs", jobs]) == 0
-    assert "recordings" in screen.getvalue()
-    assert "one.jsonl" not in screen.getvalue()
-
-
-def test_a_single_recording_shows_how_far_it_is_read(screen):
-    with redirect_stderr(screen):
-        assert main(["run", "s.rv", "one.jsonl"]) == 0
-    assert "one.jsonl" in screen.getvalue()
-
-
-def test_short_work_and_files_show_no_bar(screen, monkeypatch):
+        assert main(words.split()) == 0
+    assert told in screen.getvalue()
+    assert ("one.jsonl" in screen.getvalue()) is (told == "one.jsonl")
     monkeypatch.setattr(output, "PATIENCE_S", 1e9)
-    with redirect_stderr(screen):
-        assert main(["run", "s.rv", "one.jsonl", "two.jsonl"]) == 0
-    assert screen.getvalue() == ""
-
-
-def test_what_nobody_can_count_is_named_while_it_lasts(screen):
-    with redirect_stderr(screen):
-        assert main(["check", "s.rv", "--analyse"]) == 0
-    assert "analysing s.rv" in screen.getvalue()
+    with redirect_stderr(short := Screen()):
+        assert main(words.split()) == 0
+    assert (short.getvalue() == "") is words.startswith("run")

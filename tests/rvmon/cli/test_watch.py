@@ -53,11 +53,18 @@ def test_what_a_program_greets_with_does_not_choose_the_clock(door, says, before
 
 
 @pytest.mark.usefixtures("door")
-def test_a_time_that_is_named_is_in_each_line(says):
-    """One without it is lost, not stamped by the clock of the machine."""
-    told = says(1, "watch", "door.rv", "a.jsonl", "--time", "stamp:ms")
-    assert "line 1 is not taken: there is no time `stamp`" in told.err
-    assert "0 samples, 2 lost" in told.out
+@pytest.mark.parametrize(
+    ("words", "why", "end"),
+    [
+        ("--time stamp:ms", "there is no time `stamp`", "0 samples, 2 lost"),
+        ("--robot id", "there is no robot's name in `id`", "nothing has come yet"),
+    ],
+)
+def test_a_time_or_a_robot_that_is_named_is_in_each_line(says, words, why, end):
+    """One without it is lost: neither stamped by the clock of the machine, nor of nobody."""
+    told = says(1, "watch", "door.rv", "a.jsonl", *words.split())
+    assert f"line 1 is not taken: {why}" in told.err
+    assert end in told.out
 
 
 @pytest.mark.parametrize(
@@ -106,13 +113,6 @@ def test_a_watch_of_too_many_robots_is_no_success(door, says):
     told = says(1, "watch", "door.rv", "a.jsonl", "--robot", "robot", "--format", "json")
     assert len(told.out.splitlines()) == 1_000
     assert "robot '1000' is one too many: at most 1000" in told.err
-
-
-def test_lines_that_are_of_no_robot_are_no_success(door, says):
-    (door / "a.jsonl").write_text(FAILS)
-    told = says(1, "watch", "door.rv", "a.jsonl", "--robot", "id")
-    assert "there is no robot's name in `id`" in told.err
-    assert "nothing has come yet" in told.out
 
 
 def test_what_passes_can_be_left_out(door, capsys):

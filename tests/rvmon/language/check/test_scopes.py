@@ -90,17 +90,6 @@ def test_scope_is_the_published_formula(call, scope):
     assert len(seen) > 1
 
 
-def test_start_is_where_the_scope_opens():
-    spec, _ = compile_text(
-        "time sampled\nsignal p, q, r : bool\n"
-        "requirement R upon start then eventually p scope after (q) until (r)"
-    )
-    words = ["p", "q", "p", "r", "q", ".", "r"]
-    samples = [Sample(t, {n: n in word for n in "pqr"}) for t, word in enumerate(words)]
-    report = oracle.evaluate(spec, samples)
-    assert [(a.triggered, a.verdict) for a in report.attempts] == [(1, "P"), (4, "F")]
-
-
 def test_pulse_stays_a_pulse():
     spec, _ = compile_text(
         "event a, b\nsignal q : bool\nrequirement R upon a then within 3 s b scope after (q)"

@@ -5,7 +5,6 @@ from tests.tools.findings import findings_of
 
 from rvmon.models.language import resolve
 from rvmon.models.language.load import load_network, loads_network
-from rvmon.models.search.verify import verify
 
 A = "automaton A { location a start a } "
 
@@ -72,13 +71,6 @@ def test_each_is_one_finding(text, code, message, monkeypatch):
     (diagnostic,) = findings_of(loads_network, text)
     assert diagnostic.code == code
     assert message in diagnostic.message
-
-
-@pytest.mark.slow
-def test_a_wide_quantifier_is_decided():
-    network = loads_network("int[0,9] v " + A)
-    assert verify(network, "A[] forall (i : int[0,2999]) v < i + 1").holds
-    assert not verify(network, "E<> exists (i : int[1,2999]) v == i").holds
 
 
 def test_findings_end_at_a_hundred():

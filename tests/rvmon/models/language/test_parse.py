@@ -63,18 +63,6 @@ def test_every_part_of_declarations_tells_its_mistake():
     assert lines_of(XML) == [2, 4, 9, 10, 12, 12, 13, 14, 15, 16]
 
 
-def test_a_part_that_is_cut_short_hides_no_other():
-    text = """automaton A {
-  location a invariant
-  location b
-  start a
-  edge a -> b when x > > 1
-}
-"""
-    assert lines_of(text)[-1] == 5
-    assert len(lines_of(text)) == 2
-
-
 def test_so_many_mistakes_are_not_all_told():
     assert len(lines_of("int[0,5 n\n" * 100)) == MOST
 
