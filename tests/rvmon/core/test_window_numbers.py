@@ -1,5 +1,9 @@
 """Windows of the past as numbers: the memory that they take, when they are due, their sums."""
 
+import random
+from collections import deque
+from fractions import Fraction
+
 import pytest
 from tests.tools.each import each
 
@@ -65,3 +69,18 @@ def test_sums_are_those_of_the_numbers_that_there_are():
         samples = [(float(t), {"e": {"x": x}}) for t, x in enumerate([*values])]
         last = spec.evaluate(samples).attempts[-1]
         assert last.verdict.value == "P" if len(values) == 3 else "F"
+
+
+def test_means_and_variances_are_the_nearest_doubles():
+    """Of exact sums, whatever the sizes of the numbers."""
+    spec = rvmon.loads(
+        "spec s\nsignal x : real\nevent e\nrequirement R\n  upon e then immediately not e\n"
+        "  let mean = mean(last(7, x))\n  let spread = variance(last(7, x))\n"
+    )
+    monitor, rng, last = spec.monitor(), random.Random(1), deque(maxlen=7)
+    for t in range(600):
+        last.append(Fraction(rng.uniform(-1, 1) * 2.0 ** rng.choice([0, 0, 0, 3, -40, 300, -300])))
+        (record,) = monitor.step(float(t), {"x": float(last[-1]), "e": True})
+        mean = sum(last) / len(last)
+        spread = sum((x - mean) ** 2 for x in last) / len(last)
+        assert record.captured == {"mean": float(mean), "spread": float(spread)}, last

@@ -36,6 +36,7 @@ def test_what_is_wrong_stands_first(door):
         "total 46 %",
         "Holes 6",
         "near: far never hit : the arm is 1 m long: far begins at 1 m",
+        "Verdicts random 2 directed 2 P F NT I P F NT I D1 2 0 0 0 0 1 0 0",
         "3 of 4 tests cover the same, no fewer do: calm-2 wild-2 wild-1",
         "Number of tests: P passed F failed NT not triggered I inconclusive",
     ]
