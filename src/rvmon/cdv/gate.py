@@ -12,7 +12,7 @@ from rvmon.cdv.campaign_plan import Played, Results, accepted_failures, is_about
 from rvmon.cdv.campaign_summary import differences, missed
 from rvmon.cdv.coverage import coverage_model, covered_share
 from rvmon.cdv.sequential_test import Decision
-from rvmon.coverage import Ending
+from rvmon.coverage import STATES, Ending
 from rvmon.errors import UnknownNameError
 from rvmon.report.junit import add_suite, as_text, case_of
 from rvmon.texts import counted, shown
@@ -99,6 +99,7 @@ def judge_campaign(
     if not results.cut_short:
         checks |= _expected_failures(expected, results.played)
         checks |= dict(_contradicted(results))
+        checks |= dict(_unlisted(results))
         checks |= dict(_gated(results, requirements)) if strict else {}
         for (robot, name), by_strategy in decisions.items():
             known = (one.requirement == name and one.robot in ("", robot) for one in expected)
@@ -197,6 +198,20 @@ def _contradicted(results: Results) -> Iterator[tuple[str, str]]:
         }
         wrong = "; ".join(f"{test} hits {item}" for item, test in first.items())
         yield f"no test hits what is called unreachable ({robot})", wrong
+
+
+def _unlisted(results: Results) -> Iterator[tuple[str, str]]:
+    """The states that were entered, and that the campaign, which lists some, does not."""
+    campaign = results.plan.campaign
+    for robot in campaign.robots if campaign.states else ():
+        first = {
+            state: test_run.job.test.name
+            for test_run in reversed(results.counting(robot))
+            for state in test_run.outcome.hits.get(STATES, {}).keys() - {*campaign.states}
+        }
+        if first:
+            wrong = "; ".join(f"{test} enters `{state}`" for state, test in sorted(first.items()))
+            yield f"the states of the campaign are all that are entered ({robot})", wrong
 
 
 def _gate_name(campaign: Campaign, played: Played) -> str:

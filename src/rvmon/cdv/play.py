@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 import pickle
+import sys
 import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping, Sequence
-from contextlib import closing, nullcontext
+from contextlib import chdir, closing, nullcontext, redirect_stdout
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -137,11 +138,15 @@ class Bench:
 def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
     """Play a test; an exception that comes out ends the run at its last sample.
 
+    What it prints goes to standard error, as results go to standard output; the working directory
+    is that of before again.
+
     Raises:
         TestError: the test cannot be played, says the system.
     """
     try:
-        run: object = system.play(test, observer)
+        with redirect_stdout(sys.stderr), chdir(os.curdir):
+            run: object = system.play(test, observer)
     except TestError:
         raise
     except Exception as error:  # noqa: BLE001 - of whatever kind those of the system are

@@ -1,6 +1,7 @@
 """Whatever a test does, it has a result, and the others go on."""
 
 import multiprocessing
+import os
 
 import msgspec
 import pytest
@@ -117,3 +118,19 @@ def test_a_run_that_is_none_is_a_crash(campaign, spec, run, told):
     odd, good = (one.outcome for one in execute(plan(chosen), jobs=1).played)
     assert (odd.ending, good.ending) == (Ending.CRASHED, Ending.COMPLETED)
     assert told in odd.error
+
+
+def test_what_a_system_prints_and_where_it_goes_concern_it_alone(campaign, spec, capfd):
+    """Its print is no result, which goes to standard output; the next test begins at home."""
+    home = os.getcwd()
+
+    class Wanderer:
+        def play(self, test, observer):
+            print("I am in", os.getcwd())
+            os.chdir("/")
+            return cdv.Run(1)
+
+    chosen = campaign(("one", {}), ("two", {}), robots={"toy": cdv.Robot(Wanderer, spec)})
+    execute(plan(chosen), jobs=1)
+    printed = capfd.readouterr()
+    assert (printed.out, printed.err) == ("", f"I am in {home}\n" * 2)

@@ -126,6 +126,13 @@ def test_what_is_called_unreachable_is_not_to_be_hit(campaign):
         assert found.checks == {"no test hits what is called unreachable (toy)": wrong}
 
 
+def test_a_state_that_the_campaign_does_not_list_is_not_to_be_entered(campaign):
+    """A name that was misspelt would leave another state uncovered, and nobody told."""
+    wrong = "the states of the campaign are all that are entered (toy): low enters `up`"
+    for states, expected in ((("down", "upp"), [wrong]), (("down", "up"), []), ((), [])):
+        assert judged(campaign(LOW, states=states)).wrong == expected
+
+
 def known(**what):
     """A failure that is expected."""
     return {"expected_failures": [cdv.ExpectedFailure(**{"requirement": "T1", **what}, reason="")]}
