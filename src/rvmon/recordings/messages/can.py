@@ -29,7 +29,7 @@ _TEXTS = {
     ".asc": (
         re.compile(
             r"\s*($|//|(date|base|internal|no|previous|begin|end)\b|"
-            r"\d+\.\d+\s+((?!canfd)[a-z]|\d+\s+(?!errorframe)[a-z]*[g-z]))",
+            r"\d+\.\d+\s+((?!canfd)[a-z]|\d+\s+(?!errorframe|[rt]x\b)[a-z]*[g-z]))",
             re.IGNORECASE,
         ),
         _NEVER,
@@ -181,6 +181,8 @@ class _Lines:
             self._line = next(self._file, "")
             if not self._line:
                 raise StopIteration
+            if "\0" in self._line:  # a block that was not written: of several lines it makes one
+                self.why = _UNREAD
             if not self._hidden.match(self._line):
                 return self._line
 

@@ -84,6 +84,18 @@ def test_a_group_of_mdf_that_has_fewer_records_than_it_counts_is_told(tmp_path):
         spec.evaluate(path)
 
 
+def test_a_block_of_a_text_that_was_not_written_is_lost(tmp_path):
+    """Of the line within it and the next it makes one that is a frame to the library."""
+    _, spec = written(tmp_path, "a.asc", FEW)
+    path = write_can(tmp_path / "a.trc", [*FEW[:3], (FEW[3][0], 7.0, 0), *FEW[4:]])
+    data = path.read_bytes()
+    assert spec.evaluate(path).verdicts["R1"] == "F"
+    start = data.rindex(b"\n", 0, data.index(b"E0 40")) + 1
+    behind = data.index(b"\n", start) + 9  # in the next line behind its number
+    path.write_bytes(data[:start] + bytes(behind - start) + data[behind:])
+    assert spec.evaluate(path).verdicts["R1"] == "I"
+
+
 def test_a_packet_whose_kind_is_damaged_is_lost(tmp_path):
     dialect = pytest.importorskip("pymavlink.dialects.v20.ardupilotmega")
     path, spec = written(tmp_path, "a.tlog", FEW)
@@ -113,7 +125,9 @@ def test_a_line_of_can_that_cannot_be_read_is_lost(tmp_path, ending):
     assert len(frames) == 6
     assert spec.evaluate(path).verdicts["R1"] == "P"
     damaged = frames[3].replace("Rx", "Rq", 1).replace(" DT ", " D\u00a7 ", 1)
-    for broken in (damaged, "\0\0\0" + frames[3][5:], frames[3][:12]):
+    without_channel = re.sub(r"(\d) +2 ", r"\1 ", frames[3], count=1)
+    others = (without_channel,) if ending == "asc" else ()
+    for broken in (*others, damaged, "\0\0\0" + frames[3][5:], frames[3][:12]):
         path.write_text(text.replace(frames[3], broken))
         report = spec.evaluate(path)
         assert report.verdicts["R1"] == "I"
