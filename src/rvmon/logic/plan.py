@@ -185,39 +185,21 @@ def _shared(
 
 def _uses_of(graph: Graph, captured: Iterable[rv.Numeric]) -> dict[str, Uses]:
     """By name, the uses of signals and events; `captured` are the expressions of `let`."""
-    found = {
-        name: _uses([graph.nodes[place] for place in places], name)
-        for name, places in graph.by_name.items()
-    }
     amounts = (node.amount for node in graph.nodes)
     windows = (amount.value for amount in amounts if isinstance(amount, rv.WindowValue))
-    # The value of a window is no leaf of the graph, so its names have to be added.
-    for expression in (*captured, *(value for value in windows if value is not None)):
-        for name in inputs_of(expression):
-            found.setdefault(name, Uses())
-        for part in operands(expression):
-            if isinstance(part, rv.UpdateValue):
-                found[part.name] = replace(found[part.name], history=True)
-    return found
-
-
-def _uses(leaves: Sequence[State], name: str) -> Uses:
-    return Uses(
-        history=any(_asks_history(state, name) for state in leaves),
-        marked=any(
-            isinstance(state.leaf, rv.ProbeAtom) and state.leaf.probe is not rv.Probe.KNOWN
-            for state in leaves
-        ),
-    )
-
-
-def _asks_history(state: State, name: str) -> bool:
-    leaf = state.leaf
-    if isinstance(leaf, rv.ProbeAtom):
-        return leaf.probe is rv.Probe.CHANGED
-    if isinstance(leaf, Unborn):
-        return dict(leaf.signals).get(name, False)
-    return isinstance(leaf, rv.Compare) and any(
-        isinstance(part, rv.UpdateValue) and part.name == name
-        for part in operands(leaf.left, leaf.right)
-    )
+    # The value of a window is no leaf of the graph.
+    numbers = [*captured, *(value for value in windows if value is not None)]
+    history, marked = set[str](), set[str]()
+    for node in graph.nodes:
+        match node.leaf:
+            case rv.ProbeAtom(probe=probe, name=name) if probe is not rv.Probe.KNOWN:
+                marked.add(name)
+                if probe is rv.Probe.CHANGED:
+                    history.add(name)
+            case Unborn(signals=signals):
+                history.update(name for name, moved in signals if moved)
+            case rv.Compare(left=left, right=right):
+                numbers += (left, right)
+    history.update(part.name for part in operands(*numbers) if isinstance(part, rv.UpdateValue))
+    names = dict.fromkeys((*graph.by_name, *inputs_of(*numbers)))
+    return {name: Uses(name in history, name in marked) for name in names}
