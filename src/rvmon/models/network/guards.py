@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import islice
 
 from rvmon.diagnostics import Span
@@ -216,9 +216,7 @@ def split_guard(expression: ex.Expression, span: Span) -> Guard:
 
 def guards_of(expression: ex.Expression) -> Iterator[Guard]:
     """A condition as guards of which one holds where it does, and never two; made as asked for."""
-    for parts in _cases(normal_form(expression)):
-        data = together(part for part in parts if not isinstance(part, ex.ClockCompare))
-        yield Guard(data, tuple(part for part in parts if isinstance(part, ex.ClockCompare)))
+    return map(_guard, _cases(normal_form(expression)))
 
 
 MOST_PARTS = 100_000  # of a condition in normal form
@@ -253,28 +251,29 @@ def alternatives_of(
 
     The formula has no path operators and no `deadlock`; `due` are bounds that hold besides in each.
     """
-    pieces = [] if formula is None else _split(formula)
-    return [Guard(together(data), (*compares, *due)) for data, compares in pieces]
+    pieces = [] if formula is None else distributed(formula, is_discrete)
+    return [_guard([*parts, *due]) for parts in pieces]
 
 
-_Parts = tuple[list[ex.Expression], list[ex.ClockCompare]]
-
-
-def _split(formula: ex.Expression) -> list[_Parts]:
-    if is_discrete(formula):
-        return [([formula], [])]
+def distributed(
+    formula: ex.Expression, is_whole: Callable[[ex.Expression], bool]
+) -> list[list[ex.Expression]]:
+    """A normalised formula as alternatives of parts that hold together; what is whole stays so."""
     match formula:
-        case ex.ClockCompare():
-            return [([], [formula])]
-        case ex.BinaryOperation(ex.BinaryOp.AND, left, right):
-            some, others = _split(left), _split(right)
+        case ex.BinaryOperation(ex.BinaryOp.OR, left, right) if not is_whole(formula):
+            return [*distributed(left, is_whole), *distributed(right, is_whole)]
+        case ex.BinaryOperation(ex.BinaryOp.AND, left, right) if not is_whole(formula):
+            some, others = distributed(left, is_whole), distributed(right, is_whole)
             if len(some) * len(others) > MOST_PIECES:
                 raise model_error("TA019", "the query has too many alternatives", None)
-            return [(a + c, b + d) for a, b in some for c, d in others]
-        case ex.BinaryOperation(ex.BinaryOp.OR, left, right):
-            return [*_split(left), *_split(right)]
+            return [[*one, *other] for one in some for other in others]
         case _:
-            raise AssertionError(f"{formula} is not normalised")
+            return [[formula]]
+
+
+def _guard(parts: Sequence[ex.Expression]) -> Guard:
+    data = together(part for part in parts if not isinstance(part, ex.ClockCompare))
+    return Guard(data, tuple(part for part in parts if isinstance(part, ex.ClockCompare)))
 
 
 def _cases(formula: ex.Expression) -> Iterator[list[ex.Expression]]:

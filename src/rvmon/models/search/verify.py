@@ -169,19 +169,6 @@ def _at_start(question: _Question, formula: ex.Expression) -> _Found:
 # Reaching.
 
 
-def _alternatives(formula: ex.Expression) -> list[list[ex.Expression]]:
-    """A normalised formula as alternatives of parts that hold together; plain parts stay whole."""
-    match formula:
-        case ex.BinaryOperation(ex.BinaryOp.OR, left, right) if guards.has_paths(formula):
-            return [*_alternatives(left), *_alternatives(right)]
-        case ex.BinaryOperation(ex.BinaryOp.AND, left, right) if guards.has_paths(formula):
-            return [
-                [*some, *others] for some in _alternatives(left) for others in _alternatives(right)
-            ]
-        case _:
-            return [[formula]]
-
-
 def _lasting_part(parts: Sequence[ex.Expression]) -> ex.PathFormula | None:
     """The only part that speaks of runs, if it is `E[]` with a plain formula inside."""
     match [part for part in parts if guards.has_paths(part)]:
@@ -215,7 +202,7 @@ def _reach(
 def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _Found:
     """A run to a formula that speaks of runs from there; each alternative is sought by itself."""
     run = None
-    for parts in _alternatives(formula):
+    for parts in guards.distributed(formula, lambda part: not guards.has_paths(part)):
         lasting = _lasting_part(parts)
         first = [part for part in parts if part is not lasting]
         if lasting is None or not all(map(guards.is_plain, first)):
