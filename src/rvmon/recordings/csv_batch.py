@@ -14,7 +14,14 @@ from msgspec.structs import replace
 from rvmon.errors import TraceError
 from rvmon.recordings.batch import NO_UPDATE, UNKNOWN, YES, Batch, Cells
 from rvmon.recordings.cells import batch_of, cells_of_labels, kept
-from rvmon.recordings.csv_rows import Column, Layout, csv_samples, split_lines, unended
+from rvmon.recordings.csv_rows import (
+    NEVER_WRITTEN,
+    Column,
+    Layout,
+    csv_samples,
+    split_lines,
+    unended,
+)
 from rvmon.recordings.csv_text import CsvText, native_csv
 from rvmon.recordings.places import bounded_lines, is_short_of_memory
 from rvmon.recordings.rows import Row
@@ -108,9 +115,15 @@ class _Reader:
             numbers, says, lines, odd, labels, table,
         )  # fmt: skip
         fault = None
+        if (hole := text.find(b"\0", start, at)) >= 0:
+            line = len(text[start : hole + 1].splitlines())
+            rows = int(lines[:rows].searchsorted(line))
+            fault = line, TraceError(NEVER_WRITTEN)
         # Cells that C does not read (other notations, quotes) go the way of single rows, so there
         # is one meaning.
         for row, place, *ends in odd[:odd_count].tolist():
+            if row >= rows:
+                break
             try:
                 self._read_odd(_cell(text, *ends), place, row, numbers, says)
             except TraceError as error:

@@ -117,6 +117,12 @@ def layout_of(header: Sequence[str], stamps: Stamps, schema: Schema) -> Layout:
     )
 
 
+NEVER_WRITTEN = (
+    "there are zero bytes, as where a block of a file was never written: lines may be missing: "
+    "copy it again, or end it there"
+)
+
+
 class CopiedLines:
     """Lines as they are read, of which those of the last row can be asked for."""
 
@@ -151,6 +157,8 @@ def split_lines(
                     f"line {began}: a row of more than {LONGEST_LINE:,} characters begins here: "
                     "close its quotes"
                 )
+            if "\0" in line:
+                raise TraceError(f"line {before + reader.line_num + 1}: {NEVER_WRITTEN}")
             yield line
 
     reader = csv.reader(of_row(), delimiter=separator, strict=True)

@@ -57,3 +57,26 @@ def test_faults_of_who_reads_are_raised_in_their_turn():
     with pytest.raises(ValueError, match="x"):
         second[1]()
     assert third == (b"2", None)
+
+
+@pytest.mark.parametrize("separator", [",", ";", " "])
+@pytest.mark.parametrize("ending", ["\n", "\r"])
+@pytest.mark.parametrize("block", [1 << 20, 4096])
+def test_a_block_that_was_never_written_is_told(tmp_path, monkeypatch, separator, ending, block):
+    """Of the line in which it begins and the one in which it ends it makes a row as any other."""
+    monkeypatch.setattr(places, "BLOCK", block)
+    rows = [separator.join((str(t), "5" if t == 601 else "1", "note")) for t in range(1000)]
+    text = ending.join((separator.join(("t", "x", "by")), *rows, "")).encode()
+    path = tmp_path / "a.csv"
+    path.write_bytes(text)
+    spec = rvmon.loads("signal x : real\nrequirement R\n  always x < 2\n")
+    assert spec.evaluate(path).verdicts["R"] == "F"
+    [first, last] = (text.index(rows[t].encode()) + len(rows[t]) - 2 for t in (600, 601))
+    path.write_bytes(text[:first] + bytes(last - first) + text[last:])
+    found = deque()
+    with pytest.raises(rvmon.TraceError, match=r"a\.csv: line 602: there are zero bytes"):
+        found.extend(spec.recording(path))
+    assert [one.t for one in found] == [t * 10**9 for t in range(len(found))]
+    (tmp_path / "topics.toml").write_text("")
+    with pytest.raises(rvmon.TraceError, match=r"a\.csv: line 602: there are zero bytes"):
+        rvmon.loads("signal a.x : real\nrequirement R\n  always a.x < 2\n").evaluate(tmp_path)
