@@ -8,7 +8,7 @@ from itertools import combinations
 
 from msgspec import Struct
 
-from rvmon.analysis.product import Aim, Together
+from rvmon.analysis.product import Together
 from rvmon.analysis.vacuity import Subject
 
 MOST_OFFSETS = 12  # the most distances between the triggers of two requirements that are examined
@@ -97,7 +97,7 @@ class ConflictSearch:
         """Whether all can pass, triggered at their offsets; `None` if not decided."""
         subjects = [member.subject for member in members]
         offsets = [member.offset for member in members]
-        return self.together.can_reach(subjects, offsets, Aim(frozenset(range(len(members)))))
+        return self.together.can_reach(subjects, offsets, range(len(members)))
 
     def _pair_at_once(self, subject: Subject, other: Subject) -> bool | None:
         """Whether two can pass, triggered at one instant; a conflict is recorded."""
@@ -170,7 +170,7 @@ class ConflictSearch:
         subjects = [member.subject for member in members]
         offsets = [member.offset for member in members]
         for place in range(len(members)):
-            if not self.together.can_reach(subjects, offsets, Aim(frozenset([place]))):
+            if not self.together.can_reach(subjects, offsets, [place]):
                 return False
         self._bad.append(group)
         conflict = Conflict(tuple(subject.id for subject in subjects), tuple(offsets))
@@ -341,7 +341,6 @@ def _by_several(
 def _implies(together: Together, by: Sequence[Subject], implied: Subject) -> bool:
     """Whether `implied` cannot fail if all of `by` pass, and all of them can pass together."""
     group, places = [*by, implied], range(len(by) + 1)
-    fails_alone = Aim(frozenset(places[:-1]), frozenset(places[-1:]))
-    if together.can_reach(group, [0] * len(group), fails_alone) is not False:
+    if together.can_reach(group, [0] * len(group), places[:-1], places[-1:]) is not False:
         return False
-    return together.can_reach(group, [0] * len(group), Aim(frozenset(places))) is True
+    return together.can_reach(group, [0] * len(group), places) is True

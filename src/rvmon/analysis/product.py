@@ -9,11 +9,9 @@ compared. So a negative answer is a proof.
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from functools import cache
 from itertools import product
-
-from msgspec import Struct
 
 from rvmon.analysis.combinations import Letters, Table, Truths
 from rvmon.analysis.vacuity import Regions, Subject, automaton_letter
@@ -32,14 +30,6 @@ State = tuple[int, tuple[Spot | None, ...]]
 
 Letter = tuple[tuple[int, bool], ...]
 """A joint letter: per requirement, the class of letters, and whether its trigger is true."""
-
-
-class Aim(Struct, frozen=True):
-    """The goal of a search."""
-
-    well: frozenset[int]  # indices of the attempts that must pass
-    # indices of the attempts that must fail; the others are unconstrained
-    failed: frozenset[int] = frozenset()
 
 
 class Together:
@@ -71,16 +61,22 @@ class Together:
         return any(all(holds for _, holds in letter) for letter in letters)
 
     def can_reach(
-        self, subjects: Sequence[Subject], offsets: Sequence[int], aim: Aim
+        self,
+        subjects: Sequence[Subject],
+        offsets: Sequence[int],
+        well: Collection[int],
+        failed: Collection[int] = (),
     ) -> bool | None:
-        """Whether attempts can reach a goal; `False` is sure, `None`: the search had to end.
+        """Whether attempts can end so that some pass and some fail, by their indices.
+
+        `False` is sure; `None`: the search had to end.
 
         Source: emptiness of a product of timed automata, after Alur and Dill 1994.
         """
         letters = self.letters(subjects)
         if letters is None:
             return None
-        search = _Search(self.spec, subjects, offsets, letters, aim)
+        search = _Search(self.spec, subjects, offsets, letters, well, failed)
         waiting: list[State] = [(-1, tuple(None for _ in subjects))]
         seen = set(waiting)
         while waiting:
@@ -119,9 +115,11 @@ class _Search:
         subjects: Sequence[Subject],
         offsets: Sequence[int],
         letters: frozenset[Letter],
-        aim: Aim,
+        well: Collection[int],
+        failed: Collection[int],
     ) -> None:
-        self.aim = aim
+        self.well = well
+        self.failed = failed
         self.subjects = subjects
         self.offsets = offsets
         self.letters = letters
@@ -163,7 +161,7 @@ class _Search:
         )
 
     def _is_lost(self, index: int, spot: Spot | None) -> bool:
-        lost = [FAILED] if index in self.aim.well else [PASSED] if index in self.aim.failed else []
+        lost = [FAILED] if index in self.well else [PASSED] if index in self.failed else []
         return spot is not None and spot[0] in lost
 
     def _cells(self, cell: int) -> Sequence[int]:
@@ -224,11 +222,11 @@ class _Search:
         if any(spot is None for spot in spots):
             return False
         at = [spot for spot in spots if spot is not None]
-        return all(self._well(i, at[i], cell) for i in self.aim.well) and all(
-            at[i][0] == FAILED for i in self.aim.failed
+        return all(self._passes(i, at[i], cell) for i in self.well) and all(
+            at[i][0] == FAILED for i in self.failed
         )
 
-    def _well(self, index: int, spot: Spot, cell: int) -> bool:
+    def _passes(self, index: int, spot: Spot, cell: int) -> bool:
         location = spot[0]
         if location <= PASSED:
             return location == PASSED

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 from msgspec import structs
 
 from rvmon.analysis.conflicts import starts_with
-from rvmon.analysis.product import Aim, Together
+from rvmon.analysis.product import Together
 from rvmon.analysis.vacuity import Subject
 from rvmon.cdv.mutation.python_mutants import third_of
 from rvmon.cdv.mutation.python_operators import either_way
@@ -281,9 +281,8 @@ def _is_equivalent(spec: CheckedSpec, mutant: SpecMutant, together: Together) ->
         Subject(one.requirement, one.obligation.trigger, one.automaton, one.reads)
         for one in compiled
     )
-    fails_alone = Aim(frozenset({0}), frozenset({1}))
     return all(
         starts_with(together, other, subject)
-        and together.can_reach([other, subject], [0, 0], fails_alone) is False
+        and together.can_reach([other, subject], [0, 0], well=[0], failed=[1]) is False
         for other, subject in ((before, after), (after, before))
     )
