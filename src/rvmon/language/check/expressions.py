@@ -211,7 +211,7 @@ class Checker:
         if name.text in table.events:
             return rv.EventAtom(name.text, name.span)
         if field := table.field(name.text):
-            return sc.typed(rv.FieldValue(field.event, field.field), field.type, unit)
+            return sc.typed(*field, unit)
         if name.text in table.declared or name.text in table.doubtful:
             raise Reported  # its declaration is wrong, and that is recorded
         if name.text == NOW:

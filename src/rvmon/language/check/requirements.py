@@ -226,9 +226,9 @@ def _instances(checker: Checker, item: items.RequirementItem) -> tuple[spec.ForE
             # An undeclared name is refused here, with a suggestion.
             checker.values((clause.field,), EVERYWHERE)
             raise Refusal(type_rules.argument_kind(clause.field.span, "for each", "an event.field"))
+        value, type_ = field
         unit = checker.table.units.get(clause.field.text, PLAIN)
-        local = typed(rv.Captured(clause.name.text), field.type, unit)
-        value = rv.FieldValue(field.event, field.field)
+        local = typed(rv.Captured(clause.name.text), type_, unit)
         return spec.ForEach(clause.name.text, value), Scope({clause.name.text: local})
     return None, EVERYWHERE
 

@@ -133,14 +133,6 @@ class Scope(Struct, frozen=True):
 EVERYWHERE = Scope()  # only the names of the file
 
 
-class FieldOf(Struct, frozen=True):
-    """A payload field that a dotted name stands for."""
-
-    event: str
-    field: str
-    type: Type
-
-
 _LONG_NAMES = {
     "metre": "m", "meter": "m", "millimetre": "mm", "millimeter": "mm", "second": "s", "sec": "s",
     "millisecond": "ms", "msec": "ms", "minute": "min", "hour": "h", "hr": "h", "gram": "g",
@@ -165,11 +157,11 @@ class Table(Struct, frozen=True):
     # words that an item with a syntax error may have declared
     doubtful: frozenset[str] = frozenset()
 
-    def field(self, name: str) -> FieldOf | None:
-        """The payload field that `event.field` stands for."""
+    def field(self, name: str) -> tuple[rv.FieldValue, Type] | None:
+        """The payload field that `event.field` stands for, and its type."""
         event, _, last = name.rpartition(".")
         if event in self.events and last in self.events[event].fields:
-            return FieldOf(event, last, self.events[event].fields[last])
+            return rv.FieldValue(event, last), self.events[event].fields[last]
         return None
 
 
