@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from msgspec import Struct
+from msgspec.structs import replace
 
 from rvmon.recordings.messages import Message, Messages, Topic, errors_as_damage
 from rvmon.trace.sample import Outage
@@ -36,8 +37,10 @@ class ColumnMessages(Messages):
         outages: Sequence[Outage] = (),
         close: Callable[[], object] = lambda: None,
     ) -> None:
-        self._topics = {topic.topic.name: topic for topic in topics}
-        self.topics = {topic.topic.name: topic.topic for topic in topics}
+        # Names that differ in characters that are none of ours are the same here.
+        names = distinct([topic.topic.name for topic in topics])
+        self._topics = dict(zip(names, topics, strict=True))
+        self.topics = {name: replace(one.topic, name=name) for name, one in self._topics.items()}
         self.count = sum(topic.count for topic in topics)
         self.end = end
         self.outages = outages

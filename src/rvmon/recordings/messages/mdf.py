@@ -56,7 +56,7 @@ def mdf_messages(path: Path) -> column_topics.ColumnMessages | None:
         channels = {one: file.groups[one].channel_group for one in kept}
         called = [own.acq_name or own.comment or f"group_{one}" for one, own in channels.items()]
         lines = [name.partition("\n")[0] for name in called]
-        names = column_topics.distinct([f"/{column_topics.path_of(line)}" for line in lines])
+        names = [f"/{column_topics.path_of(line)}" for line in lines]
         topics = [_topic(file, name, one) for name, one in zip(names, kept, strict=True)]
         ends = [int(_times(file, one).max()) for one in kept if _counts_time(file, one)]
     return column_topics.ColumnMessages(topics, max(ends, default=None), close=file.close)

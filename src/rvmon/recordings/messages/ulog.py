@@ -13,7 +13,13 @@ import numpy as np
 
 from rvmon.errors import TraceError, needed
 from rvmon.recordings.messages import Topic, errors_as_damage
-from rvmon.recordings.messages.column_topics import ColumnMessages, ColumnTopic, joined, leaves_of
+from rvmon.recordings.messages.column_topics import (
+    ColumnMessages,
+    ColumnTopic,
+    distinct,
+    joined,
+    leaves_of,
+)
 from rvmon.recordings.table_recording import ticks_of_column
 from rvmon.trace.sample import Outage
 from rvmon.trace.stamps import stamps_of
@@ -61,7 +67,12 @@ def ulog_messages(path: Path) -> ColumnMessages:
         with errors_as_damage("ULog"):
             log = ULog(watched)
             start = log.start_timestamp * _PER_STAMP
-            read = [_topic(data, start) for data in log.data_list]
+            called = [
+                f"/{data.name}_{data.multi_id}" if data.multi_id else f"/{data.name}"
+                for data in log.data_list
+            ]
+            names = zip(distinct(called), log.data_list, strict=True)
+            read = [_topic(name, data, start) for name, data in names]
     if log.file_corruption:
         raise TraceError("is damaged: parts of it are no messages of ULog: copy it again")
     end = max((int(one.load()[0].max(initial=0)) for one, _ in read), default=0)
@@ -79,13 +90,12 @@ def ulog_messages(path: Path) -> ColumnMessages:
     return ColumnMessages([topic for topic, _ in read], end + watched.is_cut, outages)
 
 
-def _topic(data: Any, start: int) -> tuple[ColumnTopic, Outage | None]:
+def _topic(name: str, data: Any, start: int) -> tuple[ColumnTopic, Outage | None]:
     """The topic of a log; instances after the first are numbered.
 
     Messages that were sent without a stamp, as 0, came nobody knows when: up to the first that has
     one the topic is lost.
     """
-    name = f"/{data.name}_{data.multi_id}" if data.multi_id else f"/{data.name}"
     camel = "".join(part.capitalize() for part in re.split(r"[/_]", data.name))
     columns = joined(_texts(data))
     times = ticks_of_column(data.data["timestamp"], _STAMPS)

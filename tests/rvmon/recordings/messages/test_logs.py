@@ -1,6 +1,7 @@
 """Logs of vehicles and measurements: the records of CSV; what they say of losses and units."""
 
 import random
+import struct
 
 import pytest
 from tests.rvmon.recordings.messages.logs import (
@@ -241,3 +242,41 @@ def test_messages_of_one_name_are_told_apart_by_their_identifiers(tmp_path):
         plain.evaluate(tmp_path / "a.log")
     (tmp_path / "b.dbc").unlink()
     assert plain.evaluate(tmp_path / "a.log").verdicts == {"R1": "P"}
+
+
+def test_arrays_of_groups_that_differ_in_signs_alone_are_told_apart(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "a.h5"
+    with h5py.File(path, "w") as file:
+        for name, speed in (("arm 1", 9.0), ("arm-1", 0.5)):
+            file[f"{name}/t"] = [0.0, 1.0]
+            file[f"{name}/speed"] = [speed, speed]
+    spec = rvmon.loads(
+        "signal arm_1.speed, arm_1_2.speed : real\n"
+        "requirement R1\n  always arm_1.speed < 1\nrequirement R2\n  always arm_1_2.speed < 1\n"
+    )
+    assert spec.evaluate(path).verdicts == {"R1": "F", "R2": "P"}
+
+
+def test_an_instance_of_a_topic_and_a_topic_that_is_called_so_are_told_apart(tmp_path):
+    path, _ = written(tmp_path, "a.ulg", FEW[:1])
+
+    def message(kind, body):
+        return struct.pack("<H", len(body)) + kind + body
+
+    fields = b":uint64_t timestamp;float speed;"
+    parts = [
+        path.read_bytes()[:16],
+        message(b"F", b"arm" + fields),
+        message(b"F", b"arm_1" + fields),
+        message(b"A", struct.pack("<BH", 1, 0) + b"arm"),
+        message(b"A", struct.pack("<BH", 0, 1) + b"arm_1"),
+        message(b"D", struct.pack("<HQf", 0, 1_000_000, 9.0)),
+        message(b"D", struct.pack("<HQf", 1, 1_000_000, 0.5)),
+    ]
+    path.write_bytes(b"".join(parts))
+    spec = rvmon.loads(
+        "signal arm_1.speed, arm_1_2.speed : real\n"
+        "requirement R1\n  always arm_1.speed < 1\nrequirement R2\n  always arm_1_2.speed < 1\n"
+    )
+    assert spec.evaluate(path).verdicts == {"R1": "F", "R2": "P"}
