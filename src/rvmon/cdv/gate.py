@@ -15,7 +15,7 @@ from rvmon.cdv.sequential_test import Decision
 from rvmon.coverage import STATES, Ending
 from rvmon.errors import UnknownNameError
 from rvmon.report.junit import add_suite, as_text, case_of
-from rvmon.texts import counted, shown
+from rvmon.texts import counted, shown, shown_line
 from rvmon.verdicts import Verdict
 
 RobotRequirement = tuple[str, str]
@@ -134,7 +134,7 @@ def judge_test(
     wrong: list[str] = []
     known: list[str] = []
     if outcome.ending is not Ending.COMPLETED and test.mutation is None:
-        wrong.append(f"{outcome.ending}: {outcome.error}")
+        wrong.append(f"{outcome.ending}: {shown_line(str(outcome.error))}")
     accepted = accepted_failures(played, expected)
     if outcome.verdicts:
         wrong.extend(differences(test.expected, outcome.verdicts))

@@ -241,10 +241,10 @@ class _Pool:
             self._dismiss(worker)
 
     def _patience(self, busy: Iterable[_Worker]) -> float | None:
-        """Seconds until the first task will have taken too long."""
+        """Seconds until the first task may have taken too long, whenever it is begun."""
         if self._work.timeout_s is None:
             return None
-        return max(0.0, min(self._left_s(worker) for worker in busy))
+        return max(0.0, min(self._work.timeout_s, *map(self._left_s, busy)))
 
     def _left_s(self, worker: _Worker) -> float:
         """Seconds that a worker's task may still take."""

@@ -42,6 +42,15 @@ def test_what_is_not_as_expected_is_wrong(campaign, tests, wrong):
     assert judged(campaign(*tests)).wrong == wrong
 
 
+def test_a_crash_is_told_in_one_line(campaign, spec):
+    class Broken:
+        def play(self, test, observer):
+            raise ValueError("no power\nat the arm")
+
+    found = judged(campaign(LOW, robots={"toy": cdv.Robot(Broken, spec)}))
+    assert found.wrong == [r"low (toy): crashed: ValueError: no power\nat the arm"]
+
+
 @pytest.mark.parametrize("where", [{}, {"strategy": "climbs"}, {"test": "high"}, {"robot": "toy"}])
 def test_an_expected_failure_is_none(campaign, where):
     known = cdv.ExpectedFailure("T1", "the motor is too strong", **where)

@@ -14,6 +14,7 @@ import pytest
 
 import rvmon
 from rvmon.errors import RvmonError, SpecError, TraceError, WorkerLostError
+from rvmon.execute import parallel
 from rvmon.execute.parallel import execute
 from rvmon.monitor.records import give_plan
 
@@ -266,6 +267,13 @@ def test_to_begin_takes_no_time_of_a_task(tmp_path):
 
     found = [*execute([1, 2], begin, jobs=1, instead=told, timeout_s=0.5)]
     assert found == ["1", "2"]
+
+
+def test_a_task_that_comes_first_is_ended_as_others_are(monkeypatch):
+    """Not after the time to begin as well, which its process did not need."""
+    monkeypatch.setattr(parallel, "BEGIN_S", 3600)
+    tasks = execute([600, 0], doing(time.sleep), jobs=1, instead=told, timeout_s=0.5)
+    assert [*tasks] == [(600, True, "it took more than 0.5 s"), None]
 
 
 def test_a_report_is_handed_over_without_the_plan(tmp_path):
