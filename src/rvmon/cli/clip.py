@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import argparse
 import shlex
+from bisect import bisect_left
+from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING
 
 from rvmon import __version__
 from rvmon.cli import reading
@@ -17,12 +20,17 @@ from rvmon.files import refuse_no_file
 from rvmon.language.checked.specification import Mode
 from rvmon.recordings.clip import clip, refuse_place
 from rvmon.recordings.clip_piece import Copied, Piece, values_before
+from rvmon.recordings.last_updates import last_of
 from rvmon.recordings.places import name_of
 from rvmon.session import Spec, load
+from rvmon.trace.sample import Sample
 from rvmon.trace.time import TIME_LIMIT, format_stamp, format_stamped
 from rvmon.verdicts import LAW
 from rvmon.verdicts.attempt import Attempt, Decision
 from rvmon.verdicts.report import Report, report_of
+
+if TYPE_CHECKING:
+    from rvmon.recordings.batch import Batch
 
 
 def run_clip(arguments: argparse.Namespace) -> int:
@@ -128,8 +136,7 @@ def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -
         decided = attempt.decided
         if decided is not None:
             # Time alone decides nothing in a recording: something has to come behind.
-            behind = next((sample.t for sample in recording if sample.t >= decided), decided)
-            stop = max(decided + arguments.after, behind)
+            stop = max(decided + arguments.after, _first_from(decided, recording.pieces()))
     start = start if arguments.start is None else arguments.start
     stop = stop if arguments.stop is None else arguments.stop
     stale_after = {
@@ -137,8 +144,17 @@ def _piece(spec: Spec, arguments: argparse.Namespace, attempt: Attempt | None) -
         for name, signal in spec.checked.signals.items()
         if signal.stale_after is not None
     }
-    held = values_before(recording, start, spec.schema, stale_after, ordered=ordered)
+    held = values_before(recording.pieces(), start, spec.schema, stale_after, ordered=ordered)
     return Piece(start, stop, spec.schema, ordered, held)
+
+
+def _first_from(instant: int, pieces: Iterable[Batch | Sample]) -> int:
+    """The first instant of a recording that is not before one; that one itself, without any."""
+    for piece in pieces:
+        if last_of(piece) >= instant:
+            times = [piece.t] if isinstance(piece, Sample) else piece.times
+            return int(times[bisect_left(times, instant)])
+    return instant
 
 
 def _begin(spec: Spec, attempt: Attempt) -> int:

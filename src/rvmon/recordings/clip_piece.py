@@ -6,22 +6,31 @@ import csv
 import io
 import json
 import math
-from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import closing
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from fractions import Fraction
 from io import TextIOWrapper
+from itertools import islice
 from pathlib import Path
+from typing import TYPE_CHECKING, Any, TextIO
 
 from msgspec import Struct, field
 
-from rvmon.recordings.csv_rows import CopiedLines, Layout, csv_samples, read_layout, split_lines
-from rvmon.recordings.jsonl_rows import jsonl_samples
+from rvmon.recordings.csv_rows import CopiedLines, Layout, read_layout, split_lines
+from rvmon.recordings.last_updates import LastUpdates, first_of, last_of
 from rvmon.recordings.places import bounded_lines, created, opened
+from rvmon.recordings.recording import FileRecording
 from rvmon.trace.sample import Sample, Value
 from rvmon.trace.schema import Schema, Stamps
 from rvmon.trace.stamps import stamps_of, ticks_of_stamp
 from rvmon.trace.time import TICKS_PER_SECOND, TICKS_PER_UNIT, TIME_LIMIT
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from rvmon.recordings.batch import Batch
 
 
 class Piece(Struct, frozen=True):
@@ -54,7 +63,7 @@ class Copied(Struct):
 
 
 def values_before(
-    samples: Iterable[Sample],
+    pieces: Iterable[Batch | Sample],
     start: int,
     schema: Schema,
     stale_after: Mapping[str, int],
@@ -73,20 +82,22 @@ def values_before(
     {'speed': 1.0}
     """
     last: dict[str, tuple[int, Value]] = {}
-    for t, values in ((sample.t, sample.values) for sample in samples):
-        if t > start:
-            if ordered:
-                break
-            continue
-        for name, value in values.items():
-            if name in schema.signals and (name not in last or t >= last[name][0]):
-                last[name] = t, value
-    return {
-        name: value
-        for name, (t, value) in last.items()
-        if t < start and value is not None and value == value
-        if start - t <= stale_after.get(name, start - t)
-    }
+    names = schema.signals.keys()
+    updates = LastUpdates(names, schema.ignoring)
+    for piece in pieces:
+        if first_of(piece) <= start:
+            own = piece if isinstance(piece, Sample) else piece.up_to(start)
+            for name, (t, value) in updates.last_in(own, names):
+                if name not in last or t >= last[name][0]:
+                    last[name] = t, value
+        if ordered and last_of(piece) > start:  # what comes then may be broken
+            break
+    held: dict[str, Value] = {}
+    for name in names:
+        t, known = last.get(name, (start, None))
+        if t < start and known is not None and start - t <= stale_after.get(name, start - t):
+            held[name] = known
+    return held
 
 
 _EPOCH = datetime(1970, 1, 1, tzinfo=UTC)
@@ -125,30 +136,52 @@ def stamp_number(ticks: int, stamps: Stamps) -> int | float:
 
 def clip_text(path: str, piece: Piece, out: Path, *, is_csv: bool) -> Copied:
     """Write a piece of a text, and report what is in it."""
-    copied = Copied()
     with (
         opened(path) as (plain, _),
         TextIOWrapper(plain, encoding="utf-8-sig", newline="") as text,
         created(out) as packed,
         TextIOWrapper(packed, encoding="utf-8", newline="") as made,
     ):
-        lines = CopiedLines(bounded_lines(text))
+        lines = bounded_lines(text)
+        header = 0
         if is_csv:
-            split = split_lines(lines)
-            layout = read_layout(next(split)[1], piece.schema)
-            made.write(lines.taken())
-            made.write(_csv_start(piece, layout))
-            rows = csv_samples(split, layout)
+            heading = CopiedLines(lines)
+            header, cells = next(split_lines(heading))
+            made.write(heading.taken())
+            made.write(_csv_start(piece, read_layout(cells, piece.schema)))
         else:
             made.write(_json_start(piece))
-            rows = jsonl_samples(lines, piece.schema, Counter())
-        for _, t, _ in rows:
-            row = lines.taken()
-            if piece.holds(t):
-                made.write(row)
-                copied.note(t)
-            elif piece.ordered and t > piece.stop:
-                break
+        # Nothing but the stamps is read of the rows: most lie before the piece.
+        bare = replace(piece.schema, signals={}, events={})
+        with closing(FileRecording(path, bare, ordered=piece.ordered).stamps()) as stamps:
+            return _copy(lines, header, stamps, piece, made)
+
+
+def _copy(
+    lines: Iterator[str],
+    line: int,
+    stamps: Iterator[tuple[NDArray[Any], NDArray[Any]]],
+    piece: Piece,
+    made: TextIO,
+) -> Copied:
+    """Copy the rows of a piece from the lines behind the first `line`; see `FileRecording.stamps`.
+
+    A row takes the lines behind that of the row before, and ends on its own.
+    """
+    copied = Copied()
+    for ends, instants in stamps:
+        held = (instants >= piece.start) & (instants <= piece.stop)
+        if held.any():
+            copied.note(*instants[held].tolist())
+            for end, is_held in zip(ends.tolist(), held.tolist(), strict=True):
+                row = "".join(islice(lines, end - line))
+                line = end
+                if is_held:
+                    made.write(row)
+        else:
+            line += sum(1 for _ in islice(lines, int(ends[-1]) - line))
+        if piece.ordered and instants[-1] > piece.stop:
+            break
     return copied
 
 

@@ -49,7 +49,7 @@ def jsonl_batches(
             yield jsonl_samples(lines, schema, ignored, line)
         else:
             yield replace(batch, first=line + 1)
-        line += text.count(b"\n")
+        line += text.count(b"\n") + text.count(b"\r") - text.count(b"\r\n")
 
 
 def _batch(text: bytes, schema: Schema, ignored: Counter[str]) -> Batch:

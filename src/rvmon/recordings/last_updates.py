@@ -27,7 +27,7 @@ class LastUpdates:
         """Take the next pieces of the recording."""
         wanted = set(self._names)
         for piece in reversed(pieces):  # what stands last is mostly found at once
-            for name, update in self._last_in(piece, wanted):
+            for name, update in self.last_in(piece, wanted):
                 self._found[name] = update
                 wanted.discard(name)
             if not wanted:
@@ -37,12 +37,13 @@ class LastUpdates:
         """By name the last update up to an instant (ticks), which may lie in the next piece."""
         if piece is None or isinstance(piece, Sample):
             is_past = piece is not None and piece.t <= instant
-            own = self._last_in(piece, self._names) if piece is not None and is_past else ()
+            own = self.last_in(piece, self._names) if piece is not None and is_past else ()
         else:
-            own = self._last_in(piece.up_to(instant), self._names)
+            own = self.last_in(piece.up_to(instant), self._names)
         return {**self._found, **dict(own)}
 
-    def _last_in(self, piece: Batch | Sample, names: Set[str]) -> Iterator[tuple[str, Update]]:
+    def last_in(self, piece: Batch | Sample, names: Set[str]) -> Iterator[tuple[str, Update]]:
+        """By name the last update in a piece."""
         if isinstance(piece, Sample):
             values = updates_in(piece.values, self._ignoring)
             for name in names & values.keys():

@@ -28,6 +28,9 @@ from rvmon.trace.schema import BY_NAME, Schema, Stamps
 from rvmon.trace.stamps import stamps_of
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from rvmon.recordings.batch import Batch
     from rvmon.recordings.csv_batch import Found
     from rvmon.recordings.messages.file import MessageFile
@@ -182,6 +185,25 @@ class FileRecording:
                 yield from self.rows.pieces(batches)
         else:
             yield from self.samples()
+
+    def stamps(self) -> Generator[tuple[NDArray[np.int64], NDArray[np.int64]]]:
+        """Of some rows at a time, as they stand in a text: the lines they end on, and the ticks.
+
+        Raises:
+            TraceError: with line.
+        """
+        import numpy as np
+
+        with closing(self._batches()) as batches:
+            for piece in batches:
+                if isinstance(piece, Iterator):
+                    if rows := [(line, t) for line, t, *_ in piece]:
+                        lines, times = np.array(rows, np.int64).T
+                        yield lines, times
+                elif piece.lines is None:
+                    yield piece.first + np.arange(len(piece.times)), piece.times
+                else:
+                    yield piece.lines, piece.times
 
     def _batches(self) -> Generator[Batch | Iterator[Row]]:
         if self._format == "parquet":

@@ -10,6 +10,7 @@ from tests.tools.bags import START, write_json_mcap, write_ros2
 
 import rvmon
 from rvmon.cli import main
+from rvmon.recordings import places
 
 pytest.importorskip("rosbags")
 pytest.importorskip("mcap_protobuf")
@@ -247,3 +248,24 @@ def test_parquet_keeps_its_types(tmp_path, kind):
     assert piece.column("other").to_pylist() == [None, 4, 5]
     assert piece.column("speed").to_pylist() == [1.5, None, None]
     assert piece.column("mode").to_pylist() == ["a", "a", "a"]
+
+
+@pytest.mark.law
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_rows_of_a_piece_are_copied_wherever_blocks_and_lines_end(tmp_path, monkeypatch, end):
+    """Each row takes the lines behind the one before: blank ones, and those within quotes."""
+    for seed in range(40):
+        rng = random.Random(seed)
+        rows = []
+        for t in range(rng.randint(2, 40)):
+            note = rng.choice(["", "plain", f'"two{end}lines"', f'"{end}"', '"a ""b"""'])
+            rows.append(f"{end * rng.randint(0, 1)}{t},{rng.random():.3f},{note}{end}")
+        path = tmp_path / f"{seed}.csv"
+        header = rng.choice([f"t,speed,note{end}", f't,speed,"no{end}te"{end}'])
+        path.write_text(header + "".join(rows), newline="")
+        monkeypatch.setattr(places, "BLOCK", rng.choice([50, 200, 1 << 20]))
+        first = rng.randrange(len(rows))
+        last = rng.randrange(first, len(rows))
+        out = clipped(tmp_path, FAST.format(9), path, "--from", str(first), "--to", str(last))
+        with out.open(newline="") as file:
+            assert file.read() == header + "".join(rows[first : last + 1])
