@@ -43,7 +43,10 @@ CASES = {
 }
 
 
-@each("time", ["held", "sampled"])
+CLOCKED = "sampled every 500 ms"
+
+
+@each("time", ["held", "sampled", CLOCKED])
 @each("formula", CASES)
 def test_what_is_still_possible(formula, time):
     assert forecast_of(formula, time=time) == CASES[formula]
@@ -59,9 +62,9 @@ def test_a_search_that_outgrows_its_limit_says_nothing(most, monkeypatch):
     assert (most < 3) is (said != CASES)
 
 
-@each(("time", "forecast"), [("held", "F"), ("sampled", None)])
+@each(("time", "forecast"), [("held", "F"), ("sampled", None), (CLOCKED, "F")])
 def test_a_window_without_a_position_asks_for_nothing(time, forecast):
-    """In held time every tick is a position; samples may leave a window out."""
+    """In held time every tick is a position, of a clock some are; samples may leave it out."""
     both = "(always[2 s, 3 s] p) and always[2 s, 3 s] not p"
     assert forecast_of(both, time=time) == forecast
 
@@ -100,21 +103,24 @@ def test_a_forecast_is_no_verdict():
     assert '"forecast":"F"' in report.to_json().replace(" ", "")
 
 
-def test_the_network_forecasts_by_what_it_knows():
+@each("time", ["held", CLOCKED])
+def test_the_network_forecasts_by_what_it_knows(time):
     """A trigger that was seen binds what may come; one that may still come binds nothing."""
     formula = "(always (p -> within 5 s q)) and always not q"
-    assert forecast_of(formula, {"p": False, "q": False}) is None
-    assert forecast_of(formula, {"p": False, "q": False}, {"p": True}) == "F"
-    assert forecast_of(f"not ({formula})", {"p": False, "q": False}, {"p": True}) == "P"
+    quiet, seen = {"p": False, "q": False}, {"p": True}
+    assert forecast_of(formula, quiet, time=time) is None
+    assert forecast_of(formula, quiet, seen, time=time) == "F"
+    assert forecast_of(f"not ({formula})", quiet, seen, time=time) == "P"
 
 
-def test_a_forecast_of_what_lies_below_the_past_errs_on_neither_side():
+@each("time", ["held", CLOCKED])
+def test_a_forecast_of_what_lies_below_the_past_errs_on_neither_side(time):
     """What an operator of the past has around it may come to be either; the rest is forecast."""
-    back = "once[0, 2 s] (p and within 9 s q)"
+    back = "(once[0, 2 s] (p and within 9 s q)) and (within 9 s r)"
     samples = {"p": True, "q": False, "r": False}, {"p": True}
-    assert forecast_of(f"({back}) and within 9 s r", *samples) is None
-    assert forecast_of(f"({back}) and (within 9 s r) and for 9 s not r", *samples) == "F"
-    assert forecast_of(f"not (({back}) and (within 9 s r) and for 9 s not r)", *samples) == "P"
+    assert forecast_of(back, *samples, time=time) is None
+    assert forecast_of(f"{back} and for 9 s not r", *samples, time=time) == "F"
+    assert forecast_of(f"not ({back} and for 9 s not r)", *samples, time=time) == "P"
 
 
 def test_more_than_is_looked_at_is_not_forecast():
