@@ -81,7 +81,8 @@ def test_what_is_proposed_runs(words, tmp_path, says):
 def test_what_finds_nothing_is_told(words, tmp_path, says):
     (tmp_path / "base.rv").write_text(SPEC.replace("event  go", "event  go, zapped"))
     told = says(1, "init", words[1], "--for", words[0])
-    assert "# Nothing was found for `zapped` (event):" in told.out
+    lines = ("# Nothing was found for `zapped` (event):", "# [bind.zapped]")
+    assert "\n".join([*lines, '# topic = "…"', '# value = "…"\n']) in told.out
     assert "what feeds `zapped` is left open" in told.err
 
 

@@ -194,20 +194,16 @@ def test_what_is_read_in_two_ways_needs_brackets(codes, text, code):
 
 @pytest.mark.slow
 def test_reserved_words_are_no_names(codes):
-    """Words of the language cannot be declared, but quoted they can, and dotted they are others."""
+    """Words of the language cannot be declared, but quoted they can, and dotted they are others.
+
+    With a text or nothing behind it a word is taken for the name of a requirement, too.
+    """
     for name in sorted(RESERVED):
         assert codes(f"signal z, {name} : bool")[:1] == ["RV010"], name
-        text = f"signal `{name}`, {name}.z : bool\nrequirement R always `{name}`"
+        text = f"signal `{name}`, {name}.z : bool\nrequirement `{name}`\n  always `{name}`"
         assert codes(text) == [], name
-
-
-@pytest.mark.slow
-def test_reserved_words_are_no_names_of_requirements(codes):
-    """With a text or nothing behind it a word is taken for the name, and refused as one."""
-    for name in sorted(RESERVED):
-        assert codes(f'requirement {name} "text"\n  always a') == ["RV010"], name
-        assert codes(f"requirement {name}  # so\n  always a") == ["RV010"], name
-        assert codes(f"requirement `{name}`\n  always a") == []
+        for behind in ('"text"', "# so"):
+            assert codes(f"requirement {name} {behind}\n  always a") == ["RV010"], name
 
 
 @pytest.mark.slow
