@@ -18,6 +18,8 @@ from rvmon.trace.schema import Applied, Constant, Elements, Field, Kind, Named, 
 
 _STEP = re.compile(r"\.?([^\W\d]\w*)|\[(\d{1,9})\]|\[([^\[\]\s](?:[^\[\]]*[^\[\]\s])?)\]")
 
+_ABSENT = object()
+
 _SHOWN = 6  # fields that a message lists
 
 _STAMPS = ("header.stamp", "stamp", "timestamp")
@@ -116,9 +118,16 @@ def getter(term: Term) -> Get:
             if not all(isinstance(step, str) for step in path):
                 return step_by_step
             at_once = attrgetter(".".join(map(str, path)))
-            return lambda content: (
-                step_by_step(content) if isinstance(content, Mapping) else at_once(content)
-            )
+
+            def field(content: Any) -> Any:
+                if not isinstance(content, Mapping):
+                    return at_once(content)
+                try:
+                    return step_by_step(content)
+                except KeyError:
+                    return _with_dots(content, path)
+
+            return field
         case Elements(array=array):
             return getter(array)
         case Applied(operation=operation, args=(Field() | Elements() as read_from,), sign=sign) if (
@@ -131,6 +140,18 @@ def getter(term: Term) -> Get:
             return lambda content: _calculated(operation, [one(content) for one in read])
         case _:
             assert_never(term)
+
+
+def _with_dots(content: Mapping[str, Any], path: Sequence[Step]) -> Any:
+    """A field whose name has dots itself, as JSON may: `{"pose.x": 1}`."""
+    for count in range(len(path), 0, -1):
+        inner = content.get(".".join(map(str, path[:count])), _ABSENT)
+        if count == len(path) and inner is not _ABSENT:
+            return inner
+        if isinstance(inner, Mapping):
+            with suppress(KeyError):
+                return _with_dots(inner, path[count:])
+    raise KeyError(path)
 
 
 def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:

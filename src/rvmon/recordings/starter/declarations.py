@@ -212,6 +212,8 @@ def _reason(leaf: str, topic: Topic) -> str:
         return _ODD
     if "[" in leaf:
         return _ARRAY
+    if field_of(leaf) is None:
+        return "its name is no word"
     return _QUATERNION if sort is Sort.QUATERNION else ""
 
 

@@ -112,6 +112,19 @@ def test_a_field_that_the_first_message_of_json_leaves_unknown_is_there(tmp_path
     ]
 
 
+def test_names_of_json_may_have_dots_themselves(tmp_path, says):
+    content = {"base.x": 9.0, "arm": {"tip.z": 0.5}, "red hot": 1.0}
+    path = write_json_mcap(tmp_path / "a.mcap", [("/a", START, content), ("/a", START + 1, {})])
+    spec = rvmon.loads(
+        "signal a.base.x, a.arm.tip.z : real\n"
+        "requirement R1\n  always a.base.x < 1\nrequirement R2\n  always a.arm.tip.z < 1\n"
+    )
+    assert spec.evaluate(path).verdicts == {"R1": "F", "R2": "P"}
+    told = says(0, "look", path)
+    assert "base.x" in told.out
+    assert "left out: a.red hot: its name is no word" in told.out
+
+
 @pytest.mark.slow
 def test_damaged_flatbuffers_are_told(tmp_path):
     rng = random.Random(5)
