@@ -3,6 +3,7 @@
 import random
 
 import pytest
+from tests.rvmon.recordings.test_csv_batch import read
 from tests.tools.each import each
 
 import rvmon
@@ -165,15 +166,5 @@ def test_lines_that_are_taken_together_say_the_same(seed, tmp_path, monkeypatch)
     found = []
     for together in (0, 1, 7, 4096):
         monkeypatch.setattr(csv_dialect, "_TOGETHER", together)
-        found.append(told(rvmon.loads(SPEC).recording(path)))
+        found.append(read(rvmon.loads(SPEC).recording(path)))
     assert found == [found[0]] * 4
-
-
-def told(recording):
-    """The samples of a recording, or what is wrong with it behind some."""
-    found = []
-    try:
-        found.extend((one.t, dict(one.values)) for one in recording)
-    except TraceError as error:
-        found.append(str(error))
-    return found

@@ -239,27 +239,6 @@ def test_all_errors_of_a_file_appear_at_once(codes):
     assert codes(text) == ["RV001", "RV012", "RV023", "RV001", "RV001"]
 
 
-@each(
-    ("text", "expected"),
-    [
-        ("requirement R upon a within 3 s b", "`then`"),
-        ("requirement R always (a or", "a formula or a number"),
-        ("requirement R always a b", "an operator such as"),
-        ("signal z", "`:`"),
-        ("signal z : boool", "`bool`"),
-        ("requirement", "a name"),
-        ("requirement R rise (a)", "a call has no space before its bracket: `rise(`"),
-        ("requirement R always a ≤ b", "write `<=`"),
-        ("requirement R always a and A[] b", "put brackets around"),
-        ('requirement R always a\n  sorce "x"', "did you mean `source`?"),
-        ("requirement R always a;", "items and clauses need no `;`"),
-        ("requirement R upon a then within 3 b", "`3 s b`"),
-    ],
-)
-def test_syntax_errors_speak_the_language(message, text, expected):
-    assert expected in message(text)
-
-
 def test_byte_order_mark_is_ignored():
     spec, _ = compile_text("\ufeffspec demo\nsignal a : bool\nrequirement R always a")
     assert spec.name == "demo"

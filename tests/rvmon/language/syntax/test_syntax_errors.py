@@ -1,6 +1,5 @@
 """What people write who come from elsewhere is fixed in the words of the language."""
 
-import pytest
 from tests.tools.each import each
 from tests.tools.findings import codes_of, findings_of
 
@@ -87,6 +86,12 @@ def test_an_error_behind_thousands_of_words_is_found(word):
             for operand in (" (asked)", "(asked)", " asked")
         ),
         ("event e(id: int)\nrequirement R\n  upon e then e.place > 3", "of `e` are `id`"),
+        ("requirement R upon asked within 3 s released", "the consequent stands after `then`"),
+        ("requirement R rise (asked)", "a call has no space before its bracket: `rise(`"),
+        ("requirement R always speed ≤ 3 m/s", "write `<=`"),
+        ("requirement R always asked and A[] released", "put brackets around"),
+        ('requirement R always asked\n  sorce "x"', "did you mean `source`?"),
+        ("requirement R always asked;", "items and clauses need no `;`"),
     ],
 )
 def test_items(item, fix):
@@ -98,35 +103,37 @@ def test_a_trigger_and_what_is_owed_are_both_looked_at():
     assert codes_of(compile_text, HEAD + text) == ["RV040", "RV012", "RV045"]
 
 
-def test_the_expected_is_said_in_words():
-    found = first_finding("requirement R\n  upon asked\n  then within ! released\n")
-    assert found.message == "found `!`, expected a duration such as `3 s`"
+STATE = "signal state : {idle, on}\nrequirement R\n  always "
 
 
-@pytest.mark.parametrize(
-    ("word", "fix"), [("boolean", "bool"), ("integer", "int"), ("reals", "real")]
-)
-def test_words_are_found_whole(word, fix):
-    """A word that starts like one of the language is not cut in two."""
-    found = first_finding(f"signal x : {word}\n")
-    assert found.message.startswith(f"found `{word}`, ")
-    assert f"`{fix}`" in found.help
-
-
-@pytest.mark.parametrize(
-    ("formula", "fix", "expected"),
+@each(
+    ("text", "told", "fix"),
     [
-        ('state = "idle"', "labels have no quotes: `idle`", "a number or a name"),
-        ("(asked) => (released)", "write `->`", "the end of the item"),
-        ("(asked) ==> (released)", "write `->`", "a number or a name"),
-        ("state becomes idle", "write `rise(…)`", "the end of the item"),
-        ("at 3 s released", "`eventually[3 s, 3 s] (…)`", "the end of the item"),
+        (
+            "requirement R\n  upon asked\n  then within ! released",
+            *("found `!`, expected a duration such as `3 s`", ""),
+        ),
+        ("requirement R always (asked or", "the end of the item, expected a formula or", ""),
+        ("requirement R always asked released", "found `released`, expected an operator", ""),
+        ("signal z", "expected `,` or `:`", ""),
+        ("requirement", "expected a name", ""),
+        # A word that starts like one of the language is not cut in two.
+        *(
+            (f"signal x : {word}", f"found `{word}`, ", f"`{fix}`")
+            for word, fix in (("boool", "bool"), ("integer", "int"), ("reals", "real"))
+        ),
+        # Signs of other languages.
+        (f'{STATE}state = "idle"', "expected a number or a name", "have no quotes: `idle`"),
+        (f"{STATE}(asked) => (released)", "the end of the item", "write `->`"),
+        (f"{STATE}(asked) ==> (released)", "expected a number or a name", "write `->`"),
+        (f"{STATE}state becomes idle", "the end of the item", "write `rise(…)`"),
+        (f"{STATE}at 3 s released", "the end of the item", "`eventually[3 s, 3 s] (…)`"),
     ],
 )
-def test_signs_of_other_languages(formula, fix, expected):
-    found = first_finding(f"signal state : {{idle, on}}\nrequirement R\n  always {formula}\n")
+def test_what_is_found_and_expected_is_said_in_words(text, told, fix):
+    found = first_finding(f"{text}\n")
+    assert told in found.message
     assert fix in found.help
-    assert found.message.endswith(expected)
 
 
 def test_every_terminal_has_words():
