@@ -72,7 +72,7 @@ def array_messages(path: Path, stamps: Stamps | None) -> column_topics.ColumnMes
             f"ARRAY[:UNIT]; there are {', '.join(names[:8]) or 'none'}"
         )
     with errors_as_damage(_FORM):
-        end = max(int(topic.load()[0].max()) for topic in topics)
+        end = max((int(topic.load()[0].max()) for topic in topics if topic.count), default=None)
     return column_topics.ColumnMessages(topics, end, close=close)
 
 
@@ -86,12 +86,13 @@ def _hierarchy(path: Path) -> tuple[_Tree, Callable[[], object]]:
     def read(dataset: Any, turned: bool) -> Any:
         return dataset[()].T if turned else dataset[()]
 
-    def tree_of(group: Any) -> _Tree:
+    def tree_of(group: Any, above: frozenset[Any] = frozenset()) -> _Tree:
         found: _Tree = {}
+        above |= {group}
         for name, inner in group.items():
             if isinstance(inner, h5py.Group):
-                if not name.startswith("#"):
-                    found[name] = tree_of(inner)
+                if not name.startswith("#") and inner not in above:  # a link may lead back
+                    found[name] = tree_of(inner, above)
             elif isinstance(inner, h5py.Dataset) and inner.shape and not inner.dtype.names:
                 turned = "MATLAB_class" in inner.attrs
                 shape = inner.shape[::-1] if turned else inner.shape

@@ -11,6 +11,7 @@ from tests.rvmon.recordings.messages.logs import (
     STEADY,
     write_csv,
     write_dataflash,
+    write_hdf5,
     written,
 )
 from tests.tools.logs import write_can, write_ulog
@@ -280,3 +281,19 @@ def test_an_instance_of_a_topic_and_a_topic_that_is_called_so_are_told_apart(tmp
         "requirement R1\n  always arm_1.speed < 1\nrequirement R2\n  always arm_1_2.speed < 1\n"
     )
     assert spec.evaluate(path).verdicts == {"R1": "F", "R2": "P"}
+
+
+def test_groups_of_arrays_may_be_empty_and_lead_back_to_those_above(tmp_path):
+    h5py = pytest.importorskip("h5py")
+    path = write_hdf5(tmp_path / "a.h5", FEW)
+    spec = rvmon.loads(SPEC.format("drive"))
+    whole = spec.evaluate(path)
+    with h5py.File(path, "a") as file:
+        file["idle/t"] = []
+        file["drive/root"] = h5py.SoftLink("/")
+    report = spec.evaluate(path)
+    assert (report.attempts, report.end) == (whole.attempts, whole.end)
+    with h5py.File(tmp_path / "b.h5", "w") as file:
+        file["drive/t"], file["drive/speed"], file["drive/mode"] = [], [], []
+    with pytest.raises(TraceError, match=r"b\.h5: holds no sample"):
+        spec.evaluate(tmp_path / "b.h5")
