@@ -11,17 +11,10 @@ from rvmon.files import staged
 from rvmon.recordings import FORMATS, MESSAGE_FORMATS
 from rvmon.recordings.clip_piece import Copied, Piece, stamp_number, stamp_text
 from rvmon.recordings.csv_rows import Layout
-from rvmon.recordings.parquet import (
-    numbers_of_durations,
-    parquet_batches,
-    parquet_file,
-    parquet_layout,
-)
+from rvmon.recordings.parquet import parquet_batches, parquet_file, parquet_layout
 from rvmon.recordings.places import endings_of, local_path
-from rvmon.recordings.recording import JOINED, format_of
-from rvmon.recordings.tables import arrow_cells
+from rvmon.recordings.recording import JOINED, FileRecording, format_of
 from rvmon.trace.schema import Stamps
-from rvmon.trace.stamps import ticks_of_stamp
 from rvmon.trace.time import TIME_LIMIT, format_stamp
 
 CLIPPED = {
@@ -103,21 +96,18 @@ def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
     import pyarrow
     from pyarrow import parquet
 
-    layout = parquet_layout(path, piece.schema)
     copied = Copied()
     with parquet.ParquetWriter(out, schema) as writer:
         if piece.held:
-            writer.write_table(_start(piece, layout, schema))
-        for arrays in parquet_batches(path, list(schema.names)):
-            stamps = arrow_cells(numbers_of_durations(arrays[layout.time]))
-            instants = [ticks_of_stamp(stamp, layout.stamps) for stamp in stamps]
-            kept = [t for t in instants if piece.holds(t)]
-            if kept:
-                mask = pyarrow.array(list(map(piece.holds, instants)))
+            writer.write_table(_start(piece, parquet_layout(path, piece.schema), schema))
+        stamps = FileRecording(path, piece.without_names, ordered=piece.ordered).stamps()
+        for arrays, (_, instants) in zip(parquet_batches(path, schema.names), stamps, strict=False):
+            held = piece.holds(instants)
+            if held.any():
                 batch = pyarrow.RecordBatch.from_arrays(arrays, schema=schema)
-                writer.write_batch(batch.filter(mask))
-                copied.note(*kept)
-            if piece.ordered and instants and instants[-1] > piece.stop:
+                writer.write_batch(batch.filter(pyarrow.array(held)))
+                copied.note(*instants[held].tolist())
+            if piece.ordered and instants[-1] > piece.stop:
                 break
     return copied
 

@@ -43,9 +43,14 @@ class Piece(Struct, frozen=True):
     # the values that signals bring along from before its start, by name
     held: Mapping[str, Value] = field(default_factory=dict)
 
-    def holds(self, t: int) -> bool:
-        """Whether an instant (ticks) lies in it."""
-        return self.start <= t <= self.stop
+    def holds(self, t: Any) -> Any:
+        """Whether an instant (ticks) lies in it, or each of an array."""
+        return (self.start <= t) & (t <= self.stop)
+
+    @property
+    def without_names(self) -> Schema:
+        """By which nothing but its stamps is read of a row: most lie before the piece."""
+        return replace(self.schema, signals={}, events={})
 
 
 class Copied(Struct):
@@ -151,9 +156,8 @@ def clip_text(path: str, piece: Piece, out: Path, *, is_csv: bool) -> Copied:
             made.write(_csv_start(piece, read_layout(cells, piece.schema)))
         else:
             made.write(_json_start(piece))
-        # Nothing but the stamps is read of the rows: most lie before the piece.
-        bare = replace(piece.schema, signals={}, events={})
-        with closing(FileRecording(path, bare, ordered=piece.ordered).stamps()) as stamps:
+        recording = FileRecording(path, piece.without_names, ordered=piece.ordered)
+        with closing(recording.stamps()) as stamps:
             return _copy(lines, header, stamps, piece, made)
 
 
@@ -170,7 +174,7 @@ def _copy(
     """
     copied = Copied()
     for ends, instants in stamps:
-        held = (instants >= piece.start) & (instants <= piece.stop)
+        held = piece.holds(instants)
         if held.any():
             copied.note(*instants[held].tolist())
             for end, is_held in zip(ends.tolist(), held.tolist(), strict=True):
