@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rvmon.cli.evaluation import Judged
-from rvmon.cli.output import say
-from rvmon.cli.reading import reading_words
+from rvmon.cli.output import say, shown_while_reading
+from rvmon.cli.reading import opened, reading_words
 from rvmon.files import write_file
 from rvmon.recordings.held_recording import HeldRecording
 from rvmon.recordings.source import Source
@@ -20,6 +20,7 @@ from rvmon.verdicts.serialise import VerdictRow, broken_rows
 
 if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
+    from rvmon.recordings.recording import FileRecording
     from rvmon.trace.sample import Sample
     from rvmon.verdicts.known_failures import KnownFailures
 
@@ -65,16 +66,17 @@ def write_files(
         place = arguments.traces[0] if reproducer else trace
         if trace == "-":
             return []
-        source = Source(spec.recording(place))
-        again = partial(_pieces, spec, place)
-        return HeldRecording(source.pieces(), source.outages, again)
+        recording = opened(spec, place)
+        return HeldRecording(
+            _pieces(recording), recording.outages, lambda: _pieces(opened(spec, place))
+        )
 
     if arguments.mcap:
         from rvmon.report.verdicts_mcap import write_verdicts
 
         for report in reports:
             end = report.end or 0
-            samples = [sample for sample in read(report.trace) if sample.t <= end]
+            samples = (sample for sample in read(report.trace) if sample.t <= end)
             write_verdicts(arguments.mcap, spec.checked, report, samples)
     if arguments.report:
         from rvmon.report.run_pages import write_run_pages
@@ -92,8 +94,8 @@ def write_files(
             say(f"wrote {written[-1]}")
 
 
-def _pieces(spec: Spec, trace: str) -> Iterator[Batch | Sample]:
-    return Source(spec.recording(trace)).pieces()
+def _pieces(recording: FileRecording) -> Iterator[Batch | Sample]:
+    return Source(recording, shown=partial(shown_while_reading, recording)).pieces()
 
 
 def _record_coverage(

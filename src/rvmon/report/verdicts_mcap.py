@@ -11,6 +11,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping
 from heapq import merge
 from importlib.util import find_spec
+from itertools import chain
 from operator import itemgetter
 from pathlib import Path
 from typing import Any
@@ -75,11 +76,13 @@ def write_verdicts(
     Raises:
         RvmonError: a file cannot be written, or an instant is before 1970.
     """
-    recorded = list(samples)
-    instants = [sample.t for sample in recorded[:1]] or [
-        attempt.triggered for attempt in report.attempts
-    ]
-    begin = min(instants, default=report.end or 0)
+    recorded = iter(samples)
+    first = next(recorded, None)
+    begin = report.end or 0
+    if first is not None:
+        begin, recorded = first.t, chain((first,), recorded)
+    else:
+        begin = min((attempt.triggered for attempt in report.attempts), default=begin)
     if begin < 0:
         raise RvmonError(f"cannot write {path}: MCAP has no instants before 0 s")
     names = {
@@ -95,11 +98,11 @@ def write_verdicts(
     schemas: dict[str, tuple[str, Mapping[str, str]]] = {ATTEMPTS: ("foxglove.Log", _ATTEMPT)}
     for name in report.verdicts:
         schemas[topic_of("requirements", name)] = "rvmon.Requirement", _STATE
-    if recorded:
+    if first is not None:
         schemas |= _value_schemas(spec, names)
     if scene is not None:
         schemas[SCENE] = "foxglove.SceneUpdate", {"deletions": "array", "entities": "array"}
-    layout = foxglove_layout(spec, report.verdicts, names if recorded else (), scene)
+    layout = foxglove_layout(spec, report.verdicts, names if first is not None else (), scene)
     with writing(path):
         with staged(path) as place:
             _write(place, schemas, messages)
