@@ -24,14 +24,12 @@ def warned(text):
         (f"const T = 3 s\nevent c\n{DEMAND}", [("RV046", "c")]),
         (f"const T = 3 s\nsignal p : bool\n{DEMAND}", [("RV046", "p")]),
         (f"const T = 3 s\nevent c\n{DEMAND}cover C = b and c\n", []),
+        # A file that only declares has no users yet.
+        ("event a\nconst T = 3 s\ndefine soon(p) = within T p\n", []),
     ],
 )
 def test_unused(text, expected):
     assert warned(text) == expected
-
-
-def test_a_file_that_only_declares_has_no_users_yet():
-    assert warned("event a\nconst T = 3 s\ndefine soon(p) = within T p\n") == []
 
 
 def test_imported_names_may_be_unused(tmp_path):

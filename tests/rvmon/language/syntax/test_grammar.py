@@ -103,6 +103,8 @@ def test_grammar_has_no_conflicts():
         ("x < 5 U b", "x < 5 until b"),
         ("x < 50 %", "x < 0.5"),
         ("state == S S state != S", "state == S since state != S"),
+        # Brackets that only enclose are no levels.
+        *(("(" * many + "a" + ")" * many, "a") for many in (90, 99, 150)),
     ],
 )
 def test_operators(required, text, printed):
@@ -257,8 +259,3 @@ def test_a_chain_beyond_all_limits_is_refused_before_it_is_read(sign):
 def test_words_in_texts_and_comments_are_no_operators():
     text = 'signal p : bool\nrequirement R "' + "and " * 3000 + '"\n  always p  # ' + "or " * 3000
     compile_text(text)
-
-
-@pytest.mark.parametrize("many", [90, 99, 150])
-def test_brackets_that_only_enclose_are_no_levels(required, many):
-    assert required("(" * many + "a" + ")" * many) == "a"

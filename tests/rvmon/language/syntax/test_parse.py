@@ -48,23 +48,21 @@ def test_file_is_read_once(compile_file):
 
 
 @pytest.mark.parametrize(
-    "texts",
+    ("code", "files", "texts"),
     [
-        {"main": 'import "main.rv"'},
-        {"main": 'import "one.rv"', "one": 'import "two.rv"', "two": 'import "one.rv"'},
-        {"main": 'import "one.rv"', "one": 'import "main.rv"'},
+        ("RV016", 1, {"main": 'import "main.rv"'}),
+        (
+            *("RV016", 2),
+            {"main": 'import "one.rv"', "one": 'import "two.rv"', "two": 'import "one.rv"'},
+        ),
+        ("RV016", 2, {"main": 'import "one.rv"', "one": 'import "main.rv"'}),
+        ("RV011", 2, {"main": 'import "one.rv"\nsignal a : bool', "one": "event a"}),
     ],
 )
-def test_circle_is_an_error_with_both_places(compile_file, texts):
+def test_a_circle_and_a_double_name_are_errors_with_both_places(compile_file, code, files, texts):
     (finding,) = findings_of(compile_file, **texts)
-    assert finding.code == "RV016"
-    assert len(finding.spans) == 2
-
-
-def test_double_name_over_files_shows_both_files(compile_file):
-    (finding,) = findings_of(compile_file, main='import "one.rv"\nsignal a : bool', one="event a")
-    assert finding.code == "RV011"
-    assert len({label.span.source.name for label in finding.spans}) == 2
+    assert (finding.code, len(finding.spans)) == (code, 2)
+    assert len({label.span.source.name for label in finding.spans}) == files
 
 
 @pytest.mark.parametrize("target", ['"missing.rv"', '"."', "nolibrary", '"a\x00b"'])
