@@ -8,13 +8,13 @@ from hypothesis import strategies as st
 from tests.rvmon.laws.tried import TRIED, judge, judged_otherwise, moved
 from tests.tools.compare import differences, outcomes
 from tests.tools.drive import drive, feed
-from tests.tools.law import names_read, word
+from tests.tools.law import names_read
 
 from rvmon.language.checked.specification import TimeModel
 from rvmon.session import Spec
 from rvmon.testing.generate import BOOLS
 from rvmon.testing.generate.spec import Profile
-from rvmon.testing.generate.trace import Case, TraceProfile
+from rvmon.testing.generate.trace import Case
 from rvmon.testing.law.syntax import is_upon_end
 from rvmon.testing.strategies import cases
 from rvmon.trace.sample import Sample
@@ -101,16 +101,6 @@ def _back(report: Report, shift: int) -> Report:
         for attempt in report.attempts
     )
     return replace(report, attempts=attempts)
-
-
-@TRIED
-@given(cases(Profile(), TraceProfile(outages=30)))
-def test_finish_is_an_advance_behind_the_end(case: Case) -> None:
-    """Whoever calls `advance` up to behind the end is told what `finish` alone tells."""
-    end = word(case).end
-    if end is not None:
-        told = replace(case, actions=(*case.actions, end + 1), end=end)
-        assert judged_otherwise(case, told) == []
 
 
 @TRIED
