@@ -283,6 +283,21 @@ def test_an_instance_of_a_topic_and_a_topic_that_is_called_so_are_told_apart(tmp
     assert spec.evaluate(path).verdicts == {"R1": "F", "R2": "P"}
 
 
+def test_values_that_a_measurement_marks_as_invalid_are_unknown_at_their_instants(tmp_path):
+    asammdf = pytest.importorskip("asammdf")
+    numpy = pytest.importorskip("numpy")
+    path = tmp_path / "a.mf4"
+    times, marks = numpy.arange(4.0), numpy.array([True, False, True, False])
+    with asammdf.MDF() as file:
+        values = numpy.array([9.0, 0.5, 9.0, 0.25])
+        signal = asammdf.Signal(values, times, name="speed", invalidation_bits=marks)
+        file.append([signal], acq_name="drive", common_timebase=True)
+        file.save(path)
+    spec = rvmon.loads("signal drive.speed : real\nrequirement R1\n  always drive.speed < 1\n")
+    found = [(one.t // 10**9, one.values["drive.speed"]) for one in spec.recording(path)]
+    assert found == [(0, None), (1, 0.5), (2, None), (3, 0.25)]
+
+
 def test_groups_of_arrays_may_be_empty_and_lead_back_to_those_above(tmp_path):
     h5py = pytest.importorskip("h5py")
     path = write_hdf5(tmp_path / "a.h5", FEW)
