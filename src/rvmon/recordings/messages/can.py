@@ -103,7 +103,9 @@ class FrameMessages(Messages):
                 self.end += 1
 
     def _name(self, message: str, channel: Any) -> str:
-        return f"/can{channel}/{message}" if message in self._several else f"/{message}"
+        if message not in self._several:
+            return f"/{message}"
+        return f"/can{channel}/{message}" if str(channel).isdigit() else f"/{channel}/{message}"
 
     def _message(self, key: _Key) -> Any:
         if key not in self._seen:

@@ -221,6 +221,16 @@ BU_: ECU
 BO_ {number} Drive: 2 ECU
  SG_ {signal} : 0|8@1+ ({scale},0) [0|0] "" ECU
 """
+
+
+def test_a_channel_that_has_a_name_goes_by_it(tmp_path):
+    """As candump writes it; other logs number their channels."""
+    pytest.importorskip("can")
+    (tmp_path / "a.dbc").write_text(NAMED_ALIKE.format(number=100, signal="speed", scale=1))
+    (tmp_path / "a.log").write_text("(1.0) can0 064#0500\n(1.5) vcan1 064#1E00\n")
+    assert list(messages_of(str(tmp_path / "a.log")).topics) == ["/can0/Drive", "/vcan1/Drive"]
+
+
 FRAMES_OF_TWO = (
     "(1.0) can0 064#0500\n(1.5) can0 0C8#1E00\n(2.0) can0 064#0700\n(2.5) can0 0C8#2000\n"
 )
