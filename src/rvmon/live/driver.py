@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from rvmon.errors import RvmonError, TraceError
 from rvmon.language.checked.names_read import several, sources_asked
 from rvmon.live.clock import FAR_NS, Clock, WallClock, refuse_far
-from rvmon.live.robot import Judgement, Robot, Status, Watch
+from rvmon.live.robot import Judgement, Robot, Status, Watch, with_delay
 from rvmon.live.sample_queue import Dropped, Gap, NewRun, Offered, OutageReport, Timers, Waiting
 from rvmon.monitor.listeners import checked
 from rvmon.trace.sample import HealthKind
@@ -44,8 +44,8 @@ class Driver:
         only: ids of the requirements; default all.
         sources: the names that can arrive; default all.
         keep: the most records kept per requirement and verdict; `None`: all.
-        lag_ns: the longest delay of samples with their own stamps; deadlines are decided
-            that much later. Default: the `max delay` of the specification, or 0.
+        lag_ns: the longest delay of samples with their own stamps, which are put in order within
+            it; all is decided that much later. Default: the `max delay` of the specification, or 0.
         room: the most samples in the queue. For a sample that finds it full, signals are unknown
             until their next value and events at its instant, so that no verdict relies on it.
         most_robots: the most robots; samples of further ones are refused.
@@ -120,7 +120,7 @@ class Driver:
         lag = (spec.checked.max_delay or 0) if self._asked_lag is None else self._asked_lag
         # Stamps that were not assigned here may be equal, so their samples have to be merged.
         settle = "now" if self._runs_by_itself and not lag else "next"
-        watch = Watch(spec, self._only, self._sources, settle, self._keep)
+        watch = Watch(spec, with_delay(spec, lag), self._only, self._sources, settle, self._keep)
         watch.monitor()
         return watch, lag
 
@@ -187,7 +187,7 @@ class Driver:
             names: signals and events; `None`: all.
             robot: the robot; `None`: every known robot.
             since_ns: the last instant at which updates were sure to arrive, ns; default now. The
-                lag is subtracted.
+                outage is wider by the lag, as with `max delay`.
             is_over: whether the outage has ended by now; else `found` ends it.
             why: a phrase for the input health; use the same for all losses of one kind.
 
@@ -221,7 +221,7 @@ class Driver:
             now = max(self._clock.now_ns(), self._stamped)
             if kind is not OutageReport.MISSED:  # samples offered from now on get later stamps
                 self._stamped = now + self._runs_by_itself
-            first = (now if since is None else min(since, now)) - (self._asked_lag or 0)
+            first = now if since is None else min(since, now)
             last = now if is_over else None
             if kind is OutageReport.FOUND and not self._runs_by_itself:
                 first = now + 1  # a sample stamped `now` may have been sent before the lost ones

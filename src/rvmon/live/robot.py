@@ -8,18 +8,20 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import msgspec
+from msgspec import structs
 
 from rvmon.errors import TimeOrderError, TraceError
 from rvmon.language.checked.names_read import requirements_asked
 from rvmon.live.sample_queue import Dropped, Gap, OutageReport, Values
+from rvmon.session import Spec
 from rvmon.trace.sample import Health, HealthKind
+from rvmon.trace.time import format_ticks
 from rvmon.verdicts import Verdict, fold
 from rvmon.verdicts.attempt import Attempt
 from rvmon.verdicts.serialise import seconds
 
 if TYPE_CHECKING:
     from rvmon.monitor.monitor import Monitor
-    from rvmon.session import Spec
     from rvmon.verdicts.report import Report
 
 
@@ -62,6 +64,7 @@ class Watch:
     """The options by which robots are monitored."""
 
     spec: Spec  # the specification
+    judging: Spec  # the same, whose `max delay` is the lag if that is longer
     only: Sequence[str] | None  # ids of the requirements; `None`: all
     sources: Sequence[str] | None  # the names that can arrive; `None`: all
     settle: str  # as for `Spec.monitor`
@@ -74,9 +77,16 @@ class Watch:
 
     def monitor(self) -> Monitor:
         """A new monitor for a run."""
-        return self.spec.monitor(
+        return self.judging.monitor(
             only=self.only, sources=self.sources, settle=self.settle, keep=self.keep
         )
+
+
+def with_delay(spec: Spec, delay: int) -> Spec:
+    """The specification with a `max delay` of at least `delay`, ns."""
+    if delay <= (spec.checked.max_delay or 0):
+        return spec
+    return Spec(structs.replace(spec.checked, max_delay=delay))
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,6 +200,7 @@ class Robot:
             Why it was refused, so that its names are unknown at its instant; "" if it was taken.
         """
         self._lose_again(t)
+        is_too_late = self._monitor.is_too_late(t)
         try:
             self._monitor.step_ns(t, values)
         except TraceError as error:
@@ -202,6 +213,10 @@ class Robot:
             else:
                 self._monitor.lose_ns(names, t, t, why="refused")
                 self._come_to(t)
+            return self._refusal
+        if is_too_late:
+            self._refusal = f"sample at {format_ticks(t)}: it exceeds the delay that is allowed"
+            self._lost += 1
             return self._refusal
         self._samples += 1
         self._come_to(t)

@@ -108,6 +108,10 @@ class Monitor(FedMonitor[Attempt]):
             self._attend()
         return self._core.flush()
 
+    def is_too_late(self, t_ns: int) -> bool:
+        """Whether a sample at `t_ns` exceeds `max delay`: it is left out, which is reported."""
+        return self._feed.is_too_late(t_ns)
+
     def on_decided(self, callback: Callback) -> Callable[[], None]:
         r"""Register a callback for each attempt that passes or fails.
 

@@ -251,6 +251,21 @@ def test_with_a_lag_samples_may_come_late():
     assert door.driver.status()[""].verdicts["D1"] is Verdict.PASS
 
 
+def test_with_a_lag_samples_are_put_in_order():
+    """Within it; one that comes later still is told, and leaves its names unknown."""
+    door = Door(lag_ns=2 * S)
+    for t, values in ((0, {"knock": True}), (4, {}), (2, {"opened": True}), (5, {})):
+        assert door.driver.offer(values, t_ns=t * S)
+    door.at(9)
+    status = door.driver.status()[""]
+    assert (status.verdicts["D1"], status.lost) == (Verdict.PASS, 0)
+    door.driver.offer({"opened": True}, t_ns=S)
+    door.at(10)
+    status = door.driver.status()[""]
+    assert (status.verdicts["D1"], status.lost) == (Verdict.INCONCLUSIVE, 1)
+    assert "it exceeds the delay" in status.refusal
+
+
 def test_a_clock_that_goes_back_begins_a_new_run():
     """As a simulation that starts again: the report of the first says why, and both count."""
     ended = []
