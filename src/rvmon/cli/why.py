@@ -16,7 +16,7 @@ from rvmon.language.checked.specification import CheckedSpec
 from rvmon.language.print import format_window
 from rvmon.monitor.missing_names import expect_names
 from rvmon.recordings.batch import Batch
-from rvmon.recordings.held_recording import MOST_HELD, HeldRecording, rows_of
+from rvmon.recordings.held_recording import MOST_HELD, HeldRecording, weight_of
 from rvmon.recordings.places import name_of
 from rvmon.recordings.source import Source, pieces_up_to
 from rvmon.report.changes import Looks, RunChanges
@@ -59,10 +59,10 @@ def _explain(arguments: argparse.Namespace, known_as: str | None) -> int:
 
     def kept(parts: Iterable[Batch | Sample]) -> Iterator[Batch | Sample]:
         nonlocal pieces
-        rows = 0
+        weight = 0
         for piece in shown_while_reading(recording, iter(parts)):
-            rows += rows_of(piece)
-            if rows > MOST_HELD and recording.can_be_read_again:
+            weight += weight_of(piece)
+            if weight > MOST_HELD and recording.can_be_read_again:
                 pieces = None
             if pieces is not None:
                 pieces.append(piece)

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 MOST_HELD = 1_000_000
 """The most rows of columns that are held, some 33 bytes each; of more, all are read again."""
 
+_SAMPLE = 10  # rows that take as much memory as a sample
+
 
 class HeldRecording(Sequence[Sample]):
     """The samples of a recording; those of columns take a tenth of the memory of samples.
@@ -38,14 +40,14 @@ class HeldRecording(Sequence[Sample]):
         """What was not read yet; `None`: what comes behind those that are held must be read again,
         or there is nothing."""
         self._is_whole = False  # whether all is held
-        rows = 0
-        while again is None or rows <= MOST_HELD:
+        weight = 0
+        while again is None or weight <= MOST_HELD:
             piece = next(self._rest, None)
             if piece is None:
                 self._is_whole = True
                 break
             self._held.append(piece)
-            rows += rows_of(piece)
+            weight += weight_of(piece)
 
     def pieces(self) -> Iterator[Batch | Sample]:
         """The pieces of the recording, from its begin."""
@@ -73,13 +75,18 @@ class HeldRecording(Sequence[Sample]):
         return list(self)[place]
 
     def is_longer_than(self, rows: int) -> bool:
-        """Whether it has more rows than some, at most `MOST_HELD`."""
+        """Whether it has more rows than some, which are few enough to be held."""
         return not self._is_whole or sum(map(rows_of, self._held)) > rows
 
 
 def held(samples: Iterable[Batch | Sample]) -> HeldRecording:
     """Samples as a held recording, or the one that they are."""
     return samples if isinstance(samples, HeldRecording) else HeldRecording(samples)
+
+
+def weight_of(piece: Batch | Sample) -> int:
+    """The number of rows of columns that take as much memory as a piece."""
+    return _SAMPLE if isinstance(piece, Sample) else len(piece.times)
 
 
 def rows_of(piece: Batch | Sample) -> int:
