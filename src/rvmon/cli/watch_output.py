@@ -278,16 +278,20 @@ def watch_kept(
 
     `is_file`: lines begin anew with each process: those that were taken are passed over.
     """
+    is_untold = False
 
     def report(number: int, attempt: Attempt) -> None:
+        nonlocal is_untold
         if attempt.verdict is not Verdict.FAIL and arguments.failures:
             return
+        is_untold = True
         if arguments.format == "json":
             record = {"number": number, **Judgement("", 1, attempt).to_dict()}
             say_json(msgspec.json.encode(record).decode())
             sys.stdout.flush()
         else:
             say(f"{number}  {_line(Judgement('', 1, attempt))}", flush=True)
+        is_untold = False
 
     try:
         monitor = DurableMonitor(
@@ -304,11 +308,13 @@ def watch_kept(
                 lines = _behind_gap(monitor, lines)
             _feed(monitor, spec, lines)
         finally:
-            monitor.save()
+            if not is_untold:  # else the same command is to say it, from what the file has
+                monitor.save()
     except BrokenPipeError:
         raise
     except OSError as error:
-        raise RvmonError(f"--state {arguments.state}: {error.strerror}") from None
+        what = "the output cannot be written" if is_untold else f"--state {arguments.state}"
+        raise RvmonError(f"{what}: {error.strerror}") from None
     except KeyboardInterrupt:
         warn("ended; the same command continues the run")
     if not monitor.taken:

@@ -1,5 +1,6 @@
 """A run that goes on where its process was killed: no verdict is lost, changed or of nobody."""
 
+import errno
 import os
 import random
 from threading import Thread
@@ -9,6 +10,7 @@ from tests.rvmon.live import killed_watch
 from tests.tools.each import each
 
 import rvmon
+from rvmon.cli import watch_output
 from rvmon.errors import SnapshotError, TraceError
 from rvmon.execute.journal import add
 from rvmon.live.durable import DurableMonitor
@@ -162,6 +164,19 @@ def test_a_watch_goes_on_in_no_other_file(watched, rows, is_same):
     other = other or f'{text}{{"t": 10, "x": 1}}\n{{"t": 11, "x": 1}}\n'
     told = watched(1 if is_same else 2, other).err
     assert ("is not the file of which 11 lines were evaluated" in told) is not is_same
+
+
+def test_a_verdict_that_cannot_be_written_is_told_by_the_next_process(watched, monkeypatch):
+    """Its disk is full, or its reader has left: the state does not count it as told."""
+
+    def full(*_, **__):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    text = '{"t": 0, "x": 9}\n{"t": 1, "x": 9}\n'
+    with monkeypatch.context() as patch:
+        patch.setattr(watch_output, "say", full)
+        assert "the output cannot be written: No space left" in watched(2, text).err
+    assert "R#1 F" in watched(1, text).out
 
 
 def test_a_watch_that_goes_on_with_a_pipe_has_lost_what_came_meanwhile(watched, tmp_path):
