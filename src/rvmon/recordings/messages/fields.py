@@ -162,7 +162,7 @@ def _calculated(operation: Callable[..., float], values: list[Any]) -> Any:
         if value != value:
             return None
     if inf in known or -inf in known:  # as sensors say that nothing is in range
-        with suppress(ValueError):
+        with suppress(ValueError, ArithmeticError):
             result = operation(*known)
             return None if result != result else result
     return calculated(operation, *known)

@@ -146,6 +146,15 @@ def test_all_elements_of_an_array_count(read):
         read(wrong, sent, name="b.bag")
 
 
+def test_what_is_infinite_divided_by_0_is_unknown(read):
+    nan, far = float("nan"), float("inf")
+    scans = [[far, 0.0], [far, 2.0], [1.0, far], [0.0, 0.0], [far, nan], [-far, far]]
+    sent = [("/base/scan", START + t, {"ranges": one}) for t, one in enumerate(scans)]
+    ratio = '[bind.nearest]\ntopic = "/base/scan"\nvalue = "ranges[0] / ranges[1]"\n'
+    found = [values["nearest"] for _, values in read(ratio, sent)]
+    assert found == [None, far, 0.0, None, None, None]
+
+
 def test_headers_say_when(read):
     """All stamps of headers count, or those of one name; messages are sorted by them."""
     header = BINDING.split("[bind.nearest]")[0]
