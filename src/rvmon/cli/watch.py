@@ -52,8 +52,10 @@ def run_watch(arguments: argparse.Namespace) -> int:
     verdicts = [
         verdict for status in live.status().values() for verdict in status.verdicts.values()
     ]
-    unseen = live.turned_away or any(
-        verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE) for verdict in verdicts
+    unseen = (
+        live.turned_away
+        or shown.has_failed
+        or any(verdict in (Verdict.FAIL, Verdict.INCONCLUSIVE) for verdict in verdicts)
     )
     return int(unseen or not verdicts)  # none: nothing came that could be told to be a robot's
 

@@ -55,6 +55,7 @@ class Output(logging.Handler):
         self._counts = Counter[str]()
         # the reason why verdicts cannot be written any more, such as a reader that has left
         self.broken: OSError | None = None
+        self.has_failed = False  # by any specification: their verdicts go when a new one comes
 
     def __enter__(self) -> Output:
         self._log.addHandler(self)
@@ -78,6 +79,7 @@ class Output(logging.Handler):
 
     def judged(self, judgement: Judgement) -> None:
         """Say a verdict, if it is asked for."""
+        self.has_failed |= judgement.attempt.verdict is Verdict.FAIL
         if judgement.attempt.verdict is not Verdict.FAIL and self._failures_only:
             return
         try:
@@ -143,6 +145,7 @@ class View(Output):
     def judged(self, judgement: Judgement) -> None:
         """Remember what failed."""
         if judgement.attempt.verdict is Verdict.FAIL:
+            self.has_failed = True
             self._failures.append(_line(judgement))
 
     def note(self, text: str) -> None:

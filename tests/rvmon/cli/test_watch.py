@@ -15,6 +15,7 @@ from tests.rvmon.cli.conftest import DOOR
 
 from rvmon import loads
 from rvmon.cli import main
+from rvmon.cli.watch import _replace
 from rvmon.cli.watch_output import print_status
 from rvmon.live import Driver, SimulatedClock
 from rvmon.report.printer import Printer
@@ -84,6 +85,32 @@ def test_a_stream_that_breaks_off_passes_nothing(door, says, monkeypatch, fault,
     assert "D1   I  ?" in shown.out
     assert f"a.jsonl: {told}" in shown.err
     assert "rror: nothing more was received" in shown.err
+
+
+@pytest.mark.parametrize("form", ["text", "view"])
+def test_what_failed_before_a_change_of_the_specification_is_no_success(
+    door, says, monkeypatch, form
+):
+    """Its verdicts are those of the new one from then on, whose writing may have been a touch."""
+    is_taken_up = threading.Event()
+    (door / "new.rv").write_text(DOOR)
+    pieces = [b'{"t": 10, "closed": true}\n', FAILS.encode()]
+
+    def read(*_):
+        if len(pieces) == 1:
+            os.replace("new.rv", "door.rv")
+            assert is_taken_up.wait(60)
+        return pieces.pop() if pieces else b""
+
+    def replace(*arguments):
+        _replace(*arguments)
+        is_taken_up.set()
+
+    monkeypatch.setattr("rvmon.adapters.json_objects.os.read", read)
+    monkeypatch.setattr("rvmon.cli.watch._replace", replace)
+    told = says(1, "watch", "door.rv", "a.jsonl", "--format", form)
+    assert "run 2" in told.out
+    assert "D1   NT" in told.out
 
 
 def test_a_change_that_names_what_nobody_listens_to_is_not_taken_up(door, says, monkeypatch):
