@@ -17,7 +17,8 @@ from rvmon.adapters.json_objects import JsonObjects, begin_of, feed_lines, read_
 from rvmon.cli.options import asked_ids, constants_of
 from rvmon.cli.output import warn
 from rvmon.cli.reading import mapped_names, refuse_empty
-from rvmon.cli.watch_output import Output, no_line, output_named, refuse_others, watch_kept
+from rvmon.cli.watch_kept import no_line, refuse_others, watch_kept
+from rvmon.cli.watch_output import Output, output_named
 from rvmon.errors import RvmonError, SpecError
 from rvmon.live import Clock, Judgement, Live, SimulatedClock, WallClock
 from rvmon.recordings import FORMATS, form_of_folder

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import argparse
 import logging
 import sys
-import zlib
 from collections import Counter, deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from io import StringIO
 
 import msgspec
@@ -15,24 +13,16 @@ from rich.console import Console
 from rich.live import Live as Screen
 from rich.text import Text
 
-from rvmon.adapters.json_objects import decoded_object
-from rvmon.cli.options import refuse_over
 from rvmon.cli.output import say, say_json, warn
 from rvmon.diagnostics import wants_colour
-from rvmon.errors import RvmonError, TraceError
 from rvmon.live import Driver, Judgement, Status
-from rvmon.live.durable import DurableMonitor
-from rvmon.recordings.jsonl_rows import read_object
 from rvmon.report.printer import Cell, Printer
-from rvmon.report.wording import MARKS, health_facts, verdict_text
+from rvmon.report.wording import MARKS, verdict_text
 from rvmon.session import Spec
 from rvmon.texts import counted, shown
-from rvmon.trace.sample import HealthKind
 from rvmon.trace.time import NEVER, TICKS_PER_SECOND, format_stamped
 from rvmon.verdicts import Verdict, fold
-from rvmon.verdicts.attempt import Attempt, Decision
 
-_LOSSES = (HealthKind.DROPPED, HealthKind.LATE)
 _TOLD = 5
 _SHOWN_FAILURES = 5
 _SHOWN_ROBOTS = 8
@@ -89,7 +79,7 @@ class Output(logging.Handler):
 
     def say(self, judgement: Judgement) -> None:
         """Say a verdict."""
-        say(_line(judgement), flush=True)
+        say(line_of(judgement), flush=True)
 
     def note(self, text: str) -> None:
         """Say something that is no verdict."""
@@ -146,7 +136,7 @@ class View(Output):
         """Remember what failed."""
         if judgement.attempt.verdict is Verdict.FAIL:
             self.has_failed = True
-            self._failures.append(_line(judgement))
+            self._failures.append(line_of(judgement))
 
     def note(self, text: str) -> None:
         """Say something above the table."""
@@ -178,7 +168,8 @@ def output_named(name: str | None, *, failures_only: bool) -> Output:
     return kinds[chosen](failures_only=failures_only)
 
 
-def _line(judgement: Judgement) -> str:
+def line_of(judgement: Judgement) -> str:
+    """A verdict in a line."""
     attempt = judgement.attempt
     robot = f"{judgement.robot}  " if judgement.robot else ""
     decided = attempt.triggered if attempt.decided is None else attempt.decided
@@ -249,151 +240,3 @@ def _print_robot(status: Status, spec: Spec, rows: int, printer: Printer, *, is_
     heads = ("", "verdict", "passed", "failed", "open", "until", "requirement")
     printer.table(heads, cells, is_cut=is_cut)
     _print_rest([status.verdicts[name] for name in names[rows:]], "requirements", printer)
-
-
-_KEEP = 1000  # the records of each verdict kept per requirement, as in a watch without a state
-
-
-def refuse_others(arguments: argparse.Namespace) -> None:
-    """Refuse options that a watch with a state does without."""
-    refuse_over([arguments.state], [arguments.spec, arguments.source, arguments.binding])
-    if "://" in arguments.source or arguments.source.startswith(("ros1:", "dds:")):
-        raise RvmonError("--state: a run that is kept is of lines: a pipe or a file")
-    for name in ("realtime", "robot", "publish"):
-        if getattr(arguments, name) is not None:
-            raise RvmonError(
-                f"--state and --{name}: a run that is kept is of one robot whose lines have stamps "
-                f"and are evaluated at them: leave --{name} out"
-            )
-    if arguments.format == "view":
-        raise RvmonError("--state and --format view: verdicts are numbered lines: text or json")
-
-
-def watch_kept(
-    arguments: argparse.Namespace,
-    spec: Spec,
-    only: Iterable[str] | None,
-    lines: Iterable[bytes],
-    *,
-    is_file: bool,
-) -> int:
-    """Judge lines until there are no more, and return the exit code.
-
-    `is_file`: lines begin anew with each process: those that were taken are passed over.
-    """
-    is_untold = False
-
-    def report(number: int, attempt: Attempt) -> None:
-        nonlocal is_untold
-        if attempt.verdict is not Verdict.FAIL and arguments.failures:
-            return
-        is_untold = True
-        if arguments.format == "json":
-            record = {"number": number, **Judgement("", 1, attempt).to_dict()}
-            say_json(msgspec.json.encode(record).decode())
-            sys.stdout.flush()
-        else:
-            say(f"{number}  {_line(Judgement('', 1, attempt))}", flush=True)
-        is_untold = False
-
-    try:
-        monitor = DurableMonitor(
-            spec, arguments.state, report, only=only, keep=_KEEP, settle="next"
-        )
-        if monitor.taken:
-            count = f" after {monitor.taken:,} lines"
-            how = count if is_file else "; what came since its last line is lost"
-            warn(f"{arguments.state}: the run continues{how}")
-        try:
-            if is_file:
-                lines = _behind_taken(monitor, lines, arguments)
-            elif monitor.taken:
-                lines = _behind_gap(monitor, lines)
-            _feed(monitor, spec, lines)
-        finally:
-            if not is_untold:  # else the same command is to say it, from what the file has
-                monitor.save()
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        what = "the output cannot be written" if is_untold else f"--state {arguments.state}"
-        raise RvmonError(f"{what}: {error.strerror}") from None
-    except KeyboardInterrupt:
-        warn("ended; the same command continues the run")
-    if not monitor.taken:
-        raise no_line(arguments.source)
-    # Also what earlier processes of the run lost; what it goes on to is not known yet.
-    # A copy is finished, so that the run can be continued.
-    at_end = spec.restore(monitor.monitor.snapshot()).finish_ns()
-    lost = [health for health in at_end.health if health.kind in _LOSSES and health.requirements]
-    for names, fact in health_facts(lost, at_end.origin):
-        warn(f"{names}: {fact}")
-    told = {name for name, verdict in monitor.monitor.verdicts.items() if verdict is Verdict.FAIL}
-    failed = {
-        attempt.requirement
-        for attempt in at_end.attempts
-        if attempt.verdict is Verdict.FAIL and attempt.decision is Decision.PREFIX
-    }
-    if untold := sorted(failed - told):
-        # Another line may have the same stamp.
-        warn(f"{', '.join(untold)}: fails by the last line, reported when a later stamp comes")
-    return int(bool(lost or told or failed))
-
-
-def no_line(source: str) -> RvmonError:
-    """Nothing came: that is no success."""
-    return RvmonError(f"error: {source}: there is no line: nothing was evaluated")
-
-
-def _behind_taken(
-    monitor: DurableMonitor, lines: Iterable[bytes], arguments: argparse.Namespace
-) -> Iterator[bytes]:
-    """The lines of a file, blank in place of those that were taken.
-
-    Those before the last one are marked, which may be one that is being written.
-    """
-    taken, (count, known) = monitor.taken, monitor.mark
-    other = RvmonError(
-        f"{arguments.source} is not the file of which {taken:,} lines were evaluated: "
-        f"name another --state, or delete {arguments.state} to start again"
-    )
-    number = check = 0
-    for line in lines:
-        if line.strip():
-            if number == count and check != known:
-                raise other
-            if number >= taken:
-                monitor.mark = number, check
-            number, check = number + 1, zlib.crc32(line, check)
-        yield line if number > taken else b""
-    if number < taken:
-        raise other
-
-
-def _behind_gap(monitor: DurableMonitor, lines: Iterable[bytes]) -> Iterator[bytes]:
-    """The lines of a pipe; before the first one, what came to no process is reported as lost."""
-    has_come = False
-    for line in lines:
-        if line.strip() and not has_come:
-            monitor.miss()
-            has_come = True
-        yield line
-
-
-def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes]) -> None:
-    ignored: Counter[str] = Counter()
-    for number, line in enumerate(lines, 1):
-        if not line.strip():
-            continue
-        try:
-            t, values = read_object(decoded_object(line), spec.schema, ignored)
-        except TraceError as error:
-            warn(f"line {number} is not taken: {error}")
-            monitor.miss()
-            continue
-        try:
-            monitor.step_ns(t, values)
-        except TraceError as error:
-            warn(f"line {number} is not taken: {error}")
-    for name in ignored:
-        warn(f"ignored: {name} is not declared in the spec")

@@ -10,7 +10,7 @@ from tests.rvmon.live import killed_watch
 from tests.tools.each import each
 
 import rvmon
-from rvmon.cli import watch_output
+from rvmon.cli import watch_kept
 from rvmon.errors import SnapshotError, TraceError
 from rvmon.execute.journal import add
 from rvmon.live.durable import DurableMonitor
@@ -174,7 +174,7 @@ def test_a_verdict_that_cannot_be_written_is_told_by_the_next_process(watched, m
 
     text = '{"t": 0, "x": 9}\n{"t": 1, "x": 9}\n'
     with monkeypatch.context() as patch:
-        patch.setattr(watch_output, "say", full)
+        patch.setattr(watch_kept, "say", full)
         assert "the output cannot be written: No space left" in watched(2, text).err
     assert "R#1 F" in watched(1, text).out
 
@@ -202,6 +202,17 @@ def test_a_watch_that_is_killed_goes_on(tmp_path):
     assert found == expected
 
 
+def test_a_kept_run_goes_on_with_the_same_requirements(tmp_path, says):
+    """Others have heard nothing of what came before: they would pass, or be left out unsaid."""
+    (tmp_path / "s.rv").write_text(killed_watch.SPEC)
+    (tmp_path / "a.jsonl").write_text('{"t": 0, "speed": 0.5}\n{"t": 1, "speed": 0.5}\n')
+    words = "watch", tmp_path / "s.rv", tmp_path / "a.jsonl", "--state", tmp_path / "run"
+    says(0, *words, "--only", "R1,R3")
+    for only in ([], ["--only", "R1"], ["--only", "R2"]):
+        assert "its run evaluates R1, R3 alone: give the same --only" in says(2, *words, *only).err
+    says(0, *words, "--only", "R3,R1")
+
+
 def test_what_fails_by_the_last_line_is_no_success(watched):
     """Its verdict waits for a line with a later stamp, as another may have the same."""
     assert "there is no line" in watched(2, "\n").err
@@ -216,6 +227,7 @@ def test_what_fails_by_the_last_line_is_no_success(watched):
     [
         (["--robot", "name"], "leave --robot out"),
         (["--realtime"], "leave --realtime out"),
+        (["--sim-time"], "leave --sim-time out"),
         (["--format", "view"], "text or json"),
         (["mqtt://localhost/#"], "a pipe or a file"),
     ],

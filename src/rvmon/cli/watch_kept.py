@@ -1,0 +1,180 @@
+"""`rvmon watch --state`: a run that is kept in a file, from which the same command goes on."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import zlib
+from collections import Counter
+from collections.abc import Iterable, Iterator
+
+import msgspec
+
+from rvmon.adapters.json_objects import decoded_object
+from rvmon.cli.options import refuse_over
+from rvmon.cli.output import say, say_json, warn
+from rvmon.cli.watch_output import line_of
+from rvmon.errors import RvmonError, TraceError
+from rvmon.live import Judgement
+from rvmon.live.durable import DurableMonitor
+from rvmon.recordings.jsonl_rows import read_object
+from rvmon.report.wording import health_facts
+from rvmon.session import Spec
+from rvmon.trace.sample import HealthKind
+from rvmon.verdicts import Verdict
+from rvmon.verdicts.attempt import Attempt, Decision
+
+_LOSSES = (HealthKind.DROPPED, HealthKind.LATE)
+_KEEP = 1000  # the records of each verdict kept per requirement, as in a watch without a state
+
+
+def refuse_others(arguments: argparse.Namespace) -> None:
+    """Refuse options that a watch with a state does without."""
+    refuse_over([arguments.state], [arguments.spec, arguments.source, arguments.binding])
+    if "://" in arguments.source or arguments.source.startswith(("ros1:", "dds:")):
+        raise RvmonError("--state: a run that is kept is of lines: a pipe or a file")
+    for name in ("realtime", "robot", "publish", "sim_time"):
+        if getattr(arguments, name) not in (None, False):
+            option = f"--{name.replace('_', '-')}"
+            raise RvmonError(
+                f"--state and {option}: a run that is kept is of one robot whose lines have stamps "
+                f"and are evaluated at them: leave {option} out"
+            )
+    if arguments.format == "view":
+        raise RvmonError("--state and --format view: verdicts are numbered lines: text or json")
+
+
+def watch_kept(
+    arguments: argparse.Namespace,
+    spec: Spec,
+    only: Iterable[str] | None,
+    lines: Iterable[bytes],
+    *,
+    is_file: bool,
+) -> int:
+    """Judge lines until there are no more, and return the exit code.
+
+    `is_file`: lines begin anew with each process: those that were taken are passed over.
+    """
+    is_untold = False
+
+    def report(number: int, attempt: Attempt) -> None:
+        nonlocal is_untold
+        if attempt.verdict is not Verdict.FAIL and arguments.failures:
+            return
+        is_untold = True
+        if arguments.format == "json":
+            record = {"number": number, **Judgement("", 1, attempt).to_dict()}
+            say_json(msgspec.json.encode(record).decode())
+            sys.stdout.flush()
+        else:
+            say(f"{number}  {line_of(Judgement('', 1, attempt))}", flush=True)
+        is_untold = False
+
+    try:
+        monitor = DurableMonitor(
+            spec, arguments.state, report, only=only, keep=_KEEP, settle="next"
+        )
+        kept = monitor.monitor.verdicts.keys()
+        if kept != spec.monitor(only=only).verdicts.keys():
+            raise RvmonError(
+                f"--state {arguments.state}: its run evaluates {', '.join(kept)} alone: give the "
+                "same --only, or name another --state"
+            )
+        if monitor.taken:
+            count = f" after {monitor.taken:,} lines"
+            how = count if is_file else "; what came since its last line is lost"
+            warn(f"{arguments.state}: the run continues{how}")
+        try:
+            if is_file:
+                lines = _behind_taken(monitor, lines, arguments)
+            elif monitor.taken:
+                lines = _behind_gap(monitor, lines)
+            _feed(monitor, spec, lines)
+        finally:
+            if not is_untold:  # else the same command is to say it, from what the file has
+                monitor.save()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        what = "the output cannot be written" if is_untold else f"--state {arguments.state}"
+        raise RvmonError(f"{what}: {error.strerror}") from None
+    except KeyboardInterrupt:
+        warn("ended; the same command continues the run")
+    if not monitor.taken:
+        raise no_line(arguments.source)
+    # Also what earlier processes of the run lost; what it goes on to is not known yet.
+    # A copy is finished, so that the run can be continued.
+    at_end = spec.restore(monitor.monitor.snapshot()).finish_ns()
+    lost = [health for health in at_end.health if health.kind in _LOSSES and health.requirements]
+    for names, fact in health_facts(lost, at_end.origin):
+        warn(f"{names}: {fact}")
+    told = {name for name, verdict in monitor.monitor.verdicts.items() if verdict is Verdict.FAIL}
+    failed = {
+        attempt.requirement
+        for attempt in at_end.attempts
+        if attempt.verdict is Verdict.FAIL and attempt.decision is Decision.PREFIX
+    }
+    if untold := sorted(failed - told):
+        # Another line may have the same stamp.
+        warn(f"{', '.join(untold)}: fails by the last line, reported when a later stamp comes")
+    return int(bool(lost or told or failed))
+
+
+def no_line(source: str) -> RvmonError:
+    """Nothing came: that is no success."""
+    return RvmonError(f"error: {source}: there is no line: nothing was evaluated")
+
+
+def _behind_taken(
+    monitor: DurableMonitor, lines: Iterable[bytes], arguments: argparse.Namespace
+) -> Iterator[bytes]:
+    """The lines of a file, blank in place of those that were taken.
+
+    Those before the last one are marked, which may be one that is being written.
+    """
+    taken, (count, known) = monitor.taken, monitor.mark
+    other = RvmonError(
+        f"{arguments.source} is not the file of which {taken:,} lines were evaluated: "
+        f"name another --state, or delete {arguments.state} to start again"
+    )
+    number = check = 0
+    for line in lines:
+        if line.strip():
+            if number == count and check != known:
+                raise other
+            if number >= taken:
+                monitor.mark = number, check
+            number, check = number + 1, zlib.crc32(line, check)
+        yield line if number > taken else b""
+    if number < taken:
+        raise other
+
+
+def _behind_gap(monitor: DurableMonitor, lines: Iterable[bytes]) -> Iterator[bytes]:
+    """The lines of a pipe; before the first one, what came to no process is reported as lost."""
+    has_come = False
+    for line in lines:
+        if line.strip() and not has_come:
+            monitor.miss()
+            has_come = True
+        yield line
+
+
+def _feed(monitor: DurableMonitor, spec: Spec, lines: Iterable[bytes]) -> None:
+    ignored: Counter[str] = Counter()
+    for number, line in enumerate(lines, 1):
+        if not line.strip():
+            continue
+        try:
+            t, values = read_object(decoded_object(line), spec.schema, ignored)
+        except TraceError as error:
+            warn(f"line {number} is not taken: {error}")
+            monitor.miss()
+            continue
+        try:
+            monitor.step_ns(t, values)
+        except TraceError as error:
+            warn(f"line {number} is not taken: {error}")
+    for name in ignored:
+        warn(f"ignored: {name} is not declared in the spec")
