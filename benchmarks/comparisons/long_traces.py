@@ -56,8 +56,8 @@ class Decisions:
         stamps = np.array([one.t for one in case.samples], np.int64)
         is_held = case.spec.time is TimeModel.HELD
         self.times = np.arange(stamps[0], stamps[-1] + 1) if is_held else stamps
-        # Where only samples are positions, that none follows is known an instant behind the end.
-        self._last = int(stamps[-1]) + (not is_held)
+        # That a window is over, or no sample follows, is known an instant behind the end.
+        self._last = int(stamps[-1]) + 1
         self._row_at = np.searchsorted(stamps, self.times, "right") - 1
         self._samples = case.samples
 
