@@ -14,6 +14,7 @@ from rvmon.recordings.csv_rows import Layout
 from rvmon.recordings.parquet import parquet_batches, parquet_file, parquet_layout
 from rvmon.recordings.places import endings_of, local_path
 from rvmon.recordings.recording import JOINED, FileRecording, format_of
+from rvmon.texts import cannot_read
 from rvmon.trace.schema import Stamps
 from rvmon.trace.time import TIME_LIMIT, format_stamp
 
@@ -63,6 +64,8 @@ def clip(path: str, piece: Piece, out: str) -> Copied:
     with writing(out), staged(out) as made:
         try:
             copied = _written(path, piece, made)
+        except UnicodeDecodeError as error:
+            raise TraceError(cannot_read(path, error)) from None
         except TraceError as error:
             message = str(error)
             raise TraceError(message if path in message else f"{path}: {message}") from None
@@ -102,12 +105,12 @@ def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
             writer.write_table(_start(piece, parquet_layout(path, piece.schema), schema))
         stamps = FileRecording(path, piece.without_names, ordered=piece.ordered).stamps()
         for arrays, (_, instants) in zip(parquet_batches(path, schema.names), stamps, strict=False):
-            held = piece.holds(instants)
+            held, is_over = piece.held_of(instants)
             if held.any():
                 batch = pyarrow.RecordBatch.from_arrays(arrays, schema=schema)
                 writer.write_batch(batch.filter(pyarrow.array(held)))
                 copied.note(*instants[held].tolist())
-            if piece.ordered and instants[-1] > piece.stop:
+            if is_over:
                 break
     return copied
 

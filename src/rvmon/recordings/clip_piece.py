@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, TextIO
 
 from msgspec import Struct, field
 
+from rvmon.recordings.csv_dialect import bare_names
 from rvmon.recordings.csv_rows import CopiedLines, Layout, read_layout, split_lines
 from rvmon.recordings.last_updates import LastUpdates, first_of, last_of
 from rvmon.recordings.places import bounded_lines, created, opened
@@ -46,6 +47,19 @@ class Piece(Struct, frozen=True):
     def holds(self, t: Any) -> Any:
         """Whether an instant (ticks) lies in it, or each of an array."""
         return (self.start <= t) & (t <= self.stop)
+
+    def held_of(self, instants: NDArray[Any]) -> tuple[NDArray[Any], bool]:
+        """Which of instants, as they come, lie in it; whether nothing that comes behind them does.
+
+        Where nothing comes late, what comes behind its end is not part of it, whatever it is.
+        """
+        import numpy as np
+
+        held = self.holds(instants)
+        if not self.ordered:
+            return held, False
+        is_behind = np.maximum.accumulate(instants > self.stop)
+        return held & ~is_behind, bool(is_behind[-1])
 
     @property
     def without_names(self) -> Schema:
@@ -153,7 +167,7 @@ def clip_text(path: str, piece: Piece, out: Path, *, is_csv: bool) -> Copied:
             heading = CopiedLines(lines)
             header, cells = next(split_lines(heading))
             made.write(heading.taken())
-            made.write(_csv_start(piece, read_layout(cells, piece.schema)))
+            made.write(_csv_start(piece, read_layout(*bare_names(cells, piece.schema))))
         else:
             made.write(_json_start(piece))
         recording = FileRecording(path, piece.without_names, ordered=piece.ordered)
@@ -174,7 +188,7 @@ def _copy(
     """
     copied = Copied()
     for ends, instants in stamps:
-        held = piece.holds(instants)
+        held, is_over = piece.held_of(instants)
         if held.any():
             copied.note(*instants[held].tolist())
             for end, is_held in zip(ends.tolist(), held.tolist(), strict=True):
@@ -184,7 +198,7 @@ def _copy(
                     made.write(row)
         else:
             line += sum(1 for _ in islice(lines, int(ends[-1]) - line))
-        if piece.ordered and instants[-1] > piece.stop:
+        if is_over:
             break
     return copied
 

@@ -45,7 +45,7 @@ def jsonl_samples(
     `before`: the lines that stand before them.
     """
     for name in schema.columns:
-        if name not in schema.signals and name not in schema.events:
+        if name not in schema.signals and name.rpartition(".")[0] in schema.events:
             raise TraceError(
                 f"`{name}` is a field of an event: in JSON lines only signals and events can "
                 "have other names"

@@ -190,16 +190,20 @@ class FileRecording:
         """Of some rows at a time, as they stand in a text: the lines they end on, and the ticks.
 
         Raises:
-            TraceError: with line.
+            TraceError: with file and line.
         """
         import numpy as np
 
-        with closing(self._batches()) as batches:
+        with places.named_errors(self.path), closing(self._batches()) as batches:
             for piece in batches:
                 if isinstance(piece, Iterator):
-                    if rows := [(line, t) for line, t, *_ in piece]:
-                        lines, times = np.array(rows, np.int64).T
-                        yield lines, times
+                    rows: list[tuple[int, int]] = []
+                    try:
+                        rows.extend((line, t) for line, t, *_ in piece)
+                    finally:  # also those before one that is wrong
+                        if rows:
+                            lines, times = np.array(rows, np.int64).T
+                            yield lines, times
                 elif piece.lines is None:
                     yield piece.first + np.arange(len(piece.times)), piece.times
                 else:

@@ -4,6 +4,7 @@ import pytest
 
 import rvmon
 from rvmon.cli import main
+from rvmon.recordings import places
 
 SPEC = """
 spec base
@@ -94,6 +95,57 @@ def test_a_recording_that_breaks_off_can_be_cut(base, capsys):
     (base / "a.csv").write_text("\n".join([*ROWS, "broken"]))
     assert clip("R1#1", "--after", "2s", "-o", "b.csv") == 0
     assert "what was decided before that counts" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["b.csv", "b.jsonl", "b.parquet"])
+def test_what_goes_back_behind_the_end_is_no_part_of_a_piece(base, name):
+    """The good begin of a recording whose clock jumped can be saved."""
+    times = [0, 1, 2, 3, 1, 2, 7]
+    if name == "b.csv":
+        (base / "in.csv").write_text("t,speed\n" + "".join(f"{t},1\n" for t in times))
+    elif name == "b.jsonl":
+        (base / "in.jsonl").write_text("".join(f'{{"t": {t}, "speed": 1}}\n' for t in times))
+    else:
+        pyarrow = pytest.importorskip("pyarrow")
+        from pyarrow import parquet
+
+        table = pyarrow.table({"t": times, "speed": [1.0] * len(times)})
+        parquet.write_table(table, base / "in.parquet")
+    words = ["clip", "base.rv", name.replace("b", "in", 1), "--from", "1", "--to", "2", "-o", name]
+    assert main(words) == 0
+    names = rvmon.load("base.rv").evaluate(name, allow_missing=True)
+    assert names.end == 2 * 10**9
+
+
+def test_what_is_broken_behind_the_end_of_a_piece_does_not_matter(base):
+    good = [f'{{"t": {t}, "speed": 1}}\n' for t in range(4)]
+    (base / "a.jsonl").write_text("".join(good) + '{"t": "x"}\n')
+    assert main(["clip", "base.rv", "a.jsonl", "--from", "1", "--to", "2", "-o", "b.jsonl"]) == 0
+    assert (base / "b.jsonl").read_text() == "".join(good[1:3])
+
+
+def test_lines_whose_names_are_mapped_can_be_cut(base):
+    lines = [f'{{"t": {t}, "v": 1}}\n' for t in range(3)]
+    (base / "a.jsonl").write_text("".join(lines))
+    words = ["--map", "speed=v", "--from", "1", "-o", "b.jsonl"]
+    assert main(["clip", "base.rv", "a.jsonl", *words]) == 0
+    assert (base / "b.jsonl").read_text() == '{"t": 1, "v": 1}\n' + lines[2]
+
+
+def test_a_value_is_carried_into_a_column_with_its_unit(base):
+    """Units stand behind names, that of the time as well."""
+    (base / "a.csv").write_text("t [ms],speed [m/s],ready,go\n0,0.5,1,\n9000,,0,\n12000,,1,\n")
+    assert clip("--from", "4", "--to", "9", "-o", "b.csv") == 0
+    assert (base / "b.csv").read_text().splitlines()[1:] == ["4000,0.5,true,", "9000,,0,"]
+
+
+def test_what_is_no_text_is_said(base, capsys, monkeypatch):
+    """Also where it is found while rows are copied."""
+    monkeypatch.setattr(places, "BLOCK", 64)
+    rows = "".join(f"{t},1,1,\n" for t in range(100)) + "100,1,1,\xe9\n"
+    (base / "a.csv").write_bytes(f"t,speed,ready,note\n{rows}".encode("latin1"))
+    assert clip("--to", "5", "-o", "b.csv") == 2
+    assert "error: a.csv: not UTF-8 text" in capsys.readouterr().err
 
 
 def test_late_rows_are_found(base, capsys):
