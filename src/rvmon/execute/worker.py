@@ -34,8 +34,9 @@ def serve(
     """Do the tasks that come, until the other end of the connection is closed.
 
     What comes are lists of pickled tasks. A list goes back for each: of those tasks that were done
-    in `CHUNK_S`, whether each failed, and its pickled result or error. One message for each task
-    would wake the other process, and interrupt this one, hundreds of times a second.
+    in `CHUNK_S`, up to one that failed, whether each failed, and its pickled result or error. One
+    message for each task would wake the other process, and interrupt this one, hundreds of times a
+    second.
 
     Args:
         connection: to who gives out the tasks.
@@ -66,7 +67,8 @@ def serve(
             end = time.monotonic() + CHUNK_S
             for task in chunks.get():
                 answers.append(answer(next_task, task))
-                if time.monotonic() >= end:
+                has_failed, _ = answers[-1]
+                if has_failed or time.monotonic() >= end:
                     break
             connection.send(answers)
 

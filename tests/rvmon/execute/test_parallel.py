@@ -140,6 +140,21 @@ def test_an_error_comes_in_its_turn(jobs):
     assert str(error) == "7 is odd"
 
 
+def test_an_error_does_not_wait_for_the_tasks_behind_it():
+    """A worker has several at a time, and nobody wants to know of the later ones."""
+
+    def work(number):
+        if number > 40:
+            time.sleep(600)
+        return halved(number)
+
+    tasks = [*range(0, 40, 2), 7, *range(42, 100)]
+    began = time.monotonic()
+    found, error = given(execute(tasks, doing(work), jobs=2))
+    assert (found, str(error)) == ([*range(20)], "7 is odd")
+    assert time.monotonic() - began < 60
+
+
 @JOBS
 def test_an_error_of_the_tasks_themselves_comes_in_its_turn(jobs):
     """As where a list of files cannot be read to its end."""
