@@ -79,7 +79,8 @@ def pieces_up_to(pieces: Iterable[Batch | Sample], end: int) -> Iterator[Batch |
             yield piece
         else:
             kept = piece.up_to(end)
-            yield kept
+            if len(kept.times):
+                yield kept
             if len(kept.times) < len(piece.times):
                 return
 

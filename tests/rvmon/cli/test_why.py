@@ -6,6 +6,8 @@ import pytest
 from tests.rvmon.cli.conftest import DOOR
 from tests.tools.logs import write_ulog
 
+from rvmon.recordings import places
+
 SPEC = f"""{DOOR}
 requirement D2
   upon fall(closed)
@@ -95,6 +97,17 @@ def test_what_was_not_triggered_or_not_decided_says_what_lacked(put, says):
     put("s.rv", text.format("e then within 5 s f"))
     told = says(0, "why", "s.rv", "t.csv", "R1", "--until", "2").out
     assert "a recording more than 4 s longer would have decided it" in " ".join(told.split())
+
+
+@pytest.mark.parametrize("rows", range(1, 5))
+def test_a_run_may_be_cut_where_a_block_of_its_recording_ends(put, says, monkeypatch, rows):
+    """Nothing of the next block belongs to it."""
+    put("s.rv", "spec s\nsignal x : real\nrequirement R1\n  always x < 9\n")
+    put("t.csv", "t,x\n" + "".join(f"{t},{t}\n" for t in range(8)))
+    asked = ["why", "s.rv", "t.csv", "R1", "--until", "3"]
+    whole = says(0, *asked).out
+    monkeypatch.setattr(places, "BLOCK", 4 * (1 + rows))
+    assert says(0, *asked).out == whole
 
 
 def test_what_a_log_lost_is_known_to_nobody(door, says):
