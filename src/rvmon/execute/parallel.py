@@ -261,12 +261,15 @@ class _Pool:
             self._lose(worker, timed_out=True)
 
     def _lose(self, worker: _Worker, *, timed_out: bool) -> None:
-        """Do without a worker that was ended, and without a result of the task that it had."""
+        """Do without a worker that was ended, and without a result of the task that it did."""
         seconds = worker.task_s()
         self._dismiss(worker)
+        begun = int(worker.begun[0])
+        if begun and begun == worker.answered:  # it was ended while it waited: no task is to blame
+            self._give_back(worker, worker.tasks)
+            return
         # It did the tasks before, but nobody will get its answers: they are done once more.
-        place = max(0, int(worker.begun[0]) - worker.answered - 1)
-        number, task = worker.tasks.pop(place)
+        number, task = worker.tasks.pop(max(0, begun - worker.answered - 1))
         self._give_back(worker, worker.tasks)
         if self._work.instead is None:
             message = (

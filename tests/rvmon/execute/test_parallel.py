@@ -204,6 +204,18 @@ def test_a_worker_that_is_lost_is_told_with_its_task(jobs):
     assert "memory runs out: use fewer processes (jobs)" in str(error)
 
 
+def test_a_worker_that_is_lost_while_it_waits_is_replaced():
+    """No task is to blame; as where the results are wanted slowly, and memory runs out."""
+    instead = {"instead": lambda _, ended: ended.why}
+    results = execute(range(0, 2000, 2), doing(halved), jobs=1, **instead)
+    found = [next(results)]
+    (worker,) = multiprocessing.active_children()
+    time.sleep(0.5)
+    worker.kill()
+    worker.join()
+    assert [*found, *results] == [*range(1000)]
+
+
 def test_tasks_without_end_are_taken_as_they_are_needed():
     done = execute(count(), doing(str), jobs=2)
     assert [*islice(done, 100)] == [*map(str, range(100))]
