@@ -14,6 +14,7 @@ from rvmon.cli.output import say, shown_while_reading
 from rvmon.cli.reading import opened, reading_words
 from rvmon.files import write_file
 from rvmon.recordings.held_recording import HeldRecording
+from rvmon.recordings.recording import can_be_read_again
 from rvmon.recordings.source import Source
 from rvmon.session import Spec
 from rvmon.verdicts.serialise import VerdictRow, broken_rows
@@ -64,7 +65,7 @@ def write_files(
     def read(trace: str) -> Sequence[Sample]:
         # What came over standard input is gone: its page has the verdicts, not the signals.
         place = arguments.traces[0] if reproducer else trace
-        if trace == "-":
+        if not can_be_read_again(place):
             return []
         recording = opened(spec, place)
         return HeldRecording(

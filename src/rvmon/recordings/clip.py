@@ -13,7 +13,7 @@ from rvmon.recordings.clip_piece import Copied, Piece, stamp_number, stamp_text
 from rvmon.recordings.csv_rows import Layout
 from rvmon.recordings.parquet import parquet_batches, parquet_file, parquet_layout
 from rvmon.recordings.places import endings_of, local_path
-from rvmon.recordings.recording import JOINED, FileRecording, format_of
+from rvmon.recordings.recording import JOINED, FileRecording, can_be_read_again, format_of
 from rvmon.texts import cannot_read
 from rvmon.trace.schema import Stamps
 from rvmon.trace.time import TIME_LIMIT, format_stamp
@@ -38,8 +38,9 @@ def refuse_place(path: str, out: str | None) -> None:
         TraceError: the recording has no known format.
     """
     form = format_of(path)
-    if path == "-":
-        raise RvmonError("standard input can be read once only: save the recording first")
+    if not can_be_read_again(path):
+        name = "standard input" if path == "-" else path
+        raise RvmonError(f"{name} can be read once only: save the recording first")
     if form in ("tables", JOINED):
         raise RvmonError(f"{path} is several files: clip each of them, by --from and --to")
     if form not in CLIPPED:

@@ -1,5 +1,9 @@
 """`rvmon clip` as a person uses it."""
 
+import os
+import threading
+from pathlib import Path
+
 import pytest
 
 import rvmon
@@ -146,6 +150,20 @@ def test_what_is_no_text_is_said(base, capsys, monkeypatch):
     (base / "a.csv").write_bytes(f"t,speed,ready,note\n{rows}".encode("latin1"))
     assert clip("--to", "5", "-o", "b.csv") == 2
     assert "error: a.csv: not UTF-8 text" in capsys.readouterr().err
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
+def test_a_pipe_is_refused_and_shown_without_its_values(base, capsys):
+    """It is gone when it was read; to wait for another one would take for ever."""
+    os.mkfifo("a.jsonl")
+    assert main(["clip", "base.rv", "a.jsonl", "R2", "-o", "b.jsonl"]) == 2
+    assert "a.jsonl can be read once only: save the recording first" in capsys.readouterr().err
+    line = b'{"t": 0, "speed": 2}\n{"t": 1, "speed": 2}\n'
+    writer = threading.Thread(target=Path("a.jsonl").write_bytes, args=(line,))
+    writer.start()
+    assert main(["run", "base.rv", "a.jsonl", "--report", "page"]) == 1
+    writer.join()
+    assert "R2-1" in next(base.glob("page*/a.html")).read_text()
 
 
 def test_late_rows_are_found(base, capsys):
