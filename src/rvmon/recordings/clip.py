@@ -97,6 +97,7 @@ def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
     if piece.held:  # the row that brings values along lacks others
         for place, field in enumerate(schema):
             schema = schema.set(place, field.with_nullable(True))
+    import numpy as np
     import pyarrow
     from pyarrow import parquet
 
@@ -105,7 +106,12 @@ def clip_parquet(path: Path, piece: Piece, out: Path) -> Copied:
         if piece.held:
             writer.write_table(_start(piece, parquet_layout(path, piece.schema), schema))
         stamps = FileRecording(path, piece.without_names, ordered=piece.ordered).stamps()
-        for arrays, (_, instants) in zip(parquet_batches(path, schema.names), stamps, strict=False):
+        ahead = np.empty(0, np.int64)
+        for arrays in parquet_batches(path, schema.names):
+            # Where columns have dictionaries, fewer rows come together than of stamps alone.
+            while len(ahead) < len(arrays[0]):
+                ahead = np.concatenate([ahead, next(stamps)[1]])
+            instants, ahead = np.split(ahead, [len(arrays[0])])
             held, is_over = piece.held_of(instants)
             if held.any():
                 batch = pyarrow.RecordBatch.from_arrays(arrays, schema=schema)

@@ -152,6 +152,21 @@ def test_what_is_no_text_is_said(base, capsys, monkeypatch):
     assert "error: a.csv: not UTF-8 text" in capsys.readouterr().err
 
 
+def test_columns_with_dictionaries_are_cut_with_their_stamps(base):
+    """Of them the rows of a group come together, of others more."""
+    pyarrow = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    notes = pyarrow.array(["a", "b", "c", "d"] * 25).dictionary_encode()
+    table = pyarrow.table({"t": [*range(100)], "speed": [0.5] * 100, "note": notes})
+    parquet.write_table(table, "in.parquet", row_group_size=7)
+    words = ["--from", "10", "--to", "60", "-o", "b.parquet"]
+    assert main(["clip", "base.rv", "in.parquet", *words]) == 0
+    piece = parquet.read_table("b.parquet").to_pydict()
+    assert piece["t"] == [*range(10, 61)]
+    assert piece["note"][1:] == table["note"].to_pylist()[11:61]
+
+
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no named pipes")
 def test_a_pipe_is_refused_and_shown_without_its_values(base, capsys):
     """It is gone when it was read; to wait for another one would take for ever."""
