@@ -157,6 +157,8 @@ class RunChanges:
         stale = {name: signal.stale_after for name, signal in spec.signals.items()}
         # the changes of each so far
         self.by_name = {name: Changes(stale.get(name)) for name in (*spec.signals, *spec.events)}
+        # by signal the last update in samples that nobody looks at, which is not added yet
+        self._waiting: dict[str, tuple[int, Value]] = {}
 
     def passing(self, run: HeldRecording) -> Iterator[Batch | Sample]:
         """The pieces of the run, whose changes are added as they go by."""
@@ -165,13 +167,27 @@ class RunChanges:
             for part in known.parts(piece):
                 self._add(part)
             yield piece
+        self._settle()
+
+    def _settle(self) -> None:
+        """Add the last updates that nobody looked at: what comes then is seen beside them."""
+        for name, (t, value) in self._waiting.items():
+            self.by_name[name].add(t, value, is_signal=True)
+        self._waiting.clear()
 
     def _add(self, piece: Batch | Sample) -> None:
         if isinstance(piece, Sample):
+            to_come = len(self._to_come or ())
+            is_seen = self._looks_at(piece.t, piece.t)
+            if is_seen or len(self._to_come or ()) < to_come:  # a stretch may be without samples
+                self._settle()
             for name, value in updates_in(piece.values, self._ignoring).items():
-                if name in self.by_name:
+                if name in self.by_name and (is_seen or name in self._everywhere):
                     self.by_name[name].add(piece.t, value, is_signal=name in self._signals)
+                elif name in self._signals:
+                    self._waiting[name] = piece.t, value
             return
+        self._settle()
         is_seen = not len(piece.times) or self._looks_at(int(piece.times[0]), int(piece.times[-1]))
         for name in self.by_name.keys() & piece.signals.keys():
             cells = piece.signals[name]

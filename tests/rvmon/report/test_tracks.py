@@ -188,18 +188,32 @@ def test_held_columns_give_the_tracks_of_samples(tmp_path, monkeypatch):
         held = HeldRecording(recording.pieces(), lost)
         samples = HeldRecording(list(recording), lost)
         assert repr(list(held)) == repr(list(samples))
-        looked_at = [(at, at + rng.randint(0, SECOND)) for at in rng.sample(range(t), 2)]
+        looked_at = [
+            (at, at + rng.randint(0, SECOND)) for at in rng.sample(range(t + 5 * SECOND), 2)
+        ]
         looks = Looks(looked_at, {"mode"})
         for requirement in (R1, R2):
             tracks = tracks_of(SPEC, requirement, changes_of(SPEC, samples))
             assert tracks_of(SPEC, requirement, changes_of(SPEC, held)) == tracks
-            seen = tracks_of(SPEC, requirement, changes_of(SPEC, held, looks))
-            for whole, part in zip(tracks, seen, strict=True):
+            seen = [
+                tracks_of(SPEC, requirement, changes_of(SPEC, run, looks))
+                for run in (held, samples)
+            ]
+            for whole, *parts in zip(tracks, *seen, strict=True):
                 for first, last in [(0, t)] if whole.name == "mode" else looked_at:
-                    assert part.between(first + 1, last) == whole.between(first + 1, last)
-                    assert whole.kind is TrackKind.EVENT or part.value_at(first) == whole.value_at(
-                        first
-                    )
+                    for part in parts:
+                        assert part.between(first + 1, last) == whole.between(first + 1, last)
+                        if whole.kind is not TrackKind.EVENT:
+                            assert part.value_at(first) == whole.value_at(first)
+
+
+@pytest.mark.parametrize("at", [7, 13, 30])
+def test_where_nothing_comes_a_look_sees_what_came_last(at):
+    samples = [Sample(t, {"gap": t / 10}) for t in (0, 2, 5, 10, 12, 20, 22)]
+    whole = changes_of(SPEC, samples)["gap"].ended()
+    changes = changes_of(SPEC, samples, Looks([(at, at + 2)]))["gap"].ended()
+    assert changes[changes.behind(at) - 1] == whole[whole.behind(at) - 1]
+    assert len(changes) < len(whole)
 
 
 def test_a_switch_that_goes_stale_is_on_or_off(tmp_path):
