@@ -1,7 +1,7 @@
 """Networks of timed automata: text forms, zone model checker, witnesses, conformance, suites.
 
-Here are the diagnostics of models and queries: their codes, and how they are made and raised. What
-has no meaning, or is too large, is a `ModelError` wherever it is found.
+This file holds the diagnostics of models and queries: their codes, and the functions that build
+and raise them. Whatever has no meaning or is too large raises a `ModelError`, wherever it is found.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ RULES = {
     "TA020": "query-not-supported", "TA021": "no-automaton", "TA022": "unreadable-file",
     "TA023": "no-unit",
 }  # fmt: skip
-"""Name of each code."""
+"""Name of each diagnostic code."""
 
 
 def finding(
@@ -34,13 +34,13 @@ def finding(
     others: Sequence[Label] = (),
     severity: Severity = Severity.ERROR,
 ) -> Diagnostic:
-    """Make a diagnostic of one of the `RULES`; `others` are further places that matter."""
+    """Make a diagnostic of one of the `RULES`; `others` are further relevant places."""
     places = () if span is None else (Label(span),)
     return Diagnostic(code, RULES[code], severity, message, (*places, *others), fix)
 
 
 def left_out(query: str, found: Diagnostic) -> Diagnostic:
-    """The warning that a query of a model is not asked, for the reason that a finding gives."""
+    """Make the warning that a query of a model is skipped; `found` is the reason."""
     message = f"the query `{' '.join(query.split())}` is left out: {found.message}"
     fix = found.help or "E<>, A[], A<>, E[] and --> are understood"
     span = found.spans[0].span if found.spans else None
@@ -50,16 +50,16 @@ def left_out(query: str, found: Diagnostic) -> Diagnostic:
 def model_error(
     code: str, message: str, span: Span | None, fix: str = "", *, others: Sequence[Label] = ()
 ) -> ModelError:
-    """A single finding as an exception."""
+    """Make an exception of a single finding."""
     return refusal(finding(code, message, span, fix, others=others))
 
 
 def unknown(what: str, name: str, span: Span, known: Iterable[str]) -> ModelError:
-    """There is no such thing of a name; `known` are those that there are."""
+    """Make the error for an unknown name; `known` are the names to suggest from."""
     return model_error("TA002", f"no {what} `{name}`", span, did_you_mean(name, known))
 
 
 def refusal(*findings: Diagnostic) -> ModelError:
-    """All findings as one `ModelError`, in order of place."""
+    """Make one `ModelError` of all findings, in order of place."""
     ordered = sorted(findings, key=lambda one: one.spans[0].span.start if one.spans else -1)
     return ModelError(ordered, render_full(ordered))

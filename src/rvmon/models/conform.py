@@ -1,13 +1,14 @@
-"""Whether a recorded run is one of a network's runs, as far as the recording shows.
+"""Whether a network has a run that explains a recording.
 
-The recording becomes an automaton that watches the network: it waits for each action in turn, give
-or take the tolerance by a clock that is never set, and lets moves pass that the recording does not
-show; a move with several labels stands for several actions of one instant. Where no run gets
-further than some action is the first divergence. After the last action the network must be able to
-keep quiet until the recording's end.
+The recording becomes an automaton that watches the network. It waits for each action in turn, and
+compares a clock that is never reset with the instant of the action, plus or minus the tolerance. It
+ignores moves without observed labels; a move with several labels explains several actions of one
+instant. The first divergence is the first action that no run reaches. After the last action the
+network must be able to stay silent until the end of the recording.
 
 Source: Krichen and Tripakis, Conformance Testing for Real-Time Systems, Formal Methods in System
-Design 34, 2009, section 5 (state estimation); the end as quiescence, as in Tretmans' ioco.
+Design 34, 2009, section 5 (state estimation). Silence at the end is quiescence as in Tretmans'
+ioco.
 """
 
 from __future__ import annotations
@@ -36,11 +37,11 @@ RESOLUTION = TICKS_PER_UNIT["ms"]  # instants of recordings are rounded to this,
 
 @dataclass(frozen=True, slots=True)
 class Allowed:
-    """An action that the network would have allowed instead."""
+    """An action that the network allows at a divergence."""
 
-    label: str  # of an action; empty: nothing more until the end of the recording
+    label: str  # of the action; empty: nothing more until the end of the recording
     earliest: int  # ticks since the start
-    latest: int | None  # ticks; `None` if it has no end
+    latest: int | None  # ticks; `None` if there is no latest instant
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,23 +49,23 @@ class Divergence:
     """The point at which a recording stops being a run of the network."""
 
     at: int  # ticks since the start
-    # the action that no run can do then; empty: the recording ends, but every run would have done
-    # something before
+    # the action that no run can do at this instant; empty at the end of the recording, if every run
+    # would have done something before
     label: str
-    allowed: tuple[Allowed, ...]  # the actions possible after those before
+    allowed: tuple[Allowed, ...]  # the actions possible at this point
 
 
 @dataclass(frozen=True, slots=True)
 class Conformance:
     """The answer for one recording."""
 
-    explained: int  # actions that some run of the network does at these instants
-    divergence: Divergence | None  # the first that none does; `None` if the recording conforms
-    undecided: str = ""  # the budget that ended the search; empty if it was done
+    explained: int  # number of leading actions that one run of the network does at these instants
+    divergence: Divergence | None  # `None` if the recording conforms
+    undecided: str = ""  # the budget that ended the search; empty if the search was complete
 
     @property
     def conforms(self) -> bool | None:
-        """Whether some run explains the whole recording; `None` if that was not decided."""
+        """Whether some run explains the whole recording; `None` if this was not decided."""
         return None if self.undecided else self.divergence is None
 
 
@@ -77,20 +78,20 @@ def conform(
     tolerance: int,
     budget: Budget = UNLIMITED,
 ) -> Conformance:
-    """Hold one recording against a network.
+    """Compare one recording with a network.
 
     Args:
         network: with a unit of time that is a whole number of milliseconds.
-        actions: in order of time; all their labels are observed.
-        observed: labels that the recording would show; all others happen unseen. A move has
-            the labels of all its edges and the name of its channel: it is recorded as all those of
-            them that are observed, at one instant.
-        end: ticks since the start; the recording goes on until then.
-        tolerance: ticks by which an instant may be off either way.
-        budget: the limits at which it gives up, for each action.
+        actions: in order of time; all their labels are in `observed`.
+        observed: labels that the recording would show; all other labels stay invisible. A move has
+            the labels of all its edges and the name of its channel, and is recorded as one action
+            for each observed label, all at one instant.
+        end: ticks from the start to the end of the recording.
+        tolerance: ticks by which an instant may deviate in either direction.
+        budget: limits of the search for a run, and of the search for the actions allowed instead.
 
     Raises:
-        ModelError: the network has no such unit, or cannot start.
+        ModelError: the network has no such unit, cannot start, or the recording is too long.
     """
     check_start(network)
     check_clocks(network)
@@ -114,7 +115,7 @@ def conform(
     place = chain[reached]
     if meter.stopped:
         return Conformance(place.explained, None, meter.stopped)
-    # What could come there instead, until the end of the recording.
+    # Actions possible at the divergence, up to the end of the recording.
     ahead = [*chain[:reached], replace(place, latest=end // RESOLUTION, left=())]
     allowed = _allowed(fine, labels, ahead, most, Meter(budget, None))
     label = place.left[0] if place.left else ""
@@ -123,19 +124,19 @@ def conform(
 
 @dataclass(frozen=True, slots=True)
 class _Place:
-    """A position in a recording: everything before it is explained by some run."""
+    """A position in a recording, at which some run has explained everything before."""
 
-    t: int  # the instant of what comes next, in ticks
-    left: tuple[str, ...]  # the actions of this instant that are left; none at the end
-    explained: int  # the number of actions before
-    # earliest, latest: the instant give or take the tolerance, in units
+    t: int  # the instant of the next actions, in ticks
+    left: tuple[str, ...]  # the actions of this instant not explained yet; none at the end
+    explained: int  # the number of actions explained so far
+    # earliest, latest: the instant minus and plus the tolerance, in milliseconds
     earliest: int
     latest: int
-    next: int | None  # of the place that comes behind the instant; `None` at the end
+    next: int | None  # index of the first place after this instant; `None` at the end
 
 
 def _chain_of(actions: Sequence[Recorded], end: int, tolerance: int, most: int) -> list[_Place]:
-    """The places of a recording; those of one instant stand together, with fewer and fewer left."""
+    """The places of a recording. Those of one instant are adjacent, with fewer and fewer left."""
     chain: list[_Place] = []
     explained = 0
 
@@ -155,7 +156,7 @@ def _chain_of(actions: Sequence[Recorded], end: int, tolerance: int, most: int) 
 
 
 def _rests(labels: tuple[str, ...], most: int) -> set[tuple[str, ...]]:
-    """The rests of the actions of one instant that can remain before the last is explained."""
+    """The sets of actions of one instant that may remain, from all of them down to a single one."""
     found, waiting = {labels}, [labels]
     while waiting:
         for _, left in _firsts(waiting.pop(), most):
@@ -166,7 +167,7 @@ def _rests(labels: tuple[str, ...], most: int) -> set[tuple[str, ...]]:
 
 
 def _firsts(labels: tuple[str, ...], most: int) -> list[tuple[tuple[str, ...], tuple[str, ...]]]:
-    """At most so many names of a move that can be the first of some actions, and what is left."""
+    """Sets of at most `most` names by which one move explains the first action; what remains."""
     found = []
     others = tuple(dict.fromkeys(name for name in labels[1:] if name != labels[0]))
     for count in range(min(len(others), most - 1) + 1):
@@ -181,7 +182,7 @@ def _firsts(labels: tuple[str, ...], most: int) -> list[tuple[tuple[str, ...], t
 def _following(
     network: Network, labels: Sequence[str], chain: Sequence[_Place], most: int
 ) -> Watcher:
-    """The automaton that follows a recording up to the last of some places."""
+    """Build the automaton that follows a recording up to the last of the given places."""
     watcher = Watcher(network, labels, [""])
     for place in chain:
         until = ex.ClockCompare(watcher.clock, ex.ClockOp.LE, ex.Constant(place.latest))
@@ -200,7 +201,7 @@ def _following(
 
 
 def _named(watcher: Watcher, labels: Iterable[str], names: Sequence[str]) -> ex.Expression:
-    """Whether a move has just these of the observed names."""
+    """Whether a move has exactly these of the observed names."""
     return together(
         watcher.has(name) if name in names else ex.UnaryOperation(ex.UnaryOp.NOT, watcher.has(name))
         for name in labels
@@ -216,7 +217,8 @@ def _allowed(
     names = {watcher.add_location(kind=ex.LocationKind.URGENT): label for label in labels}
     for place, label in names.items():
         watcher.add_edge(last, place, watcher.has(label))
-        for op in (ex.ClockOp.GE, ex.ClockOp.LE):  # so that the clock counts there, as far as that
+        # These loops only matter for their bounds, which keep the clock exact up to `end` here.
+        for op in (ex.ClockOp.GE, ex.ClockOp.LE):
             watcher.add_edge(place, place, ex.TRUE, [replace(end, op=op)], watches=False)
     over = watcher.add_location(kind=ex.LocationKind.URGENT)
     watcher.add_edge(last, over, ex.TRUE, [end], watches=False)

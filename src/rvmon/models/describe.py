@@ -1,4 +1,4 @@
-"""Runs and answers in words, and as plain data for JSON."""
+"""Runs and results of queries as text, and as plain data for JSON."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from rvmon.trace.time import TICKS_PER_SECOND
 
 
 def action_text(network: Network, action: Action | None) -> str:
-    """The edges of an action, each with its automaton; the sender first."""
+    """The edges of an action, each with its automaton. The sender comes first."""
     if action is None:
         return "(time passes)"
     return ", ".join(f"{network.automata[a].name}: {edge.text}" for a, edge in action.edges)
 
 
 def location_text(network: Network, position: Position) -> str:
-    """The location of each automaton, as text."""
+    """The location of each automaton."""
     return ", ".join(
         f"{automaton.name}.{automaton.locations[place].name}"
         for automaton, place in zip(network.automata, position.locations, strict=True)
@@ -36,7 +36,7 @@ def location_text(network: Network, position: Position) -> str:
 
 
 def change_text(network: Network, before: Position, after: Position) -> str:
-    """The variables whose values changed."""
+    """The variables that changed, with their new values."""
     return ", ".join(
         f"{variable.name} = {value_text(variable, new)}"
         for variable, old, new in zip(network.variables, before.values, after.values, strict=True)
@@ -45,7 +45,7 @@ def change_text(network: Network, before: Position, after: Position) -> str:
 
 
 def value_text(variable: Variable, value: int) -> str:
-    """A value as the model's text would have it."""
+    """A value as the model's language writes it."""
     return json.dumps(_number(variable, value))
 
 
@@ -63,7 +63,7 @@ def time_text(network: Network, units: Fraction | int) -> str:
 
 
 def window_text(network: Network, window: Window) -> str:
-    """A range of durations, in seconds if the model has a unit."""
+    """A range of durations, in seconds if the model has a unit of time."""
     left, right = "(" if window.low_strict else "[", ")" if window.high_strict else "]"
     if window.high is None:
         return f"{left}{time_text(network, window.low)}, ∞)"
@@ -71,7 +71,7 @@ def window_text(network: Network, window: Window) -> str:
 
 
 def run_lines(network: Network, run: Run) -> Iterator[str]:
-    """A run as lines: instant, window of the wait before, action, what changed."""
+    """A run as lines: the instant, the action, the window of the wait before it, the changes."""
     now, before = Fraction(0), run.start
     yield f"{time_text(network, 0):>9}  start in {location_text(network, run.start)}"
     for number, step in enumerate(run.steps):
@@ -79,7 +79,7 @@ def run_lines(network: Network, run: Run) -> Iterator[str]:
             yield f"{'':>9}  from here without end:"
         now += step.delay
         if step.action is None and step.window.high == 0 and number + 1 < len(run.steps):
-            continue  # an instant that matters for the query only, and nothing is seen of it
+            continue  # this instant only serves the query, and shows no change
         text = f"{time_text(network, now):>9}  {action_text(network, step.action)}"
         if step.window.low or step.window.high != 0:
             text += f"   (after {window_text(network, step.window)})"
@@ -114,7 +114,7 @@ def position_data(network: Network, position: Position) -> dict[str, Any]:
 
 
 def step_data(network: Network, step: RunStep) -> dict[str, Any]:
-    """A step: `delay` in units of the model, its `window`, `edge`, and the `state` behind."""
+    """A step: `delay` in units of the model, its `window`, `edge`, and the `state` after it."""
     return {
         "delay": float(step.delay),
         "window": asdict(step.window),
@@ -129,7 +129,7 @@ def run_data(network: Network, run: Run | None) -> list[dict[str, Any]] | None:
 
 
 def observation_data(observation: Observation) -> dict[str, Any]:
-    """A requirement on all runs as plain data."""
+    """The result of a requirement on all runs as plain data."""
     network = observation.network
     return {
         "requirement": observation.requirement, "holds": observation.holds,
@@ -158,7 +158,7 @@ def suite_data(network: Network, suite: Suite) -> dict[str, Any]:
 
 
 def sampled_data(sampled: Sampled) -> dict[str, Any]:
-    """The result of sampling a query, for JSON."""
+    """The result of a sampled query as plain data."""
     data = {
         "query": sampled.query.text,
         "id": sampled.query.id,
@@ -171,7 +171,7 @@ def sampled_data(sampled: Sampled) -> dict[str, Any]:
 
 
 def trajectory_lines(network: Network, query: Query, trajectory: Trajectory) -> Iterator[str]:
-    """A simulated run as lines: instants, and the values that are others than before."""
+    """A simulated run as lines: instants with the values that changed."""
     assert isinstance(query.formula, Simulation), "runs are of such queries"
     before: tuple[Fraction | None, ...] = (None,) * len(query.formula.terms)
     for now, row in zip(trajectory.times, trajectory.values, strict=True):
@@ -201,7 +201,7 @@ def simulation_data(query: Query, found: Sequence[Trajectory]) -> dict[str, Any]
 
 
 def extreme_text(extreme: Extreme) -> str:
-    """An end of the values of a term, for people."""
+    """An extreme value of a term as text."""
     term, value, largest = extreme.term, extreme.value, extreme.largest
     if value is None:
         return f"{term}: {extreme.remark}"
@@ -216,7 +216,7 @@ def extreme_text(extreme: Extreme) -> str:
 
 
 def extreme_data(network: Network, extreme: Extreme) -> dict[str, Any]:
-    """An end of the values of a term as plain data."""
+    """An extreme value of a term as plain data."""
     return {
         "id": extreme.query.id, "query": extreme.query.text, "term": extreme.term,
         "end": "sup" if extreme.largest else "inf", "value": extreme.value,

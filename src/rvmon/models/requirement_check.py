@@ -1,4 +1,4 @@
-"""Requirements of a specification, checked on all runs of a network."""
+"""Check the requirements of a specification on all runs of a network."""
 
 from __future__ import annotations
 
@@ -32,25 +32,24 @@ from rvmon.trace.time import TICKS_PER_UNIT
 MET_IN_THE_END = "none stays open for ever while time passes on"
 OPEN_FOR_EVER = "an attempt stays open for ever"
 UNDECIDED_IN_THE_END = "none fails it; that it is met in the end, a query such as A<> decides"
-"""Remarks on a requirement without deadline that no finite run violates."""
+"""Remarks on a requirement without a deadline that no finite run violates."""
 
 
 @dataclass(frozen=True, slots=True)
 class Observation:
-    """A requirement on all runs of a network."""
+    """The result of a requirement, over all runs of a network."""
 
     requirement: str  # its id
     text: str  # the requirement in words
-    # whether no attempt of any run fails; `None` if the budget ended first, or if the network
-    # cannot express it
+    # whether no attempt of any run fails; `None` if the budget was exhausted, or if the requirement
+    # cannot be expressed on the network
     holds: bool | None
-    # a run with an attempt; `None`: there is none, so that the claim is vacuous
-    triggered: Run | None
+    triggered: Run | None  # a run with an attempt; `None`: there is none, the result is vacuous
     passing: Run | None  # a run with an attempt that passes
     failing: Run | None  # a run with an attempt that fails
-    network: Network  # in whose unit the runs are
-    statistics: Statistics  # its cost
-    remark: str = ""  # the reason why it is not decided, or what the answer does not cover
+    network: Network  # the network in whose unit of time the runs are given
+    statistics: Statistics  # the cost of the search
+    remark: str = ""  # why there is no decision, or what the result does not cover
 
 
 def observe(
@@ -63,15 +62,15 @@ def observe(
 ) -> Iterator[Observation]:
     """Check each requirement of a specification on all runs of a network.
 
-    Signals are the network's `signal` lines, its variables of the same name, or bindings; events
-    are labels of its edges, or its channels.
+    The signals of the specification are `signal` lines of the network, variables of the same name,
+    or bindings. Its events are labels of edges and names of channels.
 
     Args:
         network: with a unit of time.
         spec: in held time.
-        bindings: expressions over the network by signal.
-        budget: the limits at which it gives up, for each requirement.
-        watch: called now and then.
+        bindings: expressions over the network, by signal.
+        budget: limits of the search, for each requirement.
+        watch: called from time to time with the progress.
 
     Raises:
         ModelError: the network has no unit or cannot start, or a binding has no meaning on it.
@@ -96,7 +95,7 @@ def observe(
 def _problem(
     network: Network, spec: CheckedSpec, requirement: Requirement
 ) -> tuple[Network, Observed, Obligation]:
-    """A network, in finer units if need be, and the same with a requirement's monitor."""
+    """The network, in finer units if necessary; the same with the monitor of a requirement."""
     if spec.time is not TimeModel.HELD:
         raise NotExpressibleError("only requirements in held time are checked on models")
     if requirement.captures or requirement.for_each is not None:
@@ -114,7 +113,7 @@ def _problem(
     except DoesNotCloseError as error:
         raise NotExpressibleError(f"it has no finite monitor: {error}") from None
     unit = network.unit or 1
-    # A strict bound lies a tick behind its number; any other cut asks for a finer unit.
+    # A strict bound is one tick after a multiple of the unit. Any other cut needs a finer unit.
     if any(cut % unit > 1 for cut in automaton.cuts) and unit % TICKS_PER_UNIT["ms"] == 0:
         network = finer(network, unit // TICKS_PER_UNIT["ms"])
     signals, labels = _values(network), frozenset(labels_of(network))
@@ -125,18 +124,22 @@ def _problem(
 def _in_the_end(
     network: Network, spec: CheckedSpec, requirement: Requirement, meter: Meter
 ) -> tuple[bool | None, Run | None, str]:
-    """Whether what has no deadline is met, where no finite run fails it; else a run."""
+    """Decide a requirement without a deadline that no finite run fails.
+
+    Returns:
+        Whether it is met on all runs, `None` if undecided; a run on which it is not; a remark.
+    """
     original, (_, problem, obligation) = network, _problem(network, spec, requirement)
     met = open_means(obligation.required)
     if met is None and requirement.mode is Mode.WHENEVER and not problem.reads_events:
-        # Within a stretch without actions what one attempt meets the others do.
+        # Attempts from one stretch without actions are met alike, so one of them is enough.
         attempts = replace(requirement, mode=Mode.UPON, pulse=True)
         _, problem, obligation = _problem(network, spec, attempts)
         met = open_means(obligation.required)
     if met is not False:
         return True, None, "" if met else UNDECIDED_IN_THE_END
     run = None
-    # Best where nothing keeps time from passing for ever: a run that idles there is the shortest.
+    # First look where no invariant bounds time: runs that idle there are the shortest.
     for first in (together((problem.rests, _unbounded(original))), problem.is_open):
         if run is None and not meter.stopped:
             sought = Sought(Seek.STAY_AFTER, first, problem.is_open)
@@ -172,7 +175,7 @@ def _observe(
 
 
 def _unbounded(network: Network) -> ex.Expression:
-    """Every automaton is where no invariant bounds clocks."""
+    """Whether every automaton is in a location whose invariant bounds no clock."""
     free = (
         tuple(
             ex.InLocation(index, number)
@@ -185,20 +188,21 @@ def _unbounded(network: Network) -> ex.Expression:
 
 
 def _reached(problem: Observed, goal: ex.Expression, meter: Meter) -> Run | None:
-    """A run to where an attempt is like that."""
+    """A run to a state with the goal; `None` if there is none or the budget is exhausted."""
     if meter.stopped:
         return None
     run = seek(problem.network, Sought(Seek.GOAL, goal), meter).run
     if run is not None and run.steps and run.steps[-1].action is None:
-        # It is decided a little later than time brings it about: that instant is not shown.
+        # The monitor decides just after time has made the difference; this last wait is not shown.
         return replace(run, steps=run.steps[:-1], timing=None)
     return run
 
 
 def open_means(required: mtl.Core) -> bool | None:
-    """Whether an attempt that stays open for ever is met; `None` if that depends on more.
+    """Whether an attempt that stays open forever is met; `None` if the formula cannot tell.
 
-    Without deadline may be promises (`eventually`), or prohibitions (`always`), but not both.
+    A formula may promise without a deadline (`eventually`: not met) or prohibit without one
+    (`always`: met), but for an answer not both.
     """
     nodes = list(mtl.nodes_of(required))
     unbounded = {
@@ -212,7 +216,7 @@ def open_means(required: mtl.Core) -> bool | None:
 
 
 def signals_of(network: Network) -> dict[str, Evaluator]:
-    """Evaluators of the signals of a specification in the network; its own variables come last."""
+    """Evaluators by name of the network's variables, and of its signals, which take precedence."""
     return {name: evaluator(value) for name, value in _values(network).items()}
 
 

@@ -1,10 +1,11 @@
 """A requirement's monitor as an automaton that watches a network.
 
-The monitor follows one attempt, which begins at any action that triggers it, or not: so every
-attempt of every run is followed by some path. It steps at each action, with the action's names as
-events and the signals as they are behind it, and between actions as time passes, with no event:
-once just behind the action, and wherever an age passes a bound of its window. Actions at one
-instant are stepped one after the other, where a recording would show one sample.
+The monitor follows at most one attempt, and any action that triggers the requirement may start it.
+This choice is nondeterministic, so every attempt of every run is followed on some path. The monitor
+steps at each action, with the names of the action as events and the signals as they are after it.
+Between actions it steps without events: once just after the action, and whenever an age passes a
+bound of its window. It steps through the actions of one instant one by one, where a recording would
+show one sample.
 """
 
 from __future__ import annotations
@@ -37,11 +38,11 @@ from rvmon.models.requirement_propositions import (
 MOST_STEPS = 20
 """A monitor that still moves after so many steps at one instant is moved by time itself."""
 
-_LOST = -2  # in place of a location: the monitor is moved by time itself
+_LOST = -2  # in place of a location: the monitor is moved by time itself, and is not followed
 
 
 class Phase(Enum):
-    """The phases of the monitor between two positions."""
+    """The phases of the watcher between two moves."""
 
     START = "the run has just begun: both without an attempt and with one, if one begins there"
     IDLE = "no attempt is followed, and the trigger does not hold"
@@ -55,29 +56,29 @@ class _Site:
     """A location of the watcher."""
 
     phase: Phase
-    location: int = -1  # of the monitor, if an attempt is followed
-    # for each of the monitor's clocks the one of the watcher that it is
+    location: int = -1  # of the monitor; -1 if no attempt is followed
+    # for each clock of the monitor, the clock of the watcher that represents it
     clocks: tuple[int, ...] = ()
-    region: Region = ()  # while time passes, for each the number of bounds that its age has passed
+    region: Region = ()  # while time passes: for each clock, how many bounds its age has passed
 
     @property
     def held(self) -> _Held:
-        """The state in which the monitor waits there."""
+        """The state of the monitor while it waits here."""
         return self.location, self.clocks, self.region
 
     @property
     def waits(self) -> bool:
-        """Whether time passes there, with the attempt open."""
+        """Whether time passes here while the attempt is open."""
         return self.phase is Phase.HELD and not self.is_decided
 
     @property
     def is_decided(self) -> bool:
-        """Whether the attempt has passed or failed, or is not followed any more."""
+        """Whether the attempt has passed, has failed or is not followed any more."""
         return self.location in (FAILED, PASSED, _LOST)
 
 
 _Held = tuple[int, tuple[int, ...], Region]
-"""The state of a waiting monitor: its location, the clocks in use, their region."""
+"""The state of a waiting monitor: its location, the clocks in use, and their region."""
 
 
 class Observed:
@@ -85,15 +86,15 @@ class Observed:
 
     Args:
         network: with a unit of time.
-        obligation: trigger and what is required.
+        obligation: the trigger and the required formula.
         pulse: whether the trigger starts an attempt wherever it holds.
-        automaton: of what is required.
+        automaton: the monitor of the required formula.
         signals: the expression of each signal over locations and variables.
-        labels: the labels of the network's actions, which are its events.
+        labels: the labels of the network's actions, which serve as events.
 
     Raises:
-        NotExpressibleError: it speaks of what the network does not have, or a window does not end
-            at a whole number of units.
+        NotExpressibleError: the requirement refers to something that the network does not have, or
+            a window does not end at a whole number of units.
     """
 
     def __init__(
@@ -111,7 +112,7 @@ class Observed:
         required = [
             name for proposition in alphabet.propositions for name in events_of(proposition)
         ]
-        # whether what is required speaks of events, which actions alone have
+        # whether the required formula reads events, which only actions have
         self.reads_events = bool(required)
         trigger = obligation.trigger
         bound = None if trigger is None or not isinstance(trigger.leaf, BoundAtom) else trigger.leaf
@@ -123,7 +124,7 @@ class Observed:
         self._watcher = Watcher(network, read, [""] * (count + 1))
         self._clocks = range(self._watcher.clock, self._watcher.clock + count)
         self._since = self._watcher.clock + count
-        """The clock that the watcher sets in each step."""
+        """The clock that the watcher resets in each step."""
         now = Labelling(signals, self._watcher.has)
         between = Labelling(signals, lambda _name: ex.FALSE)
         self._triggers = ex.FALSE if trigger is None or bound else now.expression(trigger)
@@ -146,14 +147,13 @@ class Observed:
         for site in self._waiting:
             self._expand(site)
         self.network = self._watcher.network()
-        # triggered, passed, failed: true where an attempt is followed, and where it has ended like
-        # this
+        # An attempt is followed, or has ended as the name says.
         self.triggered = self._where(lambda site: site.location >= 0)
-        # true where no monitor of this kind can follow it
+        # no monitor of this kind can follow the attempt
         self.lost = self._where(lambda site: site.location == _LOST)
-        # true where an attempt is followed and not decided
+        # an attempt is followed and not decided
         self.is_open = self._where(lambda site: site.location > PASSED, at_start=False)
-        # true where it also stays so while time diverges
+        # the same, and the attempt stays open if time diverges without actions
         self.rests = self._where(
             lambda site: site.waits and self._tables.is_last(site.location, site.region),
             at_start=False,
@@ -161,10 +161,10 @@ class Observed:
         self.passed = self._where(lambda site: site.location == PASSED)
         self.failed = self._where(lambda site: site.location == FAILED)
 
-    # The watcher's locations.
+    # Locations of the watcher.
 
     def _place(self, site: _Site) -> int:
-        """The number of a site; a new one is gone on from later."""
+        """The index of a site. A new site is queued for expansion."""
         place = self._sites.get(site)
         if place is None:
             urgent = site.phase is Phase.FRESH and not site.is_decided
@@ -175,7 +175,7 @@ class Observed:
         return place
 
     def _where(self, counts: Callable[[_Site], bool], *, at_start: bool = True) -> ex.Expression:
-        """The states in which the watcher is in some sites."""
+        """Whether the watcher is in a site that counts."""
         places = []
         for site, place in self._sites.items():
             shown = self._begun if site.phase is Phase.START and at_start else site
@@ -187,7 +187,7 @@ class Observed:
         return either(places)
 
     def _after(self) -> ex.ClockCompare:
-        """Some time has passed since the watcher stepped."""
+        """Whether time has passed since the watcher's last step."""
         return ex.ClockCompare(self._since, ex.ClockOp.GT, ex.Constant(0))
 
     def _expand(self, site: _Site) -> None:
@@ -204,10 +204,10 @@ class Observed:
             case Phase.FRESH | Phase.HELD if not site.is_decided:
                 self._follow(place, site, (self._after(),) if site.phase is Phase.HELD else ())
             case _:
-                pass  # decided
+                pass  # a decided site has no successors
 
     def _follow_none(self, place: int, is_ready: bool) -> None:
-        """Moves without an attempt, and those that begin one."""
+        """Add moves without an attempt, and those that start one."""
         held, resets = self._lasting, (self._since,)
         self._watcher.add_edge(place, self._place(_Site(Phase.IDLE)), negated(held), (), resets)
         if held != ex.FALSE:
@@ -220,14 +220,14 @@ class Observed:
                     self._watcher.add_edge(place, self._place(site), when, (), started)
 
     def _follow(self, place: int, site: _Site, room: tuple[ex.ClockCompare, ...]) -> None:
-        """Moves with an attempt, and what time does to it: behind an action, or at a bound."""
+        """Add moves with an attempt, and the steps between: after an action, or at a bound."""
         regions = [*self._tables.regions(site.location, site.region)]
         for region in regions:
             bounds = (*room, *self._tables.exact(site.location, site.clocks, region))
             for letters, edge in self._tables.edges(site.location, region):
                 fresh, started = self._fresh(edge, site.clocks)
                 self._watcher.add_edge(place, self._place(fresh), letters, bounds, started)
-        # The state, and with it the class of its letter, is the same in all steps of an instant.
+        # The state does not change within an instant, so all steps of an instant have one letter.
         waits: dict[tuple[tuple[ex.ClockCompare, ...], _Held], set[int]] = {}
         for region, letter in product(regions, range(self._automaton.classes)):
             for way in self._held((site.location, site.clocks, region), letter, {}, 0):
@@ -245,7 +245,7 @@ class Observed:
         self._watcher.add_edge(place, self._place(site), letters, bounds, started, watches=False)
 
     def _fresh(self, edge: Edge, clocks: Sequence[int]) -> tuple[_Site, list[int]]:
-        """The site of the monitor after a step, and the clocks that the step resets."""
+        """The site of the monitor after a step at an action; the clocks that the step resets."""
         target, sources = edge
         numbers, started = self._started([NOW if s == NOW else clocks[s] for s in sources])
         if target <= PASSED:
@@ -253,7 +253,7 @@ class Observed:
         return _Site(Phase.FRESH, target, numbers), started
 
     def _started(self, clocks: Sequence[int]) -> tuple[tuple[int, ...], list[int]]:
-        """The clocks with one for those that begin now; those that are set."""
+        """The clocks, with a free one in place of `NOW`; the clocks that must be reset."""
         if NOW not in clocks:
             return tuple(clocks), [self._since]
         free = next(clock for clock in self._clocks if clock not in clocks)
@@ -262,7 +262,7 @@ class Observed:
     def _held(
         self, held: _Held, letter: int, ages: Ages, steps: int
     ) -> Iterator[tuple[tuple[ex.ClockCompare, ...], _Held]]:
-        """The waiting states that steps just after an instant lead to, with the bounds for each."""
+        """The states in which the monitor waits after an instant, with the bounds on each way."""
         if steps > MOST_STEPS:
             yield bounds_of(ages), (_LOST, (), ())
             return

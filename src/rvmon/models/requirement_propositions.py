@@ -33,7 +33,7 @@ class Labelling:
 
     Args:
         signals: the expression of each signal over locations and variables.
-        event: whether an action has a name, or what that is between actions.
+        event: for the name of an event, whether the current action has it.
     """
 
     def __init__(
@@ -43,7 +43,7 @@ class Labelling:
         self._event = event
 
     def expression(self, proposition: Proposition) -> ex.Expression:
-        """A proposition of a state, or of an action that leads to it.
+        """A proposition as an expression over a state and the action that leads to it.
 
         Raises:
             NotExpressibleError: it names an unknown signal, or looks into the past.
@@ -103,34 +103,39 @@ class Labelling:
         return self._signals[name]
 
 
-MOST_CONDITIONS = 14  # conditions that a requirement may read
+MOST_CONDITIONS = 14  # limit for the conditions that a requirement reads
 
 
 class _Cut(NamedTuple):
-    """A bound of a window: ages behind `number` units are in the next region, or from it on."""
+    """A boundary between regions: the next region starts at `number` units, or just after it."""
 
     number: int
-    behind: bool
+    behind: bool  # whether the next region starts just after `number`
 
 
 _Tree = int | tuple[int, "_Tree", "_Tree"]
-"""A class of letters; or a proposition, and what follows where it is false and where it is true."""
+"""A class of letters, or a proposition with the trees for its being false and true."""
 
 Edge = tuple[int, tuple[int, ...]]
-"""The target location of the monitor, and for each of its clocks the source."""
+"""The target location of the monitor, and the source of each of its clocks."""
 
-Region = tuple[int, ...]  # for each clock the number of bounds that its age has passed
+Region = tuple[int, ...]  # for each clock, the number of bounds that its age has passed
 
 Ages = Mapping[int, tuple[int, float]]
-"""By clock, its least age, and a bound that it has not reached."""
+"""For each clock, its least age and an exclusive upper limit."""
 
 
 class Tables:
-    """The tables of a monitor over the propositions of its alphabet; `unit`: of the network, ticks.
+    """The tables of a monitor, with letters as expressions and ages in units of the network.
+
+    Args:
+        automaton: the monitor.
+        propositions: expressions for the propositions of its alphabet, in the same order.
+        unit: of the network, in ticks.
 
     Raises:
-        NotExpressibleError: it reads too many conditions, or a window does not end at a whole
-            number of units.
+        NotExpressibleError: the monitor reads too many conditions, or a window does not end at a
+            whole number of units.
     """
 
     def __init__(
@@ -149,13 +154,13 @@ class Tables:
     # Letters.
 
     def edge(self, location: int, region: Region, letter: int) -> Edge | None:
-        """The edge for a class of letters; `None` in unreachable rows."""
+        """The edge for a class of letters; `None` in unreachable rows of the table."""
         automaton = self._automaton
         edge = automaton.edges[row_of(automaton, location, region) * automaton.classes + letter]
         return None if edge < 0 else (automaton.targets[edge], automaton.sources[edge])
 
     def edges(self, location: int, region: Region) -> Iterator[tuple[ex.Expression, Edge]]:
-        """All edges from a region, each with when it is taken."""
+        """All edges from a region, each with the condition on the letter."""
         classes: dict[Edge, set[int]] = {}
         for number in range(self._automaton.classes):
             edge = self.edge(location, region, number)
@@ -165,11 +170,11 @@ class Tables:
             yield self.letters(numbers), edge
 
     def letters(self, classes: set[int]) -> ex.Expression:
-        """Whether a letter is in some classes."""
+        """The condition that a letter is in one of some classes."""
         return self._in(self._tree, classes)
 
     def class_of(self, holds: Callable[[ex.Expression], int]) -> int:
-        """The class of the letter of a state, given which propositions hold there."""
+        """The class of a state's letter; `holds` gives the truth of each proposition."""
         tree = self._tree
         while not isinstance(tree, int):
             place, false, true = tree
@@ -201,19 +206,19 @@ class Tables:
     # Ages.
 
     def regions(self, location: int, beyond: Region = ()) -> Iterator[Region]:
-        """The regions of a location, from one on."""
+        """The regions of a location in which no age is before its place in `beyond`."""
         for region in product(*(range(len(cuts) + 1) for cuts in self._cuts[location])):
             if all(new >= old for new, old in zip(region, beyond, strict=False)):
                 yield region
 
     def is_last(self, location: int, region: Region) -> bool:
-        """Whether no age passes a bound any more."""
+        """Whether every age has passed all its bounds."""
         return all(n == len(cuts) for cuts, n in zip(self._cuts[location], region, strict=True))
 
     def highest(
         self, location: int, clocks: Sequence[int], region: Region
     ) -> Iterator[ex.ClockCompare]:
-        """The bounds up to which ages stay in a region."""
+        """The upper bounds up to which ages stay in a region."""
         for clock, _, high in self._bounds(location, clocks, region):
             if high is not None:
                 yield ex.ClockCompare(clock, ex.ClockOp.LE, ex.Constant(high.number))
@@ -221,7 +226,7 @@ class Tables:
     def exact(
         self, location: int, clocks: Sequence[int], region: Region
     ) -> Iterator[ex.ClockCompare]:
-        """The ages in a region."""
+        """The condition that ages are in a region."""
         for clock, low, high in self._bounds(location, clocks, region):
             if low is not None:
                 op = ex.ClockOp.GT if low.behind else ex.ClockOp.GE
@@ -233,10 +238,10 @@ class Tables:
     def just_behind(
         self, location: int, clocks: Sequence[int], region: Region, ages: Ages
     ) -> Ages | None:
-        """The part of some ages from which any delay, however short, leads into a region.
+        """Narrow ages to those from which any delay, however short, leads into a region.
 
-        `clocks` are those in use, `NOW` one that begins at this instant; `region` is of the
-        location.
+        Returns `None` if there are none. `clocks` are those in use, with `NOW` for a clock that
+        starts at this instant; `region` belongs to `location`.
         """
         narrowed = dict(ages)
         for clock, below, above in self._bounds(location, clocks, region):
@@ -251,14 +256,14 @@ class Tables:
     def _bounds(
         self, location: int, clocks: Sequence[int], region: Region
     ) -> Iterator[tuple[int, _Cut | None, _Cut | None]]:
-        """Each clock with the bounds of its region."""
+        """Each clock, with the lower and upper boundary of its region (`None`: unbounded)."""
         for clock, cuts, place in zip(clocks, self._cuts[location], region, strict=True):
             low = cuts[place - 1] if place else None
             yield clock, low, cuts[place] if place < len(cuts) else None
 
 
 def bounds_of(ages: Ages) -> tuple[ex.ClockCompare, ...]:
-    """The condition that clocks have some ages; clocks that begin now satisfy it."""
+    """The condition that clocks have the given ages; `NOW` always satisfies it."""
     bounds = []
     for clock, (low, high) in ages.items():
         if clock != NOW and low:

@@ -1,4 +1,4 @@
-"""Names, expressions and functions of a network in the words of UPPAAL and of other tools."""
+"""Names, expressions and functions of a network in the syntax of UPPAAL and similar tools."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ _SIGNS = {ex.BinaryOp.AND: "&&", ex.BinaryOp.OR: "||"}
 
 @dataclass(frozen=True, slots=True)
 class Thing:
-    """A clock, variable or channel, or an array of them, under its new name."""
+    """A clock, variable or channel, or an array of these, under its new name."""
 
     name: str
-    first: int  # index of its first element in the network
-    # the indices of each dimension in the network; in the text they start at 0
+    first: int  # index of the first element in the network
+    # the index range of each dimension in the network; in the text indices start at 0
     extents: tuple[range, ...]
 
     @property
@@ -42,11 +42,11 @@ class Thing:
 
     @property
     def declarator(self) -> str:
-        """The name with the sizes of an array."""
+        """The name, followed by the sizes of an array."""
         return self.name + "".join(f"[{len(extent)}]" for extent in self.extents)
 
     def element(self, index: int) -> str:
-        """The text for an element."""
+        """The text for one element."""
         rest, places = index - self.first, ""
         for extent in reversed(self.extents):
             rest, place = divmod(rest, len(extent))
@@ -55,12 +55,12 @@ class Thing:
 
 
 class Names:
-    """The new names of everything in a network; local names become global ones."""
+    """The new names of everything in a network. Local names become global."""
 
     def __init__(self, network: Network) -> None:
         self._taken: set[str] = set(_RESERVED)
         self.network = network
-        # in order, arrays as one thing; locals are those of functions
+        # in order, each array as one thing; `locals` are local variables of functions
         self.clocks = self._things([clock.name for clock in network.clocks])
         self.variables = self._things([variable.name for variable in network.variables])
         self.channels = self._things([channel.name for channel in network.channels])
@@ -86,7 +86,7 @@ class Names:
             alike: dict[tuple[int, ...], int] = {}
             for index, name in members:
                 place = tuple(map(int, _INDICES.findall(name)))
-                if place in alike:  # locals of one name follow each other
+                if place in alike:  # adjacent locals of different functions may share a name
                     things.append(self._thing(base, alike))
                     alike = {}
                 alike[place] = index
@@ -99,7 +99,7 @@ class Names:
         return Thing(self._fresh(base), min(indices.values()), extents)
 
     def function(self, function: ex.Function) -> str:
-        """The name of a function; those that it calls are named before."""
+        """The name of a function. The functions that it calls are named first."""
         if id(function) not in self.functions:
             for part in parts_in(function.body):
                 if isinstance(part, ex.Invoke):
@@ -118,14 +118,14 @@ class Names:
         return _holder(self.clocks, index).element(index)
 
     def variable(self, slot: ex.Slot) -> str:
-        """The text for a variable that the variables may choose, be it one of a function."""
+        """The text for a variable, global or local; its indices may be expressions."""
         if slot.first >= 0:
             return self.slot(slot, self.variables)
         first = slot.first + len(self.network.locals)
         return self.slot(replace(slot, first=first), self.locals)
 
     def slot(self, slot: ex.Slot, things: Iterable[Thing]) -> str:
-        """The text for a variable or channel that the variables may choose."""
+        """The text for one of `things`; its indices may be expressions."""
         thing = _holder(things, slot.first)
         if not slot.extents:
             return thing.element(slot.first)
@@ -136,7 +136,7 @@ class Names:
         return thing.name + "".join(places)
 
     def expression(self, expression: ex.Expression) -> str:
-        """An expression, operands in brackets where they need any."""
+        """An expression, with operands in brackets where needed."""
         match expression:
             case ex.Constant(value):
                 return str(value) if value >= 0 else f"({value})"
@@ -180,7 +180,7 @@ class Names:
 
 
 def _chosen(values: Sequence[int], extents: Sequence[range], indices: Sequence[str]) -> str:
-    """An element of a constant array, one condition for each index."""
+    """An element of a constant array as nested `?:`, with one test for each index."""
     if not extents:
         return str(values[0])
     size = len(values) // len(extents[0])
@@ -194,17 +194,17 @@ def _chosen(values: Sequence[int], extents: Sequence[range], indices: Sequence[s
 
 
 def _holder(things: Iterable[Thing], index: int) -> Thing:
-    """The thing that an index belongs to."""
+    """The thing that contains an index."""
     return next(thing for thing in things if thing.first <= index < thing.first + thing.length)
 
 
 def updates_text(names: Names, updates: Iterable[ex.Statement]) -> str:
-    """The updates of an edge in their order."""
+    """The updates of an edge, in order."""
     return ", ".join(line.removesuffix(";") for line in _lines(names, updates))
 
 
 def function_lines(names: Names) -> list[str]:
-    """All functions that were named so far, those that others call first."""
+    """The text of all functions named so far, callees first."""
     return [line for _, function in names.functions.values() for line in _function(names, function)]
 
 
@@ -229,7 +229,7 @@ def _function(names: Names, function: ex.Function) -> Iterator[str]:
 
 
 def _locals(names: Names, function: ex.Function) -> list[Thing]:
-    """The parameters and local variables of a function, arrays as one thing."""
+    """The parameters and local variables of a function, each array as one thing."""
     slots = {slot for slot, _ in function.parameters}
     for one in (*ex.statements_in(function.body), *parts_in(function.body)):
         if isinstance(one, ex.Assignment | ex.VariableValue):

@@ -1,9 +1,9 @@
 """A network as UPPAAL's XML, which `rvmon.models.language.load` reads back, and as a DOT drawing.
 
-Each automaton becomes a template without parameters, all that was local becomes global. What
-UPPAAL does not know stands in comments that our reader understands: the unit of time, weights and
-labels of edges, the ids of queries. Queries with a bound on the path operator, or with path
-operators inside, are not UPPAAL's: their text is kept as a comment.
+Each automaton becomes a template without parameters, and local names become global. Comments that
+our reader understands hold what UPPAAL lacks: the unit of time, weights and labels of edges, ids of
+queries. UPPAAL has no queries with a bound on the path operator or with nested path operators, so
+their text is kept as a comment.
 """
 
 from __future__ import annotations
@@ -32,11 +32,11 @@ _HEAD = """<?xml version="1.0" encoding="utf-8"?>
 'http://www.it.uu.se/research/group/darts/uppaal/flat-1_2.dtd'>
 <nta>
 """
-_GRID = (200, 150)  # distance of locations in a drawing, right and down
+_GRID = (200, 150)  # distance between locations in the drawing, across and down
 
 
 def uppaal_xml(network: nta.Network) -> str:
-    """The network as the text of an XML file."""
+    """The text of the XML file for a network."""
     names = Names(network)
     templates = [
         line
@@ -47,20 +47,20 @@ def uppaal_xml(network: nta.Network) -> str:
     for query in network.queries:
         lines += _query(names, query)
     lines += ["  </queries>", "</nta>", ""]
-    # Which functions there are, all that is above has told.
+    # The texts above collect the functions in use, so declarations are written last.
     declared = _text(_declarations(network, names))
     head = f"  <declaration>{declared}</declaration>"
     return _HEAD + "\n".join([head, *templates, *lines])
 
 
 def left_out(network: nta.Network) -> list[nta.Query]:
-    """The queries that are not UPPAAL's, of which only the text is kept."""
+    """The queries that UPPAAL does not have, of which only the text is kept."""
     names = Names(network)
     return [query for query in network.queries if not _formula(names, query.formula)]
 
 
 def _system(names: Names) -> str:
-    """All automata, which stand in the order of their priorities."""
+    """All automata, ordered by priority."""
     priorities = names.network.priorities
     ranks = (0,) * len(names.automata) if priorities is None else priorities.automata
     text = names.automata[0]
@@ -180,7 +180,7 @@ def _query(names: Names, query: nta.Query) -> Iterator[str]:
 
 
 def _formula(names: Names, formula: nta.QueryFormula) -> str:
-    """The formula; empty if UPPAAL has none for it."""
+    """The text of a formula; empty if UPPAAL cannot express it."""
     match formula:
         case nta.LeadsToFormula(left, right, None) if not (has_paths(left) or has_paths(right)):
             return f"{names.expression(left)} --> {names.expression(right)}"
@@ -200,7 +200,7 @@ def _formula(names: Names, formula: nta.QueryFormula) -> str:
 
 
 def _text(text: str) -> str:
-    """The text as XML can hold it."""
+    """The text, escaped for XML."""
     return escape(shown(text))
 
 
@@ -208,7 +208,7 @@ _MARKS = {LocationKind.NORMAL: "", LocationKind.URGENT: "U ", LocationKind.COMMI
 
 
 def network_dot(network: nta.Network) -> str:
-    """One cluster for each automaton; urgent locations are marked U, committed ones C."""
+    """A DOT drawing: a cluster for each automaton; U marks urgent locations, C committed ones."""
     names = Names(network)
     lines = ["digraph network {", "  rankdir=LR;", "  node [shape=box, style=rounded];"]
     for index, automaton in enumerate(network.automata):

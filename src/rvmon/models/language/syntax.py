@@ -290,7 +290,7 @@ Statement = UpdateText | Call | Branch | Loop | Each | ReturnText | Block | Decl
 
 
 class FunctionText(Struct, frozen=True):
-    """`type name(parameters) { … }`; `type` is `None` for `cannot_pass`."""
+    """`type name(parameters) { … }`; `type` is `None` for `void`."""
 
     type: TypeText | None
     name: str

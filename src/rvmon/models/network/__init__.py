@@ -1,7 +1,7 @@
-"""A network of timed automata with all names resolved: what every algorithm here starts from.
+"""A network of timed automata with all names resolved: the starting point of every algorithm here.
 
 Clocks, variables, channels, automata, locations and edges are referred to by their index in the
-tuples of `Network`. Arrays are spread over neighbouring indices.
+tuples of `Network`. The elements of an array take consecutive indices.
 """
 
 from __future__ import annotations
@@ -17,16 +17,16 @@ from rvmon.models.network.scope import Names
 
 @dataclass(frozen=True, slots=True)
 class Clock:
-    """A clock; all start at 0 and run at the rate of time."""
+    """A clock. All clocks start at 0 and run at the rate of time."""
 
     name: str
 
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """A channel: a sender meets one receiver, or all that can receive if `broadcast`.
+    """A channel: a sender meets one receiver, or every possible receiver if it is `broadcast`.
 
-    Time does not pass while an `urgent` one can be used.
+    Time does not pass while an `urgent` channel can be used.
     """
 
     name: str
@@ -36,7 +36,7 @@ class Channel:
 
 @dataclass(frozen=True, slots=True)
 class Sync:
-    """One end of a channel."""
+    """One end of a channel, as an edge uses it."""
 
     slot: ex.Slot
     sends: bool
@@ -44,7 +44,7 @@ class Sync:
 
 @dataclass(frozen=True, slots=True)
 class Guard:
-    """A condition: on the variables and, all together, on clocks."""
+    """A condition on the variables, joined by "and" with comparisons of clocks."""
 
     data: ex.Expression = ex.TRUE
     clocks: tuple[ex.ClockCompare, ...] = ()
@@ -60,15 +60,15 @@ class Rate:
 
 @dataclass(frozen=True, slots=True)
 class Location:
-    """A location; its invariant bounds clocks from above only."""
+    """A location. Its invariant bounds clocks from above only."""
 
     name: str
     kind: ex.LocationKind
     invariant: Guard
     span: Span | None = field(default=None, compare=False)
-    rates: tuple[Rate, ...] = ()  # of clocks, while the automaton is there; others run at 1
-    # the rate, per unit of time, at which a random run leaves it if it may stay for ever, as a
-    # fraction; `None`: as `statistics` says
+    rates: tuple[Rate, ...] = ()  # clock rates while the automaton is here; others run at 1
+    # The rate per unit of time, as a numerator and a denominator, at which a random run leaves a
+    # location in which it may stay forever; `None`: the default of `statistics`.
     leaving: tuple[ex.Expression, ex.Expression] | None = None
 
 
@@ -80,13 +80,13 @@ class Edge:
     target: int
     guard: Guard
     sync: Sync | None
-    updates: tuple[ex.Statement, ...]  # in the order in which they happen
-    weight: float  # share of the runs that take it where they can, in (0, 1]
+    updates: tuple[ex.Statement, ...]  # in order of execution
+    weight: float  # share of the runs that take this edge where they can, in (0, 1]
     label: str  # the action's name in recordings; empty: the channel's name, if it has one
     text: str  # the edge for people
     span: Span | None = field(default=None, compare=False)
-    # whether a watcher takes it along with each move of the others that its guard, which reads what
-    # the move made of locations and variables, allows
+    # Whether a watcher takes this edge along with a move of the other automata. The guard then
+    # reads the locations and variables as the move leaves them.
     watches: bool = False
 
 
@@ -101,7 +101,7 @@ class Automaton:
     span: Span | None = field(default=None, compare=False)
 
     def leaving(self) -> list[list[int]]:
-        """For each location the numbers of the edges that leave it."""
+        """For each location, the indices of the edges that leave it."""
         numbers: list[list[int]] = [[] for _ in self.locations]
         for number, edge in enumerate(self.edges):
             numbers[edge.source].append(number)
@@ -110,23 +110,24 @@ class Automaton:
 
 @dataclass(frozen=True, slots=True)
 class Priorities:
-    """Which steps keep back which others, where both can be taken: those of lower rank."""
+    """Ranks of steps: a step is held back while a step of higher rank is possible."""
 
-    # a number for each; of the automata that take part the highest counts
+    # A number for each automaton. The highest number of the automata that take part counts.
     automata: tuple[int, ...]
-    internal: int  # the number of steps without a channel
-    # a number for each; all these are multiples of what is above those of automata
+    internal: int  # the number for steps without a channel
+    # A number for each channel. These are multiples of a number above all those of automata, so
+    # that channels decide first.
     channels: tuple[int, ...]
 
     def rank(self, channel: int | None, automata: Iterable[int]) -> int:
-        """The priority of a step: its channel's (`None`: an internal step), then its automata's."""
+        """The rank of a step: its channel (`None`: internal) decides, then its automata."""
         level = self.internal if channel is None else self.channels[channel]
         return level + max(self.automata[one] for one in automata)
 
 
 @dataclass(frozen=True, slots=True)
 class LeadsToFormula:
-    """Wherever `left` holds, `right` will on every run, within `bound` if there is one."""
+    """Wherever `left` holds, every run reaches `right`, within `bound` if there is one."""
 
     left: ex.Expression
     right: ex.Expression
@@ -135,20 +136,20 @@ class LeadsToFormula:
 
 @dataclass(frozen=True, slots=True)
 class Chance:
-    """The share of random runs that meet a condition, or keep it (`A[]`), within a horizon."""
+    """The share of random runs that reach a condition, or keep it (`A[]`), within a horizon."""
 
     op: ex.PathOp
     body: ex.Expression
     horizon: int
-    runs: int | None  # the number simulated; `None`: as many as the default, or a test takes
-    # sign, level: a test: whether the share is `>=` or `<=` that; `None`: an estimate
+    runs: int | None  # the number of runs; `None`: the default, or as many as a test needs
+    # A test asks whether the share is `>=` or `<=` the level. An estimate has `None`.
     sign: ex.BinaryOp | None
     level: float
 
 
 @dataclass(frozen=True, slots=True)
 class Mean:
-    """The largest, or least, value that random runs have within a horizon, on average."""
+    """The average, over random runs, of the largest or least value within a horizon."""
 
     largest: bool
     value: ex.Expression
@@ -158,7 +159,7 @@ class Mean:
 
 @dataclass(frozen=True, slots=True)
 class Term:
-    """Something that has a value in each state: a clock, or an expression if `clock` is `None`."""
+    """A quantity with a value in each state: a clock, or an expression if `clock` is `None`."""
 
     text: str
     value: ex.Expression
@@ -167,7 +168,7 @@ class Term:
 
 @dataclass(frozen=True, slots=True)
 class Simulation:
-    """Random runs as they go on: the values of some terms, up to a horizon."""
+    """Random runs to show: the values of some terms over time, up to a horizon."""
 
     terms: tuple[Term, ...]
     horizon: int
@@ -179,19 +180,19 @@ class Extremes:
     """The largest, or least, values of some terms over all reachable states."""
 
     ends: tuple[bool, ...]  # `True` for the largest values, `False` for the least
-    where: ex.Expression  # only states in which this holds count
+    where: ex.Expression  # only states in which this holds are considered
     terms: tuple[Term, ...]
 
 
 Asked = Chance | Mean | Simulation | Extremes
-"""Queries that are answered by figures or values, not by yes or no."""
+"""Queries answered by numbers or values instead of yes or no."""
 
 QueryFormula = ex.Expression | LeadsToFormula | Asked
 
 
 @dataclass(frozen=True, slots=True)
 class Query:
-    """A question to the model checker; `formula` speaks of runs."""
+    """A question to the model checker."""
 
     id: str
     remark: str
@@ -202,7 +203,7 @@ class Query:
 
 @dataclass(frozen=True, slots=True)
 class Signal:
-    """A name of specifications for something of the network."""
+    """A name that specifications may use, and its value in the network."""
 
     name: str
     value: ex.Expression
@@ -222,23 +223,23 @@ class Network:
     queries: tuple[Query, ...]
     # the names for specifications, with their expressions over locations and variables
     signals: tuple[Signal, ...]
-    warnings: tuple[Diagnostic, ...] = field(compare=False)  # about it
+    warnings: tuple[Diagnostic, ...] = field(compare=False)
     names: Names = field(compare=False, repr=False)  # the names that queries may use
-    priorities: Priorities | None = None  # of steps; `None` if all are equal
-    # whether some edges were taken apart, for differences of clocks or clocks under `or`
+    priorities: Priorities | None = None  # `None` if all steps are equal
+    # whether some edges were split, for differences of clocks or clocks under `or`
     has_split_edges: bool = field(default=False, compare=False)
-    # the place of a number with a fraction, of which nothing is proved, if it has one
+    # the place of a number with a fraction, if there is one: such models are only simulated
     fraction: Span | None = field(default=None, compare=False)
-    # the network of which this one says more: its runs are shown without the automata, clocks and
-    # variables that stand behind those of that; `None`: it is none such
+    # The network that this one extends, or `None`. Runs are shown in terms of the original, without
+    # the automata, clocks and variables appended to it.
     original: Network | None = None
-    # whether the last automaton watches the others: it takes part in each of their moves, or the
-    # move is not possible
+    # Whether the last automaton watches the others: it takes part in each of their moves, and a
+    # move in which it cannot take part is impossible.
     is_watched: bool = False
 
     @property
     def rates(self) -> Iterator[tuple[Location, Rate]]:
-        """All rates of clocks that are not 1, with their locations."""
+        """All clock rates other than 1, with their locations."""
         return (
             (place, rate)
             for automaton in self.automata
@@ -249,12 +250,12 @@ class Network:
 
     @property
     def locals(self) -> tuple[ex.Variable, ...]:
-        """Parameters and local variables of functions; the last stands in slot −1."""
+        """Parameters and local variables of functions; the last one has slot −1."""
         return tuple(reversed(self.names.functions.locals))
 
 
 def check_clocks(network: Network, asked: Iterable[int] = ()) -> None:
-    """Refuse to decide what depends on fractions, or on clocks that stop or run at other rates."""
+    """Refuse queries whose answer depends on fractions or on clocks with rates other than 1."""
     refuse_fraction(network.fraction)
     if next(network.rates, None) is None:
         return
@@ -277,7 +278,7 @@ _SIMULATE = "ask for figures, which are simulated: Pr[<=T](<> p), E[<=T; n](max:
 
 
 def refuse_fraction(place: Span | None) -> None:
-    """Refuse to decide anything of a number with a fraction, if there is one."""
+    """Refuse to prove anything if the model has a number with a fraction at `place`."""
     if place is not None:
         message = "a number with a fraction: proofs work on integers only"
         raise model_error("TA016", message, place, _SIMULATE)

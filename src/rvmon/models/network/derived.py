@@ -1,7 +1,8 @@
-"""Networks made of others: with a finer unit of time, or with one automaton more that watches.
+"""Networks derived from others: with a finer unit of time, or with a watching automaton added.
 
-The watcher takes part in each of their moves, and reads which names the move has: those are noted
-in variables that the edges set and the watcher resets, so that they are never seen between moves.
+A watcher takes part in each move of the others and can test the names of the move. Edges note their
+names in extra variables, and the watcher resets these in the same move, so that no state between
+moves shows them.
 """
 
 from __future__ import annotations
@@ -16,9 +17,9 @@ from rvmon.models.network.guards import resets_in
 
 
 def finer(network: nta.Network, factor: int) -> nta.Network:
-    """A network whose unit of time is so many times smaller, and whose runs are the same.
+    """The network with a unit of time that is `factor` times smaller, and with the same runs.
 
-    Its queries are left out, since they would speak of the old unit.
+    Queries are dropped, since they refer to the old unit.
     """
 
     def automaton(own: nta.Automaton) -> nta.Automaton:
@@ -54,19 +55,19 @@ def _times(number: ex.Expression, factor: int) -> ex.Expression:
 
 
 def names_of(network: nta.Network, edge: nta.Edge) -> tuple[str, ...]:
-    """The names that an edge gives a move: its label, and its channel if it sends."""
+    """The names that an edge gives to a move: its label, and its channel if it sends."""
     sends = edge.sync is not None and edge.sync.sends
     channel = network.channels[edge.sync.slot.first].name if edge.sync and sends else ""
     return tuple(dict.fromkeys(name for name in (edge.label, channel) if name))
 
 
 class Watcher:
-    """A watcher in the making, and the network with it."""
+    """Builds a watcher, and the network that includes it."""
 
     def __init__(self, network: nta.Network, names: Iterable[str], clocks: Sequence[str]) -> None:
         self._network = network
         self._clocks = tuple(map(nta.Clock, clocks))
-        self.clock = len(network.clocks)  # the number of the first of its clocks
+        self.clock = len(network.clocks)  # index of the watcher's first clock
         first = len(network.variables)
         self._slots = {name: ex.Slot(first + k) for k, name in enumerate(dict.fromkeys(names))}
         self._unnoted: tuple[ex.Statement, ...] = tuple(_set(s, 0) for s in self._slots.values())
@@ -74,13 +75,13 @@ class Watcher:
         self._edges: list[nta.Edge] = []
 
     def has(self, name: str) -> ex.Expression:
-        """Whether a move has a name; false between moves."""
+        """Whether the current move has a name; false between moves."""
         return ex.VariableValue(self._slots[name])
 
     def add_location(
         self, bounds: Iterable[ex.ClockCompare] = (), kind: ex.LocationKind = ex.LocationKind.NORMAL
     ) -> int:
-        """Add a location with an invariant; its number."""
+        """Add a location with an invariant and return its index."""
         self._locations.append(nta.Location("", kind, nta.Guard(ex.TRUE, tuple(bounds))))
         return len(self._locations) - 1
 
@@ -94,7 +95,7 @@ class Watcher:
         *,
         watches: bool = True,
     ) -> None:
-        """Add an edge that goes along with moves, or one that the watcher takes by itself."""
+        """Add an edge that accompanies moves, or (`watches=False`) one taken independently."""
         if when == ex.FALSE:
             return
         set_now = tuple(ex.Reset(clock, ex.Constant(0)) for clock in resets)
@@ -105,11 +106,11 @@ class Watcher:
         self._edges.append(edge)
 
     def is_in(self, location: int) -> ex.Expression:
-        """Whether it is in a location."""
+        """Whether the watcher is in a location."""
         return ex.InLocation(len(self._network.automata), location)
 
     def network(self, initial: int = 0) -> nta.Network:
-        """The network with the watcher, in one of its locations at the start."""
+        """The network with the watcher, which starts in one of its locations."""
         network, ranks = self._network, self._network.priorities
         own = (ex.Variable(name, 0, 1, 0, is_bool=True) for name in self._slots)
         automata = [

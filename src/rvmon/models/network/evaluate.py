@@ -1,4 +1,4 @@
-"""Expressions and statements as closures, and what operators do with numbers and refuse."""
+"""Expressions and statements as closures; the arithmetic of operators, and what they refuse."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ OPERATIONS: dict[ex.BinaryOp, Callable[[int, int], int]] = {
 
 
 def check_shift(bits: int, span: Span | None) -> int:
-    """Refuse a number of bits by which no number of 32 bits can be shifted."""
+    """Refuse a shift by fewer than 0 or more than 31 bits."""
     if not 0 <= bits < 32:
         raise model_error("TA007", f"a shift by {bits} bits", span, "shift by 0 to 31 bits")
     return bits
@@ -59,7 +59,7 @@ def check_index(position: int, extent: range, span: Span | None) -> None:
 
 
 def fitting(number: int, variable: ex.Variable, span: Span | None) -> int:
-    """The number as a variable holds it."""
+    """The number as the variable stores it; an integer outside its range is refused."""
     if variable.is_bool:
         return int(bool(number))
     if variable.is_real:
@@ -86,9 +86,9 @@ Evaluator = Callable[[Locations, Values], int]
 
 
 def evaluator(expression: ex.Expression) -> Evaluator:
-    """Make a function of locations and variables for an expression without clocks.
+    """Compile an expression without clocks to a function of locations and variables.
 
-    The connectives evaluate their right side only if it matters, so that `i < N and a[i] > 0`
+    Connectives evaluate their right side only if it matters, so that `i < N and a[i] > 0`
     never leaves the array.
     """
     match expression:
@@ -130,7 +130,7 @@ def evaluator(expression: ex.Expression) -> Evaluator:
 
 
 def chained(op: ex.BinaryOp, expression: ex.Expression) -> list[ex.Expression]:
-    """The operands of a connective, with nested ones of the same kind flattened."""
+    """The operands of a connective, with nested connectives of the same kind flattened."""
     match expression:
         case ex.BinaryOperation(found, left, right) if found is op:
             return [*chained(op, left), *chained(op, right)]
@@ -186,7 +186,10 @@ def slot_evaluator(slot: ex.Slot) -> Evaluator:
 
 
 class Frame(list[int]):
-    """The values of all variables, behind them room for functions, and the clocks that are set."""
+    """The values of all variables, then room for functions (slots below 0); clocks that were set.
+
+    `clocks` holds the new values in units of time by clock, and `rounds` counts those of all loops.
+    """
 
     def __init__(self, values: Values, room: int) -> None:
         super().__init__([*values, *[0] * room])
@@ -195,16 +198,16 @@ class Frame(list[int]):
         self._variables = len(values)
 
     def variables(self) -> tuple[int, ...]:
-        """The values of the variables alone."""
+        """The values of the variables, without the room for functions."""
         return tuple(self[: self._variables])
 
 
 Runner = Callable[[Locations, Frame], int | None]
-"""Runs statements; gives the value if they return one."""
+"""Runs statements and gives the value that they return, or `None`."""
 
 
 def runner(statements: Sequence[ex.Statement]) -> Runner:
-    """Make a function that runs statements one behind the other."""
+    """Compile statements to a function that runs them in order."""
     steps = [_step(statement) for statement in statements]
 
     def run(locations: Locations, frame: Frame) -> int | None:
@@ -218,7 +221,7 @@ def runner(statements: Sequence[ex.Statement]) -> Runner:
 
 
 def caller(call: ex.Invoke) -> Callable[[Locations, Values], int]:
-    """Make a function that gives the value of a call."""
+    """Compile a call to a function that gives its value."""
     function = call.function
     arguments = [evaluator(argument) for argument in call.arguments]
     body: list[Runner] = []

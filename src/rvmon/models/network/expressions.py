@@ -1,8 +1,8 @@
 """Expressions over the variables of a network, and statements that change variables and clocks.
 
-Clocks and locations occur as propositions. No function calls itself, so each has places of its own
-for its parameters and local variables: slots below 0, which count from the end of the values while
-it runs.
+Clocks and locations occur as propositions. Functions cannot recurse, so each function has fixed
+slots for its parameters and local variables. These slots are negative and count from the end of the
+values while the function runs.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from math import prod
 
 from rvmon.diagnostics import Span
 
-MAX_TIME = (1 << 31) - 1  # numbers of units of time must be smaller
+MAX_TIME = (1 << 31) - 1  # exclusive limit for numbers of units of time
 
 
 class UnaryOp(StrEnum):
@@ -52,7 +52,7 @@ class BinaryOp(StrEnum):
 
 
 class PathOp(StrEnum):
-    """Quantifiers over the runs from a state, each with a temporal operator, beside its dual."""
+    """Quantifiers over the runs from a state, each with a temporal operator and before its dual."""
 
     POSSIBLY = "E<>"
     INVARIANTLY = "A[]"
@@ -60,13 +60,13 @@ class PathOp(StrEnum):
     POTENTIALLY_ALWAYS = "E[]"
     SOME_NEXT = "EX"
     EVERY_NEXT = "AX"
-    FINALLY = "F"  # on one run: the body in the end, and `left` until then
-    GLOBALLY = "G"  # its dual on one run: not `left` until the body is false
+    FINALLY = "F"  # on one run: the body holds at some point, and `left` until then
+    GLOBALLY = "G"  # the dual: the body holds up to and including the first state without `left`
     EVERY_RUN = "A"
     SOME_RUN = "E"
 
 
-OUTERMOST = tuple(PathOp)[:4]  # those that UPPAAL has
+OUTERMOST = tuple(PathOp)[:4]  # the operators of UPPAAL
 
 
 class BaseType(StrEnum):
@@ -82,7 +82,7 @@ class BaseType(StrEnum):
 
 
 class LocationKind(StrEnum):
-    """Whether time passes in a location, and whether it must be left next."""
+    """Whether time passes in a location, and whether the next step must leave it."""
 
     NORMAL = "normal"
     URGENT = "urgent"
@@ -91,7 +91,7 @@ class LocationKind(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Constant:
-    """An integer; truth is 1, falsity 0."""
+    """An integer. True is 1, false is 0."""
 
     value: int
 
@@ -105,19 +105,19 @@ class Slot:
     """A variable or channel, or an element of an array of them."""
 
     first: int  # index of the array's first element
-    # the indices of each dimension of the array, the outermost first; empty for a single one
+    # the index range of each dimension of the array, outermost first; empty for a scalar
     extents: tuple[range, ...] = ()
-    indices: tuple[Expression, ...] = ()  # one for each dimension; each must lie in its extent
+    indices: tuple[Expression, ...] = ()  # one per dimension; each must lie in its extent
     span: Span | None = field(default=None, compare=False)
 
     @property
     def size(self) -> int:
-        """The number of elements of the array; 1 of a single one."""
+        """The number of elements of the array; 1 for a scalar."""
         return prod(map(len, self.extents))
 
     @property
     def is_single(self) -> bool:
-        """Whether it has all its indices, so that it is no array."""
+        """Whether the slot has all its indices, so that it names no array."""
         return len(self.indices) == len(self.extents)
 
 
@@ -130,7 +130,7 @@ class VariableValue:
 
 @dataclass(frozen=True, slots=True)
 class Lookup:
-    """An element of a constant array, chosen by the variables; the slot counts from 0."""
+    """An element of a constant array, chosen by the variables. The slot counts from 0."""
 
     values: tuple[int, ...]
     slot: Slot
@@ -138,7 +138,7 @@ class Lookup:
 
 @dataclass(frozen=True, slots=True)
 class Invoke:
-    """The value of a function, which runs when it is asked for; a statement: for what it does."""
+    """A call of a function, for its value or, as a statement, for its effects."""
 
     function: Function
     arguments: tuple[Expression, ...]
@@ -155,7 +155,7 @@ class UnaryOperation:
 
 @dataclass(frozen=True, slots=True)
 class BinaryOperation:
-    """An operator on two operands; `span` is where a division stands."""
+    """An operator on two operands; `span` is the place of a division."""
 
     op: BinaryOp
     left: Expression
@@ -174,7 +174,7 @@ class Choice:
 
 @dataclass(frozen=True, slots=True)
 class InLocation:
-    """An automaton is in a location."""
+    """Whether an automaton is in a location."""
 
     automaton: int
     location: int
@@ -200,23 +200,24 @@ class ClockCompare:
 
 @dataclass(frozen=True, slots=True)
 class Deadlock:
-    """No edge can be taken now or after any delay."""
+    """Whether no edge can be taken now or after any delay."""
 
 
 @dataclass(frozen=True, slots=True)
 class PathFormula:
-    """A path operator."""
+    """A path operator applied to a formula."""
 
     op: PathOp
     body: Expression
     bound: int | None = None  # in units of time; `None` if there is none
-    # the formula that holds until the body does, for `E<>`, `A<>` and `F`; their negations keep it
+    # For `E<>`, `A<>` and `F`: the formula that holds until the body does. Their duals carry it
+    # unnegated.
     left: Expression = TRUE
 
 
 @dataclass(frozen=True, slots=True)
 class Fractional:
-    """An operation on numbers with a fraction, which are carried as bits (`fractions`)."""
+    """An operation on numbers with a fraction, which are represented by bits (see `fractions`)."""
 
     name: str
     operands: tuple[Expression, ...]
@@ -231,7 +232,7 @@ Expression = (
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """An integer in `[low, high]`; a bool is one in `[0, 1]`, a real is the bits of a double."""
+    """An integer in `[low, high]`; a bool is in `[0, 1]`, a real is the bits of a double."""
 
     name: str
     low: int
@@ -243,7 +244,7 @@ class Variable:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """`slot = value`; the value must lie in the range of the variable, or of the array's first."""
+    """`slot = value`; the value must lie in the range of `variable` (for an array: its first)."""
 
     slot: Slot
     value: Expression
@@ -252,7 +253,7 @@ class Assignment:
 
 @dataclass(frozen=True, slots=True)
 class Reset:
-    """`clock = value`, a number of units of time that is not negative."""
+    """`clock = value`, a number of units of time from 0 on."""
 
     clock: int
     value: Expression
@@ -261,7 +262,7 @@ class Reset:
 
 @dataclass(frozen=True, slots=True)
 class If:
-    """Statements for each truth of a condition."""
+    """Statements for either truth of a condition."""
 
     condition: Expression
     then: tuple[Statement, ...]
@@ -279,14 +280,14 @@ class While:
 
 @dataclass(frozen=True, slots=True)
 class Return:
-    """The end of a function, with its value; that of a `cannot_pass` one is 0."""
+    """The end of a function, with its value. A `void` function returns 0."""
 
     value: Expression
 
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """The end of a body that should have returned a value: a run that comes here has no meaning."""
+    """The end of a function body without the required `return`; to reach it is an error."""
 
     function: str
     span: Span | None = field(default=None, compare=False)
@@ -294,7 +295,7 @@ class Missing:
 
 Statement = Assignment | Reset | Invoke | If | While | Return | Missing
 
-MOST_ROUNDS = 1_000_000  # rounds that the loops of one computation may go together
+MOST_ROUNDS = 1_000_000  # limit for the rounds of all loops of one computation together
 
 
 @dataclass(frozen=True, slots=True)
@@ -306,12 +307,12 @@ class Function:
     parameters: tuple[tuple[int, Variable], ...]
     result: tuple[int, Variable]  # the slot for its value, with its range
     body: tuple[Statement, ...]  # ends with `Return` or `Missing` on every way
-    room: int  # slots below 0 that it and what it calls may use
-    changes: bool  # whether it sets a variable that is not its own, or a clock
+    room: int  # number of negative slots that the function and its callees may use
+    changes: bool  # whether it sets a clock or a variable other than its own
 
 
 def statements_in(statements: Sequence[Statement]) -> Iterator[Statement]:
-    """Statements and all inside them."""
+    """Statements and all statements nested in them."""
     for statement in statements:
         yield statement
         match statement:
@@ -325,7 +326,7 @@ def statements_in(statements: Sequence[Statement]) -> Iterator[Statement]:
 
 
 def expressions_of(statement: Statement) -> tuple[Expression, ...]:
-    """The expressions that a statement itself evaluates."""
+    """The expressions that a statement itself evaluates, without those of nested statements."""
     match statement:
         case Assignment(slot, value):
             return (*slot.indices, value)

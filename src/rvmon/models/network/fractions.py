@@ -1,6 +1,6 @@
-"""Numbers with a fraction, UPPAAL's `double`: random runs have them, and nothing is proved of them.
+"""Numbers with a fraction, UPPAAL's `double`. Random runs use them; proofs refuse them.
 
-Each is carried as its 64 bits, so that values of variables are integers throughout.
+Each number is represented by its 64 bits, so that the values of all variables are integers.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from rvmon.diagnostics import Span
 from rvmon.models import model_error
 from rvmon.models.network.expressions import Constant, Expression, Fractional
 
-GRID = 1_000  # steps of simulated time in one unit: all times are whole numbers of them
+GRID = 1_000  # steps of simulated time per unit: all instants are whole numbers of steps
 
 OPERATIONS: dict[str, Callable[..., float]] = {
     "=": lambda a: a, "<": lambda a, b: a < b, "<=": lambda a, b: a <= b, "==": lambda a, b: a == b,
@@ -25,17 +25,17 @@ OPERATIONS: dict[str, Callable[..., float]] = {
     "log": math.log10, "floor": math.floor, "ceil": math.ceil, "round": round, "sin": math.sin,
     "cos": math.cos, "tan": math.tan,
 }  # fmt: skip
-"""By sign or name: `=` is the number itself, `grid` are steps of the grid, `double` that of an
-integer."""
+"""Operations by sign or name. `=` is the identity, and `grid` converts units of time to steps of
+the grid. `double`, which converts an integer, is handled by `operation`."""
 
 WHOLE = {"<", "<=", "==", "!=", ">=", ">", "grid", "fint"}  # the operations with an integer result
 
 FUNCTIONS = {name: 1 + (name in ("fmod", "pow", "hypot")) for name in [*OPERATIONS][15:]}
-"""The operations that a model calls by name, with the number of their arguments."""
+"""The operations that a model calls by name, with their number of arguments."""
 
 
 def bits_of(number: float) -> int:
-    """The bits of a double; those of 0 are 0.
+    """The bits of a double; 0 for both zeros.
 
     >>> number_of(bits_of(-2.5)), bits_of(-0.0)
     (-2.5, 0)
@@ -45,25 +45,26 @@ def bits_of(number: float) -> int:
 
 
 def number_of(bits: int) -> float:
-    """The double of some bits."""
+    """The double with the given bits."""
     (number,) = struct.unpack("<d", struct.pack("<q", bits))
     return float(number)
 
 
 def literal(number: float) -> Fractional:
-    """A number as it is written."""
+    """A constant with a fraction."""
     return Fractional("=", (Constant(bits_of(number)),))
 
 
 def marked(value: Expression, is_real: bool) -> Expression:
-    """An expression, with the mark of one that gives bits if it does."""
+    """The expression, marked as giving bits if `is_real`."""
     return Fractional("=", (value,)) if is_real else value
 
 
 def operation(name: str, span: Span | None) -> Callable[..., int]:
-    """Make a function of integers, or of bits, for an operation.
+    """Make the function of integers, or of bits, that performs an operation.
 
-    Its errors are those of the model: a root, a quotient or a logarithm that does not exist.
+    The function raises a `ModelError` where the operation has no finite value, such as the square
+    root of −1.
     """
     if name == "double":
         return bits_of
@@ -84,10 +85,10 @@ def operation(name: str, span: Span | None) -> Callable[..., int]:
 
 
 def number_in(value: Expression, bits: int) -> float:
-    """The number that an expression has where it gives some bits, or an integer."""
+    """The number that an expression denotes, given the bits or integer that it evaluates to."""
     return number_of(bits) if gives_fraction(value) else bits
 
 
 def gives_fraction(value: Expression) -> bool:
-    """Whether an expression that is made for its value gives bits: the language marks those."""
+    """Whether an expression evaluates to bits: the language marks all such expressions."""
     return isinstance(value, Fractional) and value.name not in WHOLE

@@ -1,4 +1,4 @@
-"""Conditions in normal form: negation at the atoms, clocks apart from variables."""
+"""Conditions in normal form: negations at the atoms, clocks separated from variables."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _NEGATED_PATH = dict(_DUALS) | {other: one for one, other in _DUALS}
 
 
 def is_fixed(expression: ex.Expression) -> bool:
-    """Whether an expression has the same value always: functions may compute it from constants."""
+    """Whether an expression is constant. Functions may compute it from constants."""
     for part in parts_of(expression):
         match part:
             case ex.InLocation() | ex.ClockCompare() | ex.Deadlock() | ex.PathFormula():
@@ -35,7 +35,7 @@ def is_fixed(expression: ex.Expression) -> bool:
 
 
 def parts_of(expression: ex.Expression) -> Iterator[ex.Expression]:
-    """An expression and all that its operators join, from the top."""
+    """An expression and all its subexpressions, from the top."""
     waiting = [expression]
     while waiting:
         part = waiting.pop()
@@ -58,20 +58,20 @@ def parts_of(expression: ex.Expression) -> Iterator[ex.Expression]:
 
 
 def parts_in(statements: Sequence[ex.Statement]) -> Iterator[ex.Expression]:
-    """All expressions in statements, with all that their operators join."""
+    """All expressions in statements, with all their subexpressions."""
     for statement in ex.statements_in(statements):
         for expression in ex.expressions_of(statement):
             yield from parts_of(expression)
 
 
 def is_discrete(expression: ex.Expression) -> bool:
-    """Whether locations and variables alone give the expression a value."""
+    """Whether locations and variables alone determine the value of the expression."""
     of_runs = ex.ClockCompare | ex.Deadlock | ex.PathFormula
     return not any(isinstance(part, of_runs) for part in parts_of(expression))
 
 
 def resets_in(updates: Sequence[ex.Statement]) -> Iterator[ex.Reset]:
-    """All statements that set clocks among some, and in the functions that they call."""
+    """All resets of clocks in some statements and in the functions that they call."""
     for statement in ex.statements_in(updates):
         if isinstance(statement, ex.Reset):
             yield statement
@@ -81,7 +81,7 @@ def resets_in(updates: Sequence[ex.Statement]) -> Iterator[ex.Reset]:
 
 
 def refuse_changes(expression: ex.Expression, span: Span) -> None:
-    """Refuse a condition or number that changes variables when it is asked for."""
+    """Refuse a condition or number whose evaluation changes variables."""
     for part in parts_of(expression):
         if isinstance(part, ex.Invoke) and part.function.changes:
             message = f"`{part.function.name}` changes variables or clocks"
@@ -90,7 +90,7 @@ def refuse_changes(expression: ex.Expression, span: Span) -> None:
 
 
 def is_linear(expression: ex.Expression) -> bool:
-    """Whether operators occur that speak of one run, not of all that begin in a state."""
+    """Whether an expression has operators on a single run, as opposed to all runs from a state."""
     linear = (ex.PathOp.FINALLY, ex.PathOp.GLOBALLY, ex.PathOp.EVERY_RUN, ex.PathOp.SOME_RUN)
     parts = parts_of(expression)
     return any(isinstance(part, ex.PathFormula) and part.op in linear for part in parts)
@@ -112,12 +112,12 @@ def has_paths(formula: ex.Expression) -> bool:
 
 
 def is_plain(formula: ex.Expression) -> bool:
-    """Whether a formula speaks of the state alone: of no runs and no deadlock."""
+    """Whether a formula depends on the state alone: it has no path operator and no deadlock."""
     return not any(isinstance(part, ex.PathFormula | ex.Deadlock) for part in parts_of(formula))
 
 
 def _denied(expression: ex.Expression) -> ex.Expression:
-    """The negation; that of a negation is what was negated."""
+    """The negation of an expression, without double negation."""
     match expression:
         case ex.UnaryOperation(ex.UnaryOp.NOT, operand):
             return operand
@@ -126,10 +126,10 @@ def _denied(expression: ex.Expression) -> ex.Expression:
 
 
 def normal_form(expression: ex.Expression, positive: bool = True) -> ex.Expression:
-    """The expression, or its negation, with `and` and `or` over discrete parts and atoms.
+    """The expression or its negation, with `and` and `or` over discrete parts and atoms.
 
     Raises:
-        ModelError: it would have too many parts.
+        ModelError: the normal form would have more than `MOST_PARTS` parts.
     """
     if _size(expression) > MOST_PARTS:
         raise model_error("TA019", "too many conditions are compared", None, "split the condition")
@@ -137,7 +137,7 @@ def normal_form(expression: ex.Expression, positive: bool = True) -> ex.Expressi
 
 
 def _size(expression: ex.Expression) -> int:
-    """The parts of the normal form: what compares conditions has each of them twice."""
+    """The number of parts of the normal form, in which each side of a comparison occurs twice."""
     if is_discrete(expression):
         return 1
     match expression:
@@ -179,21 +179,21 @@ def _normal_form(expression: ex.Expression, positive: bool = True) -> ex.Express
         case ex.Choice(condition, then, otherwise):
             yes, no = _normal_form(then, positive), _normal_form(otherwise, positive)
             return _chosen(condition, yes, no)
-        case _:  # arithmetic, and what is discrete
+        case _:  # arithmetic on something that is not discrete
             raise AssertionError(f"{expression} is no condition")
 
 
 def _chosen(
     condition: ex.Expression, then: ex.Expression, otherwise: ex.Expression
 ) -> ex.Expression:
-    """The condition with what holds beside it, or its negation with what holds beside that."""
+    """`condition and then or not condition and otherwise`."""
     yes = ex.BinaryOperation(ex.BinaryOp.AND, _normal_form(condition), then)
     no = ex.BinaryOperation(ex.BinaryOp.AND, _normal_form(condition, positive=False), otherwise)
     return ex.BinaryOperation(ex.BinaryOp.OR, yes, no)
 
 
 def with_deadlock(formula: ex.Expression, value: bool) -> ex.Expression:
-    """A normalised formula in which `deadlock` is true, or false."""
+    """Replace `deadlock` in a normalised formula by a truth value."""
     match formula:
         case ex.Deadlock():
             return ex.Constant(int(value))
@@ -206,7 +206,7 @@ def with_deadlock(formula: ex.Expression, value: bool) -> ex.Expression:
 
 
 def split_guard(expression: ex.Expression, span: Span) -> Guard:
-    """A condition as its discrete part and its clock bounds, which must all hold."""
+    """Split a condition into its discrete part and the clock bounds that must all hold."""
     guard, *others = islice(guards_of(expression), 2)
     if others:
         fix = "make one location for each alternative"
@@ -215,16 +215,19 @@ def split_guard(expression: ex.Expression, span: Span) -> Guard:
 
 
 def guards_of(expression: ex.Expression) -> Iterator[Guard]:
-    """A condition as guards of which one holds where it does, and never two; made as asked for."""
+    """Split a condition into disjoint guards: exactly one holds wherever the condition does.
+
+    The guards are made lazily.
+    """
     return map(_guard, _cases(normal_form(expression)))
 
 
-MOST_PARTS = 100_000  # of a condition in normal form
-MOST_PIECES = 4000  # alternatives of a formula that are taken apart
+MOST_PARTS = 100_000  # limit for the parts of a condition in normal form
+MOST_PIECES = 4000  # limit for the alternatives into which a formula is split
 
 
 def together(parts: Iterable[ex.Expression]) -> ex.Expression:
-    """One formula for parts that hold together, without those that always do."""
+    """The conjunction of some formulas, without those that are always true."""
     formula: ex.Expression = ex.TRUE
     for part in parts:
         if part == ex.FALSE:
@@ -237,7 +240,7 @@ def together(parts: Iterable[ex.Expression]) -> ex.Expression:
 
 
 def either(parts: Sequence[ex.Expression]) -> ex.Expression:
-    """One formula for parts of which one holds; halved again and again, so that it is not deep."""
+    """The disjunction of some formulas, as a balanced tree so that recursion stays shallow."""
     if len(parts) < 2:
         return parts[0] if parts else ex.FALSE
     middle = len(parts) // 2
@@ -247,9 +250,11 @@ def either(parts: Sequence[ex.Expression]) -> ex.Expression:
 def alternatives_of(
     formula: ex.Expression | None, due: Sequence[ex.ClockCompare] = ()
 ) -> list[Guard]:
-    """A plain normalised formula as guards of which some hold where it does; none for `None`.
+    """Split a plain normalised formula into guards, at least one of which holds where it does.
 
-    The formula has no path operators and no `deadlock`; `due` are bounds that hold besides in each.
+    Args:
+        formula: without path operators and `deadlock`; `None` gives no guards.
+        due: bounds that are added to each guard.
     """
     pieces = [] if formula is None else distributed(formula, is_discrete)
     return [_guard([*parts, *due]) for parts in pieces]
@@ -258,7 +263,7 @@ def alternatives_of(
 def distributed(
     formula: ex.Expression, is_whole: Callable[[ex.Expression], bool]
 ) -> list[list[ex.Expression]]:
-    """A normalised formula as alternatives of parts that hold together; what is whole stays so."""
+    """Split a normalised formula into conjunctions; subformulas that are `is_whole` stay intact."""
     match formula:
         case ex.BinaryOperation(ex.BinaryOp.OR, left, right) if not is_whole(formula):
             return [*distributed(left, is_whole), *distributed(right, is_whole)]
@@ -277,10 +282,10 @@ def _guard(parts: Sequence[ex.Expression]) -> Guard:
 
 
 def _cases(formula: ex.Expression) -> Iterator[list[ex.Expression]]:
-    """A normalised condition as alternatives of parts that hold together, each without the others.
+    """Split a normalised condition into disjoint alternatives, each a list of conjuncts.
 
-    Where `p or q` holds, p does, or it does not and q does. There may be many more than are asked
-    for.
+    `p or q` gives p, and q without p. The alternatives are made lazily, since there may be many
+    more than the caller needs.
     """
     match formula:
         case _ if is_discrete(formula):

@@ -14,20 +14,20 @@ ConstantValue = int | tuple["ConstantValue", ...]  # a number, or an array of th
 
 @dataclass(frozen=True, slots=True)
 class ResolvedType:
-    """A type with its constants evaluated; an int always has a range."""
+    """A type with its constants evaluated. An int always has a range."""
 
     base: BaseType
     low: int = 0
     high: int = 1
-    extents: tuple[range, ...] = ()  # the indices of each dimension, if it is that of an array
-    fields: tuple[tuple[str, ResolvedType], ...] = ()  # of a record, in their order
+    extents: tuple[range, ...] = ()  # the index range of each dimension; empty if not an array
+    fields: tuple[tuple[str, ResolvedType], ...] = ()  # of a record, in order
     const: bool = False
     broadcast: bool = False
     urgent: bool = False
 
     @property
     def placed_as(self) -> BaseType:
-        """The kind of place that things of the type have; see `PlacedSymbol`."""
+        """The `kind` that a `PlacedSymbol` of this type has."""
         return self.base if self.base in (BaseType.CLOCK, BaseType.CHANNEL) else BaseType.INT
 
 
@@ -36,16 +36,16 @@ class ConstantSymbol:
     """A constant, a parameter's value, or a bound variable of a quantifier or `select`."""
 
     value: int
-    is_real: bool = False  # whether the value is the bits of a number with a fraction
+    is_real: bool = False  # whether the value is the bits of a double
 
 
 @dataclass(frozen=True, slots=True)
 class PlacedSymbol:
-    """A variable, clock or channel, or an array of them while the slot lacks indices."""
+    """A variable, clock or channel. While the slot lacks indices, it is an array."""
 
     kind: BaseType  # `CLOCK`, `CHANNEL`, or `INT` for all variables
     slot: Slot
-    is_real: bool = False  # whether its values are the bits of numbers with a fraction
+    is_real: bool = False  # whether its values are the bits of doubles
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,26 +57,26 @@ class TypeSymbol:
 
 @dataclass(frozen=True, slots=True)
 class RecordSymbol:
-    """A record, or an array of them: each field as if it were declared by itself."""
+    """A record, or an array of records: each field is declared as if it stood alone."""
 
     fields: tuple[tuple[str, Symbol], ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FunctionSymbol:
-    """A function as written (`syntax.FunctionText`), and the names that it can see."""
+    """A function as written (`syntax.FunctionText`), and the scope that it sees."""
 
     written: Any
     scope: Scope
 
 
 Symbol = ConstantSymbol | Lookup | PlacedSymbol | TypeSymbol | RecordSymbol | FunctionSymbol
-"""What a name means; a `Lookup` is a constant array, or an element, chosen by the variables."""
+"""What a name means. A `Lookup` is a constant array, or an element chosen by the variables."""
 
 
 @dataclass(slots=True)
 class Scope:
-    """Names of one level, and those of the levels around it."""
+    """The names of one level, linked to the enclosing levels."""
 
     parent: Scope | None = None
     prefix: str = ""  # put before the names of what is declared here, such as `Train(1).`
@@ -95,19 +95,19 @@ class Scope:
         return next((s.symbols[name] for s in self._levels() if name in s.symbols), None)
 
     def declares(self, name: str) -> bool:
-        """Whether a name is declared here or around, be it without a meaning."""
+        """Whether a name is declared at this level or an enclosing one, even without a meaning."""
         return any(name in scope.places for scope in self._levels())
 
     def names_automaton(self, name: str) -> bool:
-        """Whether a name without another meaning is that of an automaton."""
+        """Whether a name without another meaning is the name of an automaton."""
         return any(name in scope.families for scope in self._levels())
 
     def names(self) -> list[str]:
-        """All names that can be seen from here."""
+        """All names visible from here."""
         return [name for scope in self._levels() for name in scope.symbols]
 
     def inner(self, symbols: Mapping[str, Symbol]) -> Scope:
-        """A level inside this one with some names of its own."""
+        """A new level inside this one, with names of its own."""
         return Scope(self, self.prefix, dict(symbols))
 
 
@@ -126,7 +126,7 @@ AutomatonKey = tuple[str, tuple[int, ...]]
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """All that a query on a network may refer to."""
+    """Everything that a query on a network may refer to."""
 
     top: Scope
     automata: Mapping[AutomatonKey, AutomatonSymbol]

@@ -1,9 +1,10 @@
-"""Runs of a network: symbolic, with the exact window of each wait, and with concrete times.
+"""Runs of a network: a path with the exact window of each wait, and with concrete times.
 
-All runs along a path are the solutions of `t[q] − t[p] <= bound`. To close them all takes the cube
-of the path's length. But an instant matters only until no later constraint speaks of it: the path
-is gone along once with the closed constraints of those that still matter, and once back with what
-the rest asks of them; where both meet stands what all of them imply.
+The runs along a path are the solutions of constraints `t[q] − t[p] <= bound`. Closing all these
+constraints takes time cubic in the length of the path. However, an instant matters only as long as
+later constraints refer to it. A forward pass keeps the closed constraints between the instants that
+still matter, and a backward pass adds what the later constraints require. Where the passes meet
+they give everything that the constraints imply together.
 
 Source: Dechter, Meiri, Pearl, Temporal Constraint Networks, 1991; Dechter, Bucket Elimination: A
 Unifying Framework for Reasoning, 1999 (one bucket for each instant).
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A range of durations in units of the model; `high` is `None` if it has no end."""
+    """A range of durations in units of the model. `high` is `None` if there is no upper end."""
 
     low: int
     high: int | None
@@ -44,7 +45,7 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """Edges that are taken together, each with the index of its automaton, the sender first."""
+    """Edges taken together, each with the index of its automaton. The sender comes first."""
 
     edges: tuple[tuple[int, Edge], ...]
 
@@ -59,12 +60,12 @@ class Position:
 
 @dataclass(frozen=True, slots=True)
 class RunStep:
-    """A wait, and the action behind it."""
+    """A wait and the action after it."""
 
     window: Window  # the bounds of the wait, over all runs along this path
     delay: Fraction  # the wait in the concrete run
-    # taken then; `None` at the end of a run, or where nothing is done but the query's formula
-    # changes its truth
+    # the action after the wait; `None` at the end of a run, or where no edge is taken but the
+    # formula of the query changes its truth
     action: Action | None
     position: Position  # the state after the action
 
@@ -73,22 +74,22 @@ class Ending(StrEnum):
     """The ways in which a run ends."""
 
     REACHED = "reached"  # the run reaches the goal of the search
-    DEADLOCK = "deadlock"  # no edge can be taken any more; time can pass for ever
+    DEADLOCK = "deadlock"  # no edge can be taken any more; time can pass forever
     TIME_LOCK = "time-lock"  # no edge can be taken any more, and time stops
-    IDLE = "idle"  # the run can stay in its last state for ever
-    LOOP = "loop"  # the run can repeat its loop for ever, and time diverges
-    ZENO_LOOP = "zeno loop"  # the run can repeat its loop for ever, but time converges
+    IDLE = "idle"  # the run can stay in its last state forever
+    LOOP = "loop"  # the run can repeat its loop forever, and time diverges
+    ZENO_LOOP = "zeno loop"  # the run can repeat its loop forever, but time converges
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A path of the network and one way to run along it."""
+    """A path of the network and one concrete run along it."""
 
-    start: Position  # its initial state
+    start: Position
     steps: tuple[RunStep, ...]  # in order
-    ending: Ending = Ending.REACHED  # the way it ends
-    loop: int | None = None  # for loops the number of the first step that is repeated
-    # all timed runs along the path, if it is known
+    ending: Ending = Ending.REACHED
+    loop: int | None = None  # the index of the first step that is repeated; `None` without a loop
+    # all timed runs along the path, if they are known
     timing: Timing | None = field(default=None, compare=False, repr=False)
 
     @property
@@ -98,12 +99,12 @@ class Run:
 
 
 Atom = tuple[int, int, float]
-"""`(x, y, bound)`: clock y − clock x is at most the bound; clock 0 is always 0."""
+"""`(x, y, bound)`: clock y − clock x is at most the bound. Clock 0 is always 0."""
 
-STRICT = 2.0**-12  # the difference between a strict bound and the number it is written with
+STRICT = 2.0**-12  # how far a strict bound lies below its number
 
 Zone = list[float]
-"""Clock valuations by their bounds: of `dim` clocks `dim²`, as an atom's at `x * dim + y`."""
+"""Clock valuations given by `dim²` bounds: entry `x * dim + y` is the bound of an atom."""
 
 
 def bound_of(number: int, strict: bool) -> float:
@@ -116,13 +117,13 @@ Constraint = tuple[int, int, float]  # `(p, q, bound)`: `t[q] − t[p] <= bound`
 
 @dataclass(frozen=True, slots=True)
 class Bag:
-    """Constraints between some instants; float64[n, n], entry (p, q) as in `Constraint`, closed."""
+    """Closed constraints between some instants: float64[n, n], with (p, q) as in `Constraint`."""
 
     instants: tuple[int, ...]
     bounds: NDArray[np.float64]
 
     def kept(self, instants: Iterable[int]) -> Bag:
-        """The bag restricted to some instants."""
+        """The bag restricted to some of its instants."""
         import numpy as np
 
         chosen = tuple(sorted(instants))
@@ -137,7 +138,7 @@ class Bag:
 def _together(
     instants: Iterable[int], parts: Iterable[Bag], constraints: Iterable[Constraint] = ()
 ) -> Bag:
-    """All that some bags and constraints imply of some instants."""
+    """Everything that some bags and constraints imply for the given instants."""
     import numpy as np
 
     chosen = tuple(sorted(instants))
@@ -155,7 +156,7 @@ def _together(
 
 
 def close(bounds: NDArray[np.float64]) -> None:
-    """Tighten all bounds to those that they imply together, in place."""
+    """Tighten all bounds to those that they imply together, in place (Floyd-Warshall)."""
     import numpy as np
 
     for middle in range(len(bounds)):
@@ -166,10 +167,10 @@ class Timing:
     """The timed runs along a path.
 
     Args:
-        constraints: those of the start, then for each instant from 1 on those that come with it,
-            which speak of no later one.
-        others: number of instants before the start; they are counted behind the last one.
-        scale: grid steps in one unit of time.
+        constraints: first those of the start, then for each instant from 1 on those that refer to
+            it and to no later one.
+        others: number of instants before the start; they are numbered after the last instant.
+        scale: number of grid steps per unit of time.
     """
 
     def __init__(
@@ -182,12 +183,12 @@ class Timing:
 
     @cached_property
     def is_possible(self) -> bool:
-        """Whether there is a run."""
+        """Whether any run exists."""
         return all((bag.bounds.diagonal() >= 0).all() for bag in self._forward(()))
 
     @cached_property
     def waits(self) -> list[tuple[float, float, float]]:
-        """The least and greatest wait before each instant, and the earliest that it can be at."""
+        """The least and greatest wait before each instant, and its earliest time."""
         found, live = [], self._live()
         later = _together(live[-1], ())
         for now, before in reversed([*enumerate(self._forward(()), start=1)]):
@@ -199,7 +200,7 @@ class Timing:
         return found[::-1]
 
     def relation(self, instants: Sequence[int]) -> NDArray[np.float64]:
-        """float64[n, n] grid steps: `t[q] − t[p]` at (p, q), of some instants in their order."""
+        """The bounds on `t[q] − t[p]` at (p, q): float64[n, n] grid steps, in the given order."""
         import numpy as np
 
         *_, last = self._forward(instants)
@@ -207,7 +208,7 @@ class Timing:
         return last.bounds[np.ix_(places, places)]
 
     def _forward(self, keep: Iterable[int]) -> Iterator[Bag]:
-        """At each instant all that those up to it imply of those that still matter."""
+        """For each instant, what the constraints up to it imply for the instants still needed."""
         live = self._live()
         bag = _together(live[0], (), self._constraints[0])
         for now in range(1, self._last + 1):
@@ -216,7 +217,7 @@ class Timing:
             bag = bag.kept(live[now] | ({*keep} & {*bag.instants}))
 
     def _live(self) -> list[set[int]]:
-        """For each instant those up to it of which later constraints speak, and always some."""
+        """For each instant, the ones up to it in later constraints, the start, and those before."""
         live = [self._always | {now} for now in range(self._last + 1)]
         needed: set[int] = set()
         for now in range(self._last, 0, -1):

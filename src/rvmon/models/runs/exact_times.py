@@ -1,7 +1,7 @@
-"""The rules of a network for single valuations of the clocks, with exact rational times.
+"""The rules of a network for single clock valuations, with exact rational times.
 
-This is the meaning that zones stand for, written once more and without them, so that every run the
-checker gives is checked by other code than found it.
+This implements the semantics a second time, without zones, so that every run of the checker is
+verified by code that shares nothing with the search.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ T = TypeVar("T")
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """Locations, variables and the exact value of each clock."""
+    """Locations, variables and exact clock values."""
 
     locations: tuple[int, ...]
     values: tuple[int, ...]
@@ -54,7 +54,7 @@ _COMPARES: dict[ex.ClockOp, Callable[[Fraction, int], bool]] = {
 
 
 class Rules:
-    """The rules of one network; each expression is made ready once."""
+    """The rules of one network. Each expression is compiled once."""
 
     def __init__(self, network: Network) -> None:
         self._network = network
@@ -74,7 +74,7 @@ class Rules:
         """Let time pass.
 
         Raises:
-            InvalidRunError: time may not pass that long here.
+            InvalidRunError: time may not pass for so long.
         """
         if delay < 0:
             raise InvalidRunError("time goes backwards")
@@ -89,7 +89,7 @@ class Rules:
         """Take the edges of an action together.
 
         Raises:
-            InvalidRunError: they cannot be taken, or not like this.
+            InvalidRunError: they cannot be taken together here.
         """
         after = self._behind(now, action)
         if self._network.priorities is not None:
@@ -100,7 +100,7 @@ class Rules:
         return after
 
     def every_action(self, now: Configuration) -> Iterator[Action]:
-        """Every choice of edges that could be an action, if the other rules allow it."""
+        """All candidates: internal edges, and senders with any choice of possible receivers."""
         edges = list(self._ready_edges(now))
         for sender, first in edges:
             if first.sync is None:
@@ -115,7 +115,7 @@ class Rules:
                     yield Action(((sender, first), *filter(None, chosen)))
 
     def stops_time(self, now: Configuration) -> bool:
-        """Whether an urgent or committed location or an urgent channel keeps time from passing."""
+        """Whether an urgent or committed location or an urgent channel stops time."""
         kinds = (
             automaton.locations[place].kind
             for automaton, place in zip(self._network.automata, now.locations, strict=True)
@@ -133,12 +133,12 @@ class Rules:
         return False
 
     def is_ready(self, now: Configuration, automaton: int, edge: Edge) -> bool:
-        """Whether an edge starts here and its guard on the variables holds."""
+        """Whether an edge starts at the current location and its guard on the variables holds."""
         here = now.locations[automaton] == edge.source
         return here and bool(self.value(now, edge.guard.data))
 
     def channel_index(self, now: Configuration, edge: Edge) -> int:
-        """The channel that an edge uses, given the variables."""
+        """The index of the channel that an edge uses, given the variables."""
         assert edge.sync is not None, "asked of synchronising edges only"
         return int(self._made(edge.sync.slot, slot_evaluator)(now.locations, now.values))
 
@@ -148,18 +148,18 @@ class Rules:
         return receives and self.channel_index(now, edge) == channel
 
     def compares(self, now: Configuration, compare: ex.ClockCompare) -> bool:
-        """Whether a clock is as a comparison says."""
+        """Whether a comparison of a clock holds."""
         holds = _COMPARES[compare.op]
         return holds(now.clocks[compare.clock], self.value(now, compare.bound))
 
     def replay(self, run: Run) -> list[Configuration]:
-        """Go along a run with its concrete delays.
+        """Follow a run with its concrete delays.
 
         Returns:
             The configuration after each wait and after each action, the initial one first.
 
         Raises:
-            InvalidRunError: the run breaks a rule, or is not where it says it is.
+            InvalidRunError: the run breaks a rule, or its positions are wrong.
         """
         now = initial_configuration(self._network)
         self._check_invariants(now)
@@ -177,7 +177,7 @@ class Rules:
         return visited
 
     def _is_possible(self, now: Configuration, action: Action) -> bool:
-        """Whether edges can be taken together, priorities apart."""
+        """Whether edges can be taken together, ignoring priorities."""
         try:
             self._behind(now, action)
         except _FailedUpdateError:
@@ -193,7 +193,7 @@ class Rules:
         return self._network.priorities.rank(channel, (automaton for automaton, _ in action.edges))
 
     def _behind(self, now: Configuration, action: Action) -> Configuration:
-        """The configuration after edges taken together, whatever their priority."""
+        """The configuration after edges are taken together, ignoring priorities."""
         movers = [automaton for automaton, _ in action.edges]
         for automaton, edge in action.edges:
             if edge not in self._network.automata[automaton].edges:

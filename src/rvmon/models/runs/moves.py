@@ -1,10 +1,10 @@
-"""The discrete side of a network: states of locations and variables, and the moves between them.
+"""Discrete states of a network (locations and values of variables), and the moves between them.
 
-The rules: all guards are read before the step; the sender's update comes first, then the receivers'
-in the order of the automata; while some location is committed, only steps in which a committed
-location is left are taken; a broadcast takes along every automaton that can receive, which clocks
-may decide; a step waits for those of higher priority that can be taken. What clocks say is told as
-bounds. Each state is worked out once.
+The rules: all guards are read before the step. The sender is updated first, then the receivers in
+the order of the automata. While some location is committed, only steps that leave a committed
+location are taken. A broadcast includes every automaton that can receive, which may depend on
+clocks. A step is held back while a step of higher priority is possible. Conditions on clocks are
+returned as bounds. Each state is computed once.
 """
 
 from __future__ import annotations
@@ -28,38 +28,38 @@ AtomMaker = Callable[[evaluate.Locations, evaluate.Values], tuple[Atom, ...]]
 
 @dataclass(frozen=True, slots=True)
 class ReadyEdge:
-    """An edge of one automaton, ready to be tried."""
+    """An edge of one automaton, compiled."""
 
     automaton: int
     number: int  # of the edge in the automaton
     edge: Edge
-    data: evaluate.Evaluator | None  # its guard on the variables; `None` if there is none
-    atoms: AtomMaker  # its clock bounds
+    data: evaluate.Evaluator | None  # the guard on the variables; `None` if it always holds
+    atoms: AtomMaker  # the clock bounds of the guard
     # gives the index of the channel; `None` without synchronisation
     channel: evaluate.Evaluator | None
-    channels: range  # all channels that it may be; one unless the variables choose
-    updates: evaluate.Runner | None  # runs them; `None` if there are none
+    channels: range  # all channels that it may use; more than one only if variables choose
+    updates: evaluate.Runner | None  # runs the updates; `None` if there are none
 
     @property
     def sends(self) -> bool:
-        """Whether it begins a synchronisation."""
+        """Whether it initiates a synchronisation."""
         return self.edge.sync is not None and self.edge.sync.sends
 
 
-@dataclass(slots=True, eq=False)  # not frozen, as there are many
+@dataclass(slots=True, eq=False)  # not frozen, since creating many frozen ones is slow
 class State:
-    """Locations and values of the variables; one object for each combination."""
+    """Locations and values of the variables; there is one object for each combination."""
 
     locations: tuple[int, ...]
     values: tuple[int, ...]
     delays: bool  # whether time may pass here
     invariant: tuple[tuple[int, float], ...]  # `(clock, bound)`: upper bounds; clocks count from 1
-    # the steps from here; `None` until `Space.moves` was asked
+    # the moves from here; `None` until `Space.moves` computes them
     moves: list[Move] | None = field(default=None, repr=False)
 
     @property
     def is_time_bounded(self) -> bool:
-        """Whether time cannot pass for ever."""
+        """Whether time cannot pass forever."""
         return not self.delays or bool(self.invariant)
 
 
@@ -69,18 +69,18 @@ class Move:
 
     edges: tuple[ReadyEdge, ...]  # the edges that take part, the sender first
     guard: tuple[Atom, ...]  # clock bounds that must hold before
-    # the bounds of each receiver that takes no part, which must not hold together
+    # for each receiver that is left out, the bounds of its guard, which must not all hold
     left_out: tuple[tuple[Atom, ...], ...]
-    # clocks that are set and their values; clocks count from 1
+    # clocks that are set, with their values; clocks count from 1
     resets: tuple[tuple[int, float], ...]
-    target: State  # the state behind
-    rank: int = 0  # its priority; those of higher rank come first
-    # the fault of its updates; raised only if the step can be taken
+    target: State
+    rank: int = 0  # the priority; moves of higher rank come first
+    # the error of its updates, which is raised only if the move can be taken
     failure: ModelError | None = None
 
 
 class Space:
-    """All discrete states of a network met so far."""
+    """All discrete states of a network found so far."""
 
     def __init__(self, network: Network, grid: int = 1) -> None:
         self.network = network
@@ -100,12 +100,12 @@ class Space:
         ]
 
     def initial(self) -> State | None:
-        """The initial state; `None` if an invariant forbids the variables' initial values."""
+        """The initial state; `None` if an invariant forbids the initial values of variables."""
         locations = tuple(automaton.initial for automaton in self.network.automata)
         return self.state(locations, tuple(v.initial for v in self.network.variables))
 
     def state(self, locations: tuple[int, ...], values: tuple[int, ...]) -> State | None:
-        """The state of some locations and values; `None` if its invariant forbids the values."""
+        """The state with some locations and values; `None` if an invariant forbids the values."""
         key = (locations, values)
         state = self._states.get(key)
         if state is None:
@@ -123,11 +123,11 @@ class Space:
         return state
 
     def step(self, state: State, edges: Iterable[tuple[int, int]]) -> Move | None:
-        """The joint move of some edges (automaton and number); `None` if it is forbidden."""
+        """The joint move of some edges (automaton and index); `None` if it is impossible."""
         return self._move(state, tuple(self._edges[a][number] for a, number in edges), ())
 
     def moves(self, state: State) -> list[Move]:
-        """All steps from a state whose guards on variables hold."""
+        """All moves from a state whose guards on the variables hold."""
         if state.moves is None:
             found = (self._move(state, *together) for together in self._together(state))
             state.moves = [move for move in found if move is not None]
@@ -179,7 +179,7 @@ class Space:
     def _together(
         self, state: State
     ) -> Iterator[tuple[tuple[ReadyEdge, ...], tuple[tuple[Atom, ...], ...]]]:
-        """Edges that may move together, and what keeps the receivers back that they leave out."""
+        """Edges that may move together, with the clock bounds of the receivers left out."""
         tried = _Tried(state, self._leaving)
         kinds = enumerate(self._kinds(state))
         committed = {index for index, kind in kinds if kind is ex.LocationKind.COMMITTED}
@@ -220,7 +220,7 @@ class Space:
 
 
 class _Tried:
-    """The edges that leave the locations of a state; each guard is read at most once."""
+    """The edges that leave the locations of a state. Each guard is evaluated at most once."""
 
     def __init__(self, state: State, leaving: Sequence[Sequence[Sequence[ReadyEdge]]]) -> None:
         self._here = (state.locations, state.values)
@@ -228,11 +228,11 @@ class _Tried:
         self._known: dict[tuple[int, int], bool] = {}
 
     def leaving(self) -> Iterator[ReadyEdge]:
-        """All of them."""
+        """All these edges."""
         return (edge for edges in self._edges for edge in edges)
 
     def is_able(self, edge: ReadyEdge) -> bool:
-        """Whether the guard on the variables holds."""
+        """Whether the guard of an edge on the variables holds."""
         key = edge.automaton, edge.number
         if key not in self._known:
             self._known[key] = edge.data is None or bool(edge.data(*self._here))
@@ -265,12 +265,12 @@ def _ready(network: Network, automaton: int, number: int, grid: int) -> ReadyEdg
 
 
 def _data(guard: Guard) -> evaluate.Evaluator | None:
-    """A guard's condition on the variables; `None` if it always holds."""
+    """The condition of a guard on the variables; `None` if it always holds."""
     return None if guard.data == ex.TRUE else evaluate.evaluator(guard.data)
 
 
 def atoms_of(compares: Sequence[ex.ClockCompare], span: Span | None, grid: int = 1) -> AtomMaker:
-    """A function that gives the bounds of some comparisons, in steps of a grid."""
+    """Make a function that gives the bounds of some comparisons, in steps of a grid."""
     bounds = [compare.bound for compare in compares]
     numbers = [bound.value * grid for bound in bounds if isinstance(bound, ex.Constant)]
     if len(numbers) == len(bounds):
@@ -292,11 +292,11 @@ def _atom(compare: ex.ClockCompare, number: int) -> Atom:
 
 
 PiecesMaker = Callable[[evaluate.Locations, evaluate.Values], list[tuple[Atom, ...]]]
-"""The bounds under which a formula holds in a discrete state, in alternatives."""
+"""The alternative clock bounds under which a formula holds in a discrete state."""
 
 
 def pieces_of(formula: ex.Expression, grid: int = 1) -> PiecesMaker:
-    """Make a function that gives the pieces of a normalised formula that is plain."""
+    """Make a function that gives the pieces of a plain normalised formula."""
     pieces = [
         (evaluate.evaluator(guard.data), atoms_of(guard.clocks, None, grid))
         for guard in alternatives_of(formula)

@@ -1,14 +1,16 @@
 """Random runs of a network.
 
-How chance decides: each automaton draws one of the moves that it begins and that are possible now
-or after a delay, in proportion to their weights, and a delay for it: uniformly from the window in
-which it is possible, or, if that has no end, from an exponential distribution behind its beginning,
-at the rate of the location that it leaves (`rate`, UPPAAL's exponential rates) if it has one. A
-clock runs at the rate that an invariant gives it: times stay whole grid steps, so that whole rates
-are exact; at others a clock comes to a bound with the step that takes it there or beyond.
-Weights that add up to less than 1 leave the rest to doing nothing this time. The automaton with the
-shortest delay moves, and all draw anew. A move that several windows make possible, as where one of
-higher priority comes between, is drawn from all of them.
+Each automaton draws one of the moves that it initiates and that are possible now or after a delay,
+with probabilities in proportion to their weights. If the weights sum to less than 1, the rest is
+the probability of skipping this draw. Then the automaton draws a delay: uniformly from the window
+in which the move is possible or, if the window has no end, from an exponential distribution that
+starts with the window, at the rate of the location that is left (`rate`, UPPAAL's exponential
+rates) if it has one. A move may have several windows, for instance around those of a move of higher
+priority; then the delay is drawn from all of them. The automaton with the shortest delay moves, and
+all automata draw anew.
+
+Clocks run at the rates that invariants give them. Times are whole grid steps, so that whole rates
+are exact. With other rates a clock reaches a bound at the first step at or beyond it.
 
 Source: David, Larsen, Legay, Mikučionis, Wang, Time for Statistical Model Checking of Real-Time
 Systems, CAV 2011 (races between components; weights among the moves of one).
@@ -29,13 +31,13 @@ from rvmon.models.network.fractions import GRID, number_in
 from rvmon.models.runs import Atom
 from rvmon.models.runs.moves import Move, Space, State, pieces_of
 
-CHECK_EVERY = 256  # moves between two looks at the clock
-SLACK = 1e-6  # steps by which a clock may miss a bound, where rates with a fraction are rounded
-MOST_MOVES = 100_000  # a run with more moves before its end is taken for a Zeno loop
+CHECK_EVERY = 256  # moves between two checks whether to continue
+SLACK = 1e-6  # steps by which a clock may miss a bound, since rates with a fraction are rounded
+MOST_MOVES = 100_000  # a run with more moves before its end is considered a Zeno loop
 
 
 class CutShortError(Exception):
-    """A run is not simulated to its end, because time is up."""
+    """A run was not simulated to its end because the time limit was reached."""
 
 
 def trial_of(
@@ -46,7 +48,7 @@ def trial_of(
     mean_wait: float,
     goes_on: Callable[[], bool],
 ) -> Callable[[], bool]:
-    """A function that simulates a run: whether it meets a normalised formula within a horizon."""
+    """Make a function that simulates a run: whether it meets a formula within the horizon."""
     space = Space(network, GRID)
     pieces = pieces_of(sought, GRID)
 
@@ -64,12 +66,12 @@ def trial_of(
 def stretches(
     space: Space, horizon: int, random: Random, mean_wait: float, goes_on: Callable[[], bool]
 ) -> Iterator[tuple[State, list[float], Sequence[float], int]]:
-    """One random run: each state, the clocks as it begins, their rates and how long it lasts.
+    """Simulate one run: each state, the clocks when it starts, their rates and its duration.
 
     Clocks and times are in grid steps.
 
     Raises:
-        CutShortError: it may not go on.
+        CutShortError: `goes_on` stopped the run.
     """
     state, paces = space.initial(), _Paces(space.network)
     assert state is not None, "the network can start"
@@ -80,7 +82,7 @@ def stretches(
             raise CutShortError
         rates = paces.rates(state)
         drawn = _draw(space, state, clocks, rates, random, paces.waits(state, mean_wait))
-        # If nothing is left to do, time passes as long as it may.
+        # If no move is possible any more, time passes as far as the invariants allow.
         most = _longest(state, clocks, rates) if drawn is None else drawn[1]
         stay = int(min(most, horizon - now))
         yield state, clocks, rates, stay
@@ -89,7 +91,7 @@ def stretches(
         now += stay
         move = drawn[0]
         clocks = [clock + stay * rate for clock, rate in zip(clocks, rates, strict=True)]
-        # Rates with a fraction may take a clock a rounding beyond its invariant.
+        # Rounding with fractional rates may take a clock slightly beyond its invariant.
         for clock, bound in state.invariant:
             clocks[clock] = min(clocks[clock], _limit(bound))
         for clock, value in move.resets:
@@ -108,7 +110,7 @@ def _draw(
     random: Random,
     mean_waits: Sequence[float],
 ) -> tuple[Move, int] | None:
-    """A move and its delay in grid steps; `None` if none is possible any more."""
+    """Draw a move and its delay in grid steps; `None` if no move is possible any more."""
     longest = _longest(state, clocks, rates)
     begun: dict[int, list[_Choice]] = {}
     for choice in _possible(space, state, clocks, rates, longest):
@@ -119,7 +121,7 @@ def _draw(
             weights = [prod(edge.edge.weight for edge in choice.move.edges) for choice in possible]
             if random.random() < sum(weights):
                 (one,) = random.choices(possible, weights)
-                # The random number breaks ties between equal delays without preference.
+                # The random number breaks ties between equal delays without bias.
                 draws.append((one.delay(random, mean_waits[automaton]), random.random(), one.move))
     if not draws:
         return None
@@ -130,7 +132,7 @@ def _draw(
 
 
 class _Paces:
-    """The rates of clocks in states, and the mean waits of runs that may wait for ever."""
+    """The rates of clocks in each state, and the mean of waits without end."""
 
     def __init__(self, network: Network) -> None:
         self._network = network
@@ -143,7 +145,7 @@ class _Paces:
             yield automaton.locations[place]
 
     def rates(self, state: State) -> tuple[float, ...]:
-        """The rate of each clock, numbered from 1."""
+        """The rate of each clock. Clocks count from 1; entry 0 is unused."""
         if not self._are_changed:
             return self._ones
         if id(state) not in self._known:
@@ -180,7 +182,7 @@ class _Paces:
 def _possible(
     space: Space, state: State, clocks: list[float], rates: Sequence[float], longest: float
 ) -> list[_Choice]:
-    """The moves that are possible now or after a delay, with all such delays."""
+    """The moves that are possible now or after a delay, with their windows of delays."""
     found = []
     for move in space.moves(state):
         window = _move_window(move, clocks, rates, longest)
@@ -201,13 +203,13 @@ def _possible(
 
 @dataclass(slots=True)
 class _Choice:
-    """A move and when it is possible: first and last delays, ascending."""
+    """A move with the windows of delays after which it is possible, in ascending order."""
 
     move: Move
     windows: list[tuple[int, float]]
 
     def take_out(self, window: tuple[int, float]) -> None:
-        """Leave out some delays."""
+        """Remove the delays in a window."""
         first, last = window
         rest: list[tuple[int, float]] = []
         for low, high in self.windows:
@@ -217,7 +219,7 @@ class _Choice:
         self.windows = [(low, high) for low, high in rest if low <= high]
 
     def delay(self, random: Random, mean_wait: float) -> int:
-        """A delay: uniformly from all windows, or if the last has no end exponentially in them."""
+        """Draw a delay: uniformly from all windows, or exponentially if the last has no end."""
         counts = [b - a + 1 for a, b in self.windows]
         if counts[-1] == inf:
             drawn = int(random.expovariate(1 / mean_wait))
@@ -242,7 +244,7 @@ def _longest(state: State, clocks: list[float], rates: Sequence[float]) -> float
 def _move_window(
     move: Move, clocks: list[float], rates: Sequence[float], longest: float
 ) -> tuple[int, float] | None:
-    """The delays after which a move is possible."""
+    """The delays after which a move is possible; `None` if there are none."""
     set_now, atoms = dict(move.resets), list(move.guard)
     for clock, bound in move.target.invariant:
         if clock not in set_now:
@@ -258,7 +260,7 @@ def _window(
     """The delays in [low, high] after which all bounds hold; `None` if there are none."""
     for x, y, bound in atoms:
         sign, clock = (1, y) if x == 0 else (-1, x)
-        # The clock's value times the sign stays at or below a limit.
+        # The bound says: sign * clock <= limit.
         left, rate = _limit(bound) - sign * clocks[clock], sign * rates[clock]
         if rate == 0:
             if left < -SLACK:
@@ -273,6 +275,6 @@ def _window(
 
 
 def _limit(bound: float) -> int:
-    """A bound in grid steps; a strict one is one step less."""
+    """A bound in grid steps; a strict bound is one step less."""
     whole = ceil(bound)
     return whole - (bound != whole)

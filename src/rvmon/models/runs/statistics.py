@@ -1,8 +1,8 @@
-"""Probabilities and expected values of random runs: figures with their errors, never proofs.
+"""Probabilities and expected values estimated from random runs, with error bounds.
 
-A probability is estimated with Clopper and Pearson's bounds, or compared with a level by Wald's
+A probability is estimated with Clopper-Pearson bounds, or compared with a level by Wald's
 sequential test, which takes as many runs as it needs. An expected value has bounds by the normal
-approximation. How chance decides says `simulate`.
+approximation. `simulate` describes how runs are drawn.
 
 Source: Wald, Sequential Tests of Statistical Hypotheses, 1945; Younes and Simmons, Statistical
 Probabilistic Model Checking, 2006 (the indifference region).
@@ -28,30 +28,30 @@ from rvmon.models.network.guards import has_paths, normal_form, speaks_of_deadlo
 from rvmon.models.runs.moves import Space, State, check_start
 from rvmon.models.runs.simulate import CutShortError, stretches, trial_of
 
-RUNS = 1_000  # runs of an estimate that does not say how many
+RUNS = 1_000  # the default number of runs of an estimate
 
 MARGIN = 0.01
-"""A test need not tell a probability from the level that is nearer to it; near 0 and 1 half of what
-is left is the margin."""
+"""A test may be wrong if the probability is nearer than this to the level. Near 0 and 1 the margin
+is at most half the distance from the level to the end."""
 
-ERROR = 0.05  # the probability of a wrong test, either way; estimates have the confidence 1 − ERROR
-MOST_TRIALS = 1_000_000  # after so many runs a test gives up
-MEAN_WAIT = 10.0  # units of time by which a wait without end exceeds its beginning on average
+ERROR = 0.05  # the probability of a wrong test, either way; estimates have confidence 1 − ERROR
+MOST_TRIALS = 1_000_000  # a test stops undecided after so many runs
+MEAN_WAIT = 10.0  # mean of the exponential part of waits without end, in units of time
 
 Drawn = TypeVar("Drawn")
 
 
 @dataclass(frozen=True, slots=True)
 class Sampled:
-    """The answer to a query from random runs.
+    """The result of a query, from random runs.
 
     Attributes:
-        query: the question.
-        runs: the number simulated.
+        query: the query.
+        runs: the number of runs simulated.
         value: the share of runs, or the mean.
-        low, high: bounds of an estimate, with 95 % confidence; of a test there are none.
-        holds: of a test; `None` if it gave up, or for an estimate.
-        margin: of a test: it may be wrong where the probability is nearer to the level.
+        low, high: the 95 % confidence bounds of an estimate; `None` for a test.
+        holds: the result of a test; `None` for an estimate or if the test stopped undecided.
+        margin: the margin of a test, which may be wrong if the probability is nearer to the level.
     """
 
     query: Query
@@ -65,7 +65,7 @@ class Sampled:
 
 @dataclass(frozen=True, slots=True)
 class Trajectory:
-    """One random run: instants in units of time, and at each the values of all terms."""
+    """One random run: instants in units of time, and the values of all terms at each of them."""
 
     times: tuple[Fraction, ...]
     values: tuple[tuple[Fraction, ...], ...]
@@ -74,16 +74,16 @@ class Trajectory:
 def trajectories(
     network: Network, query: Query, *, seed: int = 1, watch: Callable[[int], bool] | None = None
 ) -> list[Trajectory]:
-    """Answer `simulate`: the values at the start and the end of each stretch between two moves.
+    """Answer `simulate`: the values at both ends of each stretch between two moves.
 
     Args:
         network: the network to simulate.
         query: `simulate [<=T; n] {e, …}`.
-        seed: of all choices.
-        watch: asked now and then, with the number of runs, whether to go on.
+        seed: of all random choices.
+        watch: called from time to time with the number of runs; whether to continue.
 
     Raises:
-        ModelError: the query asks for something else, or the network cannot start.
+        ModelError: the query is no simulation, or the network cannot start.
     """
     random, runs = _random(network, query, seed), _Runs(watch)
     formula = query.formula
@@ -115,7 +115,7 @@ def trajectories(
 
 
 def _random(network: Network, query: Query, seed: int) -> Random:
-    """The source of all choices."""
+    """The source of all random choices; refuses networks whose probabilities are undefined."""
     check_start(network)
     if network.has_split_edges:
         fix = "compare clocks with numbers, without `or`; or ask whether it can happen: E<> p"
@@ -132,11 +132,11 @@ def sample(
     Args:
         network: the network to simulate.
         query: `Pr…` or `E[…](max: …)`.
-        seed: of all choices.
-        watch: asked now and then, with the number of runs, whether to go on.
+        seed: of all random choices.
+        watch: called from time to time with the number of runs; whether to continue.
 
     Raises:
-        ModelError: the query cannot be judged on one run, or the network cannot start.
+        ModelError: the query cannot be judged from single runs, or the network cannot start.
     """
     random = _random(network, query, seed)
     runs = _Runs(watch)
@@ -150,14 +150,14 @@ def sample(
 
 
 class _Runs:
-    """Random runs, as long as there is time for them."""
+    """Random runs, as long as the caller lets them continue."""
 
     def __init__(self, watch: Callable[[int], bool] | None) -> None:
         self._watch = watch
         self._count = 0
 
     def goes_on(self) -> bool:
-        """Whether there is time for more, or for more of one."""
+        """Whether to continue, with another run or within one."""
         return self._watch is None or self._watch(self._count)
 
     def drawn(self, draw: Callable[[], Drawn], most: int) -> Iterator[Drawn]:
@@ -190,7 +190,7 @@ def _chance(network: Network, query: Query, chance: Chance, random: Random, runs
 
 
 def _tested(query: Query, chance: Chance, trial: Callable[[], bool], runs: _Runs) -> Sampled:
-    """Wald's test of what lies above the level by the margin against what lies below."""
+    """Wald's sequential test of `level + margin` against `level - margin`."""
     level = chance.level
     margin = min(MARGIN, level / 2, (1 - level) / 2)
     above, below = level + margin, level - margin

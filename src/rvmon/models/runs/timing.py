@@ -1,9 +1,9 @@
-"""Paths of symbolic states step by step, and the timed runs along them.
+"""Paths of symbolic states as sequences of steps, and the timed runs along them.
 
-The times of the steps along a path satisfy constraints `t[q] − t[p] <= c`; closed, they are exactly
-the set of timed runs. A solution with integer constants and strict bounds exists if and only if one
-exists on a grid of 1/scale, where `scale` is larger than the number of steps: so all is done in
-integers, a strict bound being one grid step short.
+The times of the steps along a path satisfy constraints `t[q] − t[p] <= c`, and every solution is a
+timed run. A system with integer constants and strict bounds has a solution if and only if it has
+one on a grid of 1/scale, where `scale` is larger than the number of steps. So all computations use
+integers: a strict bound is one grid step less.
 
 Source: Alur, Kurshan, Viswanathan, Membership Questions for Timed and Hybrid Automata, RTSS 1998
 (a path's timed runs as difference constraints).
@@ -25,11 +25,11 @@ from rvmon.models.runs.moves import Move, State
 
 @dataclass(frozen=True, slots=True)
 class TimedStep:
-    """A step as far as its time matters."""
+    """The timed part of a step."""
 
     waits: bool  # whether time may pass before it
     leave: tuple[runs.Atom, ...]  # bounds that hold at its instant, before it
-    resets: tuple[tuple[int, float], ...]  # clocks that it sets, and their values
+    resets: tuple[tuple[int, float], ...]  # the clocks that it sets, with their values
     enter: tuple[runs.Atom, ...]  # bounds that hold at its instant, after it
 
 
@@ -37,14 +37,14 @@ def timing_of(steps: Sequence[TimedStep], start: runs.Zone | None = None) -> run
     """The timed runs along a path; `None` if there are none.
 
     Args:
-        steps: of the path.
-        start: the valuations it may start from; `None`: all clocks are 0. If given, the last rows
-            and columns of the result are the instants at which each clock was 0 before.
+        steps: the steps of the path.
+        start: the valuations from which it may start; `None`: all clocks are 0. If given, the last
+            rows and columns of the result stand for the instants at which each clock was 0.
     """
     dim = 1 if start is None else isqrt(len(start))
     size = len(steps) + dim
-    # Each strict bound on a path lacks one grid step; with more steps in a unit than bounds on the
-    # path no cycle can lose a whole unit.
+    # Each strict bound on the path is one grid step less. A unit has more steps than the path has
+    # bounds, so that no cycle of constraints can lose a whole unit.
     scale = size + 1
     found: list[list[runs.Constraint]] = [[] for _ in range(len(steps) + 1)]
     reset_at: dict[int, tuple[int, float]] = {}
@@ -57,7 +57,7 @@ def timing_of(steps: Sequence[TimedStep], start: runs.Zone | None = None) -> run
 
     def apply(atoms: Iterable[runs.Atom], now: int) -> None:
         for x, y, bound in atoms:
-            # A clock's value now is t[now] − t[its reset] + its value then; clock 0 is 0.
+            # The value of a clock is t[now] − t[its reset] + the value it was set to.
             (p, low), (q, high) = reset_at.get(x, (0, 0.0)), reset_at.get(y, (0, 0.0))
             if x == 0:
                 found[now].append((q, now, on_grid(bound - high, scale)))
@@ -79,7 +79,7 @@ def timing_of(steps: Sequence[TimedStep], start: runs.Zone | None = None) -> run
 
 
 def on_grid(bound: float, scale: int) -> float:
-    """A finite bound in grid steps, a strict one short of one."""
+    """A finite bound in grid steps; a strict bound is one step less."""
     whole = ceil(bound)
     return whole * scale - (bound != whole)
 
@@ -98,44 +98,44 @@ def windows(timing: runs.Timing) -> list[runs.Window]:
 def earliest(timing: runs.Timing) -> list[Fraction]:
     """The delay before each step in the run that does every step as early as possible.
 
-    The least solution of difference constraints is one of them, so no choice hinders a later one;
-    a strict bound is kept by one grid step.
+    The earliest times solve all constraints at once, so no choice restricts a later one. A strict
+    bound is kept by one grid step.
     """
     times = (0.0, *(first for _, _, first in timing.waits))
     return [Fraction(int(later - before), timing.scale) for before, later in pairwise(times)]
 
 
-Piece = tuple[runs.Atom, ...]  # bounds that hold together; without any they hold everywhere
+Piece = tuple[runs.Atom, ...]  # bounds that hold together; an empty piece holds everywhere
 
 
 @dataclass(frozen=True, slots=True)
 class PathStep(TimedStep):
-    """One instant of a path."""
+    """One instant of a path of a network."""
 
-    move: Move | None  # the move; `None` if the instant matters for the query only
+    move: Move | None  # `None` if the instant only matters for the query
     state: State
 
 
 def invariant_of(state: State) -> Piece:
-    """A state's invariant as bounds."""
+    """The invariant of a state as bounds."""
     return tuple((0, clock, bound) for clock, bound in state.invariant)
 
 
 def move_step(state: State, move: Move, leave: Piece = (), enter: Piece = ()) -> PathStep:
-    """A move, with what else must hold before and after it."""
+    """A move, with further bounds that must hold before and after it."""
     before = (*invariant_of(state), *move.guard, *leave)
     after = (*invariant_of(move.target), *enter)
     return PathStep(state.delays, before, move.resets, after, move, move.target)
 
 
 def mark_step(state: State, holds: Piece, resets: Sequence[int] = ()) -> PathStep:
-    """An instant at which something holds, and some clocks of the query start."""
+    """An instant at which some bounds hold and some clocks of the query start."""
     started = tuple((clock, 0.0) for clock in resets)
     return PathStep(state.delays, (*invariant_of(state), *holds), started, (), None, state)
 
 
 def crossing_step(state: State, leave: Piece, enter: Piece) -> PathStep:
-    """The instant at which a run crosses from one piece of a formula to another."""
+    """The instant at which a run passes from one piece of a formula to another."""
     return PathStep(state.delays, (*invariant_of(state), *leave), (), enter, None, state)
 
 
@@ -146,10 +146,10 @@ def make_run(
     ending: runs.Ending = runs.Ending.REACHED,
     loop: int | None = None,
 ) -> runs.Run:
-    """The run along a path that does everything as early as possible.
+    """The run along a path in which every step happens as early as possible.
 
-    The path may be of another network that has more automata, clocks and variables behind those of
-    this one; `loop` is the first step that is repeated.
+    The path may belong to a network that extends this one with further automata, clocks and
+    variables; these are left out. `loop` is the index of the first step that is repeated.
     """
     timing = timing_of(steps)
     assert timing is not None, "the search found a run along the path"
@@ -158,7 +158,7 @@ def make_run(
         for step, window, wait in zip(steps, windows(timing), earliest(timing), strict=True)
     )
     run = runs.Run(_position(network, start), run_steps, ending, loop, timing)
-    # The plain rules, which share nothing with the search, have to accept each run that is shown.
+    # Check each run with the plain rules, which share no code with the search.
     Rules(network).replay(run)
     return run
 

@@ -1,1 +1,1 @@
-"""The model checker: search, queries, witnesses, and suites that cover a network."""
+"""The model checker: search, queries, witnesses, and test suites that cover a network."""

@@ -1,4 +1,4 @@
-"""The budget and the cost of a search, and the answer to a query."""
+"""The budget and the cost of a search; the answer to a query."""
 
 from __future__ import annotations
 
@@ -17,11 +17,11 @@ from rvmon.models.runs import Run
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """The limits at which a search gives up; `None`: no limit."""
+    """The limits at which a search stops undecided; `None`: no limit."""
 
     states: int | None = None  # symbolic states visited
     seconds: float | None = None  # of wall-clock time
-    megabytes: int | None = None  # of memory that the whole process holds
+    megabytes: int | None = None  # of memory of the whole process
 
 
 UNLIMITED = Budget()
@@ -29,7 +29,7 @@ UNLIMITED = Budget()
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """The progress of a search: symbolic states visited and waiting, seconds since it began."""
+    """The progress of a search: symbolic states visited and waiting, seconds since the start."""
 
     visited: int
     waiting: int
@@ -43,13 +43,13 @@ Watch = Callable[[Progress], None]
 class Statistics:
     """The cost of a search."""
 
-    visited: int  # symbolic states that were kept when they were met
-    stored: int  # the states that were not dropped later for a larger one
+    visited: int  # symbolic states that no stored state covered when they were found
+    stored: int  # the states of these that were not replaced by a larger one
     seconds: float  # of wall-clock time
 
 
 class Policy(StrEnum):
-    """Which run shows that a state can be reached, if several do."""
+    """Which run is shown for a reachable state, if there are several."""
 
     SHORTEST = "shortest"  # one with the fewest actions
     FASTEST = "fastest"  # one that takes the least time
@@ -60,28 +60,28 @@ class Policy(StrEnum):
 class Outcome:
     """Whether a query holds, and a run that shows why or why not."""
 
-    query: Query  # the question
-    holds: bool | None  # `None` if the budget ended first
+    query: Query
+    holds: bool | None  # `None` if the budget was exhausted
     run: Run | None  # a witness where `E` holds, a counterexample where `A` or `-->` does not
-    policy: Policy | None  # the choice of the run; `None` where there is no choice
-    statistics: Statistics  # its cost
-    remark: str = ""  # for people: the reason why it is not decided, or that time stops
+    policy: Policy | None  # how the run was chosen; `None` if there was no choice
+    statistics: Statistics
+    remark: str = ""  # for people: why it is not decided, or that time stops on the run
 
 
 class Meter:
-    """Counts states against a budget and reports to a watcher how far the search is."""
+    """Counts states against a budget and reports the progress of a search."""
 
     def __init__(self, budget: Budget, watch: Watch | None) -> None:
         self._budget = budget
         self._watch = watch
         self._start = time.perf_counter()
-        self.visited = 0  # states so far
-        self.stored = 0  # the states that a search still held when it ended
-        self.stopped = ""  # the limit that was met; empty while none was
+        self.visited = 0  # states visited in completed searches
+        self.stored = 0  # states that completed searches stored
+        self.stopped = ""  # the limit that was reached; empty if none was
 
     @property
     def seconds(self) -> float:
-        """Since the meter was made."""
+        """Seconds since the meter was created."""
         return time.perf_counter() - self._start
 
     def statistics(self) -> Statistics:
@@ -90,12 +90,12 @@ class Meter:
 
     @property
     def left(self) -> int:
-        """The number of states that may still be visited; −1: any number."""
+        """The number of states that may still be visited; −1 if unlimited."""
         states = self._budget.states
         return -1 if states is None else max(0, states - self.visited)
 
     def look(self, visited: int, waiting: int) -> bool:
-        """Look at the clock and the memory in a search that counts for itself; whether to go on."""
+        """Check time and memory and report progress, for a running search; whether to continue."""
         budget, seconds = self._budget, self.seconds
         if budget.seconds is not None and seconds > budget.seconds:
             self.stopped = f"{budget.seconds:g} s went by"
@@ -106,32 +106,32 @@ class Meter:
         return not self.stopped
 
     def goes_on(self, runs: int) -> bool:
-        """Whether one more run may be simulated, after so many."""
+        """Whether one more run may be simulated after `runs` of them."""
         return self.look(runs, 0)
 
     def add(self, visited: int, stored: int) -> None:
-        """Count what a search did that counts for itself."""
+        """Add the counts of a completed search."""
         self.visited += visited
         self.stored += stored
 
     def stop(self, reason: str) -> None:
-        """Note what stopped a search, unless that is known."""
+        """Record why a search stopped, unless a reason is already known."""
         self.stopped = self.stopped or reason
 
     def stop_at_states(self) -> None:
-        """Note that no more states may be visited, if nothing else stopped a search."""
+        """Record that the limit of states was reached, unless another reason is known."""
         self.stop(f"{self._budget.states or 0:,} states were visited")
 
 
 def _is_full(limit: int) -> bool:
     if _megabytes() <= limit:
         return False
-    gc.collect()  # what earlier searches left behind goes round in circles
+    gc.collect()  # earlier searches leave reference cycles
     return _megabytes() > limit
 
 
 def _megabytes() -> float:
-    """The memory of the process now; its peak, or 0, where the system reports nothing better."""
+    """The current memory of the process; its peak, or 0, where the system reports no more."""
     try:
         pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
         return pages * mmap.PAGESIZE / (1 << 20)

@@ -1,4 +1,4 @@
-"""Expressions and updates as programs of the native search: bytecode for a stack of integers."""
+"""Expressions and updates as bytecode of the native search, for a stack of integers."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rvmon.models import model_error
 from rvmon.models.network import expressions as ex
 from rvmon.models.network.guards import parts_in, parts_of
 
-# The numbers of `plan.h`.
+# Opcodes, with the numbers of `plan.h`.
 END, CONST, VARIABLE, INDEX, ROW, ELEMENT, LOOKUP, PLACE, NOT, NEGATE, TRUTH = range(11)
 _JUMPS = dict(zip([*ex.BinaryOp][:3], (11, 12, 13), strict=True))
 UNLESS, GO = 14, 15
@@ -17,27 +17,27 @@ _BINARY = {op: number for number, op in enumerate([*ex.BinaryOp][3:], start=16)}
 INVERT, SET, STORE, CLOCK, CALL, DROP, HEAD, BACK, FAIL = range(34, 43)
 _UNARY = {ex.UnaryOp.NOT: NOT, ex.UnaryOp.NEGATE: NEGATE, ex.UnaryOp.INVERT: INVERT}
 STACK = 256
-MOST_NEST = 60  # calls in calls
+MOST_NEST = 60  # limit for the depth of nested calls
 _HALF = 1 << 31
 
 
 class Programs:
-    """The programs of a plan, one behind the other."""
+    """The programs of a plan, one after the other."""
 
     def __init__(self, slots: int) -> None:
-        """Begin with none; `slots` are all variables with those of functions."""
+        """Start without programs; `slots` counts all variables, including those of functions."""
         self.code: list[int] = []
         self.table: list[int] = []
         self._slots = slots
         self._starts: dict[int, int] = {}
         self._nests: dict[int, int] = {}
-        """By function where its program begins, and how deep it calls others."""
+        """For each function, the start of its program and the depth of its nested calls."""
         self._added: dict[int, tuple[object, int]] = {}
-        """The start of each program, by the identity of its expression, which is kept alive."""
+        """By identity of an expression: the expression, kept alive; the start of its program."""
         self._ends: list[int] = []
 
     def add(self, expression: ex.Expression) -> int:
-        """Add a program that gives an expression's value; where it begins."""
+        """Add a program that computes an expression, and return its start."""
         if id(expression) not in self._added:
             self._add_called(parts_of(expression))
             start = self._finished(len(self.code), self._emit(expression))
@@ -45,7 +45,7 @@ class Programs:
         return self._added[id(expression)][1]
 
     def add_updates(self, updates: Sequence[ex.Statement]) -> int:
-        """Add a program that makes all updates of an edge; where it begins."""
+        """Add a program that performs all updates of an edge, and return its start."""
         if id(updates) not in self._added:
             self._add_called(parts_in(updates))
             start = len(self.code)
@@ -55,7 +55,7 @@ class Programs:
         return self._added[id(updates)][1]
 
     def add_index(self, slot: ex.Slot) -> int:
-        """Add a program that gives the number of a slot."""
+        """Add a program that computes the index that a slot denotes, and return its start."""
         self._add_called(part for index in slot.indices for part in parts_of(index))
         start = len(self.code)
         depth = self._offset(slot)
@@ -63,7 +63,7 @@ class Programs:
         return self._finished(start, 1 + depth)
 
     def _add_called(self, parts: Iterable[ex.Expression]) -> int:
-        """Add the functions that are called, which must stand before who calls them; how deep."""
+        """Add called functions, which must precede their callers; return the depth of the calls."""
         nest = 0
         for part in parts:
             if isinstance(part, ex.Invoke):
@@ -88,11 +88,11 @@ class Programs:
         self._starts[id(function)] = self._finished(start, depth)
 
     def _place(self, slot: int) -> int:
-        """The number of a slot in the plan: those of functions stand behind all others."""
+        """The index of a slot in the plan, where slots of functions come last."""
         return slot if slot >= 0 else self._slots + slot
 
     def _statements(self, statements: Sequence[ex.Statement]) -> tuple[int, bool]:
-        """Emit statements; the depth of the stack that they need, and whether runs go on behind."""
+        """Emit statements; return the stack depth they need, and whether their end is reached."""
         depth = 1
         for statement in statements:
             more, goes_on = self._statement(statement)
@@ -155,7 +155,7 @@ class Programs:
         return start
 
     def _offset(self, slot: ex.Slot) -> int:
-        """Emit the offset of a slot; the depth of the stack that it needs."""
+        """Emit code for the offset in a slot; return the stack depth that it needs."""
         depth = 1
         if not slot.extents:
             self.code += [CONST, 0]
@@ -173,12 +173,12 @@ class Programs:
         high, low = divmod(value, _HALF)
         depth = self._constant(high)
         times, plus = _BINARY[ex.BinaryOp.MUL], _BINARY[ex.BinaryOp.ADD]
-        # 2^31 itself is none that a program can hold.
+        # Programs hold numbers of 32 bits, so that 2^31 is not available as a constant.
         self.code += [CONST, _HALF // 2, times, CONST, 2, times, CONST, low, plus]
         return depth + 1
 
     def _emit(self, expression: ex.Expression) -> int:
-        """Emit an expression; the depth of the stack that it needs."""
+        """Emit code for an expression; return the stack depth that it needs."""
         code = self.code
         match expression:
             case ex.Constant(value):

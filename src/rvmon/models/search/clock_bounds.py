@@ -1,8 +1,8 @@
-"""The numbers that clocks are compared with before they are next reset, per location.
+"""The largest numbers that clocks are compared with before their next reset, per location.
 
 Source: Behrmann, Bouyer, Fleury, Larsen, Static Guard Analysis in Timed Automata Verification,
-TACAS 2003; lower and upper bounds apart as in Behrmann et al., Lower and Upper Bounds in Zone-Based
-Abstractions of Timed Automata, 2006.
+TACAS 2003; separate lower and upper bounds as in Behrmann et al., Lower and Upper Bounds in
+Zone-Based Abstractions of Timed Automata, 2006.
 """
 
 from __future__ import annotations
@@ -14,28 +14,28 @@ from rvmon.models.network import Automaton, Network
 from rvmon.models.network import expressions as ex
 
 Limits = dict[int, int]
-"""For each clock that is compared the largest number; others are compared with none."""
+"""The largest number for each clock that is compared with any."""
 
 
 @dataclass(frozen=True, slots=True)
 class ClockBounds:
-    """The numbers in lower and in upper bounds."""
+    """The largest numbers in lower and in upper bounds of clocks."""
 
     lower: Limits = field(default_factory=dict)
     upper: Limits = field(default_factory=dict)
 
     def note(self, compares: Iterable[ex.ClockCompare], network: Network) -> None:
-        """Add the numbers of some comparisons."""
+        """Include the numbers of some comparisons."""
         for compare in compares:
             table = self.lower if compare.op in (ex.ClockOp.GE, ex.ClockOp.GT) else self.upper
-            # The bound may be an expression over variables: the search needs one number for all its
-            # values.
+            # The bound may be an expression over variables. The search needs one number for all
+            # its values.
             highest = value_range(compare.bound, network)[1]
             table[compare.clock] = max(table.get(compare.clock, 0), highest)
 
 
 def joined(several: Iterable[ClockBounds]) -> ClockBounds:
-    """The largest numbers of some, clock by clock."""
+    """The largest numbers of several bounds, for each clock."""
     made = ClockBounds()
     for bounds in several:
         for table, own in ((made.lower, bounds.lower), (made.upper, bounds.upper)):
@@ -49,9 +49,13 @@ def location_bounds(
     automaton: Automaton,
     asked: Mapping[int, Sequence[ex.ClockCompare]] | None = None,
 ) -> list[ClockBounds]:
-    """The bounds of each location of an automaton, from its guards and invariants.
+    """The bounds for each location of an automaton, from its guards and invariants.
 
-    `asked` is, by location, what a query compares clocks with only while the automaton is there.
+    Args:
+        network: the whole network.
+        automaton: one of its automata.
+        asked: by location, the comparisons of a query that matter only while the automaton is
+            there.
     """
     bounds = [ClockBounds() for _ in automaton.locations]
     for index, location in enumerate(automaton.locations):
@@ -62,14 +66,16 @@ def location_bounds(
         own.note(edge.guard.clocks, network)
         sync = edge.sync
         if sync is not None and not sync.sends and network.channels[sync.slot.first].broadcast:
-            # Its guard may keep it out of a move: who is kept back, counts the other way round.
+            # Where the guard fails, the broadcast goes on without this receiver. So the negated
+            # guard matters too, in which lower and upper bounds change places.
             ClockBounds(own.upper, own.lower).note(edge.guard.clocks, network)
         resets.append({update.clock for update in edge.updates if isinstance(update, ex.Reset)})
-    # A fixed point: numbers only grow, and each is one of finitely many.
+    # Compute a fixed point: numbers only grow, and each is one of finitely many.
     changed = True
     while changed:
         changed = False
-        # Numbers go against the edges, which most often lead onwards.
+        # Numbers propagate backwards. Edges mostly lead to later locations, so that the reverse
+        # order converges sooner.
         for edge, gone in zip(reversed(automaton.edges), reversed(resets), strict=True):
             source, target = bounds[edge.source], bounds[edge.target]
             for here, behind in ((source.lower, target.lower), (source.upper, target.upper)):
@@ -77,7 +83,8 @@ def location_bounds(
                     if clock not in gone and number > here.get(clock, -1):
                         here[clock] = number
                         changed = True
-    if network.priorities is not None:  # who cannot be taken keeps nobody back
+    # With priorities a step may be possible because another one is not: negated guards matter.
+    if network.priorities is not None:
         for own in bounds:
             both = joined((own, ClockBounds(own.upper, own.lower)))
             own.lower.update(both.lower)
@@ -86,7 +93,7 @@ def location_bounds(
 
 
 def value_range(expression: ex.Expression, network: Network) -> tuple[int, int]:
-    """Numbers between which an expression over the variables lies."""
+    """The least and the largest value that an expression over the variables may have."""
     match expression:
         case ex.Constant(value):
             return value, value

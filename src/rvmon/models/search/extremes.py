@@ -1,7 +1,7 @@
 """Largest and least values over all reachable states: `sup`, `inf` and `bounds`.
 
-An end is found by asking for runs that go further, in growing strides from what a run has reached,
-then by halves: what no run goes beyond is proved by the search that found none.
+An extreme is found by repeated searches for runs that go beyond the best value so far: first with
+growing strides, then by bisection. A search that finds no run proves a bound.
 """
 
 from __future__ import annotations
@@ -25,40 +25,40 @@ from rvmon.models.search.native_search import seek
 from rvmon.models.search.search_plan import Seek, Sought
 
 FARTHEST = 1_000_000
-"""A clock that goes beyond so many units is said to do so; a larger bound is not looked for."""
+"""A clock that exceeds so many units is reported as such, and larger bounds are not searched."""
 
 
 @dataclass(frozen=True, slots=True)
 class Extreme:
-    """An end of the values of a term."""
+    """The largest or least value of a term."""
 
-    query: Query  # the question
-    term: str  # of which it is an end, as written
-    largest: bool  # whether it is the largest value, or the least
-    # in units of time, if of a clock; `None`: it grows without bound, or no state was found that
-    # counts
+    query: Query
+    term: str  # as written
+    largest: bool  # whether this is the largest value or the least
+    # in units of time for a clock; `None`: it grows without bound, or no state was found that
+    # satisfies the condition of the query
     value: int | None
-    attained: bool  # whether some state has it; a clock may only come near it
-    exact: bool  # whether no state goes further; else that was not decided
-    run: Run | None  # to a state that has the value, or comes near it
-    statistics: Statistics  # its cost
-    remark: str = ""  # the reason why it is not exact, or has no value
+    attained: bool  # whether some state has the value; a clock may only come near it
+    exact: bool  # whether it is proved that no state goes further
+    run: Run | None  # to a state that has the value or comes near it
+    statistics: Statistics
+    remark: str = ""  # why the value is not exact, or missing
 
 
 def extremes(
     network: Network, query: Query, *, budget: Budget = UNLIMITED, watch: Watch | None = None
 ) -> Iterator[Extreme]:
-    """Answer `sup`, `inf` or `bounds`: for each term its ends.
+    """Answer `sup`, `inf` or `bounds`: the extremes of each term.
 
     Args:
-        network: the network in question.
-        query: as resolved.
-        budget: the limits at which it gives up, for each end.
-        watch: called now and then.
+        network: the network to search.
+        query: a resolved query for extremes.
+        budget: limits of the search for each extreme.
+        watch: called from time to time with the progress.
 
     Raises:
-        ModelError: the query asks for no values, or the network cannot start, or a run of it
-            leaves a variable's range.
+        ModelError: the query does not ask for extremes, the network cannot start, or one of its
+            runs leaves the range of a variable.
     """
     if not isinstance(query.formula, Extremes):
         raise model_error("TA020", "this asks for no extreme value", query.span)
@@ -72,7 +72,7 @@ def extremes(
 
 
 class _Climb:
-    """The search for one end; numbers are negated on the way to the least value."""
+    """The search for one extreme. On the way to the least value all numbers are negated."""
 
     def __init__(
         self, network: Network, query: Query, term: Term, largest: bool, meter: Meter
@@ -89,17 +89,18 @@ class _Climb:
         self._rules = Rules(network)
 
     def run(self) -> Extreme:
-        """The end, or what is known of it."""
+        """Find the extreme, or as much of it as the budget allows."""
         run = self._reach(self._where)
         if run is None:
             stopped = self._meter.stopped
             remark = f"not decided: {stopped}" if stopped else "no state counts"
             return self._told(None, run, attained=False, exact=not stopped, remark=remark)
-        # From here on some run reaches `low`, and none is sought beyond `high`.
+        # Invariant: some run reaches `low`, and nothing beyond `high` is searched for. `proved`
+        # tells whether `high` bounds all values.
         low, high = floor(self._value(run)), self._farthest()
         proved, stride = self._term.clock is None or not self._largest, 1
         while low < high and not self._meter.stopped:
-            # Strides double, so that a value of n takes about 2 log n searches, and not n.
+            # Strides double, so that a value of n takes about 2 log n searches instead of n.
             probe = min(low + stride, high) - 1
             if self._grows(run):
                 remark = "grows without bound: time may pass for ever there"
@@ -131,27 +132,27 @@ class _Climb:
         return seek(self._network, Sought(Seek.GOAL, normal_form(formula)), self._meter).run
 
     def _value(self, run: Run) -> Fraction:
-        """The value in the last state of a run."""
+        """The value, with the sign of the search, in the last state of a run."""
         last = self._rules.replay(run)[-1]
         if self._term.clock is not None:
             return self._sign * last.clocks[self._term.clock]
         return Fraction(self._sign * evaluator(self._term.value)(last.locations, last.values))
 
     def _grows(self, run: Run) -> bool:
-        """Whether a clock goes on for ever where a run ends, and that counts all the time."""
+        """Whether a clock grows without bound at the end of a run: time may pass forever there."""
         end = run.steps[-1].position if run.steps else run.start
         state = self._space.state(end.locations, end.values)
         fixed = self._term.clock is None or not self._largest or not is_discrete(self._where)
         return not fixed and state is not None and not state.is_time_bounded
 
     def _farthest(self) -> int:
-        """A bound on all values; for a clock, the value beyond which none is asked for."""
+        """A bound on all values, or for the largest value of a clock the limit of the search."""
         if self._term.clock is not None:
             return FARTHEST if self._largest else 0
         return self._sign * value_range(self._term.value, self._network)[self._largest]
 
     def _beyond(self, number: int, *, or_at: bool = False) -> ex.Expression:
-        """States that count and lie beyond a number."""
+        """The states within the query whose value lies beyond a number."""
         bound = ex.Constant(self._sign * number)
         op = (">" if self._largest else "<") + ("=" if or_at else "")
         compare: ex.Expression = ex.BinaryOperation(ex.BinaryOp(op), self._term.value, bound)

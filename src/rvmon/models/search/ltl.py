@@ -1,8 +1,8 @@
-"""Formulas of LTL as automata whose runs are those that satisfy them.
+"""LTL formulas as generalised Büchi automata.
 
-Time is dense, so that there is no next instant: U and its dual are all. A state of the automaton
-has what holds while it lasts, what must hold from the next state on, and which formulas `p U q` it
-does not keep waiting.
+Time is dense and has no next instant, so U and its dual are the only temporal operators. A state of
+the automaton determines the conditions that hold while it lasts, the formulas that must hold from
+the next state on, and the formulas `p U q` that it does not keep waiting.
 
 Source: Gerth, Peled, Vardi, Wolper, Simple On-the-fly Automatic Verification of Linear Temporal
 Logic, 1995; Daniele, Giunchiglia, Vardi, Improved Automata Generation for LTL, 1999 (covers).
@@ -26,23 +26,23 @@ MOST_SETS = 28
 class WayState:
     """A state of the automaton."""
 
-    # conditions and bounds of clocks that hold together while it lasts
+    # conditions and clock bounds that all hold while the state lasts
     label: tuple[ex.Expression, ...]
-    starts: bool  # whether runs start in it
-    sets: int  # the sets of acceptance that it belongs to, as bits
-    arcs: tuple[int, ...]  # the states that can be next
+    starts: bool  # whether runs may start in it
+    sets: int  # the acceptance sets to which it belongs, as bits
+    arcs: tuple[int, ...]  # the possible next states
 
 
 @dataclass(frozen=True, slots=True)
 class Ways:
-    """A generalised Büchi automaton: a run is accepted if it meets each of the sets for ever."""
+    """A generalised Büchi automaton: it accepts a run that visits each set infinitely often."""
 
     states: tuple[WayState, ...]
     sets: int
 
 
 def check_linear(formula: ex.Expression, span: Span | None) -> None:
-    """Refuse what a run alone does not say."""
+    """Refuse operators of CTL, bounds and `deadlock` in an LTL formula."""
     for part in parts_of(formula):
         match part:
             case ex.PathFormula(ex.PathOp.FINALLY | ex.PathOp.GLOBALLY, _, None):
@@ -74,7 +74,7 @@ def ways_of(formula: ex.Expression, span: Span | None) -> Ways:
         if len(pending) > MOST_STATES:
             raise model_error("TA019", "the formula has too many cases", span, "split it")
         arcs.append(tuple(number[after] for after in following))
-    # Not those of the formula alone: what frees `G` is the negation of its left side.
+    # Collected from the states: the negated left side of a `G` is a promise not in the formula.
     promises = sorted({promise for key in pending for promise in key.waiting}, key=repr)
     if len(promises) > MOST_SETS:
         raise model_error("TA019", "the formula has too many operators", span)
@@ -87,14 +87,14 @@ def ways_of(formula: ex.Expression, span: Span | None) -> Ways:
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """A way to satisfy some formulas now."""
+    """One way to satisfy some formulas now: what holds now, what must follow, what is promised."""
 
     label: tuple[ex.Expression, ...]
     following: frozenset[ex.Expression]
     waiting: frozenset[ex.Expression]
 
     def is_as_good_as(self, other: _Case) -> bool:
-        """Whether all that the other one allows is allowed here."""
+        """Whether this case allows everything that the other one allows."""
         return (
             set(self.label) <= set(other.label)
             and self.following <= other.following
@@ -102,18 +102,18 @@ class _Case:
         )
 
     def sets(self, promises: Sequence[ex.Expression]) -> int:
-        """The sets of acceptance, as bits: one for each formula `p U q` that does not wait."""
+        """The acceptance sets as bits: one for each formula `p U q` that is not waiting."""
         return sum(1 << n for n, promise in enumerate(promises) if promise not in self.waiting)
 
 
 class _Tableau:
-    """The cases of formulas."""
+    """The cases of sets of formulas, computed once for each set."""
 
     def __init__(self) -> None:
         self._covers: dict[frozenset[ex.Expression], list[_Case]] = {}
 
     def cover(self, formulas: frozenset[ex.Expression]) -> list[_Case]:
-        """All ways to satisfy some formulas together, without those that others make needless."""
+        """All ways to satisfy some formulas together, without those that another one covers."""
         known = self._covers.get(formulas)
         if known is None:
             known = []
@@ -134,8 +134,8 @@ class _Tableau:
         match first:
             case ex.PathFormula(ex.PathOp.FINALLY, body, _, left):
                 yield from self._cases([body, *rest], case)
-                # It must be met some day: a run that waits for ever is caught by the set of
-                # acceptance for it.
+                # The body must hold at some point. The acceptance set of this formula rules out
+                # runs that wait forever.
                 later = _Case(label, following | {first}, waiting | {first})
                 yield from self._cases([left, *rest], later)
             case ex.PathFormula(ex.PathOp.GLOBALLY, body, _, left):

@@ -1,4 +1,4 @@
-"""The native search asked from here, and what it found as a path, step by step."""
+"""Calls the native search, and turns the path that it finds into a run."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ _ENDINGS = (
     *(Ending.REACHED, Ending.DEADLOCK, Ending.IDLE),
     *(Ending.TIME_LOCK, Ending.LOOP, Ending.ZENO_LOOP),
 )
-"""By the numbers of `zones.h`."""
+"""In the order of their numbers in `zones.h`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,22 +59,30 @@ class Answer:
     """The result of a search."""
 
     run: Run | None  # a run to the goal; `None` if there is none or the search was stopped
-    improper: bool  # whether a run that stays inside was left out because time stops on it
-    # if the goal was not found, and there is a watcher: by location of the watcher that was
-    # reached, the infimum and supremum of the last clock there; `inf`: unbounded
+    improper: bool  # whether a run that stays inside was rejected because time stops on it
+    # If there is a watcher and the goal was not found: for each location of the watcher that was
+    # reached, the infimum and the supremum (`inf`: unbounded) of the last clock there.
     spans: Mapping[int, tuple[float, float]]
 
 
 def seek(network: Network, sought: Sought, meter: Meter, *, proper_only: bool = False) -> Answer:
     """Search for a run.
 
-    `proper_only`: whether a way to stay counts only if time passes on it without bound.
+    Args:
+        network: the network to search.
+        sought: the kind of run.
+        meter: limits and counts the search.
+        proper_only: whether a run that stays inside must let time diverge.
+
+    Raises:
+        ModelError: a run leaves the range of a variable, or times grow too large.
     """
     plan = Plan(network, sought)
     paths = _Paths(network, plan, sought)
 
     def counts(path: bytes, loop: int, head: bytes) -> int:
-        # Called from C for each loop found there: rarely, and it needs relations between rounds.
+        # C calls this for each loop that it cannot judge itself. That is rare, and needs relations
+        # between rounds, which are here.
         steps = paths.walk(path)[1][loop:]
         return time_passes(steps, _zone(array("q", head)), paths.dim)
 
@@ -110,7 +118,7 @@ def _spans(numbers: Sequence[int]) -> dict[int, tuple[float, float]]:
 
 
 def _zone(numbers: Sequence[int]) -> Zone:
-    """A zone in this package's numbers."""
+    """A zone of the native search in the representation of this package."""
     return [
         inf if number == _UNBOUNDED else (number >> 1) - (0.0 if number & 1 else STRICT)
         for number in numbers
@@ -118,7 +126,7 @@ def _zone(numbers: Sequence[int]) -> Zone:
 
 
 class _Walked(NamedTuple):
-    """A step of a path, the piece behind it, and the index in the path at which it ends."""
+    """A step of a path, the piece after it, and the index in the path at which it ends."""
 
     end: int
     piece: int
@@ -126,7 +134,7 @@ class _Walked(NamedTuple):
 
 
 def _common_length(first: bytes, second: bytes) -> int:
-    """The number of bytes with which two texts begin alike, by bisection."""
+    """The length of the common prefix of two byte strings, by bisection."""
     low, high = 0, min(len(first), len(second))
     while low < high:
         middle = (low + high + 1) // 2
@@ -138,7 +146,7 @@ def _common_length(first: bytes, second: bytes) -> int:
 
 
 class _Paths:
-    """Takes paths that the native search tells through the network once more."""
+    """Replays paths of the native search on the network."""
 
     def __init__(self, network: Network, plan: Plan, sought: Sought) -> None:
         self._network = network
@@ -160,7 +168,7 @@ class _Paths:
         return start
 
     def run(self, path: bytes, parts: bytes, ending: Ending, loop: int) -> Run:
-        """The run along a path, to the first of some parts that it can reach."""
+        """The run along a path, which ends in the first of some zones that it can reach."""
         last, steps = self.walk(path)
         for part in self._parts(parts):
             marked = [*steps, timings.mark_step(last, part)]
@@ -173,7 +181,7 @@ class _Paths:
         return timings.make_run(shown, self._start, steps, ending, None if loop < 0 else loop)
 
     def fail(self, path: bytes, sought: Sought) -> None:
-        """Say what is wrong where a search could not go on."""
+        """Raise the error of the model at the end of a path where the search failed."""
         state, _ = self.walk(path)
         for move in self._space.moves(state):
             self._space.moves(move.target)
@@ -188,10 +196,13 @@ class _Paths:
                 pieces_of(formula)(state.locations, state.values)
 
     def walk(self, path: bytes) -> tuple[State, list[timings.PathStep]]:
-        """The last state of a path and its steps.
+        """Replay a path.
 
-        Of two paths in succession the steps that they begin with are walked once: a search in depth
-        finds many loops behind the same steps.
+        The prefix that it shares with the path before is not replayed again: a depth-first search
+        finds many loops after the same steps.
+
+        Returns:
+            The last state and the steps.
         """
         numbers = array("i", path)
         common = _common_length(self._path, path) // numbers.itemsize
@@ -237,7 +248,7 @@ class _Paths:
     def _constraint(
         self, alternatives: Sequence[Guard], number: int, state: State
     ) -> timings.Piece:
-        """The bounds of an alternative in a state; none for −1."""
+        """The bounds of an alternative in a state; none for index −1."""
         if number < 0:
             return ()
         return atoms_of(alternatives[number].clocks, None)(state.locations, state.values)
@@ -255,13 +266,13 @@ class _Paths:
 
 
 def _bounds(numbers: Sequence[int]) -> Iterator[Atom]:
-    """Bounds that a move needs besides its guards."""
+    """Decode the bounds that a move needs in addition to its guards."""
     for x, y, number, closed in zip(*[iter(numbers)] * 4, strict=True):
         yield x, y, number - (0.0 if closed else STRICT)
 
 
 def _rounded(constraint: timings.Piece, *, uppers: bool) -> timings.Piece:
-    """A piece with the instants at which time leaves it, or behind which it enters it."""
+    """A piece with its strict upper or lower bounds made non-strict: time crosses at the bound."""
     return tuple(
         (x, y, float(-(-bound // 1)) if (x == 0 if uppers else y == 0) else bound)
         for x, y, bound in constraint
@@ -269,13 +280,13 @@ def _rounded(constraint: timings.Piece, *, uppers: bool) -> timings.Piece:
 
 
 def time_passes(loop: Sequence[timings.TimedStep], head: Zone, dim: int) -> bool:
-    """Whether time passes without bound on a loop: going round more often can take longer.
+    """Whether time diverges on a loop: more rounds can take longer.
 
-    The loop starts and ends in the symbolic state `head`; each of its steps, at least one, waits
-    only as long as some clock allows, for else the loop would not be needed for staying on it.
+    The loop starts and ends in the symbolic state `head`. Each of its steps, at least one, waits
+    only as long as some clock allows: otherwise a run could stay without the loop.
 
-    If it does not, the longest time that rounds can take together stops growing: more rounds than
-    there are clocks show it.
+    If time does not diverge, the longest total time of all rounds stops growing, which shows when
+    there are more rounds than clocks.
 
     Source: Tripakis, Verifying Progress in Timed Systems, 1999 (strong non-Zenoness).
     """
@@ -287,21 +298,21 @@ def time_passes(loop: Sequence[timings.TimedStep], head: Zone, dim: int) -> bool
 
 
 def surely_passes(loop: Sequence[timings.TimedStep]) -> bool | None:
-    """Whether time passes without bound on a loop, where its bounds alone say so."""
+    """Whether time diverges on a loop; `None` if its bounds alone do not tell."""
     highest: dict[int, float] = {}
     for step in loop:
         for clock, value in step.resets:
             highest[clock] = max(value, highest.get(clock, 0.0))
     bounds = [bound for step in loop for bound in (*step.leave, *step.enter)]
     if any(x == 0 and y not in highest for x, y, _ in bounds):
-        return False  # a clock that is never set stays below a number
+        return False  # a clock that is never reset stays below a number
     if any(y == 0 and x in highest and -bound >= highest[x] + 1 for x, y, bound in bounds):
-        return True  # between being set and the bound each round takes a unit of time
+        return True  # each round takes at least one unit from the reset to the bound
     return None
 
 
 def _longest(loop: Sequence[timings.TimedStep], head: Zone, rounds: int) -> float:
-    """The longest time that some rounds from a head can take, in whole units; it may be inf."""
+    """The longest total time of some rounds from `head`, rounded up to whole units; may be inf."""
     timing = timings.timing_of([*loop] * rounds, head)
     assert timing is not None, "a loop of symbolic states can be gone round"
     longest = float(timing.relation((0, len(loop) * rounds))[0, 1])

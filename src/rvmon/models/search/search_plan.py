@@ -1,4 +1,7 @@
-"""A network and what is sought in it as the plan of the native search: one array of int32."""
+"""A network and a search goal, encoded as the plan of the native search: one array of int32.
+
+`plan.h` describes the format.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,7 @@ _PLAIN, _AND, _OR, _NOT, _UNTIL, _STAY, _NEXT = range(7)
 
 
 class Plan:
-    """A plan and what its numbers stand for."""
+    """An encoded plan, with what its indices stand for."""
 
     def __init__(self, network: Network, sought: Sought) -> None:
         self._network = network
@@ -35,7 +38,7 @@ class Plan:
         self._limits: list[int] = []
         self._tree: list[int] = []
         self._pieces: list[int] = []
-        self.edges: list[tuple[int, int]] = []  # of the plan: automaton and number there
+        self.edges: list[tuple[int, int]] = []  # for each edge of the plan: automaton and index
         timer = len(network.clocks)
         due: tuple[ex.ClockCompare, ...] = ()
         if sought.bound is not None and sought.kind in (Seek.GOAL, Seek.DEADLOCK):
@@ -44,9 +47,9 @@ class Plan:
             {reset.clock for edge in a.edges for reset in guards.resets_in(edge.updates)}
             for a in network.automata
         ]
-        # What a query compares clocks with, by automaton and location, or with None everywhere.
+        # Comparisons of clocks in the query, by automaton (`None`: any) and location.
         self._asked: dict[int | None, dict[int, list[ex.ClockCompare]]] = {}
-        # goal, inside: the alternatives of those
+        # The alternatives of the goal and of the states to stay in.
         self.goal = guards.alternatives_of(sought.goal, due)
         self.inside = guards.alternatives_of(sought.inside, due)
         states = () if sought.ways is None else sought.ways.states
@@ -77,13 +80,13 @@ class Plan:
         head = [MAGIC, sought.kind, choose, timer, sought.has_timer, sought.is_levelled]
         sets = 0 if sought.ways is None else sought.ways.sets
         head += [int(late or 0), sets, len(network.locals), network.is_watched]
-        # numbers, costs: the plan itself and the cost of each edge, as bytes
+        # the plan, and the costs of its edges as doubles, both as bytes
         self.numbers = _packed(head, sections)
         weights = (network.automata[a].edges[number].weight for a, number in self.edges)
         self.costs = array("d", (-log(weight) for weight in weights)).tobytes()
 
     def _automata(self) -> tuple[list[int], list[int], list[int]]:
-        """The rows of automata, locations and edges; edges stand by their source."""
+        """The rows of automata, locations and edges. Edges are sorted by source."""
         automata: list[int] = []
         locations: list[int] = []
         edges: list[int] = []
@@ -119,13 +122,12 @@ class Plan:
         return -1 if expression == ex.TRUE else self._programs.add(expression)
 
     def _compares(self, compares: Iterable[ex.ClockCompare]) -> tuple[int, int]:
-        """Add atoms; where they begin, and how many they are."""
+        """Add atoms, and return the index of the first and their number."""
         first = len(self._atoms) // 4
         for compare in compares:
             row = [compare.clock + 1, _OPS[compare.op]]
             match compare.bound:
-                # Most bounds are constants: the search compares with these directly, without a
-                # program.
+                # Most bounds are constants, with which the search compares directly.
                 case ex.Constant(value) if 0 <= value <= LARGEST:
                     row += [-1, value]
                 case bound:
@@ -139,7 +141,7 @@ class Plan:
             for compare in alternative.clocks:
                 if compare.clock == len(self._network.clocks):
                     continue  # the timer
-                # Best the place of an automaton that sets the clock: its edges forget the number.
+                # Prefer a location of an automaton that resets the clock: its edges drop the bound.
                 chosen = [p for p in places if compare.clock in self._sets[p[0]]] or places
                 automaton, place = chosen[0] if chosen else (None, 0)
                 self._asked.setdefault(automaton, {}).setdefault(place, []).append(compare)
@@ -150,7 +152,7 @@ class Plan:
         ]
 
     def _extra(self, sought: Sought, timer: int) -> list[int]:
-        """The bounds with which the query compares clocks, whatever the locations."""
+        """The limits of the clocks that the query compares in every location."""
         everywhere = self._asked.get(None, {}).get(0, [])
         bounds = ClockBounds()
         bounds.note(everywhere, self._network)
@@ -160,7 +162,7 @@ class Plan:
         return rows
 
     def _grow(self, formula: ex.Expression) -> int:
-        """Add rows of the tree for a normalised formula; the number of the last."""
+        """Add rows of the tree for a normalised formula, and return the index of its root."""
         match formula:
             case ex.Deadlock():
                 return self._row(_NOT, self._row(_NEXT, -1))
@@ -197,7 +199,7 @@ class Plan:
                 raise AssertionError(f"{op} refers to one run")
 
     def _stay(self, body: int, left: int, bound: int) -> int:
-        """A run on which the body holds for ever, or until both it and `left` end at once."""
+        """A run on which the body holds forever, or up to a state in which `left` has ended."""
         stay = self._row(_STAY, body, 0, bound)
         if left < 0:
             return stay
@@ -221,7 +223,7 @@ def _packed(head: Sequence[int], sections: Sequence[tuple[int, Sequence[int]]]) 
 
 
 def _places_of(condition: ex.Expression) -> Iterator[tuple[int, int]]:
-    """Automata and the locations in which they are wherever a condition holds."""
+    """Automata, with locations in which they must be where a condition holds."""
     match condition:
         case ex.InLocation(automaton, location):
             yield automaton, location
@@ -248,7 +250,7 @@ def _limit_rows(bounds: ClockBounds) -> list[int]:
 
 
 class Seek(IntEnum):
-    """The kinds of search, by their numbers in `plan.h`."""
+    """The kinds of search, with their numbers in `plan.h`, which explains them."""
 
     GOAL = 0
     DEADLOCK = 1
@@ -263,24 +265,22 @@ class Seek(IntEnum):
 
 @dataclass(frozen=True, slots=True)
 class Sought:
-    """The question to a search in a network."""
+    """What a search looks for in a network."""
 
     kind: Seek
-    # normalised; the states to reach, or from which runs are watched, or the condition on states
-    # without a deadlock
-    goal: ex.Expression | None = None
-    # normalised; the states in which runs stay, or the condition on states with a deadlock
-    inside: ex.Expression | None = None
-    # normalised; the states to reach, or the condition on the start, if it has path quantifiers
-    nested: ex.Expression | None = None
-    ways: Ways | None = None  # the automaton of an LTL formula that has to accept the run
-    progress: bool = False  # whether time has to diverge on the run, in addition to `ways`
-    choose: Policy = Policy.SHORTEST  # among several runs
-    bound: int | None = None  # units of time, if there is one
+    # Formulas are normalised. For deadlocks, `goal` is required of states without and `inside` of
+    # states with a deadlock.
+    goal: ex.Expression | None = None  # states to reach, or after which a run must stay inside
+    inside: ex.Expression | None = None  # states in which a run must stay
+    nested: ex.Expression | None = None  # states to reach, or start condition, with path operators
+    ways: Ways | None = None  # the automaton of an LTL formula that must accept the run
+    progress: bool = False  # whether time must diverge on a run that `ways` accepts
+    choose: Policy = Policy.SHORTEST
+    bound: int | None = None  # in units of time
 
     @property
     def has_timer(self) -> bool:
-        """Whether one more clock belongs to the query."""
+        """Whether the query needs a clock of its own."""
         nested = () if self.nested is None else guards.parts_of(self.nested)
         return (
             self.bound is not None
@@ -291,5 +291,5 @@ class Sought:
 
     @property
     def is_levelled(self) -> bool:
-        """Whether only states that can do the same stand for each other, not those that do more."""
+        """Whether a state may only be covered by one with the same future, not by a larger one."""
         return self.kind not in (Seek.GOAL, Seek.LATE, Seek.LATE_AFTER)

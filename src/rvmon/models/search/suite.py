@@ -1,7 +1,7 @@
-"""Few runs that together go through every location, edge, or pair of edges of a network.
+"""Small sets of runs that together cover every location, edge, or pair of edges of a network.
 
-A shortest run to each item that the runs before do not go through is sought; then runs are chosen
-greedily, the one with the most items that are still missing first.
+For each item not covered so far, a shortest run to it is searched. Then runs are chosen greedily:
+always the one that covers most of the items still missing.
 
 Source: Blom, Hessel, Jonsson, Pettersson, Specifying and Generating Test Cases Using Observer
 Automata, FATES 2004 (coverage items as observers); Chvátal, A Greedy Heuristic for the Set-Covering
@@ -28,12 +28,12 @@ class Criterion(StrEnum):
 
     LOCATIONS = "locations"
     EDGES = "edges"
-    EDGE_PAIRS = "edge-pairs"  # an edge of an automaton, and the one that the automaton takes next
+    EDGE_PAIRS = "edge-pairs"  # an edge of an automaton and the edge that it takes next
 
 
 @dataclass(frozen=True, slots=True)
 class Item:
-    """Something to go through: a location, an edge, or two edges, by their numbers."""
+    """Something to cover: a location, an edge or two edges, by their indices."""
 
     automaton: int
     numbers: tuple[int, ...]
@@ -41,19 +41,19 @@ class Item:
 
 @dataclass(frozen=True, slots=True)
 class Suite:
-    """Runs that cover what can be covered."""
+    """Runs that cover all items that can be covered."""
 
-    criterion: Criterion  # the coverage criterion
-    # each with the items that it adds to those before
+    criterion: Criterion
+    # each run with the items that it adds to those of the runs before
     runs: tuple[tuple[Run, tuple[Item, ...]], ...]
-    missing: tuple[Item, ...]  # items that no run goes through
-    statistics: Statistics  # the cost of the search
-    # the budget that ended the search early, so that `missing` may say too much, or ""
+    missing: tuple[Item, ...]  # items that no run covers
+    statistics: Statistics
+    # the budget that ended the search early, so that `missing` may list too many items; or ""
     stopped: str
 
     @property
     def covered(self) -> int:
-        """The number of items that the runs go through."""
+        """The number of items that the runs cover."""
         return sum(len(items) for _, items in self.runs)
 
 
@@ -64,10 +64,10 @@ def build_suite(
     budget: Budget = UNLIMITED,
     watch: Watch | None = None,
 ) -> Suite:
-    """Make a suite of runs.
+    """Build a suite of runs that cover a criterion.
 
     Raises:
-        ModelError: the network cannot start, or a run of it leaves a variable's range.
+        ModelError: the network cannot start, or one of its runs leaves the range of a variable.
     """
     check_start(network)
     check_clocks(network)
@@ -83,11 +83,11 @@ def build_suite(
 
 
 def _way_to(network: Network, criterion: Criterion, item: Item, meter: Meter) -> Run | None:
-    """The shortest run to an item; `None` if there is none, or the search was stopped."""
+    """A shortest run to an item; `None` if there is none or the search was stopped."""
     if criterion is Criterion.LOCATIONS:
         goal: ex.Expression = ex.InLocation(item.automaton, *item.numbers)
         return seek(network, Sought(Seek.GOAL, goal), meter).run
-    # One more variable counts how many of the edges have just been taken in turn.
+    # An extra variable counts how many of the item's edges have just been taken in sequence.
     slot, count = ex.Slot(len(network.variables)), len(item.numbers)
     progress = ex.Variable("", 0, count, 0)
     last, edges = item.numbers[-1], [*network.automata[item.automaton].edges]
@@ -110,7 +110,7 @@ def _way_to(network: Network, criterion: Criterion, item: Item, meter: Meter) ->
 
 
 def all_items(network: Network, criterion: Criterion) -> Iterator[Item]:
-    """Everything that a criterion asks for, whether or not a run can get there."""
+    """All items of a criterion, whether or not a run can reach them."""
     for index, automaton in enumerate(network.automata):
         match criterion:
             case Criterion.LOCATIONS:
@@ -124,7 +124,7 @@ def all_items(network: Network, criterion: Criterion) -> Iterator[Item]:
 
 
 def item_text(network: Network, item: Item, criterion: Criterion) -> str:
-    """An item for people."""
+    """An item as text."""
     automaton = network.automata[item.automaton]
     if criterion is Criterion.LOCATIONS:
         return f"{automaton.name}.{automaton.locations[item.numbers[0]].name}"
@@ -133,7 +133,7 @@ def item_text(network: Network, item: Item, criterion: Criterion) -> str:
 
 
 def _items_on(network: Network, run: Run, criterion: Criterion) -> frozenset[Item]:
-    """All items that a run goes through."""
+    """All items that a run covers."""
     positions = (run.start, *(step.position for step in run.steps))
     places = {
         Item(a, (place,)) for position in positions for a, place in enumerate(position.locations)
@@ -156,7 +156,7 @@ def _items_on(network: Network, run: Run, criterion: Criterion) -> frozenset[Ite
 def _chosen(found: Sequence[tuple[Run, frozenset[Item]]]) -> Iterator[tuple[Run, tuple[Item, ...]]]:
     left = {item for _, items in found for item in items}
     while left:
-        # The first of the best, so that equal networks have equal suites.
+        # `max` takes the first of the best, so that equal networks have equal suites.
         run, items = max(found, key=lambda one: len(one[1] & left))
         added, left = items & left, left - items
         yield run, tuple(sorted(added, key=lambda item: (item.automaton, item.numbers)))

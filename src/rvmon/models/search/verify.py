@@ -1,4 +1,4 @@
-"""Answers queries: each kind of query becomes the native search that is sound for it."""
+"""Answers queries by the kind of native search that is sound for each."""
 
 from __future__ import annotations
 
@@ -22,14 +22,14 @@ from rvmon.models.search.search_plan import Seek, Sought
 
 @dataclass(frozen=True, slots=True)
 class _Question:
-    """The arguments that all searches for one query share."""
+    """What all searches for one query share."""
 
     network: nta.Network
     meter: Meter
     policy: Policy
 
     def run(self, sought: Sought) -> Run | None:
-        """A run like that; `None` if there is none, or the search was stopped."""
+        """Search for a run; `None` if there is none or the search was stopped."""
         return seek(self.network, sought, self.meter).run
 
 
@@ -41,18 +41,18 @@ def verify(
     watch: Watch | None = None,
     policy: Policy = Policy.SHORTEST,
 ) -> Outcome:
-    """Decide a query, with a run that shows why where one run can.
+    """Decide a query, with a run as evidence where a single run can show the answer.
 
     Args:
-        network: the network in question.
-        query: as resolved, or as text.
-        budget: the limits at which it gives up undecided.
-        watch: called now and then.
-        policy: the choice among several runs that show `E<>` or contradict `A[]`.
+        network: the network to search.
+        query: resolved, or as text.
+        budget: the limits at which the search stops undecided.
+        watch: called from time to time with the progress.
+        policy: how to choose among several runs that show `E<>` or refute `A[]`.
 
     Raises:
-        ModelError: the query is none that can be decided, or the network cannot start, or a run
-            of it leaves a variable's range.
+        ModelError: the query cannot be decided, the network cannot start, or one of its runs
+            leaves the range of a variable.
     """
     network, asked = asked_on(network, query) if isinstance(query, str) else (network, query)
     check_start(network)
@@ -70,7 +70,7 @@ def verify(
 
 
 def compares_in(formula: nta.QueryFormula) -> Iterator[ex.ClockCompare]:
-    """All comparisons of clocks in what a query asks."""
+    """All comparisons of clocks in the formula of a query."""
     if isinstance(formula, nta.LeadsToFormula):
         return chain(guards.compares_of(formula.left), guards.compares_of(formula.right))
     return iter(()) if isinstance(formula, nta.Asked) else guards.compares_of(formula)
@@ -90,11 +90,11 @@ def _remark(run: Run | None) -> str:
 class _Found:
     """The result of the searches for a query."""
 
-    # whether a run would show that the query holds (`E<>`), or that it does not (`A[]`)
+    # whether a run shows that the query holds (`E<>`), or that it does not (`A[]`)
     shows: bool
     run: Run | None  # that run; `None` if there is none
-    chosen: Policy | None = None  # the policy that chose it, if there was a choice
-    holds: bool | None = None  # whether it holds, where no single run shows it
+    chosen: Policy | None = None  # the policy that chose the run, if there was a choice
+    holds: bool | None = None  # whether the query holds, if no single run can show it
 
 
 def _search(question: _Question, query: nta.Query) -> _Found:
@@ -156,8 +156,9 @@ def _search(question: _Question, query: nta.Query) -> _Found:
 
 
 def _at_start(question: _Question, formula: ex.Expression) -> _Found:
-    """Whether a formula that speaks of runs holds at the start: no single run shows it."""
-    # Going backwards meets no run that leaves a variable's range: going forwards does.
+    """Decide at the start a formula with path operators, which no single run can show."""
+    # A backward search does not notice runs that leave the range of a variable, so a forward
+    # search comes first.
     question.run(Sought(Seek.GOAL, ex.FALSE))
     if not question.meter.stopped:
         found = question.run(Sought(Seek.START, nested=guards.normal_form(formula))) is not None
@@ -166,11 +167,11 @@ def _at_start(question: _Question, formula: ex.Expression) -> _Found:
     return _Found(True, None)
 
 
-# Reaching.
+# Reachability.
 
 
 def _lasting_part(parts: Sequence[ex.Expression]) -> ex.PathFormula | None:
-    """The only part that speaks of runs, if it is `E[]` with a plain formula inside."""
+    """The only part with path operators, if it is `E[]` of a plain formula."""
     match [part for part in parts if guards.has_paths(part)]:
         case [ex.PathFormula(ex.PathOp.POTENTIALLY_ALWAYS, body, _, left) as lasting] if (
             left == ex.TRUE and guards.is_plain(body)
@@ -183,10 +184,10 @@ def _lasting_part(parts: Sequence[ex.Expression]) -> ex.PathFormula | None:
 def _reach(
     question: _Question, formula: ex.Expression, within: int | None
 ) -> tuple[Run | None, Policy | None]:
-    """A run to a normalised formula, as the policy chooses it, or the shortest if that ends early.
+    """Find a run to a normalised formula; the shortest one if the search by policy is stopped.
 
     Returns:
-        The run and how it was chosen; twice `None` if there is none.
+        The run and how it was chosen, or two `None`.
     """
     sought = Sought(Seek.GOAL, formula, bound=within)
     run = question.run(sought)
@@ -200,7 +201,7 @@ def _reach(
 
 
 def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _Found:
-    """A run to a formula that speaks of runs from there; each alternative is sought by itself."""
+    """Find a run to a formula with path operators, separately for each of its alternatives."""
     run = None
     for parts in guards.distributed(formula, lambda part: not guards.has_paths(part)):
         lasting = _lasting_part(parts)
@@ -215,13 +216,13 @@ def _reach_nested(question: _Question, formula: ex.Expression, shows: bool) -> _
     return _Found(shows, run)
 
 
-# Staying away.
+# Staying.
 
 
 def _unanswered(
     question: _Question, left: ex.Expression, right: ex.Expression, bound: int | None
 ) -> Run | None:
-    """A run on which `left` holds, but `right` not from there on, or not within the bound."""
+    """Find a run with `left` after which `right` never holds, or not within the bound."""
     inside = guards.normal_form(guards.normal_form(right), positive=False)
     return _staying(question, guards.normal_form(left), inside, bound)
 
@@ -229,7 +230,7 @@ def _unanswered(
 def _staying(
     question: _Question, first: ex.Expression | None, inside: ex.Expression, bound: int | None
 ) -> Run | None:
-    """A run that stays inside, from the start or from where `first` holds."""
+    """Find a run that stays inside, from the start or from a state with `first`."""
     network, meter = question.network, question.meter
     if bound is not None:
         late = Seek.LATE if first is None else Seek.LATE_AFTER
@@ -237,18 +238,18 @@ def _staying(
         if run is not None or meter.stopped:
             return run
     sought = Sought(Seek.STAY if first is None else Seek.STAY_AFTER, first, inside)
-    # Prefer a run on which time diverges; only if there is none, one on which time stops counts.
+    # Prefer a run on which time diverges. Only if there is none, accept one on which time stops.
     answer = seek(network, sought, meter, proper_only=True)
     if answer.run is None and not meter.stopped and answer.improper:
         answer = seek(network, sought, meter)
     return answer.run
 
 
-# Accepting.
+# Acceptance by an automaton.
 
 
 def _on_runs(question: _Question, query: nta.Query, formula: ex.Expression) -> _Found:
-    """Whether all runs satisfy a formula of LTL, or some run does."""
+    """Decide whether all runs satisfy an LTL formula, or (`E`) some run does."""
     body, shows = formula, False
     if isinstance(formula, ex.PathFormula) and formula.op in (
         ex.PathOp.EVERY_RUN,
@@ -260,11 +261,10 @@ def _on_runs(question: _Question, query: nta.Query, formula: ex.Expression) -> _
 
 
 def _accepted(question: _Question, formula: ex.Expression, span: Span | None) -> Run | None:
-    """A run that satisfies a normalised formula of LTL, if there is one on which time passes."""
+    """Find a run that satisfies a normalised LTL formula, preferably one on which time diverges."""
     sought = Sought(Seek.RUN, ways=ways_of(formula, span))
     run = question.run(sought)
-    # Time stops on this run, which real systems cannot do; a run on which time passes convinces
-    # more.
+    # Real systems cannot stop time, so a run on which time diverges is more convincing.
     if run is not None and run.ending in (Ending.ZENO_LOOP, Ending.TIME_LOCK):
         better = question.run(replace(sought, progress=True))
         return run if better is None else better
