@@ -1,9 +1,10 @@
 """Coverage-driven verification of any system that can play a test.
 
-An engineer with a simulator writes a `System`, a type of `Test`, a strategy that makes some, and
-requirements; `rvmon.cli.campaign.main(campaign)` is then the command line of the campaign. What is
-made of it, in order: `plan` (tests), `execute` (on all cores: `play` judges and measures),
-`summarise` (figures), tables, pages, and `gate`: is all as expected? `close` makes its own tests.
+An engineer with a simulator writes a `System`, a subclass of `Test`, strategies that generate such
+tests, and requirements; `rvmon.cli.campaign.main(campaign)` is then the command line of the
+campaign. Its stages, in order: `plan` generates tests, `execute` plays, judges and measures them on
+all cores, `summarise` computes figures, then come tables and pages, and `gate` compares the results
+with what is expected. `close` generates its own tests until no hole is left.
 """
 
 from rvmon.cdv.campaign import (

@@ -1,4 +1,4 @@
-"""A campaign as data: robots, tests, what is measured, what fails or cannot be reached."""
+"""A campaign as data: robots, strategies, measured code, expected failures, unreachable items."""
 
 from __future__ import annotations
 
@@ -24,22 +24,23 @@ if TYPE_CHECKING:
 
 
 STRATEGY = "closed"
-"""The strategy of all tests made to close holes."""
+"""The strategy of all tests that `close` makes."""
 
 _Option = TypeVar("_Option", bound=Hashable)
 
 
 @dataclass(frozen=True, slots=True)
 class Unreachable:
-    """An item of the coverage model that no test can hit, and why; a hit is an error.
+    """An item of the coverage model that no test can hit, with the reason; a hit is an error.
 
     Attributes:
-        group: of the item; empty: any of the measured code.
-        item: its name; in code, the text of a line stands for its statement and all branches that
-            lead there, `text → text` for the branch between two.
+        group: the group of the item; empty: any group of the measured code.
+        item: its name. In code, the text of a line stands for its statement and all branches that
+            lead there, and `text → text` for the branch between two lines.
         reason: for people.
-        robot: of this robot only; empty: of any.
-        by_model: `close` asks the model for the proof; without it the item is open there.
+        robot: the only robot this applies to; empty: all.
+        by_model: `close` does not trust the reason but asks the model for a proof, and keeps the
+            item open if there is none.
     """
 
     group: str
@@ -55,18 +56,18 @@ class ClosingModel:
 
     Attributes:
         network: makes the model.
-        automata: names of those that tests stand for, such as people and sensors.
-        actions: of a test, for their edges; those left out need no action.
-        make: makes a test from a template, with a seed.
-        query: from an item's group and name the query whose answer shows or excludes it; empty:
-            none. A run that shows it (of `A`, that contradicts it) becomes a test; if there is
-            none, the item is proved to be unreachable.
-        automaton: of the system under test.
-        states: the states of the system by the locations of that automaton; those left out are
-            passed over. A test shows the edges of a run of the model if the system enters the
-            states of that run first, in their order.
-        robots: those of the campaign that the model describes; default: all. Of the others it
-            proves nothing, though its runs may be good tests of them.
+        automata: names of the automata that tests control, such as people and sensors.
+        actions: the action of a test for each edge of these automata; other edges need no action.
+        make: makes a test from a template and a seed.
+        query: maps an item's group and name to the query that decides whether it can be reached;
+            empty: none. A witness (for an `A` query, a counterexample) becomes a test; if there is
+            none, the item is proved unreachable.
+        automaton: name of the automaton of the system under test.
+        states: the system's state for each location of that automaton; locations left out are
+            ignored. A test shows the edges of a run of the model if the system enters the states
+            of that run first, in the same order.
+        robots: the robots that the model describes; default: all. For other robots it proves
+            nothing, though its runs may still be good tests.
     """
 
     network: Callable[[], Network]
@@ -80,25 +81,30 @@ class ClosingModel:
 
 
 class Choose(Protocol):
-    """Draws one of some options, those more often that have paid; the choice is known by a name."""
+    """Draws one of several options; an option that paid off before is more likely."""
 
     def __call__(self, name: str, options: Sequence[_Option], /) -> _Option:
-        """Draw."""
+        """Draw an option.
+
+        Args:
+            name: identifies the choice, so that its past results can be weighed.
+            options: to draw from.
+        """
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Closing:
-    """The way a campaign closes its holes; by default from its strategies and its tests alone.
+    """How a campaign closes its holes; by default only with its strategies and changes of tests.
 
     Attributes:
         strategies: the strategies that tests are drawn from; default: all. Tests with a planted
-            fault are passed over.
-        written: strategies whose tests people have written: each is played once, before any is
-            made by chance.
+            fault are skipped.
+        written: strategies whose tests are written by people; each of these tests is played once,
+            before any test is made at random.
         fixed: fields of tests that are never changed, such as `horizon_s` or `faults.noise_m`.
-        biased: makes a test whose choices are drawn by what is given to it, with a seed for the
-            rest: so they can be biased towards what is open.
+        biased: makes a test from a `Choose`, which draws its choices biased towards open goals, and
+            a seed for everything else.
         model: of the system.
         unreachable: the items that no test can hit.
     """
@@ -112,20 +118,20 @@ class Closing:
 
 
 Strategy = Callable[[int, int], Sequence[Test]]
-"""Makes tests from `(count, seed)`: the same arguments, the same tests."""
+"""Makes tests from `(count, seed)`; the same arguments give the same tests."""
 
 
 @dataclass(frozen=True)
 class Robot:
-    """A system under test, and what judges it.
+    """A system under test with its specifications.
 
     Attributes:
-        system: makes what plays its tests, once in each process.
+        system: makes the `System` that plays its tests, once in each process.
         spec: the file of its requirements; `None` judges nothing.
-        coverage: files of further specifications, whose coverpoints, crosses and goals are covered
-            in addition to those of `spec` and to the behaviour of its requirements.
+        coverage: further specification files, whose coverpoints, crosses and goals are covered in
+            addition to those of `spec` and to the behaviour of its requirements.
         title: its name in tables and pages; default: its name in the campaign.
-        spec_name: the name of its requirements there; default: the path.
+        spec_name: the name of its requirements in tables and pages; default: the path.
     """
 
     system: Callable[[], System[Any]]
@@ -136,7 +142,7 @@ class Robot:
 
     @cached_property
     def requirements(self) -> Spec | None:
-        """The specification that judges it, read once.
+        """The specification that judges it; the file is read once.
 
         Raises:
             SpecError: the file is wrong.
@@ -156,13 +162,13 @@ class Robot:
 
 @dataclass(frozen=True, slots=True)
 class Control:
-    """A test without what its strategy, or chance, adds to it: played right after it.
+    """A variant of each test without the disturbances of its strategy, played right after the test.
 
-    Its outcome is kept with that of the test, and is shown in a table of its own.
+    The outcome of the control is stored with that of the test, and is shown in its own table.
 
     Attributes:
-        name: heads that table, such as `without wind`.
-        make: the control of a test, `None` if it has none.
+        name: the heading of that table, such as `without wind`.
+        make: makes the control of a test; returns `None` if the test has none.
     """
 
     name: str
@@ -171,17 +177,17 @@ class Control:
 
 @dataclass(frozen=True, slots=True)
 class ExpectedFailure:
-    """A failure that is known, and is not to fail a campaign.
+    """A known failure, which does not fail the campaign.
 
-    That it fails no more is wrong as well: the entry is to go.
+    If it no longer occurs, the campaign fails until the entry is removed.
 
     Attributes:
-        requirement: the failed requirement.
-        reason: the reason for accepting that, for people.
-        strategy: in tests of this strategy only; empty: of any.
-        test: in this test only; empty: in any.
-        robot: of this robot only; empty: of any.
-        seldom: no test need fail: it is a risk that remains, and is accepted.
+        requirement: the requirement that fails.
+        reason: why the failure is accepted, for people.
+        strategy: only in tests of this strategy; empty: of any.
+        test: only in this test; empty: in any.
+        robot: only on this robot; empty: on any.
+        seldom: the failure need not occur in any test: it is an accepted remaining risk.
     """
 
     requirement: str
@@ -194,12 +200,13 @@ class ExpectedFailure:
 
 @dataclass(frozen=True, slots=True)
 class Gate:
-    """The conditions that the tests of a strategy have to meet together, for `--strict`.
+    """Conditions that `--strict` puts on all tests of a strategy together.
 
     Attributes:
-        untriggered: requirements that need not be triggered; every other one is to pass or fail.
-        inconclusive: requirements that a test may leave open.
-        coverage: percent of the coverage model that the tests have to cover.
+        untriggered: requirements that need not be triggered; every other one must pass or fail in
+            some test.
+        inconclusive: requirements that a test may leave inconclusive.
+        coverage: percentage of the coverage model that the tests have to cover.
     """
 
     untriggered: Collection[str] = ()
@@ -209,29 +216,29 @@ class Gate:
 
 @dataclass(frozen=True, slots=True)
 class Campaign:
-    """All that a campaign consists of but how many tests there are.
+    """A campaign without its number of tests.
 
     Attributes:
-        name: its name for people; the page's title.
+        name: its name for people; the default title of its page.
         test: the type of its tests.
-        strategies: by name, in the order of the columns of a table.
+        strategies: by name, in the order of the table's columns.
         robots: by name.
         code: the code whose coverage is measured.
-        states: of the robot; others are counted, and are no goals.
-        transitions: of its code, likewise, and with them every pair of two that follow
-            each other; default: from each of `states` to each other one, where those that cannot be
-            are for `Closing.unreachable`.
+        states: the robot's states to cover; other states are counted, but are not goals.
+        transitions: the transitions to cover, together with every pair of consecutive ones; others
+            are counted, but are not goals. Default: from each of `states` to every other, without
+            the pairs; list the impossible ones in `Closing.unreachable`.
         control: a variant played with each test.
         expected_failures: failures that do not fail the campaign.
-        gates: by strategy, what its tests have to bring; those of all strategies without one are
-            compared with that of the name "" together, and without that with `Gate()`.
-        timeout_s: seconds that a test may take before it is ended; `None`: any.
+        gates: by strategy. The tests of all strategies without a gate are judged together by the
+            gate named "", or by `Gate()` if there is none.
+        timeout_s: seconds after which a test is killed; `None`: never.
         sources: further files and folders that runs depend on, besides the definitions of tests,
             strategies and systems: if one has changed, an unfinished campaign is not continued.
-        packages: Python packages on whose versions runs depend, likewise.
-        program: the installed program that runs it; empty: the script that was started.
-        presentation: of its figures.
-        closing: the way to close its holes.
+        packages: Python packages whose versions runs depend on, with the same effect.
+        program: the installed program that runs the campaign; empty: the script that was started.
+        presentation: how its figures are presented.
+        closing: how its holes are closed.
     """
 
     name: str
@@ -253,7 +260,7 @@ class Campaign:
 
     @property
     def requirements(self) -> dict[str, Spec]:
-        """By robot that is judged, the specification that judges it.
+        """The specification of each robot that has one, by robot.
 
         Raises:
             SpecError: one of the files is wrong.
@@ -265,7 +272,7 @@ class Campaign:
         """The specification that judges a robot.
 
         Raises:
-            RvmonError: nothing does, or it is wrong.
+            RvmonError: the robot has no specification, or the file is wrong.
         """
         spec = self.robots[robot].requirements
         if spec is None:
@@ -280,14 +287,18 @@ _ARROW = " → "
 def unreachable_items(
     campaign: Campaign, robot: str, model: Model, *, closing: bool = False
 ) -> dict[tuple[str, str], str]:
-    """The items of a model that a campaign calls unreachable, each with the reason.
+    """The items of a model that a campaign declares unreachable, each with the reason.
 
-    When `closing`, the model has all that is ever measured: what it lacks there is not; and what is
-    to be proved is left out, as closing asks for that. Any other, such as one without the edges
-    that closing measures, may lack what is named.
+    Args:
+        campaign: the campaign.
+        robot: name of the robot.
+        model: its coverage model.
+        closing: the model is complete, as in `close`. Only then is an unknown item an error: other
+            models lack, for example, the edges that `close` measures. Items `by_model` are left
+            out, as `close` asks the model to prove them.
 
     Raises:
-        UnknownNameError: nothing in the model is called so.
+        UnknownNameError: when closing, the model has no such item.
     """
     reasons: dict[tuple[str, str], str] = {}
     for unreachable in campaign.closing.unreachable:

@@ -1,4 +1,4 @@
-"""The page of a campaign, and which of its tests get a page of their own."""
+"""The page of a campaign, and the choice of tests that get a page of their own."""
 
 from __future__ import annotations
 
@@ -19,29 +19,34 @@ from rvmon.report.verdict_table import VerdictTable
 from rvmon.verdicts import Verdict
 
 Cell = tuple[str, str, str, Verdict]
-"""Robot, strategy, requirement and verdict: a count in a table."""
+"""A cell of a verdict table, which holds a count: robot, strategy, requirement and verdict."""
 
 COMPARED = 4
-"""Passing tests in which the nearest passing attempt is looked for; where a fault is planted, one
-beside the test without it."""
+"""The number of passing tests, per failed requirement, that are searched for the nearest passing
+attempt. For a test with a planted fault it is one, besides the same test without the fault."""
 
 
 @dataclass(frozen=True, slots=True)
 class Examples:
-    """Tests with a page."""
+    """The tests that get a page."""
 
     jobs: tuple[Job, ...]  # without repetition, in the order of the plan
-    by_cell: dict[Cell, Job]  # a test behind each count that is not zero
+    by_cell: dict[Cell, Job]  # an example test for each count that is not zero
 
 
 def choose_examples(
     played: Sequence[Played], *, also: Collection[str] = (), every: bool = False
 ) -> Examples:
-    """Few tests that stand behind all counts, those with a planted fault, and what came out wrong.
+    """Choose tests that get a page: a few examples for all counts, and every remarkable test.
 
-    A test that hung, or ended its process, has no page: it cannot be played again here.
+    Remarkable are tests with a planted fault, with an error, or with unexpected verdicts. A test
+    that hung or was lost has no page, as it cannot be played again in this process. The examples
+    are chosen greedily: each is the test that has the most counts without an example.
 
-    Tests named in `also` get a page whatever became of them; with `every`, all others do as well.
+    Args:
+        played: the tests of the campaign.
+        also: names of further tests that get a page.
+        every: all tests get a page.
     """
     playable = [
         test_run for test_run in played if test_run.outcome.ending not in (Ending.HUNG, Ending.LOST)
@@ -68,7 +73,7 @@ def choose_examples(
 
 
 def _cells_of(played: Played) -> set[Cell]:
-    """The counts that a test is part of; with a planted fault it counts in none."""
+    """The cells that count a test; none if it has a planted fault."""
     job = played.job
     if job.test.mutation is not None:
         return set()
@@ -76,7 +81,11 @@ def _cells_of(played: Played) -> set[Cell]:
 
 
 def comparable_jobs(job: Job, failed: Sequence[str], played: Sequence[Played]) -> list[Job]:
-    """Tests that pass what a test failed, on the same robot: its own self without fault first."""
+    """Tests to compare a failed test with, on the same robot.
+
+    The first is the test without its planted fault, if it has one; then come tests that pass the
+    failed requirements.
+    """
     jobs: list[Job] = []
     if job.test.mutation is not None:
         name = f"{job.test.name} on the robot as it is"
@@ -91,7 +100,7 @@ def comparable_jobs(job: Job, failed: Sequence[str], played: Sequence[Played]) -
             and test_run.job.test.mutation is None
             and test_run.outcome.verdicts.get(requirement) is Verdict.PASS
         ]
-        # Tests that know their answers are about what the robot should do: those first.
+        # Directed tests come first: they show what the robot should do.
         passed.sort(key=lambda one: not one.test.expected)
         jobs.extend(passed[:most])
     return jobs
@@ -108,7 +117,18 @@ def campaign_page(
     coverage: Mapping[str, CoverageFigures],
     further: Sequence[Element | Markup] = (),
 ) -> str:
-    """Write the page; `examples`, `tests` and `coverage` have the addresses of others."""
+    """The page of a campaign, as HTML.
+
+    Args:
+        summary: the figures of the campaign.
+        tables: the verdict tables, by robot.
+        presentation: how the campaign presents its figures.
+        command: the command line of the campaign.
+        examples: address of an example for each cell that has one.
+        tests: addresses of the pages of tests, by robot and test.
+        coverage: figures of coverage with the addresses of their pages, by robot.
+        further: further sections.
+    """
     robots_of: dict[tuple[str, str], list[str]] = {}
     for robot in summary.robots.values():
         for requirement in robot.requirements.items():
@@ -162,7 +182,7 @@ def _tables(
     examples: Mapping[Cell, str],
     tests: Mapping[tuple[str, str], str],
 ) -> tuple[Markup, Markup | None]:
-    """The table of a robot, whose counts lead to examples, and that of its control."""
+    """The table of a robot, whose counts link to examples, and the table of its controls."""
     table = table_html(
         tables.own,
         further=tables.compared,
@@ -181,7 +201,7 @@ def _tables(
 def _silent(
     robot: str, table: VerdictTable, examples: Mapping[Cell, str]
 ) -> list[tuple[str, str | None]]:
-    """The requirements that no test triggered, each with a run that says what it lacked."""
+    """The requirements that no test triggered, each with the page of a run that explains it."""
     silent: list[tuple[str, str | None]] = []
     for name in table.requirements:
         groups = [group for group in table.groups if name in group.counts]

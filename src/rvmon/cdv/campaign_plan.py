@@ -1,4 +1,4 @@
-"""The plan of a campaign, and the outcome that it keeps of each played test."""
+"""The plan of a campaign: its tests; and its results: the outcome of each test."""
 
 from __future__ import annotations
 
@@ -50,14 +50,14 @@ def plan(
 
     Args:
         campaign: the campaign.
-        strategies: of its strategies those that make tests; default: all.
-        tests: the number of each; one that has a fixed number of them makes those.
-        seed: all tests follow from it.
+        strategies: the strategies that make tests; default: all.
+        tests: the number of tests per strategy; a strategy may have a fixed number and ignore it.
+        seed: determines all tests.
 
     Raises:
-        UnknownNameError: it has no such strategy.
-        TestError: a strategy fails, a test cannot be written to a file and read back, two have one
-            name, or a name is none of a file.
+        UnknownNameError: the campaign has no such strategy.
+        TestError: a strategy fails, a test cannot be written to a file and read back, two tests
+            have the same name, or a name cannot be a file name.
     """
     known = ", ".join(campaign.strategies)
     for name in strategies:
@@ -70,10 +70,11 @@ def plan(
 
 
 def plan_of_folder(campaign: Campaign, folder: str | Path) -> Plan:
-    """The tests of a folder as those of a campaign, such as a suite that was closed before.
+    """A plan of the tests in a folder, such as a suite that `close` wrote.
 
     Raises:
-        TestError: there is no test in it, one is none of the campaign, or two have one name.
+        TestError: the folder has no test, a file is not a test of this campaign, or two tests have
+            the same name.
     """
     paths = sorted(Path(folder).glob("*.json"))
     if not paths:
@@ -87,14 +88,14 @@ def plan_of_folder(campaign: Campaign, folder: str | Path) -> Plan:
 
 
 def _refuse_names(campaign: Campaign, tests: Sequence[Test]) -> None:
-    """See that files can be called as tests and robots are.
+    """Check that the names of tests and robots can be file names.
 
     Raises:
-        TestError: two tests have one name, or a name is none of a file.
+        TestError: two tests have the same name, or a name cannot be a file name.
     """
     seen: set[str] = set()
     for test in tests:
-        if test.name.lower() in seen:  # some systems take names for one that differ in case only
+        if test.name.lower() in seen:  # some file systems ignore case
             raise TestError(f"two tests are called `{test.name}`: give each a name of its own")
         seen.add(test.name.lower())
     for name in (*campaign.robots, *(test.name for test in tests)):
@@ -114,7 +115,7 @@ def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test
                 f"test `{test.name}` of strategy `{strategy}` names another strategy, "
                 f"`{test.strategy}`"
             )
-        # What cannot be read back could not be replayed: that is said before hours of playing.
+        # A test that cannot be read back could not be replayed: find out before hours of playing.
         from_json(to_json(test), campaign.test, source=f"test `{test.name}` of `{strategy}`")
     return generated
 
@@ -123,19 +124,19 @@ def _made(campaign: Campaign, strategy: str, tests: int, seed: int) -> list[Test
 class Outcome:
     """The outcome of one test."""
 
-    # by requirement; empty if nothing was judged. Of a test that hung or was lost nothing is known:
-    # it is inconclusive
+    # By requirement; empty if nothing was judged. All are inconclusive if the test hung or was
+    # lost, as then no report exists.
     verdicts: Mapping[str, Verdict]
-    reasons: Mapping[str, str]  # by requirement that failed, when and why it did first
-    illegal: tuple[str, ...]  # hits of items of coverage models that must not be hit, in words
-    hits: Hits  # of states, transitions, code, and of coverage models
-    # `completed`; `crashed` if code raised an exception, in which case it is judged as far as it
-    # went; `hung` if it was ended; `lost` if its process was
+    reasons: Mapping[str, str]  # of each failed requirement, its first failure in words
+    illegal: tuple[str, ...]  # hits of illegal bins, in words
+    hits: Hits  # of states, transitions, code and coverage models
+    # A crashed test (its code raised an exception) is judged as far as it ran; a hung test was
+    # killed at the timeout; the process of a lost test ended on its own.
     ending: Ending
-    error: str | None  # the reason why it did not complete
-    end_ns: int  # up to which it was judged
-    figures: Mapping[str, float]  # of the run, reported by the system, to be added up
-    seconds: float = field(compare=False)  # wall time that it took
+    error: str | None  # why it did not complete
+    end_ns: int  # the instant up to which it was judged
+    figures: Mapping[str, float]  # reported by the system, to be added up
+    seconds: float = field(compare=False)  # wall time
 
     @property
     def simulated_s(self) -> float:
@@ -145,7 +146,7 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class Played:
-    """One test that was played."""
+    """A played test."""
 
     job: Job
     outcome: Outcome
@@ -156,22 +157,22 @@ class Played:
 class Results:
     """The results of a campaign."""
 
-    plan: Plan  # of the campaign
-    played: tuple[Played, ...]  # in the order of the plan, whichever process was first
+    plan: Plan
+    played: tuple[Played, ...]  # in the order of the plan
     seconds: float  # wall time
-    cut_short: str = ""  # why not all tests were played; empty if they were
-    groups: Sequence[Group] = ()  # measured besides those of the campaign
-    # by group and item, why items cannot be hit; further ones than the campaign names
+    cut_short: str = ""  # why not all tests were played; empty if all were
+    groups: Sequence[Group] = ()  # coverage groups beyond those of the campaign
+    # Reasons why items cannot be hit, by group and item, beyond those that the campaign names.
     unreachable: Mapping[tuple[str, str], str] = field(default_factory=dict)
 
     def counting(self, robot: str) -> list[Played]:
-        """The tests of a robot as it is: a planted fault says nothing about it."""
+        """The tests of a robot without a planted fault: only these tell something about it."""
         own = (played for played in self.played if played.job.robot == robot)
         return [played for played in own if played.job.test.mutation is None]
 
 
 def accepted_failures(played: Played, expected: Sequence[ExpectedFailure]) -> dict[str, str]:
-    """The requirements that may fail in a test, each with the reason."""
+    """The requirements whose failure in a test is accepted, each with the reason."""
     accepted = {
         name: "this test is made to fail it"
         for name, verdict in played.job.test.expected.items()
@@ -184,7 +185,7 @@ def accepted_failures(played: Played, expected: Sequence[ExpectedFailure]) -> di
 
 
 def is_about(why: ExpectedFailure, played: Played) -> bool:
-    """Whether a failure is expected in a test: on the robot as it is."""
+    """Whether an expected failure applies to a test; never to one with a planted fault."""
     test = played.job.test
     return (
         test.mutation is None

@@ -1,4 +1,4 @@
-"""The figures of a campaign: data."""
+"""The figures of a campaign, as data."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from rvmon.texts import percent
 from rvmon.verdicts import Verdict
 
 Transition = tuple[str, str]
-"""From one state of the robot to another."""
+"""The states of the robot before and after."""
 
 
 @dataclass(frozen=True, slots=True)
 class BlockCoverage:
-    """The number of statements of a block of code that ran, or of its branches that were taken."""
+    """The coverage of a block's statements, or of its branches."""
 
-    statements: int
-    covered: int
-    missing: tuple[str, ...]
+    statements: int  # all statements, or branches
+    covered: int  # the number that ran, or were taken
+    missing: tuple[str, ...]  # the names of the others
 
     @property
     def percent(self) -> float:
-        """The share of `covered`; 0 and 100 only where exactly none or all have run."""
+        """The covered percentage; 0 and 100 only if exactly none or all are covered."""
         return percent(self.covered, self.statements)
 
     def __add__(self, other: BlockCoverage) -> BlockCoverage:
@@ -46,47 +46,45 @@ class StrategySummary:
     """All tests of one strategy against one robot."""
 
     tests: int  # the number played
-    counts: Mapping[str, Counts]  # of tests per verdict, by requirement
-    # of the measured code, by block; empty if none is measured
-    statements: Mapping[str, BlockCoverage]
-    branches: Mapping[str, BlockCoverage]  # by block; empty if they are not measured
-    # the number of tests that entered each; declared ones also if none did
+    counts: Mapping[str, Counts]  # numbers of tests per verdict, by requirement
+    statements: Mapping[str, BlockCoverage]  # by block; empty if no code is measured
+    branches: Mapping[str, BlockCoverage]  # by block; empty if branches are not measured
+    # The number of tests that entered each state, and took each transition; 0 for declared ones
+    # that no test reached.
     states: Mapping[str, int]
-    transitions: Mapping[Transition, int]  # the number of tests that took each, likewise
-    # by how tests ended that did not complete, why, by test
-    errors: Mapping[Ending, Mapping[str, str]]
-    figures: Mapping[str, float]  # the sums of what the system reports of its runs
+    transitions: Mapping[Transition, int]
+    errors: Mapping[Ending, Mapping[str, str]]  # why tests did not complete, by ending and test
+    figures: Mapping[str, float]  # sums of the figures that the system reports of its runs
     simulated_s: float  # simulated seconds
-    # by requirement that is to hold in a share of runs, what the tests say of it
-    shares: Mapping[str, Decision]
+    shares: Mapping[str, Decision]  # by requirement that must hold in a share of runs
 
     @property
     def total(self) -> BlockCoverage:
-        """Statements of all blocks."""
+        """The coverage of the statements of all blocks."""
         return sum(self.statements.values(), NOTHING)
 
 
 @dataclass(frozen=True, slots=True)
 class KnownAnswer:
-    """A directed test: it knows what is to come out."""
+    """A directed test, which states its expected verdicts, with its outcome."""
 
-    test: Test  # itself
+    test: Test
     verdicts: Mapping[str, Verdict]  # of all requirements
-    missed: Sequence[str]  # the items that it aims at and did not reach, in words
+    missed: Sequence[str]  # items that it aims at but did not reach, in words
 
     @property
     def wrong(self) -> list[str]:
-        """The differences from the test's expectations, a sentence each."""
+        """The differences from what the test expects, a sentence each."""
         return [*differences(self.test.expected, self.verdicts), *self.missed]
 
     @property
     def as_expected(self) -> bool:
-        """Whether all expected verdicts came out, in the situation that it is about."""
+        """Whether the test had its expected verdicts and reached the items that it aims at."""
         return not self.wrong
 
 
 def differences(expected: Mapping[str, str], verdicts: Mapping[str, Verdict]) -> list[str]:
-    """The verdicts that differ from a test's expectations, a sentence each.
+    """The verdicts that differ from the expected ones, a sentence each.
 
     >>> differences({"R1": "F", "R2": "P"}, {"R1": Verdict.PASS, "R2": Verdict.PASS})
     ['R1 is P, not F']
@@ -99,7 +97,9 @@ def differences(expected: Mapping[str, str], verdicts: Mapping[str, Verdict]) ->
 
 
 def missed(reaches: Mapping[str, Sequence[str]], hits: Hits) -> list[str]:
-    """The items that a test aims at and missed, a sentence each; empty if none was measured.
+    """The items that a test aims at but did not reach, a sentence each.
+
+    Without any hits the result is empty: then coverage was not measured.
 
     >>> from rvmon.coverage import Hit
     >>> missed({"gaze": ["no"]}, {"gaze": {"yes": Hit(1)}})
@@ -118,14 +118,13 @@ class RobotSummary:
     """One robot under all strategies."""
 
     title: str  # its name in tables
-    spec: str  # name of the requirements' file
+    spec: str  # name of its specification
     requirements: Mapping[str, str]  # id → text; empty if nothing was judged
-    strategies: Mapping[str, StrategySummary]  # without the tests on mutated robots
-    # counts by strategy and requirement with the controls in the place of their tests, of the
-    # strategies that have some
+    strategies: Mapping[str, StrategySummary]  # without tests with a planted fault
+    # Counts by strategy and requirement where each control replaces its test; only of strategies
+    # with controls.
     controls: Mapping[str, Mapping[str, Counts]]
-    # directed tests with their answers, also those on mutated robots
-    known: tuple[KnownAnswer, ...]
+    known: tuple[KnownAnswer, ...]  # directed tests, including those with a planted fault
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,13 +132,13 @@ class CampaignSummary:
     """A whole campaign."""
 
     name: str  # of the campaign
-    seed: int  # all tests follow from it
+    seed: int  # determines all tests
     robots: Mapping[str, RobotSummary]  # by name
-    planned: int  # the number of planned tests
-    finished: int  # the number of played ones
-    cut_short: str  # why fewer; empty if all were
+    planned: int  # number of planned tests
+    finished: int  # number of played tests
+    cut_short: str  # why not all were played; empty if all were
     seconds: float  # wall time
-    simulated_s: float  # simulated seconds, in all tests
-    figures: Mapping[str, float]  # the sums of what the systems report of all runs
-    kind: str  # the word for a block of the measured code
-    control: str  # the name of the variant that was played with each test
+    simulated_s: float  # simulated seconds of all tests
+    figures: Mapping[str, float]  # sums of the figures that the systems report
+    kind: str  # the word for a block of the measured code; empty if none is measured
+    control: str  # the name of the controls; empty if there are none

@@ -1,4 +1,4 @@
-"""A campaign's figures for the terminal, its files, and commands as people type them."""
+"""A campaign's figures for the terminal and as files, and commands as people type them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from rvmon.texts import percent_text
 from rvmon.verdicts import Verdict
 
 _WIDE = 12
-"""Characters beyond which a strategy's name goes to two lines, if it has a hyphen."""
+"""A longer strategy name is split at its hyphen into two lines."""
 
 
 def print_summary(
@@ -33,9 +33,9 @@ def print_summary(
     printer: Printer,
     foremost: Sequence[str] = (),
 ) -> None:
-    """Print requirements, the tables of all robots, the coverage of their code, known answers.
+    """Print requirements, the tables of all robots, their code coverage, and directed tests.
 
-    With `foremost`, those requirements alone are shown, and all else in short.
+    With `foremost`, only those requirements are shown, and everything else in short form.
     """
     for name, text in next(iter(summary.robots.values())).requirements.items():
         if not foremost or name in foremost:
@@ -105,7 +105,7 @@ def _print_in_short(
 
 
 def _together(figures: RobotSummary) -> dict[str, Counter[Verdict]]:
-    """Verdicts by requirement, under all strategies, but those that their tests know."""
+    """Verdicts by requirement under all strategies, without those that directed tests expected."""
     counts: dict[str, Counter[Verdict]] = {name: Counter() for name in figures.requirements}
     for strategy in figures.strategies.values():
         for name, verdicts in strategy.counts.items():
@@ -130,7 +130,7 @@ def _print_verdicts(tables: RobotTables, printer: Printer) -> None:
 def _print_shares(
     heads: Sequence[str], columns: Sequence[Mapping[str, BlockCoverage]], printer: Printer
 ) -> None:
-    """Print the share of each block that ran under each strategy."""
+    """Print the covered share of each block under each strategy."""
     split = [name.rpartition("-") if len(name) > _WIDE else ("", "", name) for name in heads]
     over = [before for before, _, _ in split] if any(sign for _, sign, _ in split) else []
     rows: list[Sequence[Cell]] = [
@@ -164,7 +164,7 @@ def _known(figures: RobotSummary) -> Iterator[str]:
 TESTS = "tests"
 TEMPLATES = "templates"
 RUNS = "runs"
-"""Folders of a campaign's folder."""
+"""Subfolders of a campaign's folder."""
 
 
 def write_tables(
@@ -185,7 +185,7 @@ def write_tables(
 
 
 def write_tests(folder: Path, results: Results) -> None:
-    """Write every test that was played to `tests/`, each to be replayed alone."""
+    """Write every played test to `tests/`, from where each can be replayed."""
     tests = folder / TESTS
     tests.mkdir(parents=True, exist_ok=True)
     for test in {played.job.test.name: played.job.test for played in results.played}.values():
@@ -193,7 +193,7 @@ def write_tests(folder: Path, results: Results) -> None:
 
 
 def dated_files(folder: Path) -> dict[Path, int]:
-    """The files in folders of a campaign's folder, each with the instant of its last change."""
+    """The files in subfolders of a campaign's folder, each with its modification time in ns."""
     return {
         path: path.stat().st_mtime_ns
         for part in (TESTS, TEMPLATES, RUNS)
@@ -203,9 +203,14 @@ def dated_files(folder: Path) -> dict[Path, int]:
 
 
 def left_over(folder: Path, before: Mapping[Path, int]) -> str:
-    """Say which files of an earlier campaign remain next to those of this one; empty if none does.
+    """A warning that files of an earlier campaign remain next to those of this one.
 
-    `before` is what `dated_files` said before this one was written.
+    Args:
+        folder: the campaign's folder.
+        before: the result of `dated_files` before this campaign was written.
+
+    Returns:
+        The warning; empty if no such file remains.
     """
     now = dated_files(folder)
     left = (path for path, at in before.items() if now.get(path) == at)
@@ -223,9 +228,9 @@ def typed(program: str, words: Iterable[object]) -> str:
     """A command as one line for a shell.
 
     Args:
-        program: an installed one; one of an environment that is not activated is named by its
-            path. Empty: the Python script that was started.
-        words: behind it.
+        program: an installed program; it is named by its path if its environment is not activated.
+            Empty: the Python script that was started.
+        words: its arguments.
 
     >>> typed("handover", ["replay", "a b.json"]).endswith("handover replay 'a b.json'")
     True

@@ -1,4 +1,4 @@
-"""Coverage of states, transitions and code, with coverage.py; as files for other tools.
+"""Coverage of states and transitions, and of code, by coverage.py; its export for other tools.
 
 Sources: geninfo(1) of LCOV 2, section FILES; coverage-04.dtd of Cobertura.
 """
@@ -37,9 +37,10 @@ if TYPE_CHECKING:
 
 
 class Meter:
-    """One measurement for many tests, one after the other, each with its own context.
+    """Measures the code coverage of many tests, one after the other.
 
-    It is a context, to be entered again and again, which measures while it is entered.
+    Use it as a context manager: it measures while entered, and can be entered repeatedly. Each test
+    has its own context of coverage.py.
 
     Raises:
         RvmonError: coverage.py is not installed.
@@ -51,7 +52,7 @@ class Meter:
         self._tests = 0
 
     def begin(self) -> None:
-        """From now on, what runs belongs to a new test."""
+        """Start a new test: all code measured from now on belongs to it."""
         self._tests += 1
         self._coverage.start()
         # Coverage.py switches contexts only while it measures.
@@ -65,7 +66,7 @@ class Meter:
         self._coverage.stop()
 
     def hits(self) -> dict[str, dict[str, Hit]]:
-        """The statements, and branches, that this test ran: by group of the model and item."""
+        """The statements and branches that the current test ran, by group and item."""
         data = self._coverage.get_data()
         data.set_query_context(str(self._tests))
         ran: dict[str, set[str]] = {}
@@ -86,7 +87,7 @@ class Meter:
 
     @cached_property
     def groups(self) -> list[tuple[Group, str]]:
-        """The groups to cover, each with the file of its block."""
+        """The groups to cover, each with the path of its block's file."""
         groups = []
         for block in self._code.blocks:
             file, lines = self._files[block.path], block.lines
@@ -105,10 +106,10 @@ class Meter:
 
 
 def code_groups(code: Code) -> list[Group]:
-    """The groups to cover: statements of each block, and branches where it has some.
+    """The groups to cover: the statements of each block, and its branches if it has any.
 
     Raises:
-        RvmonError: coverage.py is not installed, or a file is no Python.
+        RvmonError: coverage.py is not installed, or a file is not Python.
     """
     return [group for group, _ in Meter(code).groups]
 
@@ -124,7 +125,10 @@ def branches_name(block: str) -> str:
 
 
 class _File:
-    """A file as coverage.py sees it: its statements, and the branches from those with several."""
+    """A file as coverage.py sees it: its statements and branches.
+
+    A branch is a pair of lines `(from, to)` whose first line has several possible successors.
+    """
 
     def __init__(self, meter: Coverage, path: str) -> None:
         from coverage.exceptions import CoverageException
@@ -143,11 +147,11 @@ class _File:
         self.branches = {arc for arc in possible if arc[0] in self._branching}
 
     def text(self, line: int) -> str:
-        """A line as it is written; the way out of a function has no line."""
+        """The text of a line; a negative line number is the exit of a function."""
         return self._lines[line - 1].strip() if line > 0 else "exit"
 
     def branches_of(self, arcs: object) -> set[str]:
-        """The names of the branches among the ways that were gone."""
+        """The names of the branches among the arcs that were executed."""
         gone = self._reporter.translate_arcs(arcs)  # type: ignore[arg-type]  # a set of pairs
         return {_arc(*arc) for arc in gone if arc in self.branches}
 
@@ -161,7 +165,7 @@ def _paths(code: Code) -> list[str]:
 
 
 def _coverage(code: Code) -> Coverage:
-    """A fresh measurement of the files, kept in memory, whatever the user's settings."""
+    """A new in-memory measurement that ignores the user's settings."""
     with needed("a campaign that measures code", "coverage"):
         from coverage import Coverage
     paths = _paths(code)
@@ -175,10 +179,10 @@ _ARROW = " → "
 
 
 def measured_groups(campaign: Campaign) -> list[Group]:
-    """The groups to cover; a group of which nothing is declared has no items.
+    """The groups of states, transitions and code; one for which nothing is declared has no items.
 
     Raises:
-        RvmonError: code is measured, and coverage.py is not installed, or a file is no Python.
+        RvmonError: code is measured, but coverage.py is not installed, or a file is not Python.
     """
     declared = campaign.transitions
     transitions = permutations(campaign.states, 2) if declared is None else declared
@@ -195,7 +199,7 @@ def measured_groups(campaign: Campaign) -> list[Group]:
 
 
 def _pairs(transitions: Sequence[tuple[str, str]]) -> list[str]:
-    """Two transitions one after the other."""
+    """The names of all pairs of transitions that can follow each other."""
     return [
         _ARROW.join((*first, second[1]))
         for first in transitions
@@ -211,7 +215,7 @@ def source_and_target(transition: str) -> tuple[str, str]:
 
 
 def hits_of_states(run: Run) -> dict[str, Mapping[str, Hit]]:
-    """The hits of states and transitions: how often, and when first."""
+    """The hits of states, transitions and pairs of them, each with its count and first instant."""
     names = [state for _, state in run.states]
     hits = {STATES: _counted(run.states)}
     for group, length in ((TRANSITIONS, 2), (PAIRS, 3)):
@@ -233,19 +237,19 @@ def _counted(happened: Iterable[tuple[int, str]]) -> dict[str, Hit]:
 
 @dataclass(slots=True)
 class _Counts:
-    """Tests that ran each line, and that went each way on from a line with several."""
+    """The numbers of tests that ran the lines of a file, and that took its branches."""
 
-    lines: dict[int, int] = field(default_factory=dict)
-    ways: dict[int, list[int]] = field(default_factory=dict)
+    lines: dict[int, int] = field(default_factory=dict)  # tests by line
+    ways: dict[int, list[int]] = field(default_factory=dict)  # tests per branch, by line
 
 
 def lcov(code: Code, model: Model, hits: Hits) -> str:
-    """The blocks of code as an LCOV tracefile; a count is the number of tests.
+    """The coverage of the blocks as an LCOV tracefile; its counts are numbers of tests.
 
     Args:
         code: the measured code.
-        model: with its statements and branches; those without a goal are left out.
-        hits: of all tests.
+        model: the coverage model; statements and branches that are not goals are left out.
+        hits: the merged hits of all tests.
     """
     lines = []
     for path, file in _counts_by_path(code, model, hits).items():
@@ -265,7 +269,7 @@ def lcov(code: Code, model: Model, hits: Hits) -> str:
 
 
 def cobertura(code: Code, model: Model, hits: Hits) -> str:
-    """The same as `lcov` as Cobertura's XML."""
+    """The same as `lcov`, in the XML format of Cobertura."""
     files = _counts_by_path(code, model, hits)
     root = ET.Element("coverage", _rates([*files.values()], whole=True))
     root.set("version", rvmon.__version__)
@@ -295,7 +299,7 @@ def cobertura(code: Code, model: Model, hits: Hits) -> str:
 
 
 def _counts_by_path(code: Code, model: Model, hits: Hits) -> Mapping[str, _Counts]:
-    """By path, as people would write it here."""
+    """The counts of each file, by its path relative to the working directory."""
     files: dict[str, _Counts] = {}
     for block in code.blocks:
         path = os.path.relpath(block.path)

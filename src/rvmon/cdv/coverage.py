@@ -1,4 +1,4 @@
-"""The coverage of a campaign's tests, collected while they are played, and stored."""
+"""The coverage model of a campaign, and the databases and pages of its tests' coverage."""
 
 from __future__ import annotations
 
@@ -29,24 +29,24 @@ if TYPE_CHECKING:
 class CoverageFigures:
     """The coverage of one robot's tests."""
 
-    page: str  # its address in the campaign's folder
-    share: float  # of the model, from 0 to 1
-    holes: int  # items that were not hit as often as they have to be
-    illegal: tuple[str, ...]  # hits of items that must not be hit
+    page: str  # address of the coverage page, relative to the campaign's folder
+    share: float  # of the model that is covered, from 0 to 1
+    holes: int  # number of items with fewer hits than their goal
+    illegal: tuple[str, ...]  # illegal items that were hit
 
 
 DATABASE = "coverage.db"
-"""The file in a campaign's folder; of several robots, each has one in a folder of its name."""
+"""The file in a campaign's folder; with several robots, in a subfolder named after each robot."""
 
 LCOV, COBERTURA = "code.lcov", "cobertura.xml"
-"""The same of the code alone, beside it."""
+"""Files next to it with the coverage of the code alone, for other tools."""
 
 
 def coverage_model(campaign: Campaign, robot: str) -> Model:
-    """All that the tests of a robot are to show.
+    """The coverage model of a robot: states, transitions and code, and that of its specifications.
 
     Raises:
-        RvmonError: two of its specifications call something the same.
+        RvmonError: two groups have the same name.
     """
     groups = measured_groups(campaign)
     for coverage in campaign.robots[robot].coverages:
@@ -61,11 +61,10 @@ def coverage_model(campaign: Campaign, robot: str) -> Model:
 
 
 def covered_share(campaign: Campaign, robot: str, played: Sequence[Played]) -> float:
-    """The share of what tests of a robot can show that some of them have shown, from 0 to 1.
+    """The share of a robot's reachable coverage model that some tests covered, from 0 to 1.
 
     Raises:
         RvmonError: see `coverage_model`.
-        UnknownNameError: the campaign calls unreachable what there is not.
     """
     model = coverage_model(campaign, robot)
     out = unreachable_items(campaign, robot, model)
@@ -73,7 +72,7 @@ def covered_share(campaign: Campaign, robot: str, played: Sequence[Played]) -> f
 
 
 def write_database(path: Path, robot: str, played: Sequence[Played], results: Results) -> None:
-    """Write the database of those of a robot's tests that count; one that is there is replaced.
+    """Write the coverage database of some tests of a robot, replacing an existing file.
 
     Raises:
         RvmonError: the file cannot be written, or see `coverage_model`.
@@ -110,7 +109,7 @@ def write_database(path: Path, robot: str, played: Sequence[Played], results: Re
 
 
 def _with_the_rest(model: Model, played: Sequence[Played]) -> Model:
-    """A model with what was seen that nobody declared: it is shown, and is no goal."""
+    """A model with the undeclared items that were hit; these are shown, but are not goals."""
     groups: dict[str, Group] = dict(model.groups)
     for test_run in played:
         for name, items in test_run.outcome.hits.items():
@@ -124,12 +123,15 @@ def _with_the_rest(model: Model, played: Sequence[Played]) -> Model:
 def write_coverage(
     folder: Path, results: Results, pages: Mapping[tuple[str, str], str]
 ) -> dict[str, CoverageFigures]:
-    """Write the database of each robot's tests, and a page beside it; the code for other tools.
+    """Write each robot's coverage database and page, and its code coverage for other tools.
 
-    `pages` has the addresses of pages of runs.
+    Args:
+        folder: the campaign's folder.
+        results: of the campaign; tests with a planted fault are left out.
+        pages: addresses of the pages of runs, relative to `folder`, by robot and test.
 
     Raises:
-        RvmonError: a file cannot be written.
+        RvmonError: a file cannot be written, or see `coverage_model`.
     """
     campaign = results.plan.campaign
     figures = {}

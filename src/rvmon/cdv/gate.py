@@ -1,4 +1,4 @@
-"""Is a campaign as expected? What is known to fail, fails; nothing else does. As JUnit XML, too."""
+"""The gate of a campaign: it compares all results with what was expected; also as JUnit XML."""
 
 from __future__ import annotations
 
@@ -28,23 +28,23 @@ class TestJudgement:
 
     __test__ = False
 
-    played: Played  # the test
-    wrong: tuple[str, ...]  # the differences from the expectation, a sentence each
-    known: tuple[str, ...]  # failures that are, each with the reason for which it is accepted
+    played: Played
+    wrong: tuple[str, ...]  # differences from the expectation, a sentence each
+    known: tuple[str, ...]  # expected failures that occurred, each with the reason to accept it
 
 
 @dataclass(frozen=True, slots=True)
 class CampaignJudgement:
     """A campaign, compared with what was expected of it."""
 
-    tests: tuple[TestJudgement, ...]  # each by itself, in the order of the plan
-    # by demand on all tests together, in words, the fault of it; "" if there is none
+    tests: tuple[TestJudgement, ...]  # in the order of the plan
+    # Conditions on all tests together, in words, each with its violation; "" if it holds.
     checks: Mapping[str, str] = field(default_factory=dict)
-    cut_short: str = ""  # why not all tests were played; empty if they were
+    cut_short: str = ""  # why not all tests were played; empty if all were
 
     @property
     def wrong(self) -> list[str]:
-        """All that is not as expected."""
+        """All differences from what was expected."""
         of_tests = [
             f"{test.played.job.test.name} ({test.played.job.robot}): {what}"
             for test in self.tests
@@ -54,7 +54,7 @@ class CampaignJudgement:
 
     @property
     def known(self) -> dict[str, int]:
-        """The failures that were expected, in words, each with the number of its tests."""
+        """The expected failures that occurred, in words, each with its number of tests."""
         return dict(Counter(what for test in self.tests for what in test.known))
 
 
@@ -67,21 +67,23 @@ def judge_campaign(
 ) -> CampaignJudgement:
     """Compare all tests with what was expected of them.
 
-    A test is wrong if a requirement failed that it does not know, and the campaign does not expect,
-    to fail; if a verdict that it knows came out otherwise; if it does not reach what it is made to;
-    if, on the robot as it is, something was
-    hit that must not be, its code crashed, it hung or was lost. So is a hit of what the campaign
-    calls unreachable, by any test. An expected failure that did not
-    occur is wrong as well, unless no test was played in which it could.
+    A test is wrong if it does not have the verdicts that it expects, or does not reach the items
+    that it is made to reach. A test without a planted fault is also wrong if a requirement failed
+    that neither the test nor the campaign expects to fail, or if it hit an illegal item, crashed,
+    hung or was lost.
+
+    The campaign is wrong if a test without a planted fault hit an item that is declared
+    unreachable, or entered a state that the campaign does not list, or if an expected failure (not
+    a `seldom` one) occurred in none of the tests in which it could.
 
     Args:
-        results: of the played tests; of a campaign that was cut short only the tests are judged.
-        requirements: by robot, the ids of those that were judged; none: only endings count.
-        shares: for requirements that must hold in a share of runs, the decision by the tests of
-            each strategy: a single test that fails them is not wrong, a strategy that rejects the
-            share is. With `strict` it is wrong as well that none decides it.
-        strict: verdicts that are inconclusive are wrong as well, unless the test knows them, and so
-            is what the gates of strategies want and their tests did not bring.
+        results: of the campaign; if it was cut short, only the single tests are judged.
+        requirements: the ids of the judged requirements, by robot; none: only endings count.
+        shares: for requirements that must hold in a share of runs, the decision on the tests of
+            each strategy. A single test that fails such a requirement is not wrong, but a strategy
+            that rejects the share is; with `strict`, so is a share that no strategy decides.
+        strict: inconclusive verdicts are wrong too, unless the test expects them or its gate allows
+            them, and so are unmet gates of strategies.
     """
     campaign = results.plan.campaign
     expected = campaign.expected_failures
@@ -110,7 +112,7 @@ def judge_campaign(
 
 
 def _undecided(decisions: Mapping[str, Decision], *, strict: bool) -> str:
-    """The complaint about a share of runs; empty if it holds, or need not be decided."""
+    """What is wrong with a share of runs; empty if it holds, or is undecided and not `strict`."""
     found = decisions.items()
     rejected = [f"under {name} it {one}" for name, one in found if one.holds is False]
     if strict and not rejected and not any(one.holds for _, one in found):
@@ -127,8 +129,11 @@ def judge_test(
 ) -> TestJudgement:
     """Compare one test with what was expected of it, as `judge_campaign` does with all.
 
-    Of `shared` requirements not this test decides, but all together. With a gate, verdicts that are
-    inconclusive are wrong, unless it or the test knows them.
+    Args:
+        played: the test.
+        expected: the known failures of the campaign.
+        shared: requirements that must hold in a share of runs, which no single test decides.
+        gate: if given, inconclusive verdicts are wrong unless the gate or the test allows them.
     """
     test, outcome = played.job.test, played.outcome
     wrong: list[str] = []
@@ -143,7 +148,7 @@ def judge_test(
         wrong.extend(outcome.illegal)
     for name, verdict in outcome.verdicts.items():
         if name in test.expected or test.mutation is not None:
-            continue  # a planted fault says nothing about the robot
+            continue  # compared above; of a test with a planted fault, nothing else is expected
         if name in shared:
             continue
         if verdict is Verdict.FAIL:
@@ -182,7 +187,7 @@ def _named(why: ExpectedFailure) -> str:
 
 
 def _contradicted(results: Results) -> Iterator[tuple[str, str]]:
-    """Whether what the campaign calls unreachable was not hit."""
+    """Check that no test hit an item that is declared unreachable."""
     campaign = results.plan.campaign
     if not campaign.closing.unreachable:
         return
@@ -190,7 +195,7 @@ def _contradicted(results: Results) -> Iterator[tuple[str, str]]:
         out = unreachable_items(campaign, robot, coverage_model(campaign, robot))
         first = {
             f"{group}: {item}": test_run.job.test.name
-            # Reversed, so that of several tests the first stays.
+            # Reversed, so that the first of several tests is the one named.
             for test_run in reversed(results.counting(robot))
             for group, items in test_run.outcome.hits.items()
             for item in items
@@ -201,7 +206,7 @@ def _contradicted(results: Results) -> Iterator[tuple[str, str]]:
 
 
 def _unlisted(results: Results) -> Iterator[tuple[str, str]]:
-    """The states that were entered, and that the campaign, which lists some, does not."""
+    """Check that no state was entered that the campaign does not list, if it lists any."""
     campaign = results.plan.campaign
     for robot in campaign.robots if campaign.states else ():
         first = {
@@ -215,7 +220,7 @@ def _unlisted(results: Results) -> Iterator[tuple[str, str]]:
 
 
 def _gate_name(campaign: Campaign, played: Played) -> str:
-    """The strategy whose gate a test is compared with; empty: that of all which have none."""
+    """The name of the gate for a test: its strategy, or empty if the strategy has no gate."""
     strategy = played.job.test.strategy
     return strategy if strategy in campaign.gates else ""
 
@@ -223,7 +228,7 @@ def _gate_name(campaign: Campaign, played: Played) -> str:
 def _gated(
     results: Results, requirements: Mapping[str, Sequence[str]]
 ) -> Iterator[tuple[str, str]]:
-    """The conditions of gates on all tests together, each with its complaint."""
+    """The conditions of gates on all their tests together, each with its violation."""
     campaign = results.plan.campaign
     groups: dict[tuple[str, str], list[Played]] = {}
     for robot in campaign.robots:
@@ -247,10 +252,11 @@ def _gated(
 
 
 def refuse_unknown(campaign: Campaign) -> None:
-    """See that all that failures are expected of, and gates name, exists; tests come later.
+    """Check that the names in expected failures and gates exist; test names cannot be checked yet.
 
     Raises:
-        UnknownNameError: a failure is expected of what there is not, or a gate names it.
+        UnknownNameError: an expected failure or a gate names an unknown requirement, strategy or
+            robot.
         SpecError: the requirements of a robot are wrong.
     """
     specs = campaign.requirements.values()
@@ -277,10 +283,10 @@ def refuse_unknown(campaign: Campaign) -> None:
 
 
 def junit_xml(campaign: str, judgement: CampaignJudgement) -> str:
-    """A test suite per robot and strategy, a test case per test; one suite for all together.
+    """The judgement as JUnit XML: a suite per robot and strategy, and one for the whole campaign.
 
-    What is not as expected is a failure; a test that crashed, hung or was lost, and that not all
-    were played, an error; one that fails as expected is skipped, with the reason.
+    A test that is wrong is a failure, or an error if it crashed, hung or was lost. A test that
+    fails as expected is skipped, with the reason. A campaign that was cut short has an error.
     """
     root = ET.Element("testsuites", name=shown(campaign))
     groups: dict[str, list[TestJudgement]] = {}

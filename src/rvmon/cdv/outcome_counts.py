@@ -1,4 +1,4 @@
-"""Outcomes of tests become the figures of a campaign."""
+"""Compute the figures of a campaign from the outcomes of its tests."""
 
 from __future__ import annotations
 
@@ -19,7 +19,12 @@ from rvmon.verdicts import Verdict
 
 
 def summarise(results: Results, specs: Mapping[str, Spec]) -> campaign_summary.CampaignSummary:
-    """Count verdicts, statements, branches, states and transitions; without a spec no verdicts."""
+    """Count verdicts, statements, branches, states and transitions.
+
+    Args:
+        results: of the campaign.
+        specs: the specifications by robot; of a robot without one no verdicts are counted.
+    """
     campaign = results.plan.campaign
     measured = model_of(code_coverage.measured_groups(campaign))
     blocks = [] if campaign.code is None else [block.name for block in campaign.code.blocks]
@@ -73,7 +78,7 @@ def summarise(results: Results, specs: Mapping[str, Spec]) -> campaign_summary.C
 
 
 def _shown(path: str | Path | None) -> str:
-    """A path as people would write it here."""
+    """A path, relative to the working directory if it is below it."""
     here = Path.cwd()
     if path is None or not Path(path).is_relative_to(here):
         return str(path or "")
@@ -125,7 +130,7 @@ def _strategy(
 
 
 def _drawn(requirement: str, played: Sequence[Played]) -> Iterator[Verdict]:
-    """The verdicts of tests that do not know theirs beforehand."""
+    """The verdicts of tests that state no expected one, as directed tests are no random samples."""
     for test_run in played:
         if requirement not in test_run.job.test.expected:
             yield test_run.outcome.verdicts[requirement]
@@ -144,7 +149,7 @@ def _tests_that_hit(group: str, outcomes: Sequence[Outcome]) -> Counter[str]:
 
 
 def _counted(group: Group, outcomes: Sequence[Outcome]) -> dict[str, int]:
-    """The number of tests that hit each item: the wanted items, then the others that were hit."""
+    """The number of tests that hit each item: first all goals, then other items that were hit."""
     return {**dict.fromkeys(_sought(group), 0), **_tests_that_hit(group.name, outcomes)}
 
 
@@ -156,7 +161,7 @@ def _coverage(group: Group, outcomes: Sequence[Outcome]) -> campaign_summary.Blo
 
 
 def _sought(group: Group) -> list[str]:
-    """The items that tests should hit: without the unreachable ones."""
+    """The items that are goals."""
     return [name for name, item in group.items.items() if item.kind is BinKind.GOAL]
 
 

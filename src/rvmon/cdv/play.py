@@ -1,4 +1,4 @@
-"""Play tests, judged and measured: one after the other in a process, a plan on all cores."""
+"""Play, judge and measure tests: one after the other in a process, or a whole plan on all cores."""
 
 from __future__ import annotations
 
@@ -37,13 +37,16 @@ def player(
     control: Callable[[Any], Test | None] | None,
     spool: Path | None = None,
 ) -> Callable[[Job], tuple[Outcome, Outcome | None]]:
-    """A function that plays a job in this process: its outcome, and that of its control.
+    """Make the function that plays a job in this process.
+
+    It returns the outcome of the test, and the outcome of its control if it has one.
 
     Args:
         robots: by name.
         code: the code whose coverage is measured.
         control: makes the control of a test.
-        spool: a folder of this user alone for the recordings, for pages of all runs.
+        spool: a folder for recordings, from which pages are made. They are unpickled, so only this
+            user may have access to it.
 
     Raises:
         RvmonError: a system cannot be made, or the requirements are wrong.
@@ -64,39 +67,38 @@ def player(
 
 
 def spooled(spool: Path, job: Job) -> Path:
-    """The file of what was recorded of a test."""
+    """The file of a test's recording."""
     return spool / f"{job.robot}-{job.test.name}"
 
 
 class Recorded(NamedTuple):
-    """A test that was played, with all that was asked for."""
+    """A played test with its verdicts, its coverage and, if requested, its samples."""
 
-    run: Run  # the report of the system at its end
+    run: Run  # what the system returned
     report: Report  # the verdicts
-    # instants, and what changed or occurred; where they were to be kept
-    samples: Sequence[tuple[int, Values]]
+    samples: Sequence[tuple[int, Values]]  # empty unless they were kept
     hits: Hits  # of the measured items
-    illegal: tuple[str, ...]  # hits that must not be
-    seconds: float  # wall time that it took, with judging
-    cpu_s: float  # processor time of this process that playing it took
+    illegal: tuple[str, ...]  # hits of illegal bins, in words
+    seconds: float  # wall time, including judging
+    cpu_s: float  # processor time of this process while it played
 
     @property
     def verdicts(self) -> Mapping[str, Verdict]:
-        """By requirement."""
+        """The verdicts, by requirement."""
         return self.report.verdicts
 
 
 class Bench:
-    """One robot with all that plays, judges and measures it: one test after the other.
+    """A robot with its system, monitor and coverage measurement; it plays one test after the other.
 
     Args:
-        name: of the robot.
-        robot: itself.
+        name: name of the robot.
+        robot: the robot.
         code: the code whose coverage is measured.
-        covers: whether what its coverage models count is gathered.
+        covers: whether the hits of its coverage models are collected.
 
     Raises:
-        RvmonError: what plays its tests cannot be made; the message says why.
+        RvmonError: the system cannot be made; the message says why.
     """
 
     def __init__(
@@ -109,7 +111,16 @@ class Bench:
         self._marked = code is not None and code.marked
 
     def play(self, test: Test, *, keeps: bool = False, wants_scene: bool = False) -> Recorded:
-        """Play a test; whatever its code raises is its result."""
+        """Play a test; an exception of the robot's code is a result.
+
+        Args:
+            test: the test.
+            keeps: whether the samples are kept.
+            wants_scene: whether the run should have a scene.
+
+        Raises:
+            TestError: the test cannot be played.
+        """
         started, samples = time.perf_counter(), list[tuple[int, Values]]()
         takers: list[Taker] = [self._checker.observe]
         if keeps:
@@ -121,7 +132,7 @@ class Bench:
         marked = measured if self._marked else None
         observer = Observer(takers, code=marked, wants_scene=wants_scene)
         begun = time.process_time()
-        # Measured is all that plays the test, or only what the system marks by `observer.code()`.
+        # Measure all of `play`, or only what the system runs within `observer.code()`.
         with nullcontext() if self._marked else measured:
             run = run_of(self._system, test, observer)
         cpu_s = time.process_time() - begun
@@ -136,20 +147,20 @@ class Bench:
 
 
 def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
-    """Play a test; an exception that comes out ends the run at its last sample.
+    """Play a test; an exception of the system ends the run at its last sample.
 
-    What it prints goes to standard error, as results go to standard output; the working directory
-    is that of before again.
+    Output of the system goes to standard error, as standard output is for results. The working
+    directory is restored afterwards.
 
     Raises:
-        TestError: the test cannot be played, says the system.
+        TestError: the system raises it, as it cannot play the test.
     """
     try:
         with redirect_stdout(sys.stderr), chdir(os.curdir):
             run: object = system.play(test, observer)
     except TestError:
         raise
-    except Exception as error:  # noqa: BLE001 - of whatever kind those of the system are
+    except Exception as error:  # noqa: BLE001 - the system may raise anything
         return Run(observer.last_ns, error=f"{type(error).__name__}: {error}")
     if not isinstance(run, Run):
         return Run(observer.last_ns, error=f"`play` returned {run!r}, which is no Run")
@@ -160,7 +171,7 @@ def run_of(system: System[Any], test: Test, observer: Observer) -> Run:
 
 
 def outcome_of(recorded: Recorded) -> Outcome:
-    """The outcome that a campaign keeps of a finished test."""
+    """The part of a recorded test that a campaign keeps."""
     run, report = recorded.run, recorded.report
     return Outcome(
         verdicts=report.verdicts,
@@ -184,7 +195,7 @@ def _reasons(report: Report) -> dict[str, str]:
 INTERRUPTED = "interrupted"
 
 Progress = Callable[[int], None]
-"""Called with the number of tests that have been finished so far."""
+"""Called with the number of finished tests."""
 
 
 def execute(
@@ -198,20 +209,20 @@ def execute(
 ) -> Results:
     """Play all tests of a plan.
 
-    The results do not depend on the number of processes. A test that takes too long, or ends its
-    process, is a result as any other.
+    The results do not depend on the number of processes. A test that takes too long, or that ends
+    its process, is a result like any other. Ctrl-C ends the campaign with the tests played so far.
 
     Args:
-        plan: of the tests.
-        jobs: processes, or the address of a scheduler of Dask; default: one process per core.
+        plan: the tests.
+        jobs: number of processes, or address of a Dask scheduler; default: one process per core.
         controls: also play the controls of tests.
-        kept: the journal that gets each test as soon as it was played; earlier ones are not played
-            again.
-        progress: called as each test is finished.
+        kept: the journal that stores each test once it is played; tests already in it are not
+            played again.
+        progress: called after each test.
         spool: as for `player`.
 
     Raises:
-        RvmonError: a system cannot be made, or no process be begun.
+        RvmonError: a system cannot be made, or no process can be started.
     """
     tests = plan.jobs() if kept is None else kept.jobs
     known = {} if kept is None else kept.known
@@ -245,14 +256,16 @@ def outcomes(
     controls: bool = True,
     spool: Path | None = None,
 ) -> Generator[tuple[Outcome, Outcome | None], None, None]:
-    """Play tests, in this order; each outcome comes with that of its control. See `execute`.
+    """Play tests and yield, in their order, each outcome with that of its control.
+
+    For the arguments see `execute`.
 
     Raises:
-        RvmonError: a system cannot be made, or no process be begun.
+        RvmonError: a system cannot be made, or no process can be started.
     """
     control = campaign.control.make if campaign.control is not None and controls else None
     for robot in campaign.robots.values():
-        # What is compiled now is not compiled again in each process.
+        # Compile the specifications now, so that each process need not compile them again.
         Checker(robot.requirements, robot.coverages)
     return parallel.execute(
         tests,
@@ -265,7 +278,7 @@ def outcomes(
 
 
 class Waiting(Iterator[Job]):
-    """Tests to be played; there may be more after it was empty, as each batch follows the last."""
+    """A queue of tests to play; it can be refilled after it ran empty, for batches of tests."""
 
     def __init__(self) -> None:
         self.jobs: deque[Job] = deque()
@@ -277,13 +290,13 @@ class Waiting(Iterator[Job]):
 
 
 class PlayerApart:
-    """Plays one test after the other in another process, which is ended if one takes too long.
+    """Plays one test after the other in another process, which is killed if a test takes too long.
 
-    It is begun anew after a test that ended it, or that cannot be played.
+    The process is restarted after a test that ended it or that cannot be played.
 
     Args:
-        campaign: of the tests; its code is not measured.
-        robot: of its robots the one that is tested.
+        campaign: the campaign of the tests; code coverage is not measured.
+        robot: name of the robot to test.
     """
 
     def __init__(self, campaign: Campaign, robot: str) -> None:
@@ -293,11 +306,11 @@ class PlayerApart:
         self._results = self._begun()
 
     def play(self, test: Test) -> Outcome:
-        """The outcome of a test.
+        """Play a test and return its outcome.
 
         Raises:
-            TestError: it cannot be played.
-            RvmonError: the system cannot be made, or the process not be begun.
+            TestError: the test cannot be played.
+            RvmonError: the system cannot be made, or the process cannot be started.
         """
         self._waiting.jobs.append(Job(test, self._robot))
         try:
@@ -315,7 +328,7 @@ class PlayerApart:
 
 
 def _without_result(robots: Mapping[str, Robot], job: Job, ended: Ended) -> tuple[Outcome, None]:
-    """The outcome of a test whose process was ended: nothing is known of it."""
+    """The outcome of a test whose process ended; all its verdicts are inconclusive."""
     ending = Ending.HUNG if ended.timed_out else Ending.LOST
     spec = robots[job.robot].requirements
     verdicts = dict.fromkeys(spec.requirements if spec else (), Verdict.INCONCLUSIVE)

@@ -1,4 +1,4 @@
-"""Tests played again for their pages; a campaign's page with them."""
+"""The pages of a campaign and its tests; tests whose recording was not kept are played again."""
 
 from __future__ import annotations
 
@@ -34,19 +34,19 @@ from rvmon.verdicts import Verdict
 class Replay:
     """A test that was played again."""
 
-    test: Test  # the played test
-    recorded: Recorded  # all that came of it but what it hit, which is not measured
+    test: Test
+    recorded: Recorded  # may lack hits of code and coverage models: a replay measures none
 
     @property
     def judged(self) -> JudgedRun:
-        """The run as its page wants it."""
+        """The run, in the form that its page needs."""
         samples = tuple(Sample(*sample) for sample in self.recorded.samples)
         report = replace(self.recorded.report, trace=self.test.name)
         return JudgedRun(self.test.name, report, samples)
 
 
 def play_again(test: Test, bench: Bench, *, wants_scene: bool = True) -> Replay:
-    """Play one test in this process with its scene recorded: the run that the campaign had."""
+    """Play one test in this process, keeping its samples; it gives the same run as the campaign."""
     return Replay(test, bench.play(test, keeps=True, wants_scene=wants_scene))
 
 
@@ -60,7 +60,17 @@ def replay_page(
     back: str = "",
     smallest: str = "",
 ) -> str:
-    """The page of one test, and of others that a failed attempt can be compared with."""
+    """The page of one test.
+
+    Args:
+        replay: the test, played again.
+        robot: name of the robot.
+        spec: the specification that judged the test.
+        command: the command line that replays it.
+        others: passing runs that a failed attempt can be compared with.
+        back: address of the campaign's page; empty: none.
+        smallest: the command line that shrinks the test; empty: none.
+    """
     facts: list[tuple[str, Child]] = [*_facts(replay, robot, spec)]
     if smallest:
         facts.append(("smallest test that fails alike", e("code", None, smallest)))
@@ -107,12 +117,21 @@ def write_pages(
     progress: Callable[[float], None],
     spool: Path | None = None,
 ) -> list[str]:
-    """Write `report.html`, a page per example to `runs/`, and what was covered.
+    """Write `report.html`, a page per example to `runs/`, and the coverage.
 
-    What was recorded of tests in `spool` is not played again.
+    Args:
+        folder: the campaign's folder.
+        summary: the figures of the campaign.
+        tables: the verdict tables, by robot.
+        results: of the campaign.
+        command: the command line of the campaign.
+        examples: the tests that get a page.
+        jobs: processes; default: one per core.
+        progress: called with the number of written pages.
+        spool: folder of recordings from `player`; tests without one there are played again.
 
     Returns:
-        The tests that came out otherwise when they were played again for their pages.
+        The names of tests whose verdicts differed when they were played again.
     """
     campaign = results.plan.campaign
     (folder / RUNS).mkdir(parents=True, exist_ok=True)
@@ -168,9 +187,9 @@ class _Page:
     """A page to be written."""
 
     job: Job  # the test that it shows
-    command: str  # replays it
-    others: tuple[Job, ...]  # tests that passed what it failed
-    shrink: str  # shrinks it; empty: there is no failure
+    command: str  # the command line that replays it
+    others: tuple[Job, ...]  # runs that a failed attempt is compared with
+    shrink: str  # the command line that shrinks it; empty: it cannot be shrunk, or does not fail
 
 
 def _page_of(played: Played, folder: Path, results: Results) -> _Page:
@@ -190,12 +209,12 @@ def _page_of(played: Played, folder: Path, results: Results) -> _Page:
 def _writer(
     folder: Path, robots: Mapping[str, Robot], specs: Mapping[str, Spec], spool: Path | None
 ) -> Callable[[_Page], Mapping[str, Verdict]]:
-    """A function that writes a page, and returns the verdicts on its test."""
+    """A function that writes a page and returns the verdicts on its test."""
     benches = {name: Bench(name, robots[name]) for name in specs}
     compared: dict[tuple[str, str], JudgedRun] = {}
 
     def compared_with(job: Job) -> JudgedRun:
-        """A run that many pages may compare theirs with: it is kept."""
+        """A run to compare with; it is kept, as many pages may use the same one."""
         key = job.robot, job.test.name
         if key not in compared:
             bench = benches[job.robot]
@@ -222,7 +241,7 @@ def _writer(
 
 
 def _spooled(spool: Path | None, job: Job) -> Replay | None:
-    """The recording made while a test was played; `None`: it was played elsewhere, or before."""
+    """The recording of a test, or `None` if it was played elsewhere or in an earlier session."""
     if spool is None or not (path := spooled(spool, job)).exists():
         return None
     recorded: Recorded = pickle.loads(path.read_bytes())  # noqa: S301 - a folder of this process
@@ -230,7 +249,7 @@ def _spooled(spool: Path | None, job: Job) -> Replay | None:
 
 
 def _address(job: Job) -> str:
-    """The address of a test's page in the folder of the campaign."""
+    """The address of a test's page, relative to the campaign's folder."""
     return f"{RUNS}/{job.robot}-{job.test.name}.html"
 
 

@@ -1,7 +1,7 @@
-"""The journal of an unfinished campaign, in its folder: started again, it goes on from there.
+"""The journal of an unfinished campaign, from which a restarted campaign continues.
 
-The file stays until the campaign's tables and pages are written. Nothing of it is taken if anything
-that outcomes depend on has changed since: tests, requirements, programs.
+It stays in the campaign's folder until tables and pages are written. It is refused if anything that
+outcomes depend on has changed since: tests, requirements or programs.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from rvmon.language.checked.serialise import to_plain
 from rvmon.session import Spec
 
 NAME = "unfinished.journal"
-"""The file in a campaign's folder."""
+"""The name of the file in a campaign's folder."""
 
 _PACKAGES = ("coverage", "msgspec", "numpy")
-"""The packages that can affect any outcome."""
+"""Packages that can affect the outcomes of any campaign."""
 
 
 class _Entry(Struct, frozen=True):
-    """One test that was played, and the seconds that the campaign had taken by then."""
+    """A played test, and the wall time that the campaign had taken by then."""
 
     test: str
     robot: str
@@ -40,23 +40,23 @@ class _Entry(Struct, frozen=True):
 
 
 class _Heading(Struct, frozen=True):
-    """The first entry: a checksum of what outcomes depend on, and what a person can type."""
+    """The first entry: which campaign this is."""
 
-    inputs: str
-    command: str
+    inputs: str  # checksum of everything that outcomes depend on
+    command: str  # the command line of the campaign
 
 
 class Unfinished(journal.Journal, frozen=True):
-    """A campaign that goes on."""
+    """A campaign that can be continued."""
 
     jobs: Sequence[Job] = ()  # in the order of the plan
-    # the outcomes of jobs played before, by test and robot
+    # Jobs that were played before, by test and robot.
     known: Mapping[tuple[str, str], Played] = field(default_factory=dict)
-    seconds: float = 0.0  # their duration
+    seconds: float = 0.0  # wall time that these took
     shard: Shard | None = None  # the part of the campaign; `None`: all
 
     def played(self, one: Played, seconds: float) -> None:
-        """Write down a test, and the seconds that the campaign has taken by now."""
+        """Store a played test, and the wall time that the campaign has taken so far."""
         job = one.job
         self.keep(_Entry(job.test.name, job.robot, one.outcome, one.control, seconds))
 
@@ -64,10 +64,17 @@ class Unfinished(journal.Journal, frozen=True):
 def unfinished(
     folder: Path, plan: Plan, specs: Mapping[str, Spec], command: str, shard: Shard | None = None
 ) -> Unfinished:
-    """A campaign in its folder, from where it was left: a shard, or all with what shards have done.
+    """Open the journal of a campaign, or start one.
+
+    Args:
+        folder: the campaign's folder.
+        plan: the tests.
+        specs: the specifications by robot.
+        command: the command line of the campaign.
+        shard: the part to play; `None`: all tests, using the journals of finished shards.
 
     Raises:
-        RvmonError: what is unfinished there is another campaign.
+        RvmonError: the journal there belongs to another campaign, or cannot be read or written.
     """
     path = folder / NAME if shard is None else shard.name(folder / NAME)
     shards = finished_shards(path) if shard is None else []
@@ -77,7 +84,7 @@ def unfinished(
     known: dict[tuple[str, str], Played] = {}
     seconds = 0.0
     try:
-        # `path` comes last: `entries` and `ordered` are its own behind the loop.
+        # `path` comes last, so that `entries` and `ordered` are its own after the loop.
         for one in (*shards, path):
             left = journal.entries(one)
             entries = [msgspec.json.encode(heading)] if left is None else left
@@ -96,7 +103,7 @@ def unfinished(
 def _in_order(
     entries: Sequence[bytes], places: Mapping[tuple[str, str], int]
 ) -> Iterator[tuple[tuple[str, str], _Entry]]:
-    """The entries up to the first that is out of order: two processes may have written at once."""
+    """The entries up to the first out of order, which appears if two processes write at once."""
     last = -1
     for entry in entries:
         one = msgspec.json.decode(entry, type=_Entry)
@@ -135,7 +142,7 @@ def _inputs(plan: Plan, specs: Mapping[str, Spec]) -> str:
 
 
 def sources_of(campaign: Campaign) -> list[Path]:
-    """The sources of a campaign's outcomes: files and folders that it names, or is defined in."""
+    """The files and folders that outcomes depend on: those named, and those of its definitions."""
     makers = (
         campaign.test,
         *campaign.strategies.values(),

@@ -1,4 +1,4 @@
-"""Does a requirement hold in so many runs? A campaign decides it, with errors that are stated."""
+"""A sequential test of whether a requirement holds in a given share of runs, with known errors."""
 
 from __future__ import annotations
 
@@ -10,27 +10,28 @@ from rvmon.language.checked.specification import RunShare
 from rvmon.verdicts import Verdict
 
 ALPHA = 0.05
-"""The greatest probability that a true share is rejected."""
+"""The largest probability of rejecting a share that holds."""
 
 BETA = 0.05
-"""The greatest probability that a false share is accepted."""
+"""The largest probability of accepting a share that does not hold."""
 
 HALF_WIDTH = 0.05
-"""Half the width of the region of indifference; less where the share is close to 0 or 1."""
+"""Half the width of the indifference region; smaller if the share is close to 0 or 1."""
 
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """The decision of the tests of a strategy on a share of runs."""
+    """The decision on a share of runs, by the tests of a strategy."""
 
     share: RunShare  # the share in question
-    holds: bool | None  # whether it was accepted or rejected; `None`: there were too few tests
-    tests: int  # the number of triggered ones taken until then
-    inconclusive: int  # the number of these that were
-    passed: int  # the number of these that did
-    missing: int  # the least number of further tests, if all of them pass; 0 if it is decided
-    # shares between which nothing is promised; if the true one is outside of them, it is rejected
-    # wrongly with a probability of at most `ALPHA`, and accepted wrongly with one of at most `BETA`
+    holds: bool | None  # accepted or rejected; `None`: there were too few tests to decide
+    tests: int  # triggered tests up to the decision
+    inconclusive: int  # how many of these were inconclusive
+    passed: int  # how many of these passed
+    # The least number of further tests for acceptance, if all go well; 0 if it is decided.
+    missing: int
+    # The indifference region. If the true share lies outside of it, a wrong rejection has a
+    # probability of at most `ALPHA`, and a wrong acceptance of at most `BETA`.
     indifference: tuple[float, float]
 
     def __str__(self) -> str:
@@ -44,13 +45,14 @@ class Decision:
 
 
 def decide(share: RunShare, verdicts: Iterable[Verdict]) -> Decision:
-    """Take tests one by one until the share is accepted or rejected: Wald's sequential test.
+    """Decide on a share by Wald's sequential probability ratio test, taking verdicts one by one.
 
-    A test that was not triggered says nothing. One that is inconclusive counts as failed for what
-    its pass would favour, and as passed for what its failure would: the errors are kept however it
-    would have ended. The limits are those that keep them whenever one stops, 1/α and β.
+    Tests that were not triggered are ignored. For acceptance, an inconclusive verdict counts as the
+    unfavourable outcome, and for rejection as the favourable one, so the error bounds hold however
+    the test would have ended. The limits of the likelihood ratio are 1/α and β, which keep the
+    bounds whenever the test stops.
 
-    The share is above 0 and below 1; the tests are drawn independently, in the order of the plan.
+    The share must be above 0 and below 1, and the tests be drawn independently.
 
     Source: Wald, Sequential Tests of Statistical Hypotheses, Annals of Mathematical Statistics
     16(2), 1945, sections 3 and 5.3.
@@ -67,7 +69,8 @@ def decide(share: RunShare, verdicts: Iterable[Verdict]) -> Decision:
     good, bad = (high, low) if share.at_least else (low, high)
     ratios = {Verdict.PASS: log(bad / good), Verdict.FAIL: log((1 - bad) / (1 - good))}
     best, worst = min(ratios.values()), max(ratios.values())
-    # Logarithms of likelihoods, if what is inconclusive had gone well, or ill.
+    # Log-likelihood ratios of "does not hold" to "holds", as if each inconclusive test had gone
+    # well, or badly. The share is accepted by the latter and rejected by the former.
     favourable = unfavourable = 0.0
     tests = inconclusive = passed = 0
     holds = None
@@ -87,7 +90,7 @@ def decide(share: RunShare, verdicts: Iterable[Verdict]) -> Decision:
 
 
 def errors_text(decision: Decision) -> str:
-    """The error probabilities of a decision, in a sentence.
+    """The error probability of a decision, in words.
 
     >>> errors_text(decide(RunShare(at_least=True, percent=95.0), []))
     'wrong with a probability of 5 % at most, unless the true share is between 92.5 and 97.5 %'

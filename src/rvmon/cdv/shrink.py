@@ -1,4 +1,4 @@
-"""From a test that fails to a smallest one that fails alike, kept as a regression test."""
+"""Shrink a failing test to a smallest one with the same failure, and save a regression test."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from rvmon.files import write_whole
 from rvmon.verdicts import Verdict
 
 MOST = 2_000
-"""Tests that are played at most, to shrink one."""
+"""The most tests that are played to shrink one."""
 
 _ENDS = {
     Ending.COMPLETED: "completes",
@@ -38,14 +38,14 @@ _Test = TypeVar("_Test", bound=Test)
 
 @dataclass(frozen=True, slots=True)
 class Failure:
-    """The failure of a run, which the run of a smaller test has to show as well."""
+    """The failure of a run, which the run of a smaller test must show as well."""
 
-    requirement: str  # the failed requirement; empty: none, but the run does not complete
-    ending: Ending = Ending.COMPLETED  # the way the run ends, where no requirement is named
-    error: str = ""  # the kind of exception that the code raised, where it crashed
+    requirement: str  # the failed requirement; empty: the run does not complete
+    ending: Ending = Ending.COMPLETED  # how the run ends, if no requirement is named
+    error: str = ""  # the type of exception that the code raised, if it crashed
 
     def is_of(self, outcome: Outcome) -> bool:
-        """Whether a run fails in this way."""
+        """Whether a run has this failure."""
         if self.requirement:
             return outcome.verdicts.get(self.requirement) is Verdict.FAIL
         return outcome.ending is self.ending and _kind(outcome) == self.error
@@ -62,11 +62,11 @@ class Shrunk(Generic[_Test]):
 
     test: _Test  # the smallest one that was found
     outcome: Outcome  # of its run
-    failure: Failure  # in common with the original test
-    tried: int  # tests that were played
-    seconds: float  # wall time that it took
-    # whether no single removal and no single simplification of the test's own type fails alike;
-    # `False` if it was interrupted, or took too many tests
+    failure: Failure  # the failure it shares with the original test
+    tried: int  # number of played tests
+    seconds: float  # wall time
+    # Whether every single removal, and every variant from `Test.simpler`, loses the failure;
+    # `False` if the search was interrupted or took too many tests.
     is_minimal: bool
 
 
@@ -80,21 +80,21 @@ def shrink(
 ) -> Shrunk[_Test] | None:
     """Shrink a test; `None` if its run does not fail.
 
-    A run that does not complete is shrunk to one that ends in the same way, any other to one that
-    fails the same requirement, at whatever instant. Ctrl-C ends the search with what was found.
-    It costs about as many tests as the test has parts and values.
+    A run that does not complete is shrunk to one that ends in the same way; any other run to one
+    that fails the same requirement, at any instant. Ctrl-C ends the search with the smallest test
+    found so far. Typically about as many tests are played as the test has parts and values.
 
     Args:
-        test: the failing test; its type says what is `removable`, and what is `simpler`.
+        test: the failing test; its type defines `removable` and `simpler`.
         outcome: of its run.
-        play: plays a test; the same test is to give the same run.
-        requirement: the one that has to fail; default: as the run ended, or the first that fails in
-            it, of those that the test knows to fail if one does.
-        most: tests that are played at most.
+        play: plays a test; the same test must give the same run.
+        requirement: the requirement that must fail. Default: the ending if the run did not
+            complete, else the first failed requirement, preferring those that the test expects to
+            fail.
+        most: the most tests that are played.
 
     Raises:
-        UnknownNameError: the requirement, or a field that the test's type calls removable, does
-            not exist.
+        UnknownNameError: the requirement, or a field in the type's `removable`, does not exist.
     """
     if requirement is not None and requirement not in outcome.verdicts:
         there_are = ", ".join(outcome.verdicts)
@@ -115,7 +115,8 @@ def failure_of(
 ) -> Failure | None:
     """The failure of a run, or of a requirement in it; `None` if there is none.
 
-    By default it is how the run ended, or the first requirement that fails, the known ones first.
+    By default it is the ending if the run did not complete, else the first failed requirement,
+    those in `known` first.
     """
     if requirement is None and outcome.ending is not Ending.COMPLETED:
         return Failure("", outcome.ending, _kind(outcome))
@@ -126,7 +127,7 @@ def failure_of(
 
 @dataclass(slots=True)
 class _Search(Generic[_Test]):
-    """Takes away what can be, first large pieces, then single ones, then simplifies values.
+    """Removes large pieces first, then single elements, then simplifies values.
 
     Source: Zeller and Hildebrandt, Simplifying and Isolating Failure-Inducing Input, IEEE TSE
     28(2), 2002, section 3 (`ddmin`; of the two tests of a halving one is the other's complement,
@@ -137,9 +138,9 @@ class _Search(Generic[_Test]):
     outcome: Outcome  # of its run
     play: Callable[[_Test], Outcome]
     failure: Failure
-    most: int  # tests that are played
-    tried: int = 0
-    seen: set[bytes] = field(default_factory=set)
+    most: int  # the most tests to play
+    tried: int = 0  # number of played tests
+    seen: set[bytes] = field(default_factory=set)  # tests considered so far, as JSON
 
     def __post_init__(self) -> None:
         self.seen.add(to_json(self.test))
@@ -152,7 +153,7 @@ class _Search(Generic[_Test]):
                 )
 
     def run(self) -> bool:
-        """Go on until nothing can be taken away or simplified; `False` if it was ended before."""
+        """Search until nothing more can be removed or simplified; `False` if cut short."""
         try:
             while True:
                 for name in self.test.removable:
@@ -163,7 +164,7 @@ class _Search(Generic[_Test]):
             return False
 
     def _remove(self, name: str) -> None:
-        """Take parts of a sequence away; at the end none can be by itself."""
+        """Remove elements of a sequence field until no single one can be removed."""
         size = len(getattr(self.test, name))
         while size:
             start = 0
@@ -174,18 +175,18 @@ class _Search(Generic[_Test]):
                     is_smaller = True
                 else:
                     start += size
-            # Single parts are tried anew as long as one goes: without it others may go, too.
+            # Try single elements again as long as one was removed: others may depend on it.
             size = (size + 1) // 2 if size > 1 else int(is_smaller)
 
     def _simplify(self) -> bool:
-        """Simplify values until none can be by itself; whether one could."""
+        """Simplify values until no single one can be simplified; return whether any was."""
         is_simpler = False
         while any(self._fails(candidate) for candidate in self.test.simpler()):
             is_simpler = True
         return is_simpler
 
     def _fails(self, test: _Test) -> bool:
-        """Whether a test that was not played yet fails alike; then it is the one to go on with."""
+        """Whether a test not tried before has the failure; if so, continue from it."""
         text = to_json(test)
         if text in self.seen:
             return False
@@ -196,7 +197,7 @@ class _Search(Generic[_Test]):
             checked = from_json(text, type(test))
             self.tried += 1
             outcome = self.play(checked)
-        except TestError:  # no such test can be made, or be played
+        except TestError:  # the candidate is not valid, or cannot be played
             return False
         if self.failure.is_of(outcome):
             self.test, self.outcome = checked, outcome
@@ -205,11 +206,11 @@ class _Search(Generic[_Test]):
 
 
 class _EnoughError(Exception):
-    """The most tests allowed were played."""
+    """The budget of tests is used up."""
 
 
 def _kind(outcome: Outcome) -> str:
-    """The kind of exception that code raised: what stands before the colon."""
+    """The type of exception that the code raised: the part of the error before the colon."""
     if outcome.ending is not Ending.CRASHED:
         return ""
     return (outcome.error or "").partition(":")[0]
@@ -232,10 +233,11 @@ def test_{function}():
 
 
 def regression_test(campaign: Campaign, job: Job, shrunk: Shrunk[Test]) -> Test:
-    """The smallest test, by a name of its own, with what is to come out.
+    """The smallest test, with a name of its own and its expected verdicts.
 
-    A test that is made to fail, or has a fault planted into its robot, is to fail again: it finds
-    the fault. Any other is to pass: it fails until the robot is fixed.
+    If the original test was made to fail, or has a planted fault, the regression test expects the
+    failure again, as it must find the fault. Any other expects a pass, so it fails until the robot
+    is fixed.
     """
     test, failure = job.test, shrunk.failure
     finds = test.mutation is not None or test.expected.get(failure.requirement) == "F"
@@ -256,7 +258,7 @@ def regression_test(campaign: Campaign, job: Job, shrunk: Shrunk[Test]) -> Test:
 
 
 def small_name(test: Test) -> str:
-    """The name of the smallest test that fails like this one."""
+    """The name for the smallest test with the failure of this one."""
     return f"{test.name}-small"
 
 
@@ -278,13 +280,13 @@ def save_regression(campaign: Campaign, test: Test, folder: Path) -> tuple[Path,
 
 
 def removed(before: Test, after: Test) -> str:
-    """The parts that are left of a test, in words."""
+    """How many elements of each removable field are left after shrinking, in words."""
     fields = ((name, getattr(before, name), getattr(after, name)) for name in before.removable)
     return ", ".join(f"{len(new)} of {len(old)} {name}" for name, old, new in fields)
 
 
 def _command(program: str, folder: Path) -> str:
-    """The command line of the campaign, as Python in a file of that folder."""
+    """The campaign's program as a Python expression, for a file in that folder."""
     if program:
         return f"Path(sys.executable).with_name({json.dumps(program)})"
     script = os.path.relpath(sys.argv[0], folder)

@@ -1,4 +1,4 @@
-"""The interface of a system under test: its code, a test that it plays, reports that are judged."""
+"""The interface of a system under test: its measured code, playing a test, judging its samples."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 COMMON = "common"
-"""The block of what has no other."""
+"""The block of all functions that no other block names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Block:
     Attributes:
         name: unique in a campaign.
         path: of the source file.
-        lines: from 1 on; those without a statement count for nothing.
+        lines: line numbers from 1; lines without a statement are ignored.
     """
 
     name: str
@@ -49,12 +49,12 @@ class Code:
     Attributes:
         blocks: in the order in which they are shown.
         branches: whether branches are measured as well as statements.
-        marked: only what runs within `observer.code()` is measured, so that a simulation around the
-            code under test is not slowed down; else all of `play` is.
+        marked: measure only what runs within `observer.code()`, so that a simulation around the
+            code under test is not slowed down; otherwise all of `play` is measured.
         kind: the word for a block, in the singular.
-        constants: by path of a file, names at its top whose values are the code's numbers: they are
-            mutated as its functions are, and not measured.
-        equivalent: a TOML file of mutants that change no behaviour, each with the argument.
+        constants: by file path, names of module-level constants. They are mutated like functions,
+            but not measured.
+        equivalent: a TOML file of mutants that do not change the behaviour, each with an argument.
     """
 
     blocks: Sequence[Block]
@@ -65,10 +65,10 @@ class Code:
     equivalent: str | Path | None = None
 
     def __post_init__(self) -> None:
-        """See that each block can be told from the others.
+        """Check that block names are unique.
 
         Raises:
-            RvmonError: two have one name, as functions of two files may.
+            RvmonError: two blocks have the same name, for example functions of two files.
         """
         named = {block.name: block for block in self.blocks}
         for block in self.blocks:
@@ -80,16 +80,16 @@ class Code:
 
 
 def blocks_of(path: str | Path, names: Mapping[str, str] | None = None) -> tuple[Block, ...]:
-    """The functions of a file as blocks, without the lines that define them.
+    """The functions of a file as blocks, without their `def` lines.
 
     Args:
-        path: of a Python file, which is read and not run.
-        names: the block of each function, as `{"Base.brake": "braking"}`; functions of one block
-            count together, those that are left out are `common`. Default: each for itself.
+        path: of a Python file, which is parsed but not run.
+        names: the block of each function, as in `{"Base.brake": "braking"}`. Functions may share a
+            block; functions left out belong to `common`. Default: one block per function.
 
     Raises:
         UnknownNameError: the file has no such function.
-        RvmonError: it cannot be read, or is no Python.
+        RvmonError: the file cannot be read, or is not Python.
     """
     try:
         tree = ast.parse(Path(path).read_bytes(), filename=str(path))
@@ -106,13 +106,13 @@ def blocks_of(path: str | Path, names: Mapping[str, str] | None = None) -> tuple
     blocks: dict[str, set[int]] = {name: set() for name in (names or {}).values()}
     for name, lines in functions.items():
         blocks.setdefault(name if names is None else names.get(name, COMMON), set()).update(lines)
-    # What Python loads has this very path: that of a link is another.
+    # Not resolved: Python loads modules under this path, even if it is a link.
     file = str(Path(path).absolute())
     return tuple(Block(name, file, frozenset(lines)) for name, lines in blocks.items())
 
 
 def _functions(tree: ast.AST, prefix: str) -> Iterator[tuple[str, range]]:
-    """Functions and methods by their qualified names; what stands in a function is part of it."""
+    """Functions and methods by qualified name; a nested function belongs to the outer one."""
     for node in ast.iter_child_nodes(tree):
         if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
             assert node.end_lineno is not None, "parsed from a text"
@@ -124,23 +124,23 @@ def _functions(tree: ast.AST, prefix: str) -> Iterator[tuple[str, range]]:
 
 
 Values = Mapping[str, Value]
-"""The updates and occurrences at an instant, by name; events are `True`, unknown values `None`."""
+"""Signal updates and events at an instant, by name; an event is `True`, an unknown value `None`."""
 
 Taker = Callable[[int, Values], None]
-"""Takes one sample: nanoseconds and values."""
+"""Takes one sample: its time in ns, and its values."""
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A system's report of a finished run; the samples went to the observer.
+    """What a system returns at the end of a run; it has passed the samples to the observer.
 
     Attributes:
         end_ns: the instant up to which the run is judged, not before its last sample.
-        states: `(t_ns, state)` of the system, at each entry of one, also from itself.
-        error: the exception of the code under test, as one text, if it crashed.
-        figures: of the run, by name, such as seconds of physics; a campaign adds them up.
-        facts: more about the run for its page, as pairs of name and value.
-        scene: the film of the run, if the observer asks for it.
+        states: `(t_ns, state)` for each entry of a state of the system, re-entries included.
+        error: the exception of the code under test, as text, if it crashed.
+        figures: numbers by name, such as seconds of physics; a campaign adds them up over its runs.
+        facts: pairs of name and value that are shown on the page of the run.
+        scene: the film of the run, if `Observer.wants_scene`.
     """
 
     end_ns: int
@@ -151,10 +151,10 @@ class Run:
     scene: Scene | None = None
 
     def __post_init__(self) -> None:
-        """See that others can count on it: what is wrong is reported in the test that brings it.
+        """Check the types here, so that a mistake is reported in the test that makes it.
 
         Raises:
-            TypeError: a number is none, or a state is no pair.
+            TypeError: `end_ns` is not an int, a figure is not a number, or a state is not a pair.
         """
         if type(self.end_ns) is not int:
             raise TypeError(f"end_ns is to be an int, not {self.end_ns!r}")
@@ -167,16 +167,16 @@ class Run:
 
 
 class Observer:
-    """Told by a system, while it plays, of each sample: `observer(t_ns, values)`.
+    """Receives each sample from a system while it plays: `observer(t_ns, values)`.
 
     Args:
-        takers: get each sample.
+        takers: functions that get each sample.
         code: the context in which code is measured.
-        wants_scene: whether a page is going to be made.
+        wants_scene: whether the run should have a scene, for its page.
 
     Attributes:
-        last_ns: instant of the latest sample that was taken.
-        wants_scene: whether the run should come with its scene.
+        last_ns: instant of the latest sample; 0 before the first.
+        wants_scene: see `Args`.
     """
 
     def __init__(
@@ -192,22 +192,22 @@ class Observer:
         self.wants_scene = wants_scene
 
     def __call__(self, t_ns: int, values: Values) -> None:
-        """Take one whole sample; each is later than the one before.
+        """Take one whole sample, later than the previous one.
 
         Args:
             t_ns: its instant.
-            values: the updates and occurrences; a name that the requirements lack is passed over.
-                An event that occurred several times is a tuple of its fields, `({}, {})` without
-                any.
+            values: signal updates and events; names that the requirements do not declare are
+                ignored. An event that occurred several times is a tuple of its payloads, `({}, {})`
+                if it has no fields.
         """
         for take in self._takers:
             take(t_ns, values)
         self.last_ns = t_ns
 
     def code(self) -> AbstractContextManager[object]:
-        """The context for the code under test, if `Code.marked` says that only there is measured.
+        """The context in which to run the code under test, so that `Code.marked` measures only it.
 
-        It can be entered again and again, one at a time.
+        It can be entered repeatedly, but not nested.
         """
         return self._code
 
@@ -216,19 +216,19 @@ _Test = TypeVar("_Test", bound=Test, contravariant=True)
 
 
 class System(Protocol[_Test]):
-    """A robot in its world, or in its simulator. One object plays many tests, one after the other.
+    """A robot in its world or its simulator. One object plays many tests, one after the other.
 
-    The same test must give the same run, whatever was played before. What a test begins outside of
-    this process, such as a simulator, is to be begun by `rvmon.execute.run_command`: it ends with
-    this process, which is killed if the test takes too long.
+    The same test must give the same run, whatever was played before. Start external programs, such
+    as a simulator, with `rvmon.execute.run_command`: they then end with this process, which is
+    killed if a test takes too long.
     """
 
     def play(self, test: _Test, observer: Observer, /) -> Run:
-        """Play a test from its beginning to its end.
+        """Play a test from start to end.
 
         Args:
-            test: all that the run depends on.
-            observer: to be called with each sample.
+            test: everything that the run depends on.
+            observer: call it with each sample.
         """
         ...
 
@@ -236,11 +236,11 @@ class System(Protocol[_Test]):
 class Checker:
     """Judges one test after the other: `begin`, `observe` each sample, `finish`.
 
-    Names that a specification does not declare are passed over.
+    Names that a specification does not declare are ignored.
 
     Args:
         spec: the specification to judge by; `None` judges nothing.
-        coverages: collectors for the coverage models of specifications.
+        coverages: the coverage models whose hits are collected.
     """
 
     def __init__(self, spec: Spec | None, coverages: Sequence[SpecCoverage] = ()) -> None:
@@ -258,7 +258,7 @@ class Checker:
         ]
 
     def begin(self) -> None:
-        """Forget the last test."""
+        """Start a new test: reset the monitor and the coverage."""
         if self._monitor is not None:
             self._monitor.reset()
         for collector in self._collectors:
@@ -285,5 +285,5 @@ class Checker:
         return hits
 
     def illegal(self, hits: Hits) -> list[IllegalHit]:
-        """Those of some hits that must not be."""
+        """The hits of bins that are declared illegal."""
         return [hit for coverage in self._coverages for hit in illegal(hits, coverage.bin_model)]

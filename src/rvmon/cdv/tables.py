@@ -1,4 +1,4 @@
-"""A campaign's figures as tables and as documents (`table.json`); each part can be replaced."""
+"""A campaign's figures as tables and as `table.json`; a campaign can replace each part."""
 
 from __future__ import annotations
 
@@ -38,14 +38,14 @@ class RobotTables:
     """The tables of the verdicts on one robot.
 
     Attributes:
-        own: its counts.
-        compared: by label, the table that each row is compared with.
-        control: the same counts with the controls of tests, where there are some.
-        control_label: heads those lines of the text; empty: they stand in files only.
-        control_title: heads that table of the page.
-        sources: remarks of the page on the compared tables.
-        remark: below the tables.
-        witnesses: by requirement, the test that follows the run by which model checking shows it.
+        own: the counts of its tests.
+        compared: by label, tables that `own` is compared with row by row.
+        control: the counts with controls in place of their tests, if there are controls.
+        control_label: label of the control's lines in the text; empty: only the files have them.
+        control_title: heading of the control's table on the page.
+        sources: remarks on the compared tables, for the page.
+        remark: text below the tables.
+        witnesses: by requirement, a test that follows the witness which model checking found.
     """
 
     own: VerdictTable
@@ -85,7 +85,7 @@ def verdict_table(summary: CampaignSummary, robot: str) -> VerdictTable:
 
 
 def control_table(summary: CampaignSummary, robot: str) -> VerdictTable | None:
-    """The same counts with the controls in the place of their tests; `None` if there are none."""
+    """The counts with controls in place of their tests; `None` if there are no controls."""
     figures = summary.robots[robot]
     if not figures.controls:
         return None
@@ -98,7 +98,7 @@ def control_table(summary: CampaignSummary, robot: str) -> VerdictTable | None:
 
 
 def named_tables(tables: Mapping[str, RobotTables], control: str) -> dict[str, VerdictTable]:
-    """The tables of all robots by a short name, for files of them."""
+    """The tables of all robots by a short name, for files that hold all tables."""
     named: dict[str, VerdictTable] = {}
     for robot, table in tables.items():
         named[robot] = table.own
@@ -141,9 +141,12 @@ def table_document(
     control_key: str = "control",
     more: Mapping[str, object] | None = None,
 ) -> dict[str, object]:
-    """The content of `table.json`; all of it but `seconds` follows from the seed.
+    """The content of `table.json`; the seed determines everything but `seconds`.
 
-    `control_key` is that of the counts with controls in the place of their tests.
+    Args:
+        summary: the figures of the campaign.
+        control_key: the key of the counts with controls in place of their tests.
+        more: further entries.
     """
     robots = {
         name: _robot_document(robot, summary.kind, control_key)
@@ -189,7 +192,7 @@ def _robot_document(robot: RobotSummary, kind: str, control_key: str) -> dict[st
 
 
 def rows_document(rows: Mapping[str, Counts]) -> dict[str, dict[str, int]]:
-    """Counts of tests by requirement and verdict."""
+    """The numbers of tests by requirement and verdict."""
     return {
         name: {verdict.value: count for verdict, count in counts.items()}
         for name, counts in rows.items()
@@ -197,7 +200,7 @@ def rows_document(rows: Mapping[str, Counts]) -> dict[str, dict[str, int]]:
 
 
 def _intervals(counts: Counts) -> dict[str, list[float]]:
-    """The bounds of the share of tests behind each count; there is at least one test."""
+    """The confidence interval of the share of each verdict; there is at least one test."""
     runs = sum(counts.values())
     return {
         verdict.value: [round(bound, 4) for bound in interval(count, runs)]
@@ -206,7 +209,7 @@ def _intervals(counts: Counts) -> dict[str, list[float]]:
 
 
 def to_json(document: Mapping[str, object]) -> bytes:
-    """A document as indented JSON, keys in their order."""
+    """A document as indented JSON; keys keep their order."""
     return msgspec.json.format(msgspec.json.encode(document), indent=2) + b"\n"
 
 
@@ -256,7 +259,7 @@ def work_done(summary: CampaignSummary) -> str:
 
 
 def block_chart(figures: StrategySummary) -> Markup:
-    """Tables of one strategy: shares of the blocks, tests that entered states, and went on."""
+    """Tables of one strategy: coverage of the blocks, and tests per state and per transition."""
     blocks = [
         (name, _share(statement), _share(figures.branches.get(name, NOTHING)))
         for name, statement in figures.statements.items()
@@ -282,22 +285,22 @@ RobotTest = tuple[str, str]
 
 @dataclass(frozen=True, slots=True)
 class Presentation:
-    """The presentation of figures.
+    """How the figures of a campaign are presented.
 
     Attributes:
         title: of the page; default: the campaign's name.
         tests: the word for the tests, in the plural.
-        tables: the verdicts on each robot, by its name.
-        further: more tables for the files, by name.
-        document: the content of `table.json`.
-        work: the amount of simulation, in words, for the terminal.
-        chart: the coverage of code under one strategy, for the page.
+        tables: makes the verdict tables of each robot, by its name.
+        further: further tables for the files, by name.
+        document: makes the content of `table.json`.
+        work: says how much was simulated, for the terminal.
+        chart: draws the code coverage under one strategy, for the page.
         chart_legend: its legend.
-        sections: further ones of the page, from the tests that were played and the addresses of
+        sections: makes further sections of the page, from the played tests and the addresses of
             their pages.
-        foremost: requirements that the terminal shows: with others only those that failed or were
-            left open somewhere, and shares of code as one line. The page folds the texts of others
-            up. Default: both show all of all.
+        foremost: requirements that the terminal always shows. Of the others it then shows only
+            those that failed or were inconclusive in some test, and it prints code coverage as one
+            line; the page folds the texts of the others. Default: everything is shown.
         write_more: writes further files to a campaign's folder, given the strategies of its tests.
     """
 

@@ -1,4 +1,8 @@
-"""Test templates: query → witness → what of it concerns the test → times within its limits."""
+"""Test templates: the steps of a model's witness that concern a test, with limits on their times.
+
+`templates_of` makes them from queries, by model checking; `choose_times` picks times within the
+limits.
+"""
 
 from __future__ import annotations
 
@@ -20,14 +24,14 @@ if TYPE_CHECKING:
 
 
 Action = TypeVar("Action")
-"""An action of a test at an instant; the tests' own type."""
+"""An action of a test at an instant; each type of test has its own."""
 
 PolicyName = Literal["shortest", "fastest", "likely"]
-"""The policies that choose a witness among several."""
+"""How a witness is chosen among several."""
 
 
 class Wait(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The units of time between two instants: at least, and at most if there is a limit."""
+    """The time between two instants, in units of the model; `at_most=None` is unbounded."""
 
     at_least: int
     at_most: int | None = None
@@ -36,17 +40,17 @@ class Wait(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class TemplateStep(
     msgspec.Struct, Generic[Action], frozen=True, forbid_unknown_fields=True, omit_defaults=True
 ):
-    """One instant of a witness, seen from the automata that a test stands for."""
+    """A step of a witness in which an automaton controlled by the test takes an edge."""
 
-    does: str  # the edge of these automata that is taken
-    wait: Wait  # since the step before, or since the start
-    action: Action | None = None  # the action of the test; `None` if the instant only bounds others
+    does: str  # the edge, as text
+    wait: Wait  # since the previous step, or since the start
+    action: Action | None = None  # the action of the test; `None` if the step only limits times
 
 
 class Limit(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Units of time between two steps that are no neighbours; step 0 is the start.
+    """A limit on the time between two steps that are not consecutive; step 0 is the start.
 
-    Only limits that the waits between do not imply are written.
+    Limits that follow from others in between are left out.
     """
 
     first: int
@@ -57,22 +61,22 @@ class Limit(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class Template(
     msgspec.Struct, Generic[Action], frozen=True, forbid_unknown_fields=True, omit_defaults=True
 ):
-    """A witness of a query, projected on the automata that a test stands for."""
+    """A witness of a query, projected to the automata that a test controls."""
 
     name: str  # the query's id
     remark: str  # the query in words
     query: str  # its text
-    policy: PolicyName  # the choice of the witness among several
-    unit_s: float  # seconds in one unit of time
+    policy: PolicyName  # how the witness was chosen
+    unit_s: float  # seconds per unit of time
     steps: tuple[TemplateStep[Action], ...]  # in order
-    limits: tuple[Limit, ...] = ()  # beyond the waits of the steps
+    limits: tuple[Limit, ...] = ()  # in addition to the waits of the steps
 
 
 def load_template(path: str | Path, action: Any) -> Template[Any]:
     """Read a template.
 
     Raises:
-        TestError: the file cannot be read, or holds no template.
+        TestError: the file cannot be read, or does not hold a template.
     """
     try:
         return msgspec.json.decode(Path(path).read_bytes(), type=Template[action])
@@ -90,15 +94,15 @@ def save_template(template: Template[Any], folder: str | Path) -> Path:
 
 
 def choose_times(template: Template[Any], rng: random.Random, patience: int) -> list[int]:
-    """Instants of all steps in units since the start, the start first.
+    """Draw instants for all steps, in units since the start; the first is the start itself.
 
-    They are fixed in turn, each within what those before it leave open; a wait may exceed its least
-    one by `patience` units.
+    The instants are drawn in order, each within the limits that the earlier ones leave. A wait is
+    at most `patience` units longer than necessary.
 
     Raises:
         TestError: the limits contradict each other.
     """
-    import numpy as np  # campaigns start without it
+    import numpy as np  # here, as most campaigns do not need it
 
     from rvmon.models.runs import close
 
@@ -116,6 +120,7 @@ def choose_times(template: Template[Any], rng: random.Random, patience: int) -> 
     if (most.diagonal() < 0).any():
         raise TestError(f"template {template.name}: no times satisfy all of its limits")
     times = [0]
+    # As the matrix is closed, no choice within these limits can leave a later step without a time.
     for step in range(1, size):
         low = max(times - most[step, :step])
         high = min(times + most[:step, step])
@@ -124,8 +129,8 @@ def choose_times(template: Template[Any], rng: random.Random, patience: int) -> 
 
 
 Edge = tuple[str, str, str] | tuple[str, str, str, str]
-"""An edge of a network: automaton, location before, location after; where there are several, also
-the label, or the channel if it has none."""
+"""An edge of a network: automaton, source location, target location. If this is ambiguous, the
+fourth entry is the label of the edge, or its channel if it has no label."""
 
 
 def templates_of(
@@ -135,12 +140,17 @@ def templates_of(
     actions: Mapping[Edge, Action],
     policy: PolicyName,
 ) -> tuple[Template[Action], ...]:
-    """The templates of a model's queries, from witnesses that the model checker chooses.
+    """Make templates from the witnesses of a model's queries.
 
-    Tests stand for `automata`, such as people and sensors; an edge without an action needs none.
+    Args:
+        network: the model.
+        queries: ids of the queries.
+        automata: names of the automata that tests control, such as people and sensors.
+        actions: the action of a test for each edge of these automata; other edges need no action.
+        policy: how a witness is chosen.
 
     Raises:
-        TestError: a query has no witness.
+        TestError: a query has no witness, or see `project`.
     """
     from rvmon.models.search.budget import Policy
     from rvmon.models.search.verify import verify
@@ -161,14 +171,13 @@ def templates_of(
 def project(
     network: Network, run: Run, automata: Collection[str], actions: Mapping[Edge, Action]
 ) -> tuple[tuple[TemplateStep[Action], ...], tuple[Limit, ...]]:
-    """The steps of a run that concern some automata, with all limits between their instants.
+    """The steps of a run in which some automata take part, with all limits between their instants.
 
-    The closed difference constraints of the run, restricted to those instants, are exactly the
-    limits that the whole run puts on them.
+    The limits are exact: they are the difference constraints of the run, closed and restricted to
+    those instants.
 
     Raises:
-        TestError: an action is for an edge that there is not, or for several that differ in label
-            or channel.
+        TestError: `actions` names an edge that does not exist, or that is ambiguous.
     """
     does = _by_edge(network, actions)
     timing = run.timing
@@ -183,7 +192,7 @@ def project(
             instants.append(number)
             texts.append(f"{automaton.name}: {source} → {target}")
             taken.append(does.get((index, edge)))
-    # A test acts in whole units: a limit between two units is the next one inside.
+    # A test acts at whole units, so fractional limits are rounded inwards.
     within = [
         [floor(bound / timing.scale) if bound < inf else inf for bound in row]
         for row in timing.relation(instants).tolist()
@@ -204,7 +213,7 @@ def project(
 def _by_edge(
     network: Network, actions: Mapping[Edge, Action]
 ) -> dict[tuple[int, NetworkEdge], Action]:
-    """The action of a test for each edge of a network."""
+    """The action for each edge that has one, by the index of its automaton and the edge."""
     found: dict[tuple[int, NetworkEdge], Action] = {}
     for name, action in actions.items():
         alike = {
@@ -230,7 +239,7 @@ def _name_of(network: Network, place: int, edge: NetworkEdge) -> tuple[str, str,
 
 
 def _wait(within: Sequence[Sequence[float]], first: int, last: int) -> Wait:
-    """The limits between two instants, without those that the instants between imply."""
+    """The limits between two instants, without those implied by an instant in between."""
     middle = range(first + 1, last)
     low, high = -within[last][first], within[first][last]
     if any(-within[k][first] - within[last][k] == low for k in middle):

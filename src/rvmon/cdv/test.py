@@ -1,4 +1,4 @@
-"""Tests as data that can be kept and played again, and as files: JSON, decoded strictly."""
+"""Tests as data that can be stored and replayed; their files are JSON, decoded strictly."""
 
 from __future__ import annotations
 
@@ -19,20 +19,19 @@ VerdictName = Literal["P", "F", "NT", "I"]
 class Test(
     msgspec.Struct, frozen=True, forbid_unknown_fields=True, kw_only=True, omit_defaults=True
 ):
-    """A test that can be played again alone; derive from it and add what your tests vary.
+    """A test that can be replayed on its own; derive from it and add the fields your tests vary.
 
     Attributes:
-        name: unique within a campaign; also the file's name.
+        name: unique within a campaign; also the name of its file.
         strategy: the generator that made it.
         seed: of everything that a run draws at random.
         text: the purpose of the test.
-        robot: the only one of a campaign's robots that it is written for; `None`: any.
-        mutation: the fault that is planted into the robot; `None`: it is as it is.
-        expected: verdicts by requirement, for tests that know them.
-        reaches: items of the coverage model, by group, that it is made to hit: else it is not what
-            it says.
-        removable: fields that are sequences whose parts a smaller test may lack, the one with the
-            most to say first.
+        robot: the only robot of the campaign that it is written for; `None`: any.
+        mutation: the fault planted into the robot; `None`: none.
+        expected: verdicts by requirement, if they are known beforehand.
+        reaches: items of the coverage model, by group, that the test must hit to serve its purpose.
+        removable: names of sequence fields whose elements shrinking may remove, the most important
+            field first.
 
     >>> class Walk(Test):
     ...     people: int
@@ -40,7 +39,7 @@ class Test(
     True
     """
 
-    __test__: ClassVar[bool] = False  # nothing that pytest should collect
+    __test__: ClassVar[bool] = False  # pytest must not collect it
     removable: ClassVar[tuple[str, ...]] = ()
 
     name: Annotated[str, msgspec.Meta(min_length=1)]
@@ -53,11 +52,11 @@ class Test(
     reaches: dict[str, tuple[str, ...]] = {}
 
     def simpler(self) -> Iterable[Self]:
-        """Tests in which one value is simpler, for `rvmon.cdv.shrink`; the simplest first."""
+        """Variants with one value simplified, for `rvmon.cdv.shrink`; the simplest first."""
         return ()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """To other processes it goes as to files: what has its default stays left out."""
+        """Pickle as JSON: fields at their defaults stay left out, as in a file."""
         return partial(msgspec.json.decode, type=type(self)), (msgspec.json.encode(self),)
 
 
@@ -72,7 +71,12 @@ class TestError(RvmonError, ValueError):
 
 @contextmanager
 def blamed(what: str, kind: type[RvmonError] = TestError) -> Iterator[None]:
-    """Say of an exception of other people's code what it has prevented; ours pass as they are."""
+    """Turn exceptions of users' code into errors of ours; an `RvmonError` passes through.
+
+    Args:
+        what: what failed, such as "strategy `wind` cannot make its tests".
+        kind: the type of the error.
+    """
     try:
         yield
     except RvmonError:
@@ -82,10 +86,10 @@ def blamed(what: str, kind: type[RvmonError] = TestError) -> Iterator[None]:
 
 
 def to_json(test: Test) -> bytes:
-    """A test as indented JSON, fields with their default left out.
+    """A test as indented JSON, without fields at their defaults.
 
     Raises:
-        TestError: a field holds what JSON has no form for.
+        TestError: a field holds a value that JSON cannot represent.
 
     >>> test = Test(name="a", strategy="random", seed=1)
     >>> from_json(to_json(test), Test) == test
@@ -102,11 +106,11 @@ def from_json(text: bytes, kind: type[_Test], *, source: str = "<bytes>") -> _Te
 
     Args:
         text: JSON, UTF-8.
-        kind: of the test.
-        source: its origin, for messages.
+        kind: the type of the test.
+        source: where the text comes from, for error messages.
 
     Raises:
-        TestError: it is no JSON, or not that of such a test.
+        TestError: the text is not JSON, or does not describe such a test.
     """
     try:
         return msgspec.json.decode(text, type=kind)
@@ -120,7 +124,7 @@ def load(path: str | Path, kind: type[_Test]) -> _Test:
     """Read a test file.
 
     Raises:
-        TestError: the file cannot be read, or holds no such test.
+        TestError: the file cannot be read, or does not hold such a test.
     """
     try:
         text = Path(path).read_bytes()
