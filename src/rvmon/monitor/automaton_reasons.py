@@ -1,4 +1,4 @@
-"""Explains attempts judged by an automaton: the sentence and the details of their records."""
+"""Explains attempts judged by an automaton: the reason and the details of their records."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ from rvmon.verdicts import Verdict
 class Reasons:
     """Explains the decisions of one requirement.
 
-    A cause depends only on the location, the age regions of its clocks, the letter and the verdict;
-    it is cached by these.
+    A cause depends only on the location, the age regions of its clocks, the letter and the verdict,
+    so it is cached by them.
     """
 
     def __init__(self, compiled: CompiledRequirement) -> None:
@@ -48,7 +48,7 @@ class Reasons:
         """
         location, anchors = before
         ages = zip(self._cuts(location), anchors, strict=True)
-        # In one region no window opens or is over, so ages within it have the same cause.
+        # Within one region no window opens or ends, so all its ages have the same cause.
         key = (location, letter, verdict, *[bisect_right(cuts, t - at) for cuts, at in ages])
         if key not in self._found:
             self._found[key] = self._find(before, letter, verdict, t)
@@ -121,7 +121,8 @@ class MachineRuns(Struct, frozen=True):
     def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
         """See `Judged`; never folded into the verdict.
 
-        `P` if the pessimistic run passes on every continuation, `F` if the optimistic one fails.
+        `P` if the pessimistic run passes on every continuation, `F` if the optimistic one fails on
+        every continuation.
         """
         known = (now - 1) // 2
         if self._value(attempt, attempt.worse, known) is True:

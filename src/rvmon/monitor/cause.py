@@ -1,4 +1,4 @@
-"""Finds the part of a requirement that decided an attempt, and words its instants."""
+"""Finds the part of a requirement that decided an attempt, and puts its instants into words."""
 
 from __future__ import annotations
 
@@ -21,20 +21,20 @@ AT_DECISION = -2
 class Cause(Struct, frozen=True):
     """The cause of a decision."""
 
-    # the obligation, or the literal if none lies above it
+    # the obligation, or the literal if no operator lies above it
     node: formula.Literal | formula.Until | formula.Release
-    # the instantiation of the obligation: for a network its instant in ticks; for an automaton the
+    # when the obligation was instantiated: for a network the instant in ticks; for an automaton the
     # number of the clock started then, `NO_CLOCK` for the trigger, or `AT_DECISION`
     start: int
-    over: bool  # whether the decision is that its window closed
+    over: bool  # whether it was decided because its window closed
     literal: formula.Literal | None  # the proposition that decided it, if a single one did
 
 
 class CauseFinder:
     """Finds the cause of a decision of an automaton.
 
-    Truth values, as the deciding run reads them, and ages of clocks, ticks, are those at the
-    decision; `by_time`: time alone decided, without a letter.
+    `valuation` holds the truth values at the decision as the deciding run reads them, `ages` the
+    ages of its clocks then (ticks); `by_time`: time alone decided, without a letter.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class CauseFinder:
         self.wanted = HOLDS if verdict else FAILS
 
     def of(self, residual: Residual) -> Cause | None:
-        """The cause of the decision of this residual; `None` if it is constant."""
+        """The cause of the decision of a residual; `None` if the residual is constant."""
 
         def decided(atom: Atom) -> bool:
             alone: Residual = frozenset([frozenset([atom])])
@@ -66,8 +66,8 @@ class CauseFinder:
             clauses = [c for c in clauses if all(decided(atom) for atom in c)]
         candidates = sorted(
             {atom for clause in clauses for atom in clause if decided(atom)},
-            # The oldest clock first: the obligation that stood longest. Ids make the choice the
-            # same in each run.
+            # The oldest clock first: the obligation that was open longest. Ids make the choice
+            # deterministic.
             key=lambda atom: (atom[1], atom[0].id),
         )
         for node, clock in candidates:
@@ -126,10 +126,10 @@ class TruthValues(NamedTuple):
     # for an instance of `for each`, its first position; `None`: all positions count
     begun: int | None
     truths: Sequence[int]  # of the propositions
-    # of them, as the core noted them: of each since when it has this truth, and when it was last
-    # another than FALSE, and than TRUE; `NEVER` if it was not
+    # the state of the propositions as the core noted it, with three instants per proposition: since
+    # when it has its truth, when it was last FALSE, and when it was last TRUE; `NEVER` if not yet
     words: Sequence[int]
-    # by proposition the place of its truth, and of its words
+    # by proposition, the index of its truth in `truths`, and of its instants in `words`
     places: Mapping[State, tuple[int, int]]
     at_trigger: Mapping[str, int]  # by text of a leaf, its truth value at the trigger
 
@@ -138,7 +138,7 @@ class TruthValues(NamedTuple):
         return self.words[self.places[proposition][1]]
 
     def last_with(self, proposition: State, value: int, t: int) -> int | None:
-        """The last position up to `t`, the present one, at which it had a truth value."""
+        """The last position up to `t`, the current one, at which a proposition had a value."""
         place, at = self.places[proposition]
         if self.truths[place] == value:
             return t
@@ -146,11 +146,11 @@ class TruthValues(NamedTuple):
         return None if before == NEVER else before
 
 
-NEVER = -(1 << 63)  # stands for an instant that there was not
+NEVER = -(1 << 63)  # the instant of what has not happened
 
 
 class Moment(NamedTuple):
-    """A decision: its instants, ticks, with the truth values then; its methods word them."""
+    """The instants of a decision (ticks) and the truth values then; its methods word them."""
 
     t: int  # the instant of the decision
     start: int  # the instant at which the deciding obligation was instantiated
@@ -158,21 +158,22 @@ class Moment(NamedTuple):
     flow: TruthValues
 
     def instant(self, t: int) -> str:
-        """An instant."""
+        """An instant as text."""
         return format_instant(t, self.flow.origin)
 
     @property
     def after_trigger(self) -> str:
-        """The delay from trigger to decision, if the deciding obligation began there."""
+        """The delay from trigger to decision, if the deciding obligation started at the trigger."""
         if self.start != self.triggered or self.start == self.t:
             return ""
         return f", {format_ticks(self.t - self.start)} after the trigger"
 
     def turned(self, proposition: State, text: str, seen: str) -> str:
-        """Whether a proposition `was` or `became` true or false at the decision.
+        """The clause that a proposition `was` or `became` true or false at the decision.
 
-        Its history is not enough: `whenever` may merge it with the trigger, and the merged
-        proposition also changes with that. It did not become so if it was so at the trigger.
+        Its history alone does not tell: `whenever` may merge it with the trigger, and the merged
+        proposition also changes with the trigger. So `became` is used only if the proposition had
+        another value at the trigger.
         """
         since = self.flow.since(proposition)
         was_so = self.flow.at_trigger.get(text) == (TRUE if seen == "true" else FALSE)
@@ -181,9 +182,10 @@ class Moment(NamedTuple):
         return f"{verb} {seen} at {self.instant(self.t)}{long}"
 
     def last_with(self, proposition: State, value: int, verb: str, *, lasting: bool) -> str:
-        """When a proposition last had a truth value, which may be `lasting`.
+        """The clause when a proposition last had a truth value.
 
-        Its verb is `been true`, `been false` or `occurred`.
+        `verb` is `been true`, `been false` or `occurred`; `lasting`: whether the value can last
+        longer than single instants.
         """
         last = self.flow.last_with(proposition, value, self.t)
         if last is None and self.flow.begun is not None:
@@ -198,5 +200,5 @@ class Moment(NamedTuple):
 
 
 def without_cause(verdict: bool) -> str:
-    """The reason of a decision of which no other was possible."""
+    """The reason for a decision that could not have been another."""
     return "there was no obligation" if verdict else "it can never hold"

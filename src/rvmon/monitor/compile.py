@@ -26,7 +26,7 @@ from rvmon.logic.window_chains import reach_of
 from rvmon.monitor.obligation_words import Words
 
 _DOUBT_BUDGET = Budget(locations=30, clocks=3, rows=200, clauses=12)
-"""The budget of the automata for attempts in doubt: they are rarely used, so kept small."""
+"""The budget of automata for attempts in doubt, which are rarely used and so kept small."""
 
 
 class CompiledRequirement:
@@ -39,8 +39,8 @@ class CompiledRequirement:
         obligation: its formulas.
         alphabet: the alphabet of the obligation.
         gap: ticks between two positions; `None` if only samples are positions.
-        ordinary: the requirement whose attempts in doubt this one judges; `None` if it is itself
-            an ordinary one.
+        ordinary: the requirement whose attempts in doubt this one judges; `None` if this is itself
+            the ordinary one.
         measured: the obligation for robustness: logically equivalent, but with the comparisons
             whose distances are measured kept apart.
     """
@@ -80,12 +80,12 @@ class CompiledRequirement:
 
     @property
     def automaton(self) -> Automaton | None:
-        """Its automaton; `None` if the construction exceeds its budget."""
+        """Its automaton, as shown to users; `None` if the construction exceeds its budget."""
         return self._built if isinstance(self._built, Automaton) else None
 
     @cached_property
     def shaped(self) -> Automaton | None:
-        """The automaton for the core, shared by all requirements of its shape; `None`: as above."""
+        """The automaton for the core, shared by requirements of the same shape; `None` as above."""
         return self._shapes.reduced(self._required, self.alphabet, self._budget)
 
     @cached_property
@@ -103,10 +103,10 @@ class CompiledRequirement:
         return str(self._built) if isinstance(self._built, DoesNotCloseError) else ""
 
     def scatters(self, automaton: Automaton | None) -> bool:
-        """Whether open attempts may come to ever more states of an automaton, each stepped apart.
+        """Whether open attempts may spread over ever more states, each to be stepped on its own.
 
-        Not where there is one at a time, or each has values of its own and is judged by itself, and
-        not where they move in runs.
+        They do not if only one is open at a time, if each has captured values and is judged by
+        itself, or if they move through `automaton` in runs.
         """
         one = self.requirement
         once = isinstance(one.trigger, Constant | BoundAtom)
@@ -162,7 +162,7 @@ class CompiledRequirement:
     def counts_alone(self) -> bool:
         """Whether its attempts start independently of how earlier ones end.
 
-        Not so for episodes, which resume after a failure, nor for attempts in doubt, which have no
+        Episodes do not, as they resume after a failure; nor do attempts in doubt, which have no
         record if they are met.
         """
         upon = self.requirement.mode is Mode.UPON and self.obligation.trigger is not None
@@ -195,7 +195,7 @@ class CompiledRequirement:
 
     @cached_property
     def single_payloads(self) -> frozenset[str]:
-        """The events of which it can judge one payload at an instant only."""
+        """The events of which it can judge only one payload at an instant."""
         each = self.requirement.for_each
         read = {
             event
@@ -207,7 +207,7 @@ class CompiledRequirement:
 
     @cached_property
     def words(self) -> Words:
-        """Words its parts in explanations."""
+        """Puts its parts into words, for explanations."""
         return Words(self.obligation.origins, self.requirement.consequent)
 
 

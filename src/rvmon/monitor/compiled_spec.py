@@ -1,4 +1,4 @@
-"""A specification compiled for the core: requirements on first use, packed plans cached on disk.
+"""A specification for the core: requirements compiled on first use, packed plans cached on disk.
 
 Cached plans are plain data; nothing in them is executed.
 """
@@ -33,13 +33,14 @@ class CompiledSpec:
     ) -> None:
         self.checked = checked
         self.is_kept = is_kept  # whether packed plans are cached in the user's cache folder
-        self._origin = origin  # what it was derived from, in the one way in which that is done
-        # derived objects made so far, such as packed plans, by the options they depend on
+        # the specification it was derived from; coverage does so, always in the same way
+        self._origin = origin
+        # objects made from it so far, such as packed plans, by the options they depend on
         self.forms: dict[object, object] = {}
 
     @cached_property
     def identity(self) -> str:
-        """A text that two specifications share if they are equal but for where things stand."""
+        """A text that is the same for specifications that differ only in source positions."""
         if self._origin is None:
             return identity_text(self.checked)
         return f"derived from {self._origin.identity}"
@@ -79,7 +80,7 @@ def compile_spec(checked: CheckedSpec) -> CompiledSpec:
 
 
 class Kept(Struct, frozen=True):
-    """A packed plan, as it is cached; fields as of `rvmon.monitor.packed_plan.PlannedCore`."""
+    """A packed plan as it is cached; for the fields see `rvmon.monitor.packed_plan.PlannedCore`."""
 
     data: bytes
     single: frozenset[str] = frozenset()

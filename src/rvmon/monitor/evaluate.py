@@ -1,4 +1,4 @@
-"""Judges finished traces: columns in blocks of rows, everything else sample by sample."""
+"""Judges finished traces: columns in blocks of rows, all other traces sample by sample."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch, Cells, Occurrences
 
 _LAYOUTS: Mapping[Kind, int] = {Kind.REAL: 0, Kind.INT: 1, Kind.BOOL: 2, Kind.LABEL: 1}
-"""The numbers of layouts of values in `core.h`."""
+"""The layout of the values of a column, as numbered in `core.h`."""
 
 
 Decided = Callable[[Sequence[Attempt]], object]
@@ -46,9 +46,9 @@ Decided = Callable[[Sequence[Attempt]], object]
 def judge_source(
     compiled: CompiledSpec, source: Source, only: Sequence[str] | None, decided: Decided = len
 ) -> Report:
-    """Judge a recording: rows of columns together, samples one by one.
+    """Judge a recording: rows of columns in blocks, samples one by one.
 
-    `decided` is called with the attempts decided before an error in the recording.
+    If the recording has an error, `decided` is called with the attempts decided before it.
 
     Raises:
         RvmonError: a requirement exceeds the limits of the core.
@@ -70,7 +70,7 @@ def judge_source(
 
 
 class RecordingRun:
-    """A run of the core over the pieces of a recording; `finds` input health if asked."""
+    """A run of the core over the pieces of a recording; `finds`: whether to collect health."""
 
     def __init__(
         self, checked: CheckedSpec, planned: PlannedCore, source: Source, *, finds: bool
@@ -92,7 +92,7 @@ class RecordingRun:
 
     @cached_property
     def _validator(self) -> Validator:
-        """Checks what the core does not take as it is, of which most recordings have nothing."""
+        """Checks samples that the core does not take as they are; most recordings have none."""
         return Validator(self._checked, self._expected, self._planned.single_payloads)
 
     @cached_property
@@ -116,7 +116,7 @@ class RecordingRun:
             self._take_batch(piece)
 
     def _take_sample(self, sample: Sample, batch: Batch | None = None) -> None:
-        """Judge a sample, made of rows of a batch, or as the recording gave it."""
+        """Judge a sample that the recording holds, or that was made from rows of `batch`."""
         t = whole_ticks(sample.t)
         values = sample.values
         if self._turns:
@@ -136,7 +136,7 @@ class RecordingRun:
         self._row += 1
 
     def _place(self, t: int, batch: Batch | None) -> str:
-        """Where the sample at `t` stands in the recording, if its rows are counted."""
+        """Where the sample at `t` is in the recording, if the recording counts its rows."""
         if self._rows is None:
             return ""
         if batch is None:
@@ -174,6 +174,8 @@ class RecordingRun:
                 self._row += taken
                 done += taken
             if done < count:
+                # Only the instant at which the core stopped goes the slow way; all, if there are no
+                # columns.
                 last = batch.times[done if columns is not None else -1]
                 end = int(batch.times.searchsorted(last, "right"))
                 for sample in batch.samples(done, end):
@@ -181,7 +183,7 @@ class RecordingRun:
                 done = end
 
     def _laid(self, batch: Batch) -> tuple[Any, ...] | None:
-        """Rows as `native.Monitor.rows` takes them; `None` if they must be taken as samples."""
+        """Rows as `native.Monitor.rows` takes them; `None` if they must be judged as samples."""
         if not self._expected >= {*batch.signals, *batch.events}:
             return None
         planned = self._planned
@@ -233,8 +235,8 @@ class RecordingRun:
 def _turns_at(turn: Turn, since: int) -> tuple[int, int]:
     """Sort key of a turn of an outage that began at `since`.
 
-    At one instant the ends of earlier outages come first, then beginnings, then the end of an
-    outage of this single instant.
+    At one instant the ends of earlier outages come first, then the starts of outages, then the end
+    of an outage of this single instant.
     """
     return turn.t, 1 if turn.lost else 0 if since < turn.t else 2
 
@@ -262,12 +264,12 @@ def _cells(
 def open_trace(
     checked: CheckedSpec, trace: Any, reading: Reading, *, only: Sequence[str] | None
 ) -> Recording:
-    """Open a trace as a recording, and check that it has the names that requirements read.
+    """Open a trace as a recording and check that it has the names that requirements read.
 
     Raises:
         MissingNameError: the recording lacks a name that a requirement reads.
         TraceError: the recording cannot be read.
-        UnknownNameError: a name that it may lack is not declared.
+        UnknownNameError: a name that the recording is allowed to lack is not declared.
     """
     ordered = checked.max_delay is None
     recording = recording_of(trace, reading.schema, ordered=ordered, sources=reading.sources)
@@ -287,8 +289,8 @@ def evaluate_trace(
 ) -> Report:
     """Judge a trace.
 
-    The trace is as `Spec.evaluate` takes it, and so are the errors; `until` is its end in ticks, if
-    after its last sample.
+    `trace` and the errors are those of `Spec.evaluate`. `until` is the end of the trace in ticks,
+    if it is later than the last sample.
     """
     recording = open_trace(compiled.checked, trace, reading, only=only)
     source = Source(recording, until)
@@ -302,5 +304,5 @@ def evaluate_trace(
 
 
 def evaluate_apart(compiled: CompiledSpec, trace: Any, **options: Any) -> Report:
-    """Judge a trace for another process; see `evaluate_trace` and `give_plan`."""
+    """Judge a trace for another process, which sets the plan; see `give_plan`."""
     return give_plan(evaluate_trace(compiled, trace, **options), None)

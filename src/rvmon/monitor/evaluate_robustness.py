@@ -37,8 +37,8 @@ def margins_of(
 ) -> Margins:
     """The robustness of all attempts on a trace.
 
-    The trace is as `Spec.evaluate` takes it, and so are the errors; `until` is its end in ticks, if
-    after its last sample; `streams`: whether to measure every position besides the attempts.
+    `trace` and the errors are those of `Spec.evaluate`. `until` is the end of the trace in ticks,
+    if it is later than the last sample. `streams`: measure every position, not only attempts.
     """
     recording = open_trace(compiled.checked, trace, reading, only=only)
     source = Source(recording, until)
@@ -51,7 +51,7 @@ def margins_of(
 def judge_and_measure(
     compiled: CompiledSpec, source: Source, only: Sequence[str] | None, decided: Decided = len
 ) -> Report:
-    """Judge a recording, with the robustness of each attempt; otherwise as `judge_source`.
+    """Judge a recording, with the robustness of each attempt; otherwise like `judge_source`.
 
     The recording is read once: each piece is measured, then judged.
     """
@@ -59,7 +59,8 @@ def judge_and_measure(
 
     def shown(pieces: Iterator[Any]) -> Iterator[Any]:
         for piece in source.shown(pieces):
-            _take_to_end(run, source, piece)  # before the yield: the last one may not be resumed
+            # Before the yield: after the last piece nobody may resume this generator.
+            _take_to_end(run, source, piece)
             yield piece
 
     report = judge_source(compiled, structs.replace(source, shown=shown), only, decided)
@@ -118,14 +119,14 @@ MARGIN = np.dtype(
 
 
 class _Positions:
-    """The figures of positions of a requirement, in arrays with room for more."""
+    """The figures of the positions of a requirement, in arrays with room for more."""
 
     def __init__(self) -> None:
         self._arrays = [np.empty(0, MARGIN[name]) for name in _COLUMNS]
         self._count = 0
 
     def add(self, margins: NDArray[Any], expected: int) -> None:
-        """Add some; about so many are to be expected in all."""
+        """Add figures; about `expected` are to be expected in all."""
         count = self._count + len(margins)
         if count > len(self._arrays[0]):
             self._enlarge(max(expected, count + count // 8))
@@ -135,17 +136,17 @@ class _Positions:
 
     def _enlarge(self, room: int) -> None:
         for place, array in enumerate(self._arrays):
-            # Pages that nobody fills cost nothing.
+            # Memory that is never written to costs nothing.
             self._arrays[place] = np.empty(room, array.dtype)
             self._arrays[place][: self._count] = array[: self._count]
 
     def stream(self) -> Stream:
-        """All of them."""
+        """The figures added so far."""
         return Stream(*(array[: self._count] for array in self._arrays))
 
 
 class RecordedMargins:
-    """Collects the robustness figures of a run; `ids` are of requirements, by number."""
+    """Collects the robustness figures of a run; `ids` are the requirements by number."""
 
     def __init__(self, ids: Sequence[str]) -> None:
         self._ids = ids
@@ -155,11 +156,11 @@ class RecordedMargins:
         self._expected = 0
 
     def expect(self, rows: int) -> None:
-        """Make ready for the positions of so many more rows."""
+        """Expect the positions of `rows` more rows, for which arrays then have room."""
         self._expected += rows
 
     def add(self, figures: bytes) -> None:
-        """Add figures, given as bytes of dtype `MARGIN`."""
+        """Add figures, given as the bytes of an array of dtype `MARGIN`."""
         margins = np.frombuffer(figures, MARGIN)
         of_position = margins["of_position"] == 1
         if not of_position.all():

@@ -38,12 +38,12 @@ class Doubt(Struct, frozen=True):
 
     origin: int  # the first instant of the run, ticks
     position: int  # the instant of their divergence, ticks
-    # of the signals and events involved; their ends may become known later
+    # the outages of the signals and events involved; their ends may become known later
     outages: tuple[Outage, ...]
-    texts: tuple[str, ...]  # of propositions that were unknown although all their inputs were known
+    texts: tuple[str, ...]  # the propositions that were unknown although all their inputs are known
 
     def __str__(self) -> str:
-        """One or several clauses.
+        """The clauses of an explanation, separated by semicolons.
 
         >>> second = 10**9
         >>> stale = Outage("far", HealthKind.STALE, second + 1, 4 * second, second // 2)
@@ -92,7 +92,7 @@ class Explanation(NamedTuple):
 def unborn_of(
     names: Iterable[str], outages: Mapping[str, Outage], doubt: Doubt | None
 ) -> tuple[Outage, ...]:
-    """The names that have had no value so far, except those that `doubt` mentions already."""
+    """The names that have had no value so far, except those that `doubt` already mentions."""
     named = set() if doubt is None else {outage.name for outage in doubt.outages}
     missing = (outages[name] for name in sorted(set(names) & outages.keys() - named))
     return tuple(outage for outage in missing if outage.why is HealthKind.MISSING)
@@ -100,9 +100,9 @@ def unborn_of(
 
 @lru_cache(maxsize=1024)
 def truths_shown(texts: tuple[str, ...], seen: tuple[int, ...]) -> Mapping[str, Scalar]:
-    """Truth values by the text of the proposition; of equal texts the last; `None` is unknown.
+    """Truth values by the text of the proposition; `None` is unknown, the last of equal texts wins.
 
-    Cached, as few differ in a recording: whoever hands it out gives a copy.
+    Cached, as few combinations occur in a recording. The result is shared: hand out copies only.
     """
     pairs = zip(texts, seen, strict=True)
     return {text: None if truth == UNKNOWN else truth == TRUE for text, truth in pairs}
@@ -111,14 +111,14 @@ def truths_shown(texts: tuple[str, ...], seen: tuple[int, ...]) -> Mapping[str, 
 class Undecided(Struct, frozen=True):
     """The state of an undecided attempt."""
 
-    compiled: CompiledRequirement  # the requirement, or what judges its attempts in doubt
+    compiled: CompiledRequirement  # the requirement, or the judge of its attempts in doubt
     origin: int  # the first instant of the run, ticks
     triggered: int  # the instant of its trigger, ticks
     worse: Token  # state of the pessimistic run, which reads UNKNOWN as the worse value
     better: Token  # state of the optimistic run
     # the instant and reason of their divergence, or why the trigger itself is in doubt
     doubt: Doubt | None
-    unborn: tuple[Outage, ...]  # names that it reads and that had no value so far
+    unborn: tuple[Outage, ...]  # the names it reads that have had no value so far
     sure: bool  # whether its trigger was TRUE, so that it is not in doubt
     # whether it cannot pass, as its episode ended before all its signals were born
     cannot_pass: bool
@@ -133,13 +133,13 @@ class Judged(Protocol):
     """The judge of an attempt (automaton or network), in its state at a stamp."""
 
     def required(self, attempt: Undecided, now: int, *, optimistic: bool) -> str | None:
-        """What the optimistic or pessimistic run still requires; `None` if it is decided."""
+        """What the optimistic or pessimistic run still requires; `None` if the run is decided."""
 
     def alone(self, attempt: Undecided) -> tuple[Alone, Alone]:
-        """By what time alone decides the pessimistic and the optimistic run."""
+        """How time alone would decide the pessimistic and the optimistic run."""
 
     def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
-        """The verdict that every continuation leads to; `None` if they differ or it is unknown."""
+        """The verdict under every continuation; `None` if continuations differ, or if unknown."""
 
 
 def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = None) -> Explanation:
@@ -150,7 +150,7 @@ def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = Non
     """
     if attempt.sure:
         why = _obligation(judged, attempt, now, end)
-        # Obligations on unborn signals do not fail, and time alone gives these no value.
+        # Obligations on unborn signals do not fail, and time alone gives such signals no value.
         is_unborn = attempt.cannot_pass and not attempt.cut
         return why._replace(deadline=None) if is_unborn else why
     if attempt.worse[0] == FAILED:
@@ -162,8 +162,8 @@ def why_open(judged: Judged, attempt: Undecided, now: int, end: int | None = Non
 
 def _obligation(judged: Judged, attempt: Undecided, now: int, end: int | None) -> Explanation:
     """The open obligation of an attempt, or why none is left."""
-    # The pessimistic run requires the most; once it failed, only the optimistic one still says what
-    # for.
+    # The pessimistic run requires the most; once it has failed, only the optimistic run can still
+    # say what is required.
     is_failed = attempt.worse[0] == FAILED
     required = judged.required(attempt, now, optimistic=is_failed)
     if required is None:
@@ -192,7 +192,7 @@ def _longer(attempt: Undecided, end: int) -> str:
 def _deadline(judged: Judged, attempt: Undecided) -> int | None:
     """The last instant before time alone decides an attempt; `None` if it never does.
 
-    It decides if the pessimistic run passes or the optimistic run fails.
+    An attempt is decided once the pessimistic run passes or the optimistic run fails.
     """
     worse, better = judged.alone(attempt)
     instants = [worse[0]] if worse is not None and worse[1] and not attempt.cannot_pass else []
@@ -201,7 +201,7 @@ def _deadline(judged: Judged, attempt: Undecided) -> int | None:
 
 
 def forecast_of(judged: Judged, attempt: Undecided, now: int) -> Verdict | None:
-    """The verdict that every continuation leads to; `None` if unknown. `now` as for `why_open`.
+    """The verdict under every continuation; `None` if unknown. `now` is as for `why_open`.
 
     Source: SEMANTICS 2, Truth after a prefix.
     """
@@ -209,14 +209,14 @@ def forecast_of(judged: Judged, attempt: Undecided, now: int) -> Verdict | None:
 
 
 def why_settled(decision: Decision, policy: EndPolicy) -> str:
-    """The reason of an attempt that the end of the trace settled."""
+    """The reason for an attempt that the end of the trace settled."""
     if decision is Decision.HELD_TO_END:
         return "held to the end of the trace"
     return f"settled by `at end: {policy}`"
 
 
 def why_nothing(*, cut: bool) -> Explanation:
-    """Why an attempt that has ended stays undecided whatever follows."""
+    """Why an attempt that has ended stays undecided, whatever follows."""
     if cut:
         return Explanation("it is not known which values it captured")
     return Explanation("it ended before all signals that it reads had a value")

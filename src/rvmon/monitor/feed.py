@@ -17,7 +17,7 @@ from rvmon.trace.time import ticks_of_seconds
 
 
 def refuse_settle(settle: str) -> None:
-    """Check when a sample is to count as complete.
+    """Check the option `settle`, which says when a sample is complete.
 
     Raises:
         UnknownNameError: `settle` is neither `now` nor `next`.
@@ -30,7 +30,8 @@ class Feed:
     """Validates samples, holds back the incomplete ones, and passes the others to the core.
 
     Raises:
-        UnknownNameError: `settle`, when a sample counts as complete, is neither `now` nor `next`.
+        UnknownNameError: `settle`, which says when a sample is complete, is neither `now` nor
+            `next`.
     """
 
     def __init__(
@@ -62,7 +63,7 @@ class Feed:
         """The sample at `t` ticks as the core takes it.
 
         Raises:
-            TraceError: it is not as declared, or has a number that the core has no room for.
+            TraceError: it is not as declared, or has a number too large for the core.
         """
         return self._planned.plain(t, self._validator.check(t, values))
 
@@ -73,8 +74,8 @@ class Feed:
             TimeOrderError: it is not later than what has been judged; nothing changed.
         """
         if self._intake is None:
-            # Before anything changes: an outage ended for a sample that is then refused could not
-            # be taken back.
+            # Before anything changes: if an outage were ended for a sample that is then refused,
+            # that could not be undone.
             _, last, reached = self._core.times()
             refuse_earlier(t, last, reached)
         if self.losses.awaits_sample:
@@ -83,8 +84,8 @@ class Feed:
             self._judge(t, values)
         else:
             self._judge_all(self._intake.take(t, values))
-            # What `max delay` has made impossible has passed: windows may be decided though no
-            # sample came.
+            # `max delay` excludes samples before the floor, so time has passed up to there, and
+            # windows may be decided although no sample came.
             self._core.advance(self._intake.floor)
 
     def advance(self, t: int) -> None:
@@ -94,17 +95,18 @@ class Feed:
         self._core.advance(t)
 
     def close(self, end: int | None) -> None:
-        """Note that no further sample will come; the trace goes on up to `end`, if it is given."""
+        """Note that no further sample will come; the trace continues to `end` (ticks) if given."""
         _, last, reached = self._core.times()
         last = last if self._intake is None else self._intake.newest
         later = [t for t in (end, None if reached is None else reached - 1) if t is not None]
+        # An outage of `miss` that nothing ends may have any length.
         if last is not None and all(t <= last for t in later):
             self.losses.miss_end(last)
         if self._intake is not None:
             self._judge_all(self._intake.close())
 
     def lose(self, names: Iterable[str] | None, since: int, until: int | None, why: str) -> None:
-        """Begin an outage, and end it if `until` is given; see `FedMonitor.lose_ns`."""
+        """Start an outage, and end it if `until` is given; see `FedMonitor.lose_ns`."""
         self._turn(self.losses.lose(names, since, until, why))
 
     def find(self, names: Iterable[str] | None, at: int) -> None:
@@ -112,13 +114,13 @@ class Feed:
         self._turn(self.losses.find(names, at))
 
     def miss(self, names: Iterable[str] | None, why: str) -> None:
-        """Begin an outage at the last sample that ends with the next one."""
+        """Start an outage at the last sample, to end with the next one."""
         _, last, _ = self._core.times()
         since = last if self._intake is None else self._intake.newest
         self._turn(self.losses.miss(names, since, why))
 
     def _turn(self, turns: Sequence[Turn]) -> None:
-        """Apply turns now, or, if samples are held back, in order with these."""
+        """Apply turns now or, if samples are held back, in order with the samples."""
         if self._intake is None:
             self._judge_all(turns)
         else:
@@ -132,7 +134,10 @@ class Feed:
                 self._judge(entry.t, self._with_single_payloads(entry))
 
     def _with_single_payloads(self, sample: Sample) -> Mapping[str, Value]:
-        """The values of a merged sample: of payloads of which one can be judged, what is in all."""
+        """The values of a merged sample, with several payloads merged where one can be judged.
+
+        Fields that differ between the payloads are unknown.
+        """
         values = sample.values
         for name in self._planned.single_payloads.intersection(values):
             if isinstance(payloads := values[name], tuple) and len(payloads) > 1:
@@ -163,7 +168,7 @@ class Feed:
         """Restore a state from `state`.
 
         Raises:
-            SnapshotError: the state is of a run with other options.
+            SnapshotError: the state comes from a run with other options.
         """
         intake = state["intake"]
         if (intake is None) != (self._intake is None):
@@ -175,27 +180,26 @@ class Feed:
         self.losses.restore_state(state["losses"])
 
 
-T = TypeVar("T")  # the results of a call: decided attempts, or final robustness figures
+T = TypeVar("T")  # the result of a call: a decided attempt, or a final robustness figure
 
 
 class FedMonitor(ABC, Generic[T]):
     """A monitor that is fed a stream of samples.
 
-    Times are seconds in `step`, `advance` and so on, integer ticks of a nanosecond in the methods
-    that end in `_ns`.
+    Times are seconds in `step`, `advance` and so on, and integer ticks (nanoseconds) in the methods
+    whose names end in `_ns`.
     """
 
-    # a function that takes one sample: its time in seconds, and values by name; otherwise as
-    # `step_ns`
+    # Takes one sample: its time in seconds, and its values by name; otherwise like `step_ns`.
     step: Callable[[float, Mapping[str, Any]], Sequence[T]]
-    # the same at ticks, later than all samples before; it returns what the sample decided; more
-    # than 4,096 attempts come as a sequence that makes each on access. The values are the updates
-    # and occurrences: of a signal its value, `None` or NaN if it became unknown; of an event
-    # `True`, or its payload. As in recordings, 0 and 1 are truth values where these are declared,
-    # and 3.0 a whole number. It raises `TimeOrderError` if the time is not later or was excluded by
-    # `advance`; `TraceError` for a name or value unknown to the specification, or a time that is no
-    # whole number; `OverlapError` if another call is in progress. In all cases the monitor is
-    # unchanged
+    # Takes one sample, stamped in ticks and later than all before, and returns what it decided;
+    # more than 4,096 attempts come as a sequence that makes each on access. The values are updates
+    # and occurrences: for a signal its value, or `None` or NaN if it became unknown; for an event
+    # `True` or its payload. As in recordings, 0 and 1 are accepted as truth values, and 3.0 as a
+    # whole number, where these are declared. Raises `TimeOrderError` if the time is not later or
+    # was excluded by `advance`; `TraceError` for a name or value unknown to the specification, or a
+    # time that is not a whole number; `OverlapError` if another call is in progress. In all these
+    # cases the monitor is unchanged.
     step_ns: Callable[[int, Mapping[str, Any]], Sequence[T]]
     _feed: Feed
 
@@ -246,11 +250,11 @@ class FedMonitor(ABC, Generic[T]):
     ) -> Sequence[T]:
         r"""Report an outage: a stretch in which updates of some names may have been lost.
 
-        Within it these signals and events are unknown, whatever samples arrive: an event to the
+        Within it these signals and events are unknown, whatever samples arrive: an event until the
         end of the outage, a signal until its first update at or after that end. Under
-        `max delay D` the outage is wider by D on both sides. Instants that
-        have already been evaluated are not evaluated again, but requirements that read one of the
-        names are no longer `P` or `NT`.
+        `max delay D` the outage is wider by D on both sides. Instants that have already been
+        evaluated are not evaluated again, but requirements that read one of the names are no longer
+        `P` or `NT`.
 
         Args:
             names: signals and events; `None`: all.
@@ -287,7 +291,7 @@ class FedMonitor(ABC, Generic[T]):
         return self.found_ns(names, ticks_of_seconds(at))
 
     def found_ns(self, names: Iterable[str] | None, at_ns: int) -> Sequence[T]:
-        """Report that `at_ns` is the last instant of the outage of names; otherwise as `lose_ns`.
+        """Report that `at_ns` is the last instant of the outage of names; otherwise like `lose_ns`.
 
         Names without an outage are not affected.
         """
@@ -296,9 +300,10 @@ class FedMonitor(ABC, Generic[T]):
     def miss(self, names: Iterable[str] | None = None, *, why: str = "lost") -> Sequence[T]:
         """Report that input without a usable stamp was lost between the last sample and the next.
 
-        It is `lose_ns` from the one to the other. Before the first sample its beginning is not
-        known, behind the last one its end, unless time advances or `finish` names a later one: then
-        no requirement is `P` or `NT` any more.
+        This is `lose_ns` from the last sample to the next. The outage has no known start before the
+        first sample, and no known end after the last sample unless time advances or `finish` names
+        a later end. In both cases no requirement that reads one of the names is `P` or `NT` any
+        more.
 
         Args:
             names: signals and events that it may have updated; `None`: all.
@@ -323,7 +328,7 @@ class FedMonitor(ABC, Generic[T]):
         samples that exceed the delay.
 
         Args:
-            names: the names of the sample; `None`: it cannot be read.
+            names: the names of the sample; `None` if it cannot be read.
             t_ns: its instant, ticks.
             why: a phrase for the input health; use the same for all losses of one kind.
 

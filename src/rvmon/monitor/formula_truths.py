@@ -1,4 +1,4 @@
-"""Finds where formulas are true, false or unknown over a recording, by the core."""
+"""Finds where formulas are true, false or unknown over a recording, using the core."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 class Known(Struct, frozen=True):
     """The positions at which a formula is decided."""
 
-    # int64[n, 2], ranges of positions (first, last), ascending. Positions count ticks, in clocked
-    # time ticks divided by the period, in sampled time samples
+    # int64[n, 2], ranges of positions (first, last), ascending. Positions are ticks in held time,
+    # ticks divided by the period in clocked time, and sample numbers in sampled time
     true: NDArray[np.int64]
     false: NDArray[np.int64]  # the same for FALSE
 
@@ -36,8 +36,8 @@ class Known(Struct, frozen=True):
 class TruthsPlan:
     """A plan that evaluates formulas over any number of recordings.
 
-    They may have future operators, and are UNKNOWN where the recording ends too early; `captured`
-    are the values that they read, by name.
+    The formulas may have future operators, and are UNKNOWN where the recording ends too early.
+    `captured` holds the captured values that they read, by name.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class TruthsPlan:
 class TruthsRun:
     """Evaluates formulas while a recording is read.
 
-    The recording gives names, end and outages; its samples are passed to `take`.
+    `recording` supplies names, end and outages; its samples are passed to `take`.
     """
 
     def __init__(self, plan: TruthsPlan, recording: Trace) -> None:
@@ -89,7 +89,8 @@ def known_truths(
 ) -> list[Known]:
     """Evaluate formulas at all positions of a recording; see `TruthsRun`.
 
-    They may have future operators, but read no captured value; `end` is the last instant, ticks.
+    The formulas may have future operators but read no captured values. `end` is the last instant,
+    ticks.
 
     Cost: one pass over the samples in C.
     """

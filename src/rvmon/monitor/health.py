@@ -27,14 +27,18 @@ class HealthLog:
 
     def __init__(self, planned: PlannedCore, absent: frozenset[str]) -> None:
         self.began: int | None = None  # the instant of the first sample
-        # by signal, the instant of its first update, ticks; `None`: there was none
+        # by signal, the instant of its first update, ticks; `None` if there was none
         self.first: dict[str, int | None] = dict.fromkeys(planned.packed.signals)
         self._planned = planned
         self._absent = absent
         self._seen: dict[tuple[HealthKind, str, str], tuple[int, int]] = {}
 
     def add(self, kind: HealthKind, shown: str, name: str, count: int, first: int) -> None:
-        """Count further unknown values of a signal or field `shown`, `first` in ticks."""
+        """Count further unknown values of the signal or field `shown`.
+
+        `name` is the signal, or the event of the field; `first` the instant of the first one, in
+        ticks.
+        """
         if count:
             before, since = self._seen.get((kind, shown, name), (0, first))
             self._seen[kind, shown, name] = (before + count, since)
@@ -42,7 +46,7 @@ class HealthLog:
     def entries(self, run: native.Monitor, further: Iterable[Health] = ()) -> tuple[Health, ...]:
         """All entries of a finished run, sorted by name, each with the requirements that read it.
 
-        `further` are those of the feed.
+        `further` are the entries of the feed.
         """
         readers, names = self._planned.readers, list(self._planned.numbers)
         entries = [
@@ -85,7 +89,7 @@ class Findings(HealthLog):
         self._awaited = (self.first.keys() & planned.readers.keys()) - absent
 
     def note_sample(self, t: int, values: Mapping[str, Value]) -> None:
-        """Take account of a sample."""
+        """Note the unknown values of a sample, and which signals it is the first to update."""
         if self.began is None:
             self.began = t
         for name, value in values.items():
@@ -103,7 +107,7 @@ class Findings(HealthLog):
         self.add(HealthKind.NONE if value is None else HealthKind.NAN, shown, name, 1, t)
 
     def note_batch(self, batch: Batch) -> None:
-        """Take account of rows."""
+        """Note the same of a batch of rows."""
         from rvmon.recordings.batch import unknown_rows
 
         times = batch.times
@@ -136,7 +140,10 @@ class Findings(HealthLog):
 def health_of_run(
     planned: PlannedCore, run: native.Monitor, absent: frozenset[str], further: Iterable[Health]
 ) -> tuple[Health, ...]:
-    """The input health of a monitor's run, from the counters of the core; `further`: the feed's."""
+    """The input health of a monitor's run, from the counters of the core.
+
+    `further` are the entries of the feed.
+    """
     log = HealthLog(planned, absent)
     log.began, _, _ = run.times()
     names = [(name, name) for name in planned.numbers]
@@ -150,20 +157,20 @@ def health_of_run(
     return log.entries(run, further)
 
 
-ANY = "samples"  # the name of an entry where the lost names are not known
+ANY = "samples"  # the name of an entry if the lost names are not known
 
 _UNREAD = ""
-"""Stands for all names that no requirement reads: in sampled time, losing one loses a position."""
+"""Stands for all names that no requirement reads: in sampled time, their loss loses positions."""
 
 _MOST_ENTRIES = 1_000
-"""Beyond this many entries, new reasons are counted together as "for other reasons"."""
+"""From this many entries on, new reasons are counted together as "for other reasons"."""
 
 
 class Losses:
     """Tracks the outages of names and late samples of a run (SEMANTICS 1 and 6).
 
-    `lose`, `find`, `miss` and `end_missed` return the turns to apply, now or in order with the
-    samples held back; `turn` applies one to the core.
+    `lose`, `find`, `miss` and `end_missed` return the turns to apply, at once or in order with the
+    held-back samples; `turn` applies a turn to the core.
     """
 
     def __init__(
@@ -184,7 +191,7 @@ class Losses:
 
     @property
     def awaits_sample(self) -> bool:
-        """Whether an outage of `miss` is open, which ends with the next sample."""
+        """Whether an outage from `miss` is open, which the next sample ends."""
         return bool(self._missed)
 
     def lose(
@@ -211,20 +218,21 @@ class Losses:
             return ()
         self._note(HealthKind.DROPPED, None if names is None else some, since, why)
         some, self._missed = some - self._missed, self._missed | some
+        # Where equal stamps are merged, the lost input may also have the stamp of `since` itself.
         return self._stretch(some, since + (self._intake is None), None)
 
     def end_missed(self, t: int) -> Sequence[Turn]:
-        """The turns that end the outages of `miss`, before the next sample, at `t`."""
+        """The turns that end the outages from `miss`, before the next sample, at `t`."""
         some, self._missed = self._missed, set()
         return self._end(some, t - (self._intake is None))
 
     def miss_end(self, last: int) -> None:
-        """Report to the core that what was missed may stand anywhere behind the last sample."""
+        """Report to the core that missed input may belong anywhere after the last sample."""
         if self._missed:
             self._core.late(self._numbers(self._missed), last)
 
     def come_late(self, names: Iterable[str] | None, t: int, why: str) -> None:
-        """Report a late sample at `t` with these names (`None`: unknown) to the core."""
+        """Report to the core a late sample at `t` with these names (`None`: unknown)."""
         some = None if names is None else self._named(names)
         self._note(HealthKind.LATE, some, t, why)
         self._core.late(None if some is None else self._numbers(some), t)
@@ -232,8 +240,9 @@ class Losses:
     def turn(self, turn: Turn) -> None:
         """Apply a turn to the core; all samples before it must have been judged.
 
-        Outages of a name may overlap: only the first beginning and the last end change the core,
-        which hears of the others as of further losses, as the trace goes on to these instants.
+        Outages of a name may overlap. The first start and the last end change its state in the
+        core. The turns in between are reported to the core as further losses, because the trace
+        continues to their instants.
         """
         was = {name for name in turn.names if self._stretches[name]}
         self._stretches.update(dict.fromkeys(turn.names, 1 if turn.lost else -1))
@@ -245,7 +254,7 @@ class Losses:
                 tell(numbers, turn.t)
 
     def _stretch(self, names: set[str], since: int, until: int | None) -> Sequence[Turn]:
-        """The turns of an outage, cut to what is not judged yet; what is judged counts as late."""
+        """The turns of an outage for what is not judged yet; the rest is reported as late."""
         if not names:
             return ()
         delay, floor = self._delay_and_floor()
@@ -272,10 +281,10 @@ class Losses:
         return 0, behind if reached is None else max(behind, reached)
 
     def _named(self, names: Iterable[str] | None) -> set[str]:
-        """The names that a requirement reads, of the given ones; `_UNREAD` if none is read.
+        """Those of the given names that a requirement reads; `_UNREAD` if none is read.
 
         Raises:
-            UnknownNameError: one is not declared.
+            UnknownNameError: a name is not declared.
         """
         known = self._planned.numbers.keys()
         asked = sources_asked(self._checked, names)

@@ -17,11 +17,11 @@ from rvmon.trace.schema import Kind
 from rvmon.trace.time import TIME_LIMIT, format_ticks, whole_ticks
 
 MOST_HELD = 65_536
-"""The most samples held back for late ones; beyond it, the oldest are judged early."""
+"""The most samples held back for late ones; beyond that, the oldest are judged early."""
 
 
 class Turn(Struct, frozen=True):
-    """The beginning or end of an outage of names: at `t` ticks, its first or last instant."""
+    """The start (`lost`) or end of an outage of names: its first or last instant `t`, ticks."""
 
     t: int
     names: tuple[str, ...]
@@ -29,9 +29,9 @@ class Turn(Struct, frozen=True):
 
 
 class Intake:
-    """Holds samples back until no other can come at their instant or before (SEMANTICS 6).
+    """Holds samples back until no other can come at or before their instant (SEMANTICS 6).
 
-    `delay` is `max delay`, how far behind the newest sample another may come, ticks.
+    `delay` is `max delay` in ticks: how far behind the newest sample another one may come.
     """
 
     def __init__(self, delay: int, events: Container[str]) -> None:
@@ -44,12 +44,13 @@ class Intake:
         # the number of samples judged early because too many were held, and the instant of the
         # first of them; `None` if there were none
         self.crowded: tuple[int, int] | None = None
-        # A heap of (instant, is sample, order of arrival, item): turns precede samples.
+        # A heap of (instant, is sample, order of arrival, item), so turns precede samples of the
+        # same instant.
         self._held: list[tuple[int, bool, int, Mapping[str, Value] | Turn]] = []
         self._taken = 0
 
     def is_too_late(self, t: int) -> bool:
-        """Whether a sample at `t` exceeds the allowed delay; always False without one."""
+        """Whether a sample at `t` exceeds the allowed delay; always false without a delay."""
         return self.delay > 0 and t < self.floor
 
     def take(self, t: int, values: Mapping[str, Value]) -> list[Sample | Turn]:
@@ -67,7 +68,7 @@ class Intake:
         self._hold(t, values)
         ready = self.settle(t - self.delay)
         if self.delay and len(self._held) > MOST_HELD:
-            # A clock that is wrong by years would otherwise hold all samples back for ever.
+            # A clock that stands still would otherwise hold back all samples for ever.
             oldest = self._held[0][0]
             count, first = self.crowded or (0, oldest)
             self.crowded = (count + 1, first)
@@ -75,7 +76,7 @@ class Intake:
         return ready
 
     def turn(self, turns: Sequence[Turn]) -> None:
-        """Take turns at the floor or later; they are released in order with the samples."""
+        """Take turns at or after the floor; they are released in order with the samples."""
         for turn in turns:
             self._hold(turn.t, turn)
 
@@ -139,7 +140,7 @@ class Intake:
         self._taken = max(self._taken, place)
 
     def close(self) -> list[Sample | Turn]:
-        """Release all that is held, in order: no further sample will come."""
+        """Release everything held, in order: no further sample will come."""
         return self.settle(TIME_LIMIT)
 
 
@@ -161,7 +162,7 @@ def refuse_earlier(t: int, last: int | None, reached: int | None) -> None:
     """Refuse a sample that is not later than the previous one, or that an `advance` excluded.
 
     Raises:
-        TimeOrderError: it is one of these.
+        TimeOrderError: the sample is one of these.
     """
     if last is not None and t <= last:
         raise TimeOrderError(
@@ -177,7 +178,7 @@ def refuse_earlier(t: int, last: int | None, reached: int | None) -> None:
 
 
 def _refused(t: int, why: str) -> TraceError:
-    """The error of a sample that is not as declared."""
+    """The error for a sample that is not as declared."""
     return TraceError(f"sample at {format_ticks(t)}: {why}")
 
 
@@ -192,7 +193,8 @@ _TAKES: Mapping[Kind, tuple[type, ...]] = {
 class Validator:
     """Checks samples against the declarations.
 
-    `sources` can arrive (`None`: all); of `single`, only one payload can be judged at one instant.
+    `sources` are the names that can arrive (`None`: all); `single` are the events of which only
+    one payload can be judged at one instant.
     """
 
     def __init__(
@@ -207,7 +209,7 @@ class Validator:
         self._declared = declared
 
     def check(self, t: int, values: Mapping[str, Any]) -> Mapping[str, Value]:
-        """The sample in plain Python values, without entries that are no update.
+        """The sample in plain Python values, without entries that are not updates.
 
         Raises:
             TraceError: a name or value is unknown to the specification; the message names it.
@@ -262,10 +264,10 @@ class Validator:
 
 def _scalar(value: Any, type_: Type, name: str, t: int) -> Scalar:
     kind, takes, scalar = type_.kind, _TAKES[type_.kind], value
-    if type(value) not in takes:  # it is of NumPy, of a subclass, or 0 or 1 of a `bool`
+    if type(value) not in takes:  # a NumPy scalar, an instance of a subclass, or 0 or 1 as a bool
         scalar = as_declared(plain(value), kind)
         is_number = isinstance(scalar, takes) and not isinstance(scalar, str | bool)
-        scalar = scalar + 0 if is_number else scalar  # may be an instance of a subclass
+        scalar = scalar + 0 if is_number else scalar  # turns a subclass into the plain type
     is_taken = scalar is None or type(scalar) in takes
     if is_taken and (kind is not Kind.LABEL or scalar in (None, *type_.labels)):
         known: Scalar = scalar

@@ -1,4 +1,4 @@
-"""Mutual exclusion of the calls of a monitor, and callbacks for the attempts they decide."""
+"""Mutual exclusion of calls of a monitor, and callbacks for the attempts that calls decide."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ Callback = Callable[[Attempt], object]
 
 
 def checked(callback: object, takes: str) -> None:
-    """Refuse what cannot be called back; `takes` names its argument, such as "an attempt".
+    """Refuse an unusable callback; `takes` names its argument, such as "an attempt".
 
     Raises:
-        RvmonError: it is not callable, or a coroutine function, of which a call does nothing.
+        RvmonError: it is not callable, or a coroutine function, whose call alone runs nothing.
     """
     if not callable(callback):
         raise RvmonError(f"expected a function that takes {takes}, found {callback!r}")
@@ -47,7 +47,7 @@ class Listeners:
     ) -> Callable[[], None]:
         """Register a callback.
 
-        `changed` is called when a callback was added or removed.
+        `changed` is called whenever a callback is added or removed.
 
         Returns:
             A function without arguments that unregisters it; idempotent.
@@ -70,7 +70,7 @@ class Listeners:
         """Call the callbacks; they may call the monitor, as the deciding call has ended.
 
         Raises:
-            Exception: raised by a callback, after all have been called; several as a group.
+            Exception: what a callback raised, after all have been called; several as a group.
         """
         if not self._callbacks:
             return
@@ -91,7 +91,7 @@ class Listeners:
 
 
 BEFORE_ALL = 1 - TIME_LIMIT
-"""The instant of a call that was interrupted before any sample was taken."""
+"""The instant recorded for a call that was interrupted before any sample was taken."""
 
 
 def not_passed(verdicts: Mapping[str, Verdict]) -> Mapping[str, Verdict]:
@@ -100,7 +100,10 @@ def not_passed(verdicts: Mapping[str, Verdict]) -> Mapping[str, Verdict]:
 
 
 def capped(report: Report, interrupted: int) -> Report:
-    """The report of a run interrupted at an instant: all but `F` is `I`, and health says why."""
+    """The report of an interrupted run: every verdict but `F` is `I`, and health says why.
+
+    `interrupted` is the instant that the run had reached, ticks.
+    """
     first = None if interrupted == BEFORE_ALL else interrupted
     remark = "what followed was not evaluated in full"
     why = Health(HealthKind.INTERRUPTED, "monitor", 1, first, tuple(report.verdicts), remark)
@@ -118,9 +121,11 @@ class OneCall:
         core: the run of the core, which also refuses samples during a call.
 
     Attributes:
-        began: the instant of the first sample before the latest call, ticks; `None`: none.
-        reached: the instant the run had reached then, ticks.
-        interrupted: the instant reached when a call was interrupted or failed; `None`: none was.
+        began: the instant of the run's first sample, ticks, as of the start of the latest call;
+            `None` if there was none.
+        reached: the instant that the run had reached then, ticks.
+        interrupted: the instant reached when a call was first interrupted or failed; `None` if
+            none was.
     """
 
     def __init__(self, core: native.Monitor) -> None:
@@ -140,8 +145,8 @@ class OneCall:
         Raises:
             OverlapError: another call is in progress.
         """
-        # KeyboardInterrupt is raised at function call boundaries. So the turn is taken by a single
-        # call (`setdefault`) inside the `try`, and checked and released without any call.
+        # KeyboardInterrupt can be raised wherever a function is called. So the turn is taken by a
+        # single call (`setdefault`) inside the `try`, and checked and released without any call.
         token = object()
         try:
             if self._turn.setdefault(None, token) is not token or not self._core.hold(True):
@@ -154,7 +159,7 @@ class OneCall:
         except RvmonError:
             raise
         except BaseException as error:
-            # No function is called before this assignment, so no second interrupt can preempt it.
+            # No function is called before this assignment, so no second interrupt can prevent it.
             if self.interrupted is None and error is not self._harmless:
                 self.interrupted = BEFORE_ALL if self.reached is None else self.reached
             raise
@@ -168,7 +173,7 @@ class OneCall:
                 pass
 
     def unchanging(self, call: Callable[P, R], *args: P.args, **kwargs: P.kwargs) -> R:
-        """Run a part of the present call that changes no state: its failure is no interruption."""
+        """Run a part of the current call that changes no state: its failure is no interruption."""
         try:
             return call(*args, **kwargs)
         except BaseException as error:
@@ -177,7 +182,7 @@ class OneCall:
 
 
 def overlap() -> OverlapError:
-    """The error of a call during another one."""
+    """The error for a call during another one."""
     return OverlapError(
         "another call of this monitor is under way, in another thread or in what a signal handler "
         "has interrupted; this one was not taken: give each thread a monitor of its own, or hold "

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rvmon.recordings.joined import Joined
     from rvmon.recordings.table_recording import TableRecording
 
-_SHOWN = 8  # the most unread columns listed where none resembles a name
+_SHOWN = 8  # the most unread columns listed if none resembles a missing name
 
 
 def names_read(
@@ -26,7 +26,7 @@ def names_read(
 ) -> dict[str, tuple[str, ...]]:
     """The signals and events that are read, each with the ids of the requirements that read it.
 
-    `coverage`: whether to include the coverpoints and crosses.
+    `coverage`: whether to include the coverpoints and crosses that read it.
     """
     readers: dict[str, list[str]] = {}
     for name, requirement in spec.requirements.items():
@@ -51,10 +51,10 @@ def expect_names(
     """Refuse a recording that lacks a name that is read.
 
     `mapped` is, by declared name, the column or topic that the user mapped to it; `allowed` are the
-    names that it may lack, True for all; `coverage` as of `names_read`.
+    names that the recording may lack, True for all; `coverage` is as for `names_read`.
 
     Returns:
-        The names that it lacks, all of them allowed.
+        The names that the recording lacks, all of which are allowed.
 
     Raises:
         MissingNameError: it lacks a name that is not allowed; the message suggests columns.
@@ -78,7 +78,7 @@ def expect_names(
         close = {name: most_like(mapped.get(name, name), free) for name in refused}
         paths = [column for column in free if "/" in column or "." in column]
         if len(refused) == len(paths) == 1 and not close[refused[0]]:
-            close[refused[0]] = paths[0]  # a single missing name, a single unread topic
+            close[refused[0]] = paths[0]  # one missing name and one unread topic: probably the same
         raise MissingNameError(place + "\n".join(_listed(lacking, close, free, mapped, what)))
     return tuple(lacking)
 
@@ -110,7 +110,7 @@ def _listed(
 
 
 def most_like(name: str, columns: Sequence[str]) -> str:
-    """The column that a name probably means; "" if none resembles it.
+    """The column that a name probably refers to; "" if none resembles it.
 
     Case, separators, text in brackets, leading path segments and trailing units are ignored.
 

@@ -26,8 +26,8 @@ from rvmon.verdicts.report import Report
 class Monitor(FedMonitor[Attempt]):
     """Judges a stream of samples; made by `build_monitor`.
 
-    On the fast path `step` is a function of the core itself. It hands a sample to Python only if
-    that is no `dict` of plain values, or if it refuses it.
+    On the fast path `step` is a method of the C object itself. It hands a sample to Python only if
+    the sample is not a `dict` of plain values, or if the core refuses it.
 
     Args:
         planned: the plan of the requirements.
@@ -90,11 +90,11 @@ class Monitor(FedMonitor[Attempt]):
         return decided
 
     def _take_refused(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]:
-        """Take a sample that the core handed back; the core returns what it decides."""
+        """Take a sample that the core handed back; the core's `step` returns the result."""
         return self._one_call(self._step, t_ns, values)
 
     def _many(self, raw: tuple[bytes, bytes, bytes, Any]) -> Sequence[Attempt]:
-        from rvmon.monitor.records import recorded  # imports NumPy, which few attempts do not need
+        from rvmon.monitor.records import recorded  # imports NumPy, which short runs do not need
 
         return recorded(self._planned, raw, self._core.times()[0] or 0)
 
@@ -109,17 +109,17 @@ class Monitor(FedMonitor[Attempt]):
         return self._core.flush()
 
     def is_too_late(self, t_ns: int) -> bool:
-        """Whether a sample at `t_ns` exceeds `max delay`: it is left out, which is reported."""
+        """Whether a sample at `t_ns` exceeds `max delay`: `step` leaves it out and reports it."""
         return self._feed.is_too_late(t_ns)
 
     def on_decided(self, callback: Callback) -> Callable[[], None]:
         r"""Register a callback for each attempt that passes or fails.
 
-        `step`, `advance` and `finish` call it before they return, in the calling thread, with
-        their attempts in the order in which they return them; it may use the monitor. An attempt
-        that ends undecided appears only in the report. Exceptions of callbacks propagate after
-        all callbacks have been called for all attempts (several as an `ExceptionGroup`); the
-        sample has been evaluated nevertheless. Callbacks survive `reset`, but are not part of
+        `step`, `advance` and `finish` call it before they return, in the calling thread, for each
+        attempt in the order in which they return them. The callback may use the monitor. An
+        attempt that ends undecided appears only in the report. Exceptions from callbacks propagate
+        after all callbacks have been called for all attempts (several as an `ExceptionGroup`); the
+        sample has been evaluated nevertheless. Callbacks survive `reset` but are not part of
         snapshots: register them again after `Spec.restore`.
 
         Returns:
@@ -142,7 +142,7 @@ class Monitor(FedMonitor[Attempt]):
         return self._listeners.add(callback, self._attend, failures_only=False)
 
     def on_failure(self, callback: Callback) -> Callable[[], None]:
-        """Register a callback for each attempt that fails; otherwise as `on_decided`."""
+        """Register a callback for each attempt that fails; otherwise like `on_decided`."""
         return self._listeners.add(callback, self._attend, failures_only=True)
 
     def _tell(self, tell: Callable[[], None]) -> Sequence[Attempt]:
@@ -160,7 +160,7 @@ class Monitor(FedMonitor[Attempt]):
         """A time argument as a plain integer.
 
         Raises:
-            TraceError: the run is finished, or the time is no whole number.
+            TraceError: the run is finished, or the time is not a whole number.
         """
         if self._report is not None:
             raise TraceError("the run is finished: call reset() before the next")
@@ -242,7 +242,7 @@ class Monitor(FedMonitor[Attempt]):
     def snapshot(self) -> bytes:
         """The state of the run as bytes, from which `Spec.restore` makes an equivalent monitor.
 
-        It contains open attempts, current values, samples held back and all records so far, and no
+        It contains open attempts, current values, held-back samples and all records so far, but no
         code. It can be restored only with the same specification and version of rvmon.
 
         Raises:
@@ -251,7 +251,7 @@ class Monitor(FedMonitor[Attempt]):
         return self._one_call(self._snapshot)
 
     def __reduce__(self) -> NoReturn:
-        """Refused, as the state lives in the core; `snapshot` is the way.
+        """Refuse to pickle or copy the monitor, as its state lives in the core; see `snapshot`.
 
         Raises:
             RvmonError: always.
@@ -286,9 +286,9 @@ class Monitor(FedMonitor[Attempt]):
         return self.open_counts()[1]
 
     def open_counts(self, most: int | None = None) -> tuple[Mapping[str, int], Sequence[Attempt]]:
-        """The number of open attempts per requirement, and `open`, or a few of the oldest.
+        """The number of open attempts per requirement, and the attempts as in `open`.
 
-        With `most`, at most that many attempts, the oldest of each instance first in time.
+        With `most`, at most that many attempts: the oldest of each instance, oldest first.
         """
         return self._one_call(self._open_counts, most)
 
@@ -334,11 +334,12 @@ def build_monitor(
         settle: `now` judges each sample at once; `next` merges samples with equal stamps and judges
             each when the next stamp settles it.
         sources: the signals and events that can arrive; the others are unknown throughout.
-        keep: the number of records of each verdict, the newest, kept per requirement; default all.
+        keep: how many records to keep per requirement and verdict, the newest; default all.
 
     Raises:
-        UnknownNameError: `only` or `settle` names what does not exist.
-        RvmonError: a requirement is beyond the core; `keep` is no count.
+        UnknownNameError: `only` has an unknown requirement, or `settle` is neither `now` nor
+            `next`.
+        RvmonError: a requirement exceeds the limits of the core; `keep` is not a count.
     """
     if keep is not None and (type(keep) is not int or keep < 0):
         raise RvmonError(f"keep={keep!r}: expected a whole number from 0 on, or None to keep all")
@@ -351,7 +352,7 @@ def restore(compiled: CompiledSpec, data: bytes) -> Monitor:
     """A monitor that continues the run of a snapshot.
 
     Raises:
-        SnapshotError: the bytes are no snapshot, or one of another specification or version.
+        SnapshotError: the bytes are not a snapshot, or one of another specification or version.
     """
     document = document_of(compiled, data)
     try:

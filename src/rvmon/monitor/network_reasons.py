@@ -1,4 +1,4 @@
-"""Explains attempts judged by a network: the sentence and the details of their records."""
+"""Explains attempts judged by a network: the reason and the details of their records."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rvmon.verdicts.attempt import Blame
 
 
 class _PendingText:
-    """The pending part of formulas at positions, in words; "" if it is decided."""
+    """Words the pending part of a formula at a position; "" if nothing is pending."""
 
     def __init__(self, network: Network, words: Words, origin: int) -> None:
         self.network = network
@@ -70,7 +70,7 @@ class NetworkCauseFinder:
         self.gap = network.positions.gap
 
     def of(self, core: mtl.Core, position: int) -> Cause | None:
-        """The cause of a formula's value at a position; `None` if it is constant."""
+        """The cause of a formula's value at a position; `None` if the formula is constant."""
         match core:
             case mtl.Constant():
                 return None
@@ -147,10 +147,10 @@ class NetworkCauseFinder:
 
 
 MOST_ATTEMPTS = 32
-"""With more open attempts of a requirement in a network than this, none is forecast."""
+"""If more attempts of a requirement are open in a network, none of them is forecast."""
 
 WAITING = PASSED + 1
-"""The pseudo-location of a run in a network that is undecided.
+"""The pseudo-location of an undecided run in a network.
 
 The token of a run in a network is FAILED, PASSED or WAITING with the position it waits for.
 """
@@ -165,9 +165,10 @@ def explained_by_network(
     triggered: int,
     flow: TruthValues,
 ) -> Explanation:
-    """Why an attempt was decided at `t`; `position` is that whose value is the attempt's, in ticks.
+    """Explain the decision of an attempt at `t`; all instants are in ticks.
 
-    The deciding network is as it was at the decision, or `None` if no letters were kept.
+    `network` is the deciding one as it was at the decision, `None` if no letters were kept; its
+    value at `position` decides the attempt.
     """
     truth = None if network is None else network.truth(position)
     if network is None or truth is None:
@@ -181,7 +182,7 @@ def explained_by_network(
     deadline = None
     if t > position:  # else there was no obligation yet
         last = _settled_before(network, integer, truth[1])
-        # A window that closed before the attempt began is no deadline of it.
+        # A window that closed before the attempt started is not its deadline.
         if last is not None and last >= position - 1:
             deadline = last
     return Explanation(words.sentence(cause, verdict, moment), deadline=deadline, blame=blame)
@@ -190,7 +191,7 @@ def explained_by_network(
 def _settled_before(network: Network, position: int, at: int) -> int | None:
     """The last instant before time alone would have decided what became known at stamp `at`."""
     if at % 2 == 0:
-        return at // 2 - 1  # an even stamp: time alone did decide it
+        return at // 2 - 1  # an even stamp needs no letter: time alone did decide it
     alone = settled(network.alone_from(at - 1), position)
     return None if alone is None else alone[0]
 
@@ -207,7 +208,7 @@ class NetworkRuns(Struct, frozen=True):
     gap: int | None
 
     def met(self, worse: Token, better: Token) -> tuple[Token, Token]:
-        """The tokens of both runs, updated if the networks have decided one by now."""
+        """The tokens of both runs, updated where the networks have decided them by now."""
         if _value(self.worse, worse) is False:
             worse = (FAILED, worse[1])
         if _value(self.better, better) is True:
@@ -229,12 +230,10 @@ class NetworkRuns(Struct, frozen=True):
         return _alone(self.worse, attempt.worse), _alone(self.better, attempt.better)
 
     def forecast(self, attempt: Undecided, now: int) -> Verdict | None:
-        """See `Judged`; `None` also if too much is undecided.
-
-        Each attempt costs a search of its own, so nothing is forecast beyond `MOST_ATTEMPTS`.
-        """
+        """See `Judged`; `None` also if too much is undecided, or more than `MOST_ATTEMPTS` are."""
         del now
-        # All of them ask at each report: beyond that a live view would stall.
+        # Each forecast is a search, and a live view would request one for every open attempt at
+        # each update.
         if self.count > MOST_ATTEMPTS:
             return None
         worse, better = attempt.worse, attempt.better
@@ -247,7 +246,7 @@ class NetworkRuns(Struct, frozen=True):
     def _may_become(
         self, network: Network | None, attempt: Undecided, token: Token, value: bool
     ) -> bool:
-        """Whether continuations may give an attempt a value in a network."""
+        """Whether some continuation may give an attempt this value in a network."""
         if network is None:
             return True
         forecaster = attempt.compiled.forecaster
@@ -261,7 +260,7 @@ class NetworkRuns(Struct, frozen=True):
 
 
 def _value(network: Network | None, token: Token) -> bool | None:
-    """What a network has decided a run to be that waited; `None`: nothing."""
+    """The value that a network gives to a waiting run; `None` if it is not decided."""
     truth = None if network is None or token[0] != WAITING else network.truth(token[1][0])
     return None if truth is None else truth[0]
 

@@ -19,7 +19,7 @@ _IN_WORD = 32
 
 @lru_cache(maxsize=1024)
 def truths(words: tuple[int, ...], count: int) -> tuple[int, ...]:
-    """Unpack truth values, two bits each; cached, as few words differ in a recording."""
+    """Unpack truth values, two bits each; cached, as a recording has few different words."""
     return tuple(words[place // _IN_WORD] >> 2 * (place % _IN_WORD) & 3 for place in range(count))
 
 
@@ -31,7 +31,7 @@ def words_for(count: int) -> int:
 class Letters(msgspec.Struct, frozen=True):
     """The recorded truth values of propositions, position by position."""
 
-    # int64 words: a position, then its packed truth values, two bits each, and so on
+    # int64 words: for each position its number, then its packed truth values, two bits each
     pieces: tuple[bytes, ...]
 
     def read(self, count: int) -> Iterator[tuple[int, tuple[int, ...]]]:
@@ -52,7 +52,10 @@ def _truth(sense: Sense, value: int, *, better: bool) -> bool:
 def _noted(
     compiled: CompiledRequirement, gap: int | None, letters: Letters, position: int, *, better: bool
 ) -> Noted:
-    """The letters to replay; those before `position` (ticks) only if the formula looks back."""
+    """The letters to replay; those before `position` (ticks) only if the formula looks back.
+
+    `better`: as the optimistic run reads them.
+    """
     plan, propositions = compiled.network_plan, compiled.alphabet.propositions
     place = {state: number for number, state in enumerate(propositions)}
     leaves = [core for _, core in plan.leaves]
@@ -88,11 +91,11 @@ def at_decision(
     Args:
         compiled: the requirement.
         gap: ticks between two positions; `None` if only samples are positions.
-        letters: recorded for the attempt; `None`: none were kept.
+        letters: the letters recorded for the attempt; `None` if none were kept.
         position: the position whose value decides the attempt, ticks.
-        triggered: instant of the trigger, ticks; later than `position` for `upon end`.
-        verdict: the decision; a failure is decided by the optimistic run.
-        t: instant of the decision, ticks.
+        triggered: the instant of the trigger, ticks; later than `position` for `upon end`.
+        verdict: the decision; the optimistic run decides a failure.
+        t: the instant of the decision, ticks.
     """
     if letters is None:
         return None
@@ -101,7 +104,7 @@ def at_decision(
     def network_at(stamp: int, before: int) -> Network:
         return Network(compiled.network_plan, gap, noted, position, stamp, before)
 
-    if triggered > position == t:
+    if triggered > position == t:  # `upon end`: triggered once the letter of its position was known
         return network_at(2 * triggered, 2 * t + 1)
     if t == position:
         # Decided at its own position: only what became known since the previous letter is fresh.
@@ -122,8 +125,8 @@ def at_moment(
 ) -> NetworkRuns:
     """Rebuild both networks of an open attempt, pessimistic and optimistic, at the stamp `now`.
 
-    That is twice the instant in ticks, plus one if its letter is known; `count` attempts of the
-    requirement are open. Other arguments as of `at_decision`.
+    The stamp is twice the instant in ticks, plus one if its letter is known; `count` attempts of
+    the requirement are open. The other arguments are those of `at_decision`.
     """
     if letters is None:
         return NetworkRuns(None, None, count, gap)

@@ -1,4 +1,4 @@
-"""Decodes the notes of the core about attempts into reasons, deadlines, blame and forecasts."""
+"""Decodes the core's notes about attempts into reasons, deadlines, blame and forecasts."""
 
 from __future__ import annotations
 
@@ -22,11 +22,12 @@ from rvmon.trace.sample import HealthKind
 from rvmon.verdicts import Verdict
 from rvmon.verdicts.attempt import Attempt, Decision
 
+# Kinds and flags of notes, as in `notes.h`.
 _DECIDED, _OPEN, _NOTHING = 0, 1, 2
 _NETWORK, _CUT, _PARTED, _HOLLOW, _SURE = 1, 2, 4, 8, 16
 _HEAD = 7  # words of a note before those of the leaves
-_NOT_YET = (1 << 63) - 1
-_SPAN = (1 << 31) - 1
+_NOT_YET = (1 << 63) - 1  # the end of an outage that is still open
+_SPAN = (1 << 31) - 1  # the bits of the number of a span of letters
 _WHY = (
     *(HealthKind.NONE, HealthKind.NAN, HealthKind.STALE),
     *(HealthKind.MISSING, HealthKind.ABSENT),
@@ -35,7 +36,7 @@ _WHY = (
 
 
 class Note(NamedTuple):
-    """A note of the core about an attempt; its words are described in `write_notes.c`."""
+    """A note of the core about an attempt; `write_notes.c` describes its words."""
 
     words: tuple[int, ...]  # the int64 words of the note
     # the words on leaves and propositions at the decision; empty if there are none
@@ -59,12 +60,12 @@ class Note(NamedTuple):
 
     @property
     def at(self) -> int:
-        """The instant of the decision, ticks; of an open attempt the present stamp."""
+        """The instant of the decision, ticks; of an open attempt the current stamp."""
         return self.words[2]
 
 
 def note_of(data: bytes, state: bytes | None, pieces: Any, last: bytes | None) -> Note:
-    """A note from the pieces that the core gives with a single attempt."""
+    """A note from the parts that the core returns with a single attempt."""
     return Note(
         _words(len(data) // 8)(data),
         () if state is None else _words(len(state) // 8)(state),
@@ -73,9 +74,9 @@ def note_of(data: bytes, state: bytes | None, pieces: Any, last: bytes | None) -
 
 
 def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes, int]]) -> Note:
-    """A note from those of all records, of which it is the `place`-th word on.
+    """The note that starts at word `place` of the notes of all records.
 
-    `spans` are the letters that notes refer to by number, as the core gives them.
+    `spans` are the letters that notes refer to by number, as the core returns them.
     """
     (head,) = _words(1)(notes, 8 * place)
     words = _words(head >> 40)(notes, 8 * place)
@@ -92,13 +93,13 @@ def note_at(notes: bytes, place: int, spans: Sequence[tuple[Any, bytes, int]]) -
 
 @lru_cache(maxsize=1024)
 def _words(count: int) -> Callable[..., tuple[int, ...]]:
-    """Unpacks so many words from bytes, at a place."""
+    """A function that unpacks `count` words from bytes at an offset."""
     return Struct(f"={count}q").unpack_from
 
 
 @lru_cache(maxsize=1024)
 def _by_text(texts: tuple[str, ...], then: tuple[int, ...]) -> Mapping[str, int]:
-    """By text the truth at the trigger; most attempts have it in common."""
+    """The truth at the trigger by text; cached, as most attempts share it."""
     return dict(zip(texts, then, strict=True))
 
 
@@ -131,7 +132,7 @@ class NoteExplainer:
         return TruthValues(origin, self._gap, _instant(words[1]), values, words, places, then)
 
     def _letter(self, values: Sequence[int], *, passed: bool) -> int:
-        """The letter of the reading that decided."""
+        """The letter of the run that decided: a pass needs the pessimistic one."""
         alphabet = self.compiled.alphabet
         weights = alphabet.pessimistic if passed else alphabet.optimistic
         return sum(map(getitem, weights, values))
@@ -139,7 +140,7 @@ class NoteExplainer:
     def details(self, attempt: Attempt, note: Note, name: str) -> dict[str, Any]:
         """The explanatory fields of an attempt, by name; see `Attempt`.
 
-        A forecast takes a search: it waits for who asks for it, unless that is the name.
+        A forecast takes a search, so it is left for later unless `name` is `forecast`.
         """
         seen: Mapping[str, Any] = {}
         forecast: Callable[[], Verdict | None] | None = None
@@ -182,7 +183,7 @@ class NoteExplainer:
     def _open(
         self, attempt: Attempt, note: Note
     ) -> tuple[explain.Explanation, Callable[[], Verdict | None] | None]:
-        """Why an attempt is open, and what gives its forecast; none once it was settled."""
+        """Why an attempt is open, and a function for its forecast; `None` if it was settled."""
         now = note.at
         judged, token = self._undecided(attempt, note)
         why = explain.why_open(judged, token, now, _instant(note.words[5]))
@@ -210,7 +211,7 @@ class NoteExplainer:
         )  # fmt: skip
 
     def _networks(self, note: Note, at: int) -> tuple[explain.Judged, Token, Token, int]:
-        """The networks of an open attempt, the tokens of both runs, and the index after these."""
+        """The networks of an open attempt, the tokens of both runs, and the index after them."""
         words = note.words
         position = (words[6],)
         judged = at_moment(
@@ -220,7 +221,7 @@ class NoteExplainer:
         return judged, worse, better, at + 2
 
     def _machines(self, note: Note, at: int) -> tuple[explain.Judged, Token, Token, int]:
-        """The same for an automaton."""
+        """The same as `_networks`, for an automaton."""
         words = note.words
         reached, gap = (note.at - 1) // 2, self._gap or 1
         worse, at = _token(words, at, words[3] & 0xFFFFFFFF)
@@ -233,7 +234,7 @@ class NoteExplainer:
         )
 
     def _outages(self, words: Sequence[int]) -> Sequence[explain.Outage]:
-        """Decode the outages of a note."""
+        """Decode the outages at the end of a note."""
         spec = self.compiled.spec
         names = (*spec.signals, *spec.events)
         outages = []

@@ -1,4 +1,4 @@
-"""Words causes of decisions and open obligations, in the text of the specification."""
+"""Puts causes of decisions and open obligations into words that quote the specification."""
 
 from __future__ import annotations
 
@@ -68,16 +68,19 @@ class _Atom(Struct, frozen=True):
 
 
 class Words:
-    """Words the parts of one requirement by their origins; its consequent names those without."""
+    """Puts the parts of one requirement into words.
+
+    A part is quoted as the formula it originates from, or as the whole consequent if it has none.
+    """
 
     def __init__(self, origins: Mapping[Core, Origin], consequent: Formula) -> None:
         self._origins = dict(origins)
         self._consequent = consequent
-        # As many attempts are explained by the same parts: the text of one, the proposition that a
-        # literal requires, and whether the formula of one looks ahead.
+        # Cached, as the same few parts explain many attempts.
         self.text = cache(self._text)
         self._atom = cache(self._found_atom)
         self._looks_ahead = cache(self._found_ahead)
+        # An operator whose window has opened is quoted like the one that it derives from.
         for node, origin in origins.items():
             opened = node.opened if isinstance(node, Until | Release) else None
             if opened is not None:
@@ -96,16 +99,16 @@ class Words:
         return origin.formula if origin.positive else Unary(UnaryOp.NOT, origin.formula)
 
     def _text(self, node: Core) -> str:
-        """A node in the language."""
+        """The text of a node in the specification language."""
         return format_formula(self.formula(node) or self._consequent)
 
     def window(self, node: Until | Release) -> tuple[int, int | None]:
-        """The window of a node in ticks after its start; of an opened one, the original window."""
+        """The window of a node in ticks after its start; for an opened node, the original one."""
         whole = self._windows.get(node, node)
         return whole.low, whole.high
 
     def sentence(self, cause: Cause, verdict: bool, moment: Moment) -> str:
-        """The reason of a decision that has this cause."""
+        """The sentence that explains a decision with this cause."""
         node = cause.node
         if cause.over and not isinstance(node, Literal):
             return self._window_over(node, moment)
@@ -222,13 +225,13 @@ class Words:
         return ", or ".join(dict.fromkeys(clauses))
 
     def label(self, residual: Residual) -> tuple[str, int | None]:
-        """Key of everything reported of a residual, for any start instants of its clocks."""
+        """A key that residuals share if they are reported alike, whenever their clocks started."""
         clocks = {clock for clause in residual for _, clock in clause if clock != NO_CLOCK}
         anchors = [clock << _APART for clock in range(max(clocks, default=-1) + 1)]
         return self.required(residual, anchors, 0), deadline(residual, anchors)
 
     def dated(self, node: Core, start: int | None, origin: int) -> str:
-        """A part in quotes, with its deadline if it has one; `start` is when it was opened."""
+        """A part in quotes, with its deadline if it has one; `start` is its start in ticks."""
         if start is None or not isinstance(node, Until | Release) or node.high is None:
             return self._quoted(node)
         word = "by" if isinstance(node, Until) else "until"

@@ -1,4 +1,4 @@
-"""Packed plans, with the tables by which the core reads samples and attempts are decoded."""
+"""Packed plans, with the tables for reading samples and decoding attempts."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ class CapturedValues:
     """Decodes the captured values of attempts."""
 
     def __init__(self, spec: CheckedSpec, ids: Sequence[str], labels: Mapping[str, int]) -> None:
-        # by name, the kind of each captured value; `None` for a number, which carries its own kind
+        # per requirement, by name the kind of each captured value; `None` for a number, which
+        # carries its own kind
         self._kinds = [
             {name: spec.kind_of(value, one) for name, value in one.captured.items()}
             for one in map(spec.requirements.__getitem__, ids)
@@ -37,7 +38,10 @@ class CapturedValues:
         self._labels = {number: label for label, number in labels.items()}
 
     def of(self, requirement: int, numbers: Sequence[float | None]) -> dict[str, Scalar]:
-        """The captured values of an attempt by name; `None`: unknown. Surplus ones are ignored."""
+        """The captured values of an attempt by name; `None` is unknown. Surplus ones are ignored.
+
+        `requirement` is its number.
+        """
         kinds = self._kinds[requirement].items()
         return {
             name: self._value(number, kind)
@@ -60,17 +64,17 @@ the letters but for their last piece, and that piece; see `module_notes.h`."""
 
 
 class PlannedCore(Struct, frozen=True):
-    """A packed plan; makes monitors."""
+    """A packed plan, from which runs of the core are made."""
 
     packed: Packed  # the plan as bytes, with the names of its numbers
     captured: CapturedValues
     numbers: dict[str, int]  # by name, its number: signals first, then events
-    # per signal, event and field: of a label type the number of each label, of an event that of
-    # each field, else `None`
+    # per signal, event and field: for a label type the number of each label, for an event the
+    # number of each field, else `None`
     words: tuple[Mapping[str, int] | None, ...]
     kinds: bytes  # per signal, event and field, the kind of its values; meaningless for events
-    # of an event, whether only one payload of it can be judged at one instant; of a signal, whether
-    # that it is unknown is no update
+    # a byte per signal and event: for an event, whether only one payload of it can be judged at one
+    # instant; for a signal, whether an unknown value is no update
     limits: bytes
     # the events of which only one payload can be judged at one instant
     single_payloads: frozenset[str]
@@ -92,13 +96,13 @@ class PlannedCore(Struct, frozen=True):
         look_closer_ns: Callable[[int, Mapping[str, Any]], Sequence[Any]] | None = None,
         many: Callable[[Any], Sequence[Attempt]] | None = None,
     ) -> native.Monitor:
-        """Begin a run.
+        """Start a run.
 
         Args:
             absent: the names without a source.
-            look_closer: takes the samples, stamped in seconds, that are no `dict` of plain values.
+            look_closer: takes samples, stamped in seconds, that are not a `dict` of plain values.
             look_closer_ns: the same for stamps in ticks.
-            many: makes a lazy sequence of raw records, when thousands are decided at once; see
+            many: makes a lazy sequence from raw records, if thousands are decided at once; see
                 `rvmon.monitor.records.recorded`.
         """
         coming, is_absent = self.numbers, bytes(len(self.numbers))
@@ -117,7 +121,7 @@ class PlannedCore(Struct, frozen=True):
         Raises:
             TraceError: a whole number is too large.
         """
-        # The core takes exact `str` only, no subclasses such as members of an enumeration.
+        # The core accepts only exact `str`, no subclasses such as members of an enumeration.
         return {str.__str__(name): self._plain(name, value, t) for name, value in values.items()}
 
     def _plain(self, name: str, value: Value, t: int) -> Value:
@@ -136,7 +140,7 @@ class PlannedCore(Struct, frozen=True):
         }
 
     def instance(self, attempt: Attempt) -> object:
-        """A key of the instance an attempt belongs to; with `let`, each attempt is one."""
+        """A key of the instance an attempt belongs to; with `let`, each attempt is an instance."""
         requirement = self._specification.checked.requirements[attempt.requirement]
         if requirement.captures:
             return attempt.requirement, attempt.in_doubt, attempt.number
@@ -144,7 +148,7 @@ class PlannedCore(Struct, frozen=True):
         return attempt.requirement, attempt.in_doubt, each
 
     def _details(self, attempt: Attempt, noted: Noted, name: str) -> Mapping[str, Any]:
-        """A lazily computed field of an attempt; called from C."""
+        """See `details`; called from C."""
         captured, *parts = noted
 
         def note() -> Note:
@@ -161,9 +165,9 @@ class PlannedCore(Struct, frozen=True):
         note: Callable[[], Note],
         name: str,
     ) -> Mapping[str, Any]:
-        """A lazily computed field `name` of an attempt, and others that come with it.
+        """The lazily computed field `name` of an attempt, and others that come with it.
 
-        `note` gives the note of the core about it.
+        `note` returns the core's note about the attempt.
         """
         number = self.packed.numbers[attempt.requirement]
         values = {} if captured is None else self.captured.of(number, captured)
@@ -177,7 +181,7 @@ class PlannedCore(Struct, frozen=True):
     def _reader(self) -> NotesReader:
         """Explains attempts by their notes."""
         compiled = self._specification
-        key = "notes reader", self.packed.data  # bytes cache their hash, a tuple of ids does not
+        key = "notes reader", self.packed.data  # not the ids: bytes cache their hash, tuples do not
         reader = compiled.forms.get(key)
         if reader is None:
             # Imported on use: most attempts are never explained.
@@ -196,10 +200,11 @@ def planned_core(
 ) -> PlannedCore:
     """The packed plan of some requirements; made once per specification and options.
 
-    `traced` are the ids of those whose paths through their automata are recorded, for coverage.
+    `traced` are the ids of those whose paths through their automata are recorded, for coverage;
+    `measured`: whether it measures robustness.
 
     Raises:
-        RvmonError: a requirement is beyond the core.
+        RvmonError: a requirement exceeds the limits of the core.
     """
     spec = compiled.checked
     ids = tuple(
@@ -242,7 +247,8 @@ def _checked(
     """A plan from the cache; `None` if there is none or the core refuses it."""
     if before is None:
         return None
-    # The core checks bounds and the hash of a plan as it loads it: a damaged cache is made anew.
+    # The core checks the bounds and the hash of a plan when it loads it, so a damaged entry is
+    # refused here and made again.
     planned = planned_as(compiled.checked, ids, before, compiled)
     try:
         planned.monitor(frozenset())
@@ -254,7 +260,7 @@ def _checked(
 def planned_as(
     spec: CheckedSpec, ids: tuple[str, ...], kept: Kept, compiled: CompiledSpec | None = None
 ) -> PlannedCore:
-    """A packed plan with the tables for its specification."""
+    """A packed plan, with the tables that follow from its specification."""
     plan = packed(spec, ids, kept.data)
 
     def labels(type_: Type) -> Mapping[str, int] | None:
@@ -289,7 +295,7 @@ _LEAST, _MOST = -(1 << 63), (1 << 63) - 1
 
 
 def _number(name: str, value: Scalar, kind: Kind, t: int) -> Scalar:
-    """A value as the core takes it: integers of 64 bits; larger ones of a real signal as doubles.
+    """A value as the core takes it: integers of 64 bits; for `real`, larger ones as doubles.
 
     Raises:
         TraceError: the value has no such representation.

@@ -37,21 +37,21 @@ NUMBER = np.dtype([("kind", np.int32), ("bits", np.int64)], align=True)
 
 _WHOLE, _REAL = 1, 2
 
-_TOGETHER = 4096  # records of which Python's numbers are made at once
+_TOGETHER = 4096  # records converted to Python numbers at once
 
 _MOST_EXPLAINED = 256
-"""Explanations that are kept of a run: an attempt is asked for by the analysis of failures, by the
-text and by each file; a run may have millions."""
+"""The most explanations cached per run. The failure analysis, the text output and each report file
+read the same attempts; a run may have millions."""
 
 
 class RecordedAttempts(LazyAttempts):
     """The attempts of a run, made from raw records on access; explained when details are read.
 
     Args:
-        planned: the plan of the run; `None`: it is given later.
+        planned: the plan of the run; `None` if `give_plan` sets it later.
         records: `RECORD[n]`, in the order of reports.
         numbers: `NUMBER[n, most]`, the captured values.
-        notes: the notes of the records as bytes, and the letters that these refer to.
+        notes: the notes of the records as bytes, and the letters that the notes refer to.
         origin: the first instant of the run, ticks.
     """
 
@@ -71,9 +71,9 @@ class RecordedAttempts(LazyAttempts):
         self._explained: dict[tuple[str, int, bool], Mapping[str, Any]] = {}
 
     def __reduce__(self) -> tuple[Any, tuple[Any, ...]]:
-        """Without explanations: who takes it makes them anew.
+        """Pickle without the cached explanations; the receiver makes them again.
 
-        As bytes, or each would bring the description of its records along.
+        Arrays are pickled as bytes, as each would otherwise carry a description of its dtype.
         """
         records, numbers = self._records.tobytes(), self._numbers.tobytes()
         return _unpickled, (self.given, records, numbers, self._notes, self._origin)
@@ -114,7 +114,7 @@ class RecordedAttempts(LazyAttempts):
         return self._each(order[first:stop])
 
     def _each(self, places: NDArray[np.intp]) -> Iterator[Attempt]:
-        """The attempts at some places: ever more together, as often only the first are asked."""
+        """The attempts at some places, in batches that double: often only the first are read."""
         first, count = 0, 1
         while first < len(places):
             some = places[first : first + count]
@@ -123,7 +123,7 @@ class RecordedAttempts(LazyAttempts):
 
     @cached_property
     def _by_kind(self) -> tuple[NDArray[np.int64], NDArray[np.intp]]:
-        """Keys requirement × verdicts + verdict, ascending, and the record index of each."""
+        """The keys requirement × `len(VERDICTS)` + verdict, sorted, and the record of each."""
         kinds = self._records["requirement"].astype(np.int64) * len(VERDICTS)
         kinds += self._records["verdict"]
         order = np.argsort(kinds, kind="stable")
@@ -181,7 +181,7 @@ def recorded(
 ) -> RecordedAttempts:
     """The decided attempts among raw records, in the same order.
 
-    `raw` are records, captured numbers, notes and letters, as the core gives them.
+    `raw` holds records, captured numbers, notes and letters, as the core returns them.
     """
     records, numbers, words, letters = raw
     attempts, captured = _arrays(records, numbers)
@@ -198,19 +198,19 @@ def _unpickled(
 
 
 def _arrays(records: bytes, numbers: bytes) -> tuple[NDArray[Any], NDArray[Any]]:
-    """`RECORD[n]` and `NUMBER[n, most]` of their bytes."""
+    """`RECORD[n]` and `NUMBER[n, most]` from their bytes."""
     found = np.frombuffer(records, RECORD)
     captured = np.frombuffer(numbers, NUMBER).reshape(len(found), -1 if len(found) else 0)
     return found, captured
 
 
 def give_plan(report: Report, planned: PlannedCore | None) -> Report:
-    """The same report, whose attempts from now on are explained by another plan.
+    """Set the plan that explains the attempts of a report; returns the report.
 
     Args:
-        report: of a recording.
-        planned: of the same requirements; `None`: another process takes the report, and gives it
-            its own. A plan may be larger than all else.
+        report: the report of a recording.
+        planned: a plan of the same requirements. `None` drops the plan before another process
+            takes the report and sets its own, as a plan may be larger than everything else.
     """
     if isinstance(report.attempts, RecordedAttempts):
         report.attempts.given = planned
@@ -224,9 +224,9 @@ def report_of_run(
     end: int | None,
     health: tuple[Health, ...] = (),
 ) -> Report:
-    """Sort and fold the records of a run, as `rvmon.verdicts.report.report_of` does attempts.
+    """Sort and fold the records of a run, as `rvmon.verdicts.report.report_of` does with attempts.
 
-    `origin` is the instant that reports show as 0 s, `end` the last one of the trace, ticks.
+    `origin` is the instant that reports show as 0 s, `end` the last one of the trace (ticks).
 
     Source: SEMANTICS, section 3.
     """
@@ -280,7 +280,7 @@ def _dropped(
 
 
 def _order(records: NDArray[Any]) -> NDArray[np.intp] | None:
-    """The permutation into report order; `None` if the records are in order already.
+    """The permutation into report order; `None` if the records are already in order.
 
     Keys: decision instant (undecided last), requirement, in doubt, number.
     """

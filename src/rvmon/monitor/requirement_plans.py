@@ -1,4 +1,4 @@
-"""Chooses how the core judges each requirement, and puts them together in a plan."""
+"""Chooses how the core judges each requirement, and combines the requirements into a plan."""
 
 from __future__ import annotations
 
@@ -22,6 +22,7 @@ from rvmon.monitor.compiled_spec import CompiledSpec
 def planned_rule(compiled: CompiledRequirement, *, measured: bool = False) -> PlannedRule:
     """A requirement as the core judges it, with its automaton if it has one."""
     required, alphabet, automaton = compiled.obligation.required, compiled.alphabet, compiled.shaped
+    # Robustness is measured from `figured` below; of these attempts, only their starts matter.
     if measured and compiled.counts_alone:
         required, alphabet, automaton = _nothing_required()
     obligation = compiled.obligation
@@ -77,17 +78,17 @@ def plan_alone(
 ) -> Plan:
     """The plan for a run of the core.
 
-    `traced` and `measured` as of `planned_core`; `stepped`: no chains are used, so that each
-    attempt is stepped.
+    `traced` and `measured` are those of `planned_core`. `stepped`: use no chains, so that each
+    attempt is stepped on its own.
 
     Raises:
         UnknownNameError: there is no such requirement.
-        RvmonError: one of them is beyond the core; the message says which one and why.
+        RvmonError: a requirement exceeds the limits of the core; the message says which and why.
     """
     ids = requirements_asked(compiled.checked, only)
     rules = []
     for one in compiled.chosen(ids):
-        if one.requirement.id in traced:  # by the automaton shown to users, whose edges are counted
+        if one.requirement.id in traced:  # uses the automaton shown to users: its edges are counted
             rule = replace(planned_rule(one), automaton=one.automaton, stepped=True, traced=True)
         else:
             rule = planned_rule(one, measured=measured)

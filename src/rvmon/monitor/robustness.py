@@ -1,4 +1,4 @@
-"""Robustness: the figures of attempts, and a monitor that computes them online."""
+"""Robustness figures of attempts, and a monitor that computes them online."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ class Robustness(Bounds):
     Attributes:
         low: lower bound over all values of unknown input and all continuations of the trace.
         high: upper bound, likewise.
-        kept: lower bound if every opened unbounded `R` (`always`) holds after the end.
+        kept: lower bound if every opened unbounded `R` (`always`) continues to hold after the end.
     """
 
     low: float
@@ -34,7 +34,7 @@ class Robustness(Bounds):
     kept: float
 
     def of(self, attempt: Attempt) -> float | None:
-        """The robustness of a decided attempt, or the bound nearer to the other verdict.
+        """The robustness of a decided attempt, or the bound that is nearer to the other verdict.
 
         `None` for attempts left open or settled by a policy, and where the bounds contradict the
         verdict because the decisive input lies outside the measured part of the trace.
@@ -60,7 +60,7 @@ class Measured(Figure):
 
     Attributes:
         requirement: its id.
-        number: the number of the attempt; `None` for the robustness at a position, of a stream.
+        number: the number of the attempt; `None` for the robustness at a position (a stream).
         t: the instant of the trigger, or of the position, ticks.
         robustness: the bounds.
         in_doubt: whether the attempt is in doubt.
@@ -74,7 +74,7 @@ class Measured(Figure):
 
 
 FIGURES = Measured, Robustness
-"""The records that the core fills with figures."""
+"""The types of the records that the core fills with figures."""
 
 
 class Stream(Sequence[tuple[int, Robustness]]):
@@ -122,7 +122,7 @@ class Margins(Struct, frozen=True):
         attempts: by requirement and number of the attempt.
         doubtful: the same for attempts in doubt that have a record.
         streams: by requirement, its robustness at the instants of samples. Requirements with `let`
-            or `for each` have none: it would depend on the attempt.
+            or `for each` have no stream, as it would depend on the attempt.
     """
 
     attempts: Mapping[Key, Robustness]
@@ -139,8 +139,8 @@ class Margins(Struct, frozen=True):
 class RobustnessMonitor(FedMonitor[Measured]):
     """Measures robustness online; made by `Spec.robustness_monitor`.
 
-    A call returns the figures that are final. A sample that exceeds `max delay` is refused; late
-    input does not change figures already given.
+    Each call returns the figures that became final. A sample that exceeds `max delay` is refused;
+    late input does not change figures already returned.
 
     Args:
         compiled: the specification.
@@ -199,7 +199,7 @@ class RobustnessMonitor(FedMonitor[Measured]):
 
     @property
     def open(self) -> Sequence[Measured]:
-        """Current bounds on the figures of open attempts; they only tighten."""
+        """The current bounds on the figures of open attempts; they only tighten."""
         return self._one_call(self._core.open_figures)
 
     def finish(self, t: float | None = None) -> Sequence[Measured]:

@@ -1,7 +1,7 @@
 """Writes the state of a run as a snapshot, and restores it.
 
-The format is one line (kind, SHA-256) and a JSON document, with the bytes of the core in base64.
-The checksum is verified before anything is read, and nothing is executed.
+The format is one line (kind, SHA-256) and a JSON document that holds the bytes of the core in
+base64. The checksum is verified before anything is read, and nothing is executed.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def document_of(compiled: CompiledSpec, data: bytes) -> Mapping[str, Any]:
     """Check a snapshot and parse it; `only`, `settle`, `sources` and `keep` are its options.
 
     Raises:
-        SnapshotError: the bytes are no snapshot, or one of another specification or version.
+        SnapshotError: the bytes are not a snapshot, or one of another specification or version.
     """
     document = _document(data)
     if document.get("rvmon") != _version():
@@ -84,7 +84,7 @@ def restored_state(
     """Restore the core's state in a fresh run; returns the state held in Python.
 
     Raises:
-        SnapshotError: the snapshot was made with another plan, or its bytes are no state of it.
+        SnapshotError: the snapshot was made with another plan, or its bytes are not a state of it.
     """
     if document["plan"] != _digest(planned):
         raise SnapshotError("the snapshot was made with another plan: was rvmon changed?")

@@ -1,6 +1,6 @@
 """The delay network: for each node and position, the value and the stamp at which it became known.
 
-It is evaluated in one pass over the letters that the core kept, for explanations and forecasts.
+Explanations and forecasts evaluate it in one pass over the letters that the core kept.
 
 Source: AUTOMATA 4.
 """
@@ -72,12 +72,12 @@ def _not_early(known: Known, positions: pw.Positions) -> Known:
 
 
 def _swapped(known: Known, dual: bool) -> Known:
-    """Known values with true and false exchanged if `dual`."""
+    """The known values, with true and false exchanged if `dual`."""
     return (known[1], known[0]) if dual else known
 
 
 Noted = Sequence[tuple[int, Sequence[bool]]]
-"""Instants of positions (ticks) with the truth value of each leaf; in held time until the next."""
+"""Instants of positions (ticks) with the truth value of each leaf, in held time up to the next."""
 
 
 class Network:
@@ -90,7 +90,7 @@ class Network:
         first: the instant of the position whose value is needed, ticks. If it is before all
             letters, the positions in between decide nothing: its value is that at the first letter.
         limit: the stamp.
-        before: a stamp; whatever was known by then gets the stamp `PAST`.
+        before: another stamp; everything known by then gets the stamp `PAST`.
     """
 
     def __init__(
@@ -211,8 +211,8 @@ class Network:
 def settled(alone: Known, position: int) -> tuple[int, bool] | None:
     """The last instant (ticks) before time alone decides the formula at a position, and its value.
 
-    `None` if it does not; `alone` is from `Network.alone`, for a stamp at which the value is
-    unknown.
+    `None` if time alone does not decide it. `alone` comes from `Network.alone`, for a stamp at
+    which the value is unknown.
     """
     found = _at(alone, position)
     return None if found is None else (found[1] // 2 - 1, found[0])

@@ -1,12 +1,12 @@
 """Piecewise linear functions from positions to the stamps at which a value becomes known.
 
 A *piece* `(left, right, at, slope)` states that at each position i from `left` to `right` a value
-is known from the stamp `at + slope * i` on. At positions without a piece it is not known, or known
-to be the other value. A set of known positions is such a function with all stamps `PAST`.
+is known from the stamp `at + slope * i` on. At a position without a piece the value is not known,
+or it is the other one. A set of known positions is such a function with all stamps `PAST`.
 
 A stamp is twice an instant in ticks, plus one if the letter of the position at that instant is
 needed. The slope is 0 or twice the distance of two positions, so the functions are closed under
-minima and maxima over windows: a held letter costs one piece, however long it is held.
+minima and maxima over windows. A held letter costs one piece, however long it is held.
 
 `Positions` defines which integers are positions, and how operators treat the others.
 
@@ -39,7 +39,7 @@ def stamp(pieces: Pieces, position: int) -> int | None:
 
 
 def unchanged_until(known: tuple[Pieces, Pieces], integer: int) -> int:
-    """The last integer up to which both functions have the same piece, or none, as at `integer`."""
+    """The last integer up to which both functions keep the piece, or none, of `integer`."""
     end = FAR
     for pieces in known:
         index = bisect_right(pieces, integer, key=_left) - 1
@@ -51,7 +51,7 @@ def unchanged_until(known: tuple[Pieces, Pieces], integer: int) -> int:
 
 
 def append(pieces: list[Piece], left: int, right: int, at: int, slope: int) -> None:
-    """Append a piece; an empty one is dropped, one that continues the last is merged with it."""
+    """Append a piece; drop it if it is empty, merge it if it continues the last one."""
     if left > right:
         return
     if pieces:
@@ -106,7 +106,7 @@ def not_before(pieces: Pieces, at: int, slope: int) -> Pieces:
 
 
 def earliest(pieces: Pieces, other: Pieces) -> Pieces:
-    """The pointwise minimum: known as soon as one of two is."""
+    """The pointwise minimum: known as soon as one of the two is."""
     if not pieces or not other:
         return pieces or other
     made: list[Piece] = []
@@ -152,7 +152,7 @@ def _choose(
 
 
 def _refined(pieces: Pieces, other: Pieces) -> Iterable[tuple[int, int, Line | None, Line | None]]:
-    """The stretches on which each has a single line or none, in order; not where both have none."""
+    """The stretches on which each function has one line or none, in order; skips empty ones."""
     i = j = 0
     at = -FAR
     while i < len(pieces) or j < len(other):
@@ -174,10 +174,10 @@ _NO_MORE: Piece = (FAR + 1, FAR + 1, 0, 0)  # a sentinel after all pieces
 
 
 def some_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
-    """The minimum over the window [i + low, i + high]: known as soon as at one of its positions.
+    """The minimum over the window [i + low, i + high]: known as soon as one position is known.
 
-    Stamps do not decrease within a piece, so the least stamp in a window is that at its first
-    position, or at the left end of a piece within it; the latter are a sliding minimum.
+    Stamps do not decrease within a piece, so the least stamp in a window is at its first position,
+    or at the left end of a piece within it; a sliding minimum gives the latter.
     """
     if low > high or not pieces:
         return ()
@@ -187,7 +187,7 @@ def some_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
 
 
 def all_of_window(pieces: Pieces, low: int, high: int) -> Pieces:
-    """The maximum over the window [i + low, i + high]: known once at all of its positions."""
+    """The maximum over the window [i + low, i + high]: known once all its positions are known."""
     if low > high:
         return EVER
     made: list[Piece] = []
@@ -262,7 +262,8 @@ def _sliding(
         if position <= -FAR:
             continue
         settle(position - high - 1)
-        # Monotone queue: what a newer and better point outlives can never be the best again.
+        # Monotone queue: a point can never be the best again once a newer one is better, as the
+        # newer one stays longer in the window.
         while best and not keeps(best[-1][1], value):
             best.pop()
         best.append((position, value))
@@ -274,7 +275,7 @@ class Positions:
     """The positions of a word.
 
     In held and clocked time they are consecutive integers: ticks, or multiples of the period. In
-    sampled time they are the instants of samples in ticks; other integers are no positions.
+    sampled time they are the instants of samples in ticks; other integers are not positions.
 
     Args:
         gap: ticks between two positions; `None` if only samples are positions.
@@ -298,7 +299,7 @@ class Positions:
         return made
 
     def following(self, integer: int) -> int:
-        """The first position at or after an integer; if there is none, an integer after all."""
+        """The first position at or after an integer; if none, an integer after all positions."""
         if not self.sparse:
             return max(integer, self.first) if self.first < FAR else integer
         index = bisect_left(self.stamps, integer)
@@ -324,7 +325,7 @@ class Positions:
         return made
 
     def at_positions(self, pieces: Pieces) -> Pieces:
-        """Known at positions only, for an operand that must be met at some position."""
+        """Restrict to positions, for an operand that must be met at some position."""
         found = clip(pieces, self.first, self.last)
         if not self.sparse:
             return found
@@ -335,7 +336,7 @@ class Positions:
         return made
 
     def or_no_position(self, pieces: Pieces) -> Pieces:
-        """Known also at integers that are no positions, for an operand that must hold at all."""
+        """Extend to integers that are not positions, for an operand that must hold throughout."""
         made: list[Piece] = []
         append(made, -FAR, self.first - 1, PAST, 0)
         behind = self.first
@@ -353,7 +354,7 @@ class Positions:
         return made
 
     def _fill(self, made: list[Piece], left: int, right: int) -> None:
-        """Append the integers from `left` to `right` that are no positions."""
+        """Append the integers from `left` to `right` that are not positions."""
         if not self.sparse:
             return
         for position in self.within(left, right):

@@ -1,8 +1,8 @@
 """The residual of an undecided formula, computed from the known values of a network.
 
-The residual is that of progression (AUTOMATA 1) or a weaker one: where too many positions, or past
-operators, are undecided, their obligations are left out. So if no continuation satisfies the
-residual, none makes the formula true.
+The residual is that of progression (AUTOMATA 1) or a weaker one: the obligations of past operators,
+and of positions beyond a limit, are left out. So if no continuation satisfies the residual, none
+makes the formula true.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ _FEW = 8  # the most undecided positions of a stretch that are examined, besides
 class Remaining:
     """Computes residuals of the formulas of a network, or of their negations.
 
-    They are formulas of `duals`, over known propositions.
+    The residuals consist of formulas of `duals`, over known propositions.
     """
 
     def __init__(self, network: Network, duals: Duals) -> None:
@@ -96,7 +96,7 @@ class Remaining:
                 assert_never(core)
 
     def _some(self, core: mtl.Until | mtl.Release, position: int, positive: bool) -> Residual:
-        """Existential reading: right at some position of the window, left up to it."""
+        """Existential reading: right holds at some position of the window, and left up to it."""
         found, way = FAILS, HOLDS
         for k, _, right_left_out in self._open_positions(core, position, positive):
             if self._is_in_window(core, position, k):
@@ -110,7 +110,7 @@ class Remaining:
         return either(found, _both(way, self._pending(core, position, positive)))
 
     def _every(self, core: mtl.Until | mtl.Release, position: int, positive: bool) -> Residual:
-        """Universal reading: right at all positions of the window, until left releases it."""
+        """Universal reading: right holds at all positions of the window until left releases it."""
         found, release = HOLDS, FAILS
         for k, left_left_out, _ in self._open_positions(core, position, positive):
             if self._is_in_window(core, position, k):
@@ -126,10 +126,10 @@ class Remaining:
     def _open_positions(
         self, core: mtl.Until | mtl.Release, position: int, positive: bool
     ) -> Iterator[tuple[int, bool, bool]]:
-        """The positions up to now that matter: others only pass the obligation to the next.
+        """The positions up to now that matter; the others only pass the obligation on.
 
-        Each comes with two flags: whether positions after it are skipped at which the left
-        operand, or the right one, is unknown.
+        Each comes with two flags: whether the left operand, and whether the right operand, is
+        unknown at positions that are skipped after it.
         """
         some = isinstance(core, mtl.Until) is positive
         k = max(position, self.network.start)
@@ -162,7 +162,7 @@ class Remaining:
                     break
 
     def _end(self, core: mtl.Core, position: int) -> int:
-        """The last integer up to which the knowledge about a formula is as at a position."""
+        """The last integer up to which as much is known of a formula as at `position`."""
         if isinstance(core, mtl.Constant):
             return FAR
         return unchanged_until(self.network.known_of(core), position)
@@ -172,7 +172,7 @@ class Remaining:
         return core.low <= age and (core.high is None or age <= core.high)
 
     def _pending(self, core: mtl.Until | mtl.Release, position: int, positive: bool) -> Residual:
-        """The residual for positions to come: none if the window is over, else the operator."""
+        """The residual for positions to come: the operator, or a constant if its window is over."""
         if core.high is not None and (self.now + 1 - position) * self.gap > core.high:
             return FAILS if isinstance(core, mtl.Until) is positive else HOLDS
         return self._atom(core, position + _START, positive, (self.now - position) * self.gap)
@@ -196,4 +196,4 @@ def _both(left: Residual, right: Residual) -> Residual:
 
 
 _START = 1 << 100
-"""Added to positions, gives clocks: positive, and smaller for older ones, as in residuals."""
+"""Added to positions to make them clocks: positive, and smaller if older, as in residuals."""

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from rvmon.monitor.network import piecewise as pw
 
 Known = tuple[pw.Pieces, pw.Pieces]
-"""The pieces where a formula is known to be true, and those where it is known to be false."""
+"""The pieces on which a formula is known to be true, and those on which it is known to be false."""
 
 Carried = tuple[bool, int] | None
 """The value at the neighbouring position outside a stretch, with its stamp; `None`: unknown."""
@@ -19,12 +19,12 @@ _Side = tuple[bool, pw.Line] | None
 def until(left: Known, right: Known) -> Known:
     """`left U right` at all integers.
 
-    U(i) = right(i) or (left(i) and U(i + 1)). Stamps do not decrease within a stretch: its first
-    position is the earliest witness, and its last one is decisive for passing through it.
+    U(i) = right(i) or (left(i) and U(i + 1)). Stamps do not decrease within a stretch, so its first
+    position is the earliest witness, and its last one decides when a value passes through it.
 
     Args:
-        left: operand that has to hold until then; true at integers that are no positions.
-        right: operand to be met; false at integers that are no positions.
+        left: the operand that has to hold until then; true at integers that are not positions.
+        right: the operand to be met; false at integers that are not positions.
     """
     found: list[Known] = []
     carried: Carried = None
@@ -73,12 +73,12 @@ def since(left: Known, right: Known) -> Known:
 
 
 def _whole(first: int, last: int, side: _Side, value: bool) -> pw.Pieces:
-    """The piece of a stretch if its side has a value; else nothing."""
+    """A stretch as one piece if its side has this value; else nothing."""
     return ((first, last, *side[1]),) if side is not None and side[0] is value else ()
 
 
 def _from(first: int, last: int, side: _Side, carried: Carried, value: bool) -> pw.Pieces:
-    """The stamp of a value at the first position, of the side or carried from before it."""
+    """A stretch with one stamp: that of the value at its first position, or carried from before."""
     stamps = []
     if side is not None and side[0] is value:
         stamps.append(_at(side[1], first))
@@ -129,7 +129,7 @@ def _stretches(left: Known, right: Known) -> Iterator[tuple[int, int, _Side, _Si
 
 
 def _sides(known: Known) -> Iterator[tuple[int, int, _Side]]:
-    """The value of an operand over all integers, in pieces without gaps."""
+    """The value of an operand over all integers, in stretches without gaps."""
     at = -pw.FAR
     sides = [
         (left, right, (value, (stamp_, slope)))
