@@ -1,4 +1,4 @@
-"""Temporal requirements in, verdicts about robots out.
+"""Judge temporal requirements on event streams and recordings of robots.
 
 >>> import rvmon
 >>> spec = rvmon.loads('''
@@ -51,7 +51,7 @@ __all__ = [
     "loads",
 ]
 
-# `import rvmon` stays light: a name is imported when it is first asked for.
+# `import rvmon` stays light: a name is imported at its first use.
 _HOMES = {
     "Attempt": "rvmon.session",
     "Diagnostic": "rvmon.diagnostics",

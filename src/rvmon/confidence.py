@@ -1,4 +1,4 @@
-"""The share of runs behind a count: an interval that holds it with a stated confidence."""
+"""Confidence intervals for a share of which a sample was counted."""
 
 from __future__ import annotations
 
@@ -6,21 +6,22 @@ from functools import cache
 from math import ceil, exp, floor, lgamma, log, log1p
 
 CONFIDENCE = 0.95
-"""Of the intervals that tables show."""
+"""The confidence of the intervals in tables."""
 
 _HALVINGS = 60
+"""Steps of bisection; each halves the interval, so 60 exhaust the precision of a double."""
 
 
 @cache
 def interval(count: int, runs: int, confidence: float = CONFIDENCE) -> tuple[float, float]:
-    """The exact interval of Clopper and Pearson for a share of which a sample was counted.
+    """The exact interval of Clopper and Pearson for a binomial share.
 
-    Whatever the share is, at least `confidence` of all samples give an interval that holds it, if
-    runs are drawn independently of each other. It costs about `runs` operations, 120 times.
+    Whatever the true share is, at least `confidence` of all samples give an interval that contains
+    it, provided that the runs are independent. The cost is about 120 times `runs` operations.
 
     Args:
-        count: runs of the sample that have it.
-        runs: in the sample, at least 1.
+        count: runs of the sample that have the property.
+        runs: runs in the sample, at least 1.
         confidence: above 0, below 1.
 
     Source: Clopper and Pearson, The Use of Confidence or Fiducial Limits Illustrated in the Case of
@@ -50,7 +51,7 @@ def interval_text(count: int, runs: int) -> str:
 
 
 def _bound(count: int, runs: int, tail: float) -> float:
-    """The share at which `count` runs or more have the probability `tail`."""
+    """The share at which `count` or more of `runs` runs have the probability `tail`."""
     low, high = 0.0, 1.0
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
@@ -62,12 +63,14 @@ def _bound(count: int, runs: int, tail: float) -> float:
 
 
 def _at_least(count: int, runs: int, share: float) -> float:
-    """The probability of `count` runs or more, which is at least 1."""
+    """The probability of `count` or more of `runs` runs; `count` is at least 1."""
     choices = lgamma(runs + 1) - lgamma(count + 1) - lgamma(runs - count + 1)
     first = exp(choices + count * log(share) + (runs - count) * log1p(-share))
     odds = share / (1 - share)
     total = term = 1.0
-    for taken in range(count, runs):  # terms rise and then fall, relative to the first
+    for taken in range(count, runs):  # each term relative to the first; they rise, then fall
         term *= (runs - taken) / (taken + 1) * odds
         total += term
-    return first * total  # 0 · ∞ where the terms rise far: no number is below the tail, as 1 is not
+    # `first` may underflow to 0 and `total` overflow to ∞. Their product NaN is not below the
+    # tail, and neither is the true probability, which is near 1 then.
+    return first * total

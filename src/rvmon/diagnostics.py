@@ -1,7 +1,7 @@
-"""Findings about a text that a person wrote: where, what, why, what fixes it; and how to show them.
+"""Diagnostics about a specification or model, and their rendering.
 
-A finding is data with places in the source. It is rendered in full and in colour for people, a line
-each for tools, and as JSON for programs.
+A diagnostic is data with places in the source. It is rendered in full, with colour, for people; on
+one line for tools; and as JSON for programs.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from rvmon.texts import shown_line
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """One text with the name people know it by (a path, or `<string>`)."""
+    """A text and the name it has in messages (a path, or `<string>`)."""
 
     name: str
     text: str = field(repr=False)
@@ -31,9 +31,9 @@ class Span:
     """The half-open range of characters `[start, end)` of a source.
 
     Attributes:
-        source: the text that the offsets index.
+        source: the text that the offsets refer to.
         start: offset of the first character, from 0.
-        end: offset behind the last character.
+        end: offset after the last character.
     """
 
     source: Source
@@ -60,12 +60,12 @@ class Span:
         return self.source.text[self.start : self.end]
 
     def to(self, other: Span) -> Span:
-        """The range from the start of this span to the end of `other`."""
+        """The smallest range that contains this span and `other`."""
         return Span(self.source, min(self.start, other.start), max(self.end, other.end))
 
 
 class Severity(StrEnum):
-    """The severity of a finding: an error stops the compilation, a warning does not."""
+    """Severity of a diagnostic: an error stops the compilation, a warning does not."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -73,7 +73,7 @@ class Severity(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """A place with an optional remark that stands beside its underline."""
+    """A place with an optional remark, which is printed after its underline."""
 
     span: Span
     text: str = ""
@@ -81,15 +81,15 @@ class Label:
 
 @dataclass(frozen=True, slots=True)
 class Diagnostic:
-    """One finding.
+    """One error or warning.
 
     Attributes:
-        code: stable identifier with its page in the documentation, such as `RV012`.
+        code: stable identifier, such as `RV012`; the documentation has a page for each.
         name: the code in words, such as `unknown-signal`.
         severity: error or warning.
-        message: one sentence: what is wrong.
+        message: one sentence that says what is wrong.
         spans: the places, the offending one first; empty if the whole file is meant.
-        help: a remedy; empty if none is known.
+        help: a fix; empty if none is known.
     """
 
     code: str
@@ -101,22 +101,23 @@ class Diagnostic:
 
 
 WIDEST = 107
-"""A snippet is so many columns wide at most: longer lines are cut around the place."""
+"""The most columns of a snippet; longer lines are cut around the place."""
 
 _GUTTER = 5
+"""Columns of line number and `|` at the left of a snippet."""
 
 
 def snippet(
     span: Span, remark: str = "", *, arrow: str = "-->", mark: str = "^", width: int = WIDEST
 ) -> str:
-    """The line of a place with the place underlined.
+    """The source line of a place, with the place underlined.
 
     Args:
-        span: the place; of one that spans lines, the part on its first line is underlined.
-        remark: stands behind the underline.
-        arrow: leads to the file's name; other places of the same finding take `:::`.
+        span: the place; if it spans several lines, only its part on the first is underlined.
+        remark: printed after the underline.
+        arrow: printed before the file name; further places of the same diagnostic take `:::`.
         mark: the character to underline with.
-        width: columns that there are, so that underlines stay below what they mean.
+        width: columns of the terminal; a wrapped line would move the underline off its place.
 
     >>> from rvmon.diagnostics import Source
     >>> print(snippet(Span(Source("a.rv", "upon sensd"), 5, 10)))
@@ -156,7 +157,7 @@ def _shown(text: str) -> str:
 
 
 def columns_of(text: str) -> int:
-    """Columns that a terminal gives to a text.
+    """The columns that a text takes in a terminal.
 
     >>> columns_of("speed"), columns_of("速度")
     (5, 4)
@@ -170,19 +171,19 @@ def columns_of(text: str) -> int:
 
 
 def render_full(diagnostics: Sequence[Diagnostic], width: int = WIDEST) -> str:
-    """Every finding with its places underlined and what fixes it, a blank line between."""
+    """All diagnostics with their places underlined and their fixes, separated by blank lines."""
     return "\n\n".join(_full(diagnostic, width) for diagnostic in diagnostics)
 
 
 def render_concise(diagnostics: Sequence[Diagnostic]) -> str:
-    """One line per finding: `file:line:column: error[code name]: message (help: …)`."""
+    """One line per diagnostic: `file:line:column: error[code name]: message (help: …)`."""
     return "\n".join(map(_concise, diagnostics))
 
 
 def render_json(diagnostics: Sequence[Diagnostic]) -> str:
-    """A JSON array with a line for each finding; lines and columns count from 1, offsets from 0.
+    """A JSON array, one line per diagnostic; lines and columns count from 1, offsets from 0.
 
-    The first place stands before all else, so that a pattern can read it off the line.
+    Each line starts with the first place, so that a regular expression can find it there.
     """
     lines = [json.dumps(_plain(diagnostic)) for diagnostic in diagnostics]
     return "[\n" + ",\n".join(lines) + "\n]" if lines else "[]"
@@ -256,7 +257,7 @@ _UNDERLINE = re.compile(r"( +\| +)(\^+|-+)(.*)")
 
 
 def wants_colour(stream: TextIO) -> bool:
-    """Whether a stream is a terminal, or it was asked for (`FORCE_COLOR`), unless `NO_COLOR`."""
+    """Whether to colour: on a terminal, or if `FORCE_COLOR` is set; never if `NO_COLOR` is."""
     if os.environ.get("NO_COLOR"):
         return False
     is_able = stream.isatty() and os.environ.get("TERM") != "dumb"
@@ -264,7 +265,7 @@ def wants_colour(stream: TextIO) -> bool:
 
 
 def coloured(text: str) -> str:
-    r"""Findings as `render_full` writes them, with severity, places and help in colour.
+    r"""The output of `render_full` with severity, places and help in colour.
 
     >>> coloured("help: did you mean `a`?")
     '\x1b[36mhelp:\x1b[0m did you mean `a`?'

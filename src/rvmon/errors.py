@@ -6,14 +6,14 @@
     ├── SpecError(ValueError)        a specification has errors; carries all diagnostics
     ├── ModelError(ValueError)       a model or query has errors; carries all diagnostics
     ├── TraceError(ValueError)       a recording or a sample has errors; names file and line
-    │   ├── TimeOrderError           a sample's time is not after the one before
+    │   ├── TimeOrderError           a sample is not later than the sample before it
     │   └── MissingNameError         a recording has no column for a name that is read
     ├── CoverageError(ValueError)    a coverage database has errors, or does not fit another
     ├── UnknownNameError(KeyError)   a requirement, signal or option of that name does not exist
     ├── SnapshotError(ValueError)    a monitor's snapshot does not belong to this spec
     ├── WorkerLostError              a worker process was killed from outside
     ├── OverlapError(RuntimeError)   a monitor was called during another call
-    └── CoreError(ImportError)       the native core is not built, or not from its sources
+    └── CoreError(ImportError)       the native core is not built, or differs from its sources
 """
 
 from __future__ import annotations
@@ -31,17 +31,17 @@ if TYPE_CHECKING:
 
 
 class RvmonError(Exception):
-    """The base of all exceptions of rvmon; as text, it is free of terminal escapes."""
+    """Base of all exceptions of rvmon; `str` of it contains no terminal escapes."""
 
     def __str__(self) -> str:
         return shown(super().__str__())
 
 
 class DiagnosedError(RvmonError, ValueError):
-    """A text has errors; `diagnostics` say where, why and how to fix them.
+    """A specification, model or query has errors; `diagnostics` says where, why and the fix.
 
     Attributes:
-        diagnostics: all findings of the text, in order of place.
+        diagnostics: all diagnostics of the text, in order of place.
     """
 
     def __init__(self, diagnostics: Sequence[Diagnostic], rendered: str) -> None:
@@ -65,15 +65,15 @@ class TraceError(RvmonError, ValueError):
 
 
 class TimeOrderError(TraceError):
-    """A sample's time is not after that of the sample before."""
+    """A sample is not later than the sample before it."""
 
 
 class MissingNameError(TraceError):
-    """A recording in columns lacks names that the judged requirements read; it lists them."""
+    """A recording in columns lacks names that the judged requirements read; lists the names."""
 
 
 class CoverageError(RvmonError, ValueError):
-    """A database of coverage cannot be read or written, or does not fit a model or another one."""
+    """A coverage database cannot be read or written, or does not fit a model or another one."""
 
 
 class UnknownNameError(RvmonError, KeyError):
@@ -88,15 +88,15 @@ class SnapshotError(RvmonError, ValueError):
 
 
 class WorkerLostError(RvmonError):
-    """A process that shared the work was ended from outside."""
+    """A worker process was killed from outside."""
 
 
 class OverlapError(RvmonError, RuntimeError):
-    """A monitor was called while another call of it was under way; this one changed nothing."""
+    """A monitor was called during another call of it; the refused call changed nothing."""
 
 
 class CoreError(RvmonError, ImportError):
-    """The native core is not built, or was built from other sources than those beside it."""
+    """The native core is not built, or its sources have changed since it was built."""
 
 
 EXTRAS = {
@@ -122,15 +122,19 @@ EXTRAS = {
     "rosbags": "ros",
     "scipy": "h5",
 }
-"""The extra of rvmon that brings a package."""
+"""For each optional package, the extra of rvmon that installs it."""
 
 
 @contextmanager
 def needed(what: str, package: str) -> Iterator[None]:
-    """Within it something is imported; its arguments are those of `not_installed`.
+    """Turn an `ImportError` in its block into the error of `not_installed`.
+
+    Args:
+        what: the feature that needs the package.
+        package: as for `not_installed`.
 
     Raises:
-        RvmonError: the package is not there.
+        RvmonError: the package is not installed.
 
     >>> with needed("this", "nowhere"):
     ...     import nowhere
@@ -146,10 +150,10 @@ def needed(what: str, package: str) -> Iterator[None]:
 
 @contextmanager
 def writing(path: object) -> Iterator[None]:
-    """Within it a file that a person named is written.
+    """Turn an `OSError` in its block into a message about a file that the user named.
 
     Raises:
-        RvmonError: it cannot be; the message says why.
+        RvmonError: the file cannot be written; the message says why.
     """
     try:
         yield
@@ -158,11 +162,11 @@ def writing(path: object) -> Iterator[None]:
 
 
 def not_installed(what: str, package: str) -> RvmonError:
-    """The error that a package is not there, with the line that installs it.
+    """The error for a missing package, with the command that installs it.
 
     Args:
-        what: needs it.
-        package: of an extra of rvmon, or one that rvmon only makes use of.
+        what: the feature that needs the package.
+        package: one of an extra of rvmon, or any other that rvmon can use.
 
     >>> print(not_installed("Parquet", "pyarrow"))
     Parquet needs pyarrow, which is not installed: pip install 'rvmon[arrow]'

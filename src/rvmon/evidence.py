@@ -1,4 +1,4 @@
-"""Evidence: what it is made of, how it is written and opened again."""
+"""Evidence archives: their contents, writing, reading and checksums."""
 
 from __future__ import annotations
 
@@ -36,20 +36,23 @@ from rvmon.verdicts.serialise import VerdictRow
 from rvmon.verdicts.table_file import csv_bytes
 
 SUMS = "SHA256SUMS"
-"""The entry with a line for each of the others, as `sha256sum --check` reads it."""
+"""The entry with the checksums of all others, in the format of `sha256sum --check`."""
 
 MOST_BYTES = 1 << 30
+"""The most bytes of an archive."""
 
 
 class TamperedError(RvmonError):
-    """Evidence is not what was written."""
+    """An evidence archive was changed after it was written."""
 
 
 def pack(entries: Mapping[str, bytes]) -> bytes:
-    """The archive of these entries, and of their checksums.
+    """The bytes of an archive of these entries and their checksums.
+
+    The bytes depend only on the entries.
 
     Raises:
-        RvmonError: it would be too large to be read again.
+        RvmonError: the archive would be larger than `unpack` accepts.
 
     >>> pack({"b": b"1", "a": b"2"}) == pack({"a": b"2", "b": b"1"})
     True
@@ -59,7 +62,7 @@ def pack(entries: Mapping[str, bytes]) -> bytes:
     with zipfile.ZipFile(made, "w") as packed:
         for name, body in sorted({**entries, SUMS: sums.encode()}.items()):
             entry = zipfile.ZipInfo(name)
-            # As of Unix, whatever it is.
+            # Unix on every system, so that the bytes are the same.
             entry.create_system, entry.external_attr = 3, 0o100644 << 16
             packed.writestr(entry, body)
     if made.tell() > MOST_BYTES:
@@ -72,11 +75,11 @@ def _sum(name: str, body: bytes) -> str:
 
 
 def unpack(path: str) -> dict[str, bytes]:
-    """The entries of an archive without their checksums.
+    """The entries of an archive, without the checksums.
 
     Raises:
-        RvmonError: it cannot be read, or is nothing that `pack` writes.
-        TamperedError: it was changed since, or is no archive.
+        RvmonError: the file cannot be read, or has entries that `pack` never writes.
+        TamperedError: the file was changed after it was written, or is not an archive.
     """
     try:
         if Path(path).stat().st_size > MOST_BYTES or not Path(path).is_file():
@@ -87,7 +90,8 @@ def unpack(path: str) -> dict[str, bytes]:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as packed:
             found = packed.infolist()
-            # What is stored as it is, and once, is no larger than the file: nothing unfolds.
+            # Entries that are stored without compression, each once, cannot be larger than the
+            # file: this excludes zip bombs.
             is_packed = any(entry.compress_type != zipfile.ZIP_STORED for entry in found)
             is_doubled = len({entry.filename for entry in found}) < len(found)
             if is_packed or is_doubled or sum(entry.file_size for entry in found) > len(data):
@@ -96,6 +100,7 @@ def unpack(path: str) -> dict[str, bytes]:
     except (zipfile.BadZipFile, EOFError, ValueError, NotImplementedError, RuntimeError) as error:
         raise TamperedError(f"{path} is no evidence, or a damaged one: {error}") from None
     sums = entries.pop(SUMS, b"").decode("utf-8", "replace")
+    # `pack` depends only on the entries, so any other byte in the file is a change.
     if pack(entries) != data:
         other = [name for name, body in entries.items() if _sum(name, body) not in sums]
         names = ", ".join(other) or "its form, or what it lacks"
@@ -124,17 +129,23 @@ class Judging(msgspec.Struct, frozen=True):
 
 
 class About(msgspec.Struct, frozen=True, kw_only=True):
-    """The origin of evidence.
+    """The origin of evidence: either recordings that were judged, or a campaign.
 
     Attributes:
         name: of the specification, or of the campaign.
-        programs: SHA-256 of the sources of rvmon and, of a campaign, of what it depends on.
-        specs: entries with the requirements, by robot; of recordings by an empty name.
-        command: of a campaign, the words that run it.
-        recordings: SHA-256 by path.
-        judging: the options for recordings; `None` of a campaign.
-        timeout_s: of a campaign, seconds that a test could take.
-        planted: of a campaign, the faults of tests on a robot that had one, by robot and test.
+        rvmon: its version.
+        law: version of the law.
+        python: its version.
+        packages: versions of the optional packages that were installed.
+        programs: SHA-256 of the sources of rvmon and, for a campaign, of its dependencies.
+        specs: names of the entries with the requirements, by robot; for recordings, the only key
+            is the empty string.
+        command: for a campaign, the command line that runs it, as words.
+        recordings: SHA-256 of each recording, by path.
+        judging: the options for recordings; `None` for a campaign.
+        timeout_s: for a campaign, the limit of a test in seconds.
+        planted: for a campaign, the planted faults by robot and test (`ROBOT/TEST`).
+        format: version of this description.
     """
 
     name: str
@@ -153,14 +164,14 @@ class About(msgspec.Struct, frozen=True, kw_only=True):
 
 
 class Kept(NamedTuple):
-    """Evidence that is open.
+    """An open evidence archive.
 
     Attributes:
         about: its origin.
-        entries: all that it holds, by name.
-        items: the verdicts by recording; of a campaign by robot and test.
-        specs: the files of the requirements, by robot, as long as it is open.
-        binding: path of the binding, if there is one.
+        entries: all entries, by name.
+        items: the verdicts by recording; for a campaign, by robot and test.
+        specs: the unpacked files of the requirements, by robot; deleted when it is closed.
+        binding: path of the unpacked binding, if there is one.
     """
 
     about: About
@@ -171,14 +182,15 @@ class Kept(NamedTuple):
 
 
 def sha256_of(path: Path, *more: Path) -> str:
-    """The SHA-256 of a file; of a folder, that of the lines `sha256sum` has for its files.
+    """The SHA-256 of a file; of a folder, the SHA-256 of what `sha256sum` prints for its files.
 
     Args:
-        path: of it.
-        more: with these it is one recording: the same of their lines, in this order.
+        path: of the file or folder.
+        more: further files of the same recording; the result is then the SHA-256 of the lines of
+            all its files, in this order.
 
     Raises:
-        OSError: there is none.
+        OSError: a file cannot be read.
     """
     if more:
         both = "".join(f"{sha256_of(one)}  {one.name}\n" for one in (path, *more))
@@ -193,12 +205,12 @@ def sha256_of(path: Path, *more: Path) -> str:
 
 @cache
 def own_program() -> str:
-    """The SHA-256 of the sources of rvmon, of which this process has read some."""
+    """The SHA-256 of the sources of rvmon."""
     return sha256_of(Path(rvmon.__file__).parent)
 
 
 def package_versions(further: Iterable[str] = ()) -> dict[str, str]:
-    """The versions of the packages that rvmon can make use of, and of further ones."""
+    """The installed versions of the packages that rvmon can use, and of `further` packages."""
     needs: list[str] = []
     with suppress(PackageNotFoundError):
         needs = [require for require in requires("rvmon") or () if "'dev'" not in require]
@@ -212,17 +224,17 @@ def package_versions(further: Iterable[str] = ()) -> dict[str, str]:
 def texts_of(
     specs: Mapping[str, str | Path], binding: str | None = None
 ) -> tuple[dict[str, bytes], list[str]]:
-    """The entries of requirements with all that they import, and of a binding.
+    """The archive entries of specifications with their imports, and of a binding.
 
     Args:
-        specs: paths, by robot; of recordings by an empty name.
+        specs: paths by robot; for recordings, the only key is the empty string.
         binding: path.
 
     Returns:
-        The entries, and the names of the files that were asked for among them, in order.
+        The entries; and the entry names of the specifications and the binding, in this order.
 
     Raises:
-        RvmonError: one cannot be read.
+        RvmonError: a file cannot be read.
     """
     try:
         parts = [
@@ -239,7 +251,7 @@ def texts_of(
 
 
 def coverage_json(covered: Mapping[str, tuple[Model, Iterable[Hits]]]) -> bytes:
-    """The coverage by robot as JSON: the share, and the hits of each item."""
+    """The coverage of each robot as JSON: its share, and the hits of each item."""
     document = {}
     for robot, (model, several) in covered.items():
         hits = merged(several)
@@ -258,10 +270,10 @@ def write_evidence(
     specs: Mapping[str, Spec],
     rows: Iterable[VerdictRow],
 ) -> None:
-    """Write evidence; the same verdicts on the same inputs give the same bytes.
+    """Write an evidence archive; the same verdicts on the same inputs give the same bytes.
 
     Raises:
-        RvmonError: it cannot be written.
+        RvmonError: the file cannot be written.
     """
     verdicts = csv_bytes(rows)
     derived = derived_entries(about, specs, rows_by_item(verdicts))
@@ -273,10 +285,10 @@ def write_evidence(
 def derived_entries(
     about: About, specs: Mapping[str, Spec], items: Mapping[str, list[Row]]
 ) -> dict[str, bytes]:
-    """The entries that follow from requirements and verdicts: the matrix, and its page.
+    """The entries computed from requirements and verdicts: the trace matrix as CSV and as page.
 
     Raises:
-        ValueError: a verdict is none.
+        ValueError: a row of `items` has an unknown verdict.
     """
     checked = {robot: spec.checked for robot, spec in specs.items()}
     matrix = trace_matrix(checked, items, about.planted)
@@ -290,11 +302,11 @@ def derived_entries(
 
 @contextmanager
 def opened_evidence(path: str) -> Iterator[Kept]:
-    """The contents of evidence.
+    """Open an evidence archive.
 
     Raises:
-        RvmonError: it cannot be read, is none, or one of a later rvmon.
-        TamperedError: it was changed since it was written.
+        RvmonError: the file cannot be read, is not evidence, or is of a later rvmon.
+        TamperedError: the archive was changed after it was written.
     """
     entries = unpack(path)
     try:
@@ -316,7 +328,7 @@ def opened_evidence(path: str) -> Iterator[Kept]:
                     target = placed(folder, name)
                     target.parent.mkdir(parents=True, exist_ok=True)
                     target.write_bytes(body)
-            # Specifications may import what lies in their project: here that is this folder.
+            # Marks the folder as a project, so that the specifications may import from all of it.
             (folder / "pyproject.toml").touch()
         except OSError as error:
             raise RvmonError(f"{path}: {error.strerror or error}") from None

@@ -1,10 +1,11 @@
-"""Files written whole or not at all, whatever ends the process; output folders; the user's cache.
+"""Atomic writing of files, output folders, and the user's cache.
 
-The cache holds data alone that can be worked out again, and nothing of it is run; all the same a
-folder or a file that anyone else can write to is passed over, and so is what differs from its
-checksum. Whatever is wrong with it, it can be done without; it can be deleted at any time, and used
-by several processes at once. `RVMON_CACHE=off` switches it off; `RVMON_CACHE_MB` says how large it
-may become.
+A file is written completely or not at all, whatever ends the process.
+
+The cache holds only data that can be computed again, and nothing in it is executed. Even so, a
+folder or file that another user can write is ignored, and so is a file that does not match its
+checksum. A broken cache never stops rvmon. It can be deleted at any time, and several processes can
+use it at once. `RVMON_CACHE=off` switches it off; `RVMON_CACHE_MB` limits its size.
 """
 
 from __future__ import annotations
@@ -25,21 +26,21 @@ PREFIX, SUFFIX = ".rvmon-", ".part"
 """Prefix and suffix of the names of unfinished files."""
 
 _IN_PLACE = (errno.EPERM, errno.EACCES, errno.EBUSY)
-"""Causes for which a file that cannot be replaced may still be written; a full disk is none."""
+"""Errors after which a file that cannot be replaced is written in place; not so a full disk."""
 
 
 def write_whole(path: str | Path, body: str | bytes) -> None:
-    r"""Write a file for a user: until all is written, the file that was there stays.
+    r"""Write a file for a user; the old file stays until the new one is complete.
 
-    A file that cannot be replaced without a loss is written in place: a pipe or a terminal, one
-    that has several names or another owner, one in a folder that takes no others.
+    A file that cannot be replaced without loss is written in place instead: a pipe or terminal, a
+    file with several hard links or another owner, or one in a folder that takes no new files.
 
     Args:
-        path: of the file; a link stays one.
-        body: text is written as UTF-8.
+        path: of the file; a symbolic link is followed and stays a link.
+        body: the contents; text is written as UTF-8.
 
     Raises:
-        OSError: it cannot be written.
+        OSError: the file cannot be written.
 
     >>> from tempfile import TemporaryDirectory
     >>> with TemporaryDirectory() as folder:
@@ -58,13 +59,13 @@ def write_whole(path: str | Path, body: str | bytes) -> None:
 
 
 def _mode_if_replaceable(path: Path) -> int | None:
-    """The rights of a file that nothing is lost with if another takes its place.
+    """The permissions of a file that can be replaced without loss.
 
     Returns:
-        `None` if there is no file.
+        The mode, or `None` if there is no file.
 
     Raises:
-        OSError: it is to be written in place.
+        OSError: the file must be written in place.
     """
     try:
         found = path.stat()
@@ -77,15 +78,15 @@ def _mode_if_replaceable(path: Path) -> int | None:
 
 
 def place_whole(path: Path, body: bytes, *, mode: int | None = None) -> None:
-    """Write a file beside its place, then put it there; a link that is there goes.
+    """Write a temporary file in the same folder, then move it to the path.
 
     Args:
-        path: of the file.
+        path: of the file; a symbolic link there is replaced.
         body: its contents.
-        mode: its rights; default: those that new files have.
+        mode: its permissions; default: those of new files.
 
     Raises:
-        OSError: it cannot be written; nothing has changed.
+        OSError: the file cannot be written; nothing has changed.
     """
     temporary = path.parent / f"{PREFIX}{os.urandom(4).hex()}{SUFFIX}"
     flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0)
@@ -93,7 +94,7 @@ def place_whole(path: Path, body: bytes, *, mode: int | None = None) -> None:
     try:
         with open(handle, "wb") as file:
             if mode is not None and hasattr(os, "fchmod"):
-                os.fchmod(handle, mode)  # whatever the umask says
+                os.fchmod(handle, mode)  # `os.open` has applied the umask to it
             file.write(body)
         os.replace(temporary, path)
     except BaseException:
@@ -104,13 +105,13 @@ def place_whole(path: Path, body: bytes, *, mode: int | None = None) -> None:
 
 @contextmanager
 def staged(path: str | Path) -> Iterator[Path]:
-    """A temporary place for a file or folder, which is moved to the path once it is complete.
+    """A temporary path for a file or folder; it is moved to `path` when the block ends normally.
 
     Args:
-        path: of the file, which is replaced if it is there, or of a new folder.
+        path: of the file, which is replaced if it exists, or of a new folder.
 
     Raises:
-        OSError: it cannot be put there; what was there stays.
+        OSError: the result cannot be moved there; what was there stays.
 
     >>> from tempfile import TemporaryDirectory
     >>> with TemporaryDirectory() as folder:
@@ -119,7 +120,7 @@ def staged(path: str | Path) -> Iterator[Path]:
     ...     os.listdir(folder)
     ['a.txt']
     """
-    from tempfile import TemporaryDirectory  # which loads much
+    from tempfile import TemporaryDirectory  # slow to import
 
     final = Path(os.path.realpath(path))
     with TemporaryDirectory(prefix=PREFIX, dir=final.parent) as folder:
@@ -129,28 +130,28 @@ def staged(path: str | Path) -> Iterator[Path]:
 
 
 _MOST_MB = 256
-"""Megabytes that are kept, if nothing else is set."""
+"""Default limit of the cache in megabytes."""
 
 _IN_USE_S = 60.0
-"""Seconds in which a file that was used is not deleted: a process may be about to read it."""
+"""A file used within so many seconds is not deleted: a process may be about to read it."""
 
 _ABANDONED_S = 3_600.0
-"""Seconds after which nobody writes any more what is not finished."""
+"""An unfinished file of this age in seconds was left by a process that was killed."""
 
 _TIDY_S = 60.0
-"""Seconds between two looks through the folder, which take their time if it holds thousands."""
+"""Least seconds between two scans of the folder, which are slow if it holds thousands of files."""
 
 _TIDIED = "tidied"
-"""The file whose time of change says when the last look was."""
+"""The file whose modification time is that of the last scan."""
 
 _NAMES = rf"(?P<unfinished>{PREFIX}\w{{8}}{SUFFIX})|(\w+-)?[0-9a-f]{{40,}}[-.].+"
-"""The names of all that rvmon puts there; a folder may by mistake hold other things."""
+"""The names of the files that rvmon puts in the cache; any others are never deleted."""
 
 
 def cache_folder() -> Path | None:
-    """The folder of the cache; `None` if there is none: switched off, or others could write there.
+    """The folder of the cache; `None` if it is switched off or others could write there.
 
-    Source: XDG Base Directory Specification: paths that are not absolute are passed over.
+    Source: XDG Base Directory Specification: relative paths are ignored.
     """
     if os.environ.get("RVMON_CACHE", "").lower() in ("off", "0", "no"):
         return None
@@ -159,15 +160,15 @@ def cache_folder() -> Path | None:
         folder = (Path(base) if os.path.isabs(base) else Path.home() / ".cache") / "rvmon"
         folder.mkdir(mode=0o700, parents=True, exist_ok=True)
         return folder if is_ours(folder) else None
-    except (OSError, RuntimeError):  # it cannot be made, or the user has no home
+    except (OSError, RuntimeError):  # it cannot be created, or the user has no home
         return None
 
 
 def is_ours(path: Path) -> bool:
-    """Whether it is a file or folder that nobody else can change, as far as the system shows.
+    """Whether a path is a file or folder that only this user can change, where the OS can tell.
 
     Raises:
-        OSError: there is none.
+        OSError: nothing exists at the path.
     """
     status = path.stat()
     if not (stat.S_ISREG(status.st_mode) or stat.S_ISDIR(status.st_mode)):
@@ -180,16 +181,16 @@ def is_ours(path: Path) -> bool:
 
 @cache
 def this_rvmon() -> str:
-    """Tells this version of rvmon from others: a checksum of its files' paths, sizes and times."""
+    """Identifier of this version of rvmon: a checksum of its files' paths, sizes and times."""
     files = ((entry.path, entry.stat()) for entry in files_within(os.path.dirname(__file__)))
     stamps = [(path, found.st_size, found.st_mtime_ns) for path, found in files]
     return _checksum(repr(stamps).encode())
 
 
 def contents(path: Path) -> Iterator[tuple[str, str]]:
-    """The contents of a file, or of a folder of sources: each path within, and a checksum.
+    """The files of a folder of sources, or one file, each as relative path and checksum.
 
-    It is the same on every machine, wherever it is and whenever it was installed.
+    The result does not depend on the machine, the place or the time of the installation.
     """
     if path.is_dir():
         for entry in files_within(str(path)):
@@ -199,9 +200,9 @@ def contents(path: Path) -> Iterator[tuple[str, str]]:
 
 
 def files_within(folder: str) -> Iterator[os.DirEntry[str]]:
-    """The files of a folder of sources, and of those in it."""
+    """The files of a folder of sources and of all its subfolders but `__pycache__`."""
     folders = [folder]
-    for one in folders:  # grows
+    for one in folders:  # grows during the loop
         with os.scandir(one) as entries:
             for entry in sorted(entries, key=attrgetter("name")):
                 if not entry.is_dir():
@@ -211,22 +212,22 @@ def files_within(folder: str) -> Iterator[os.DirEntry[str]]:
 
 
 def read_kept(path: Path) -> bytes | None:
-    """The cached bytes; `None` if there are none, or they are not ours, or not whole."""
+    """The cached bytes; `None` if there are none, others can write them, or they are damaged."""
     try:
         if not is_ours(path):
             return None
         checksum, _, body = path.read_bytes().partition(b"\n")
-        os.utime(path)  # it is used now
+        os.utime(path)  # marks the file as used, see `_tidy`
     except OSError:
         return None
     return body if _checksum(body).encode() == checksum else None
 
 
 def keep(path: Path, body: bytes) -> None:
-    """Write a file so that others see it whole or not at all; if that fails, never mind."""
+    """Write a file of the cache atomically; errors are ignored."""
     with suppress(OSError):
         whole = f"{_checksum(body)}\n".encode() + body
-        place_whole(path, whole, mode=0o600)  # not synced: the checksum tells what is not whole
+        place_whole(path, whole, mode=0o600)  # no fsync: the checksum reveals a truncated file
         _tidy(path.parent)
 
 
@@ -235,7 +236,10 @@ def _checksum(body: bytes) -> str:
 
 
 def _tidy(folder: Path) -> None:
-    """Delete what killed processes left, and of too much what was not used for longest."""
+    """Delete files left by killed processes; above the limit, also those unused for longest.
+
+    It then deletes down to half the limit, so that the next files do not cause a deletion each.
+    """
     import re
     import time
 
@@ -249,7 +253,7 @@ def _tidy(folder: Path) -> None:
         named = re.fullmatch(_NAMES, entry.name)
         if named is None:
             continue
-        with suppress(FileNotFoundError):  # another process tidies as well
+        with suppress(FileNotFoundError):  # another process may be tidying as well
             about = entry.stat(follow_symlinks=False)
             if not named["unfinished"]:
                 entries.append((about.st_mtime, about.st_size, entry.path))
@@ -267,16 +271,16 @@ def _tidy(folder: Path) -> None:
 
 
 def _most() -> int:
-    """Bytes that are kept; what `RVMON_CACHE_MB` says is passed over if it is no number."""
+    """Limit of the cache in bytes; `RVMON_CACHE_MB` is ignored if it is not a number."""
     limit = os.environ.get("RVMON_CACHE_MB", "")
     return 1_000_000 * int(limit if limit.isascii() and limit.isdecimal() else _MOST_MB)
 
 
 def output_folder(folder: str | Path) -> Path:
-    """Make a folder if it does not exist, and check that files can be written there.
+    """Create a folder if it does not exist, and check that files can be written there.
 
     Raises:
-        RvmonError: it cannot be made or written; the message says why.
+        RvmonError: it cannot be created or written; the message says why.
     """
     path = Path(folder)
     if path.exists() and not path.is_dir():
@@ -292,10 +296,10 @@ def output_folder(folder: str | Path) -> Path:
 
 
 def refuse_no_file(path: str | Path) -> None:
-    """Refuse an output file early, before any work is done for it.
+    """Refuse an impossible output path before the work for its contents starts.
 
     Raises:
-        RvmonError: it is a folder, or its folder does not exist.
+        RvmonError: the path is a folder, or its folder does not exist.
     """
     path = Path(path)
     if path.is_dir():
@@ -308,7 +312,7 @@ def write_file(path: str | Path, text: str) -> None:
     """Write a file that the user named.
 
     Raises:
-        RvmonError: it cannot be written; the message says why.
+        RvmonError: the file cannot be written; the message says why.
     """
     with writing(path):
         write_whole(path, text)

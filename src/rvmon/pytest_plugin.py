@@ -1,6 +1,6 @@
-"""Requirements in pytest: a fixture that judges what a test does, and `.rv` files as tests.
+"""The pytest plugin: a fixture that judges what a test does, and `.rv` files as tests.
 
-pytest loads it by itself where rvmon is installed; what it needs is imported when it is used.
+pytest loads it wherever rvmon is installed, so all else of rvmon is imported only when it is used.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rvmon.verdicts.report import Report
 
 _PROPERTY = "rv:"
-"""Begins the properties of tests that are verdicts; they stand in JUnit XML as well."""
+"""Prefix of the test properties that hold verdicts; JUnit XML contains them as well."""
 
 _RECORDINGS = "rv_recordings"
 
@@ -29,17 +29,17 @@ _judges: pytest.StashKey[list[Judge]] = pytest.StashKey()
 
 
 class RequirementError(AssertionError):
-    """A requirement failed; the message says why."""
+    """A requirement does not have the wanted verdict; the message says why."""
 
 
 class Judge:
-    """Judges what a test does by a specification; made by the fixture `rv`.
+    """Judges the actions of a test against a specification; returned by the fixture `rv`.
 
     Args:
         spec: the requirements.
         strict: whether I and NT are failures as well.
-        expect: by requirement the verdict that is wanted instead of no failure.
-        only: ids of the requirements; default all.
+        expect: expected verdicts by requirement; any other verdict is then a failure.
+        only: ids of the requirements to judge; default all.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Judge:
 
     @property
     def monitor(self) -> Monitor:
-        """A monitor for what the test does; its run ends with the test."""
+        """An online monitor for the test; its run ends with the test."""
         if self._monitor is None:
             self._monitor = self.spec.monitor(only=self.only)
         return self._monitor
@@ -77,14 +77,15 @@ class Judge:
         _without_frames(lambda: self.monitor.step(t, values))
 
     def check(self, trace: Any, **reading: Any) -> Report:
-        """Judge a finished trace; see `Spec.evaluate`. A failure fails the test at its end."""
+        """Judge a finished trace; see `Spec.evaluate`. A failure makes the test fail at its end."""
         __tracebackhide__ = True
         report = _without_frames(lambda: self.spec.evaluate(trace, only=self.only, **reading))
         self._reports.append(report)
         return report
 
     def finish(self) -> list[Report]:
-        """End the run and give what was judged, if only that nothing was; once."""
+        """End the run and return all reports of the test; to be called once."""
+        # A judge that was never used gets the report of an empty run, which fails if strict.
         if self._monitor is not None or not self._reports:
             self._reports.append(self.monitor.finish())
             self._monitor = None
@@ -92,7 +93,7 @@ class Judge:
         return reports
 
     def wrong(self, report: Report) -> list[str]:
-        """The requirements that are not as they are wanted."""
+        """The requirements that do not have the wanted verdict."""
         return [
             name for name, verdict in report.verdicts.items() if not self._is_wanted(name, verdict)
         ]
@@ -105,10 +106,10 @@ class Judge:
 
 @pytest.fixture
 def rv(request: pytest.FixtureRequest) -> Any:
-    """Judge what a test does: `rv("base.rv")` or `rv(spec)` gives a `Judge`.
+    """Judge what a test does: `rv("base.rv")` or `rv(spec)` returns a `Judge`.
 
-    The test fails at its end where a requirement failed, with the explanation. A path is that of a
-    file beside the test, or from where pytest began.
+    If a requirement failed, the test fails at its end, with an explanation. A path is relative to
+    the folder of the test, or else to the folder where pytest was started.
     """
     from rvmon.session import Spec, load
 
@@ -131,7 +132,7 @@ def rv(request: pytest.FixtureRequest) -> Any:
 
 
 def _without_frames(call: Callable[[], _T]) -> _T:
-    """The result of a call; errors of its input are raised without the frames of rvmon."""
+    """The result of a call; an `RvmonError` is raised without the stack frames of rvmon."""
     from rvmon.errors import RvmonError
 
     __tracebackhide__ = True
@@ -143,14 +144,14 @@ def _without_frames(call: Callable[[], _T]) -> _T:
 
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_call(item: pytest.Item) -> Generator[None]:
-    """Judge what a test did, when it did not fail by itself."""
+    """Judge what a test did, unless the test itself failed."""
     __tracebackhide__ = True
     yield
     _conclude(item, item.stash.get(_judges, []))
 
 
 def _conclude(item: pytest.Item, judges: list[Judge]) -> None:
-    __tracebackhide__ = True  # the message says what is wrong, and these lines nothing
+    __tracebackhide__ = True  # the message says all; the source lines here would not help
     texts = []
     for judge in judges:
         for report in judge.finish():
@@ -163,7 +164,7 @@ def _conclude(item: pytest.Item, judges: list[Judge]) -> None:
 
 
 def _explained(report: Report, spec: Spec, wrong: list[str]) -> str:
-    """An explanation of these requirements for people."""
+    """An explanation of the requirements in `wrong`, as text."""
     from rvmon.report.printer import text_of
     from rvmon.report.run_text import print_report
 
@@ -172,7 +173,7 @@ def _explained(report: Report, spec: Spec, wrong: list[str]) -> str:
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Declare the settings."""
+    """Declare the setting `rv_recordings`."""
     parser.addini(
         _RECORDINGS,
         "recordings by which .rv files are tested, as patterns from the root: *.csv, bags/*",
@@ -182,7 +183,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
-    """A specification is a file of tests where recordings are named."""
+    """Collect `.rv` files as test files if `rv_recordings` is set."""
     if file_path.suffix == ".rv" and parent.config.getini(_RECORDINGS):
         collected: pytest.Collector = SpecFile.from_parent(parent, path=file_path)
         return collected
@@ -190,10 +191,10 @@ def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Col
 
 
 class SpecFile(pytest.File):
-    """A specification: a test for each recording and requirement."""
+    """A specification as a test file, with a test per recording and requirement."""
 
     def collect(self) -> Iterator[RequirementItem]:
-        """The tests."""
+        """Yield the tests."""
         from rvmon.errors import RvmonError
         from rvmon.session import load
 
@@ -215,7 +216,7 @@ class SpecFile(pytest.File):
 
 
 class RequirementItem(pytest.Item):
-    """A requirement on a recording."""
+    """The test of a requirement on a recording."""
 
     def __init__(self, *, judge: Judge, recording: Path, **options: Any) -> None:
         super().__init__(**options)
@@ -223,12 +224,12 @@ class RequirementItem(pytest.Item):
         self._recording = recording
 
     def runtest(self) -> None:
-        """Judge it."""
+        """Judge the requirement on the recording."""
         self._judge.check(self._recording, allow_missing=True)
         _conclude(self, [self._judge])
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> str:
-        """The explanation alone."""
+        """The explanation without a traceback."""
         from rvmon.errors import RvmonError
 
         if isinstance(excinfo.value, RequirementError | RvmonError):
@@ -241,7 +242,7 @@ class RequirementItem(pytest.Item):
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """A table of all verdicts, of all processes."""
+    """Print a table of all verdicts; with pytest-xdist, of all its processes."""
     counts: dict[str, Counter[str]] = defaultdict(Counter)
     for category in ("passed", "failed"):
         for report in terminalreporter.getreports(category):

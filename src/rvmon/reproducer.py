@@ -1,7 +1,7 @@
-"""Reproducers: one file that holds an attempt, the recording around it, and what judged it.
+"""Reproducers: an attempt, the recording around it and its specification in one file.
 
-They are zip files of a description, `case.json`, and of the files that it names. Nothing in one is
-executed; it is unpacked to a folder of its own, which no name in it can leave.
+A reproducer is a zip file of a description, `case.json`, and the files that it names. Nothing in it
+is executed. It is unpacked to a temporary folder, and no name in it can lead out of that folder.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from rvmon.language.syntax.parse import load_files
 from rvmon.texts import cannot_read, text_of_file
 
 FORMAT = 1
-"""Version of the description; what a later one says is not guessed."""
+"""Version of the description; any other version is refused."""
 
 MOST_BYTES = 1 << 31
-"""The most bytes of all files together when they are unpacked."""
+"""The most bytes of all files together after unpacking."""
 
 MOST_FILES = 1000
 
@@ -36,29 +36,29 @@ _DESCRIPTION = "case.json"
 _MOST_DESCRIBED = 1 << 20
 _BLOCK = 1 << 20
 _LEADS_OUT = frozenset("\\:\0")
-"""Characters that no name may contain: on some systems they would lead out of the folder."""
+"""Characters that no name may contain; on some systems they would lead out of the folder."""
 
 
 class Case(msgspec.Struct, frozen=True):
-    """An attempt to be reproduced.
+    """An attempt to reproduce.
 
     Attributes:
-        rvmon: the version that judged it.
+        rvmon: the version of rvmon that judged the attempt.
         law: the version of the law.
-        attempt: its name on the recording here.
-        verdict: of it.
+        attempt: the name of the attempt when the clipped recording is judged.
+        verdict: of the attempt.
         triggered: ticks.
-        decided: ticks; `None` if it is not.
+        decided: ticks; `None` if the attempt was not decided.
         spec: path of the specification.
         recording: path of the recording around the attempt.
         binding: path of the binding, if there is one.
         const: constants that were overridden, as `NAME=VALUE`.
-        time: an option of `rvmon run` for reading the recording; so are the next.
-        map: see there.
-        nan: see there.
-        clock: see there.
-        allow_missing: see there.
-        format: of the description.
+        time: option of `rvmon run` for reading the recording, as are the next four.
+        map: see `rvmon run`.
+        nan: see `rvmon run`.
+        clock: see `rvmon run`.
+        allow_missing: see `rvmon run`.
+        format: version of the description.
     """
 
     rvmon: str
@@ -85,14 +85,16 @@ class _Version(msgspec.Struct):
 
 
 def write_case(out: str, case: Case) -> None:
-    """Write a reproducer, whole or not at all.
+    """Write a reproducer, completely or not at all.
 
     Args:
-        out: the file.
-        case: names files that are there; those that they name come along.
+        out: path of the file.
+        case: the attempt, with paths of existing files; the files that these import or name are
+            packed as well.
 
     Raises:
-        RvmonError: a file cannot be read or written, or a name in it leads out of the reproducer.
+        RvmonError: a file cannot be read or written, or an import in it leads out of the
+            reproducer.
     """
     with writing(out):
         names: dict[str, str] = {}
@@ -114,7 +116,7 @@ def write_case(out: str, case: Case) -> None:
 
 
 def _parts(case: Case) -> Iterator[tuple[str, str, list[str]]]:
-    """Folder in the reproducer, file, and the files that it names."""
+    """For each part: its folder in the reproducer, its file, and the files that this one names."""
     yield "spec", case.spec, imported_files(case.spec)
     yield "recording", case.recording, []
     if case.binding is not None:
@@ -122,12 +124,12 @@ def _parts(case: Case) -> Iterator[tuple[str, str, list[str]]]:
 
 
 def files_under(part: str, main: str, others: Sequence[str]) -> list[tuple[str, Path]]:
-    """A file and those that it names, each with its place in an archive; the file comes first.
+    """A file and the files that it names, as pairs of archive name and path; the file is first.
 
     Args:
-        part: folder of the archive; in it they lie to each other as they do here.
+        part: folder in the archive; the files keep their places relative to each other.
         main: path of the file.
-        others: paths of those that it names.
+        others: paths of the files that it names.
     """
     paths = [Path(os.path.abspath(one)) for one in (main, *others)]
     root = Path(os.path.commonpath([path.parent for path in paths]))
@@ -135,7 +137,7 @@ def files_under(part: str, main: str, others: Sequence[str]) -> list[tuple[str, 
 
 
 def imported_files(spec: str) -> list[str]:
-    """The files that a specification imports; what rvmon brings along itself is none."""
+    """The files that a specification imports, without the libraries that rvmon ships."""
     read = load_files(Source(spec, text_of_file(spec)), Path(spec).parent, Findings())
     return [
         parsed_spec.source.name
@@ -145,17 +147,17 @@ def imported_files(spec: str) -> list[str]:
 
 
 def definition_files(binding: str) -> list[str]:
-    """The files of definitions that a binding names."""
+    """The paths of the definition files that a binding names."""
     return [str(Path(binding).parent / definition) for definition in _definitions(binding)]
 
 
 def _definitions(binding: str) -> list[str]:
-    """The files that a binding names, as it does."""
+    """The definition files of a binding, as written there."""
     return list(tomllib.loads(text_of_file(binding)).get("definitions", []))
 
 
 def _files_at(name: str, path: Path) -> Iterator[tuple[str, Path]]:
-    """A file; or those of a folder, as a bag of ROS 2 is one."""
+    """A file, or all files of a folder: a ROS 2 bag is a folder."""
     if path.is_dir():
         for one in sorted(path.iterdir()):
             yield from _files_at(f"{name}/{one.name}", one)
@@ -164,10 +166,10 @@ def _files_at(name: str, path: Path) -> Iterator[tuple[str, Path]]:
 
 
 def _expect_inside(case: Case) -> None:
-    """See that the files which are named by others are there.
+    """Check that the specification can be loaded with its imports inside the reproducer.
 
     Raises:
-        RvmonError: one is outside.
+        RvmonError: an imported file is missing.
     """
     findings = Findings()
     load_files(Source(case.spec, text_of_file(case.spec)), Path(case.spec).parent, findings)
@@ -177,11 +179,11 @@ def _expect_inside(case: Case) -> None:
 
 @contextmanager
 def opened_case(path: str) -> Iterator[Case]:
-    """The contents of a reproducer; its files last as long as it is open.
+    """Open a reproducer; its unpacked files exist while the block runs.
 
     Raises:
-        RvmonError: it cannot be read, is none, a damaged one, one of a later rvmon, or too large;
-            or a name in it leads out of it.
+        RvmonError: the file cannot be read, is not a reproducer, is damaged, too large or of a
+            later rvmon; or a name in it leads out of it.
     """
     with TemporaryDirectory(prefix="rvmon-") as temporary:
         folder = Path(temporary, "case")
@@ -206,7 +208,7 @@ def opened_case(path: str) -> Iterator[Case]:
             raise RvmonError(f"{path}: no reproducer, or a damaged one ({reason})") from None
         except RvmonError as error:
             raise RvmonError(f"{path}: {error}") from None
-        # Specifications may import what lies in their project: here that is this folder.
+        # Marks the folder as a project, so that the specification may import from all of it.
         (folder / "pyproject.toml").touch()
         places = {
             part: str(placed(folder, name))
@@ -220,11 +222,11 @@ def opened_case(path: str) -> Iterator[Case]:
 
 
 def _described(packed: zipfile.ZipFile) -> Case:
-    """The description.
+    """Read the description.
 
     Raises:
-        RvmonError: it is of a later version.
-        KeyError, MsgspecError: there is none.
+        RvmonError: its version is not `FORMAT`.
+        KeyError, MsgspecError: it is missing or malformed.
     """
     with packed.open(_DESCRIPTION) as file:
         text = file.read(_MOST_DESCRIBED)
@@ -246,7 +248,7 @@ def _unpack(packed: zipfile.ZipFile, folder: Path) -> None:
         target = placed(folder, entry.filename)
         target.parent.mkdir(parents=True, exist_ok=True)
         with packed.open(entry) as file, target.open("xb") as made:
-            # What an entry says of its size need not be true.
+            # Count the bytes that are read: the size that an entry declares may be false.
             while block := file.read(min(_BLOCK, left + 1)):
                 left -= len(block)
                 if left < 0:
@@ -255,10 +257,10 @@ def _unpack(packed: zipfile.ZipFile, folder: Path) -> None:
 
 
 def placed(folder: Path, name: str) -> Path:
-    """The path of a name in an archive.
+    """The path in `folder` of a name in an archive.
 
     Raises:
-        RvmonError: elsewhere.
+        RvmonError: the name leads out of the folder.
     """
     path = PurePosixPath(name)
     if path.is_absolute() or ".." in path.parts or not path.parts or _LEADS_OUT & set(name):
@@ -267,14 +269,14 @@ def placed(folder: Path, name: str) -> Path:
 
 
 def expect_definitions_inside(folder: Path, binding: str) -> None:
-    """See that the files which a binding names lie in its archive.
+    """Check that the definition files of an unpacked binding lie in the folder.
 
     Raises:
-        RvmonError: one does not.
+        RvmonError: one lies outside.
     """
     try:
         named = _definitions(binding)
-    except (OSError, ValueError, TypeError):  # whoever reads the binding says what is wrong
+    except (OSError, ValueError, TypeError):  # reported when the binding itself is read
         return
     for one in named:
         place = Path(binding).parent / str(one)

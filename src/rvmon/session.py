@@ -1,4 +1,4 @@
-"""The facade: load a specification, monitor a stream with it, evaluate a recording."""
+"""The facade: load a specification, monitor a stream, evaluate a recording."""
 
 from __future__ import annotations
 
@@ -31,14 +31,14 @@ if TYPE_CHECKING:
 
 
 class Spec:
-    """A checked specification; made by `rvmon.load` or `rvmon.loads`.
+    """A checked specification, returned by `rvmon.load` and `rvmon.loads`.
 
-    It is compiled once, when the first monitor is made.
+    It is compiled for the core once, when the first monitor is made.
 
     Attributes:
-        checked: names, types, units and formulas, as monitors read them.
-        warnings: the warnings of the compiler; errors would have been raised.
-        schema: the declared names with the kinds of their values and their names in recordings.
+        checked: names, types, units and formulas after checking.
+        warnings: the warnings of the compiler; errors raise `SpecError` instead.
+        schema: the declared names with their types and their names in recordings.
     """
 
     def __init__(self, checked: CheckedSpec, warnings: Sequence[Diagnostic] = ()) -> None:
@@ -56,28 +56,28 @@ class Spec:
 
     @property
     def requirements(self) -> Mapping[str, Requirement]:
-        """The requirements by id, in order of the file."""
+        """The requirements by id, in the order of the file."""
         return self.checked.requirements
 
     def reading(self, **options: Unpack[SchemaArguments]) -> Spec:
-        r"""The same specification, for recordings with other names, stamps or conventions.
+        r"""This specification for recordings with other names, stamps or conventions.
 
         Args:
             **options: `time`: the column of stamps and its unit as `COLUMN` or `COLUMN:UNIT`, with
-                `s`, `ms`, `us`, `ns`, or `iso` for ISO 8601; without a unit nanoseconds if the name
-                ends in `_ns`, else seconds. Default: seconds in `t`, or nanoseconds in `t_ns`.
-                `columns`: the column of each declared name or payload field `event.field`; in
-                messages `TOPIC.FIELD`. `nan`: how NaN is read: `unknown`, the default, or `no
-                update`, as merges of topics need. `no_update`: a further value that means no
-                update; in tables `None`, nulls and masked values always do. `binding`: a TOML
-                file that maps topics and fields of messages (bags, MCAP) to declared names.
-                `clock`: the stamps of messages for which the binding names none: `log`, the time
-                of recording, the default, or `header`.
+                `s`, `ms`, `us`, `ns`, or `iso` for ISO 8601. Without a unit: nanoseconds if the
+                name ends in `_ns`, else seconds. Default: seconds in `t`, or nanoseconds in `t_ns`.
+                `columns`: the column of each declared name or payload field `event.field`; for
+                messages `TOPIC.FIELD`. `nan`: the meaning of NaN: `unknown` (default) or `no
+                update`, which suits tables merged from several topics. `no_update`: a further value
+                that means no update; in tables, `None`, nulls and masked values always do.
+                `binding`: a TOML file that maps topics and fields of messages (bags, MCAP) to
+                declared names. `clock`: the stamps of messages unless the binding names others:
+                `log`, the time of recording (default), or `header`.
 
         Raises:
-            UnknownNameError: `columns` names what is not declared, `nan` or `clock` what does not
-                exist.
-            RvmonError: `columns` names a column twice, or the binding is wrong.
+            UnknownNameError: a name in `columns` is not declared, or `nan` or `clock` has another
+                value.
+            RvmonError: `columns` names a column twice, or the binding has errors.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal p : bool\nrequirement R1\n  always p\n")
@@ -99,7 +99,7 @@ class Spec:
 
     @cached_property
     def looking(self) -> Looking:
-        """The plans for searching recordings, shared by all of them."""
+        """The plans for searching recordings, shared by all recordings."""
         from rvmon.analysis.subformulas import Looking
 
         return Looking(self.checked)
@@ -112,20 +112,21 @@ class Spec:
         sources: Iterable[str] | None = None,
         keep: int | None = None,
     ) -> Monitor:
-        """Make an online monitor of all requirements.
+        """Create an online monitor.
 
         Args:
             only: ids of the requirements to evaluate; default all.
             settle: `now` evaluates each sample at once; `next` merges samples with equal stamps
-                and evaluates them when the next stamp comes.
-            sources: the signals and events that can arrive; the others are unknown throughout.
-            keep: for runs of weeks: the number of newest records kept per requirement and
-                verdict, so that many passes displace no failure; verdicts and counts stay exact,
-                and the report says how many records were dropped. Default: all.
+                and evaluates them when the next stamp arrives.
+            sources: the signals and events that can arrive; all others stay unknown.
+            keep: for runs of weeks, the number of newest records kept per requirement and verdict.
+                As verdicts are counted separately, many passes displace no failure. Verdicts and
+                counts stay exact, and the report contains the number of dropped records. Default:
+                all.
 
         Raises:
-            UnknownNameError: `only`, `settle` or `sources` names something that does not exist.
-            RvmonError: the core cannot evaluate a requirement, or `keep` is no count.
+            UnknownNameError: a name in `only` or `sources`, or `settle`, does not exist.
+            RvmonError: the core cannot evaluate a requirement, or `keep` is not a count.
         """
         from rvmon.monitor.monitor import build_monitor
 
@@ -133,13 +134,13 @@ class Spec:
         return build_monitor(self._compiled, only=only, settle=settle, sources=asked, keep=keep)
 
     def restore(self, data: bytes) -> Monitor:
-        """Make a monitor from a snapshot; it continues as the original would have.
+        """Create a monitor from a snapshot; it continues exactly as the original would have.
 
         Args:
             data: from `Monitor.snapshot`.
 
         Raises:
-            SnapshotError: the bytes are damaged, or of another specification or rvmon.
+            SnapshotError: the bytes are damaged, or from another specification or rvmon.
         """
         from rvmon.monitor.monitor import restore
 
@@ -156,23 +157,24 @@ class Spec:
         r"""Evaluate a finished trace; the same content gives the same records in any format.
 
         Args:
-            trace: a path or address (`.csv`, `.jsonl`, `.parquet`, bags, `.mcap`; text packed,
-                too), a table (arrays or lists by name, an Arrow table, a data frame), a list of
-                paths or of tables that are one recording, a `Recording`, or an iterable of
+            trace: a path or address (`.csv`, `.jsonl`, `.parquet`, bags, `.mcap`; text also
+                compressed), a table (arrays or lists by name, an Arrow table, a data frame), a list
+                of paths or tables that together are one recording, a `Recording`, or an iterable of
                 `(t, values)` with t in seconds.
             only: ids of the requirements to evaluate; default all.
             until: the end of the trace in seconds, if it ended after its last sample.
             **reading: `time`, `columns`, `nan`, `no_update`, `binding`, `clock`: see `reading`.
-                `sources`: the signals and events that can arrive, the others are unknown
-                throughout; default the columns or topics of the trace, or all declared names for
-                JSON lines and pairs. `allow_missing`: whether a trace in columns or topics may
-                lack names that the requirements read, or which names; requirements that read
-                them are inconclusive. With `sources`, missing names are always allowed.
+                `sources`: the signals and events that can arrive; all others stay unknown. Default:
+                the columns or topics of the trace; for JSON lines and pairs, all declared names.
+                `allow_missing`: whether a trace in columns or topics may lack names that the
+                requirements read, or which names; requirements that read missing names are
+                inconclusive. With `sources`, missing names are always allowed.
 
         Raises:
-            MissingNameError: a trace in columns has none for a name that a requirement reads.
-            TraceError: the trace cannot be read; place and cause are named.
-            UnknownNameError: an argument names something that does not exist.
+            MissingNameError: a trace in columns lacks the column of a name that a requirement
+                reads.
+            TraceError: the trace cannot be read; the message names place and cause.
+            UnknownNameError: a name in an argument does not exist.
 
         >>> from rvmon import loads
         >>> spec = loads("spec s\nsignal x : real\nrequirement R1\n  always x < 3\n")
@@ -194,13 +196,13 @@ class Spec:
         decided: Callable[[Sequence[Attempt]], object] = len,
         robustness: bool = False,
     ) -> Report:
-        """Evaluate an open recording; `evaluate` opens it as well.
+        """Evaluate a recording that is already open; `evaluate` takes a path.
 
         Args:
             source: the recording.
             only: as for `evaluate`; so are the errors.
-            decided: called with the attempts that were decided before an error in the recording,
-                at once or in parts.
+            decided: if the recording breaks off with an error, called once or several times with
+                the attempts decided before it.
             robustness: whether to compute the robustness of each attempt.
         """
         if robustness:
@@ -231,16 +233,19 @@ class Spec:
         jobs: int = 1,
         **reading: Unpack[ReadingArguments],
     ) -> Iterator[Report]:
-        r"""Evaluate many traces, in their order; the specification is compiled once per process.
+        r"""Evaluate many traces; reports come in the order of the traces.
+
+        The specification is compiled once per process.
 
         Args:
-            traces: each as for `evaluate`; with several jobs, what can be pickled: paths, columns.
+            traces: each as for `evaluate`; with several jobs, only traces that can be pickled, such
+                as paths and columns.
             only: as for `evaluate`.
             jobs: the number of processes; 1 evaluates in the calling process.
             **reading: as for `evaluate`; so are the errors.
 
         Raises:
-            TraceError: a trace cannot be read; the reports before it have been given out.
+            TraceError: a trace cannot be read; the reports of earlier traces were yielded before.
             WorkerLostError: a process was killed from outside; likewise.
 
         >>> from rvmon import loads
@@ -259,7 +264,7 @@ class Spec:
         return (give_plan(report, self.planned(asked)) for report in reports)
 
     def planned(self, only: Iterable[str] | None = None) -> PlannedCore:
-        """The packed plan of some requirements, with its tables; made once."""
+        """The packed plan of some requirements, with its tables; built once and cached."""
         from rvmon.monitor.packed_plan import planned_core
 
         return planned_core(self._compiled, requirements_asked(self.checked, only))
@@ -275,15 +280,15 @@ class Spec:
     ) -> Margins:
         """The robustness of each requirement on a finished trace, in base units.
 
-        The robustness of a comparison is the distance of its sides, that of other propositions
-        is infinite; unknown input, and values after the end, may be anything, which gives an
+        The robustness of a comparison is the distance of its sides; that of other propositions is
+        infinite. As unknown input and values after the end can be anything, the result is an
         interval from `low` to `high`. `low > 0`: passed; `high < 0`: failed.
 
         Args:
-            trace: as `evaluate` takes it; so are the errors.
-            only: see there; so is `reading`.
-            until: see there.
-            streams: whether to compute the robustness at each sample as well; kept in memory.
+            trace: as for `evaluate`; so are `reading` and the errors.
+            only: see `evaluate`.
+            until: see `evaluate`.
+            streams: whether to compute, and keep in memory, the robustness at each sample as well.
 
         Source: SEMANTICS 5; Donze and Maler 2010.
         """
@@ -301,16 +306,16 @@ class Spec:
         sources: Iterable[str] | None = None,
         streams: bool = False,
     ) -> RobustnessMonitor:
-        """Make an online monitor of robustness; see `robustness`.
+        """Create an online monitor of robustness; see `robustness`.
 
         Args:
             only: as for `monitor`; so are `settle` and `sources`.
-            settle: see there.
-            sources: see there.
+            settle: see `monitor`.
+            sources: see `monitor`.
             streams: whether to compute the robustness at each sample as well.
 
         Raises:
-            UnknownNameError: `only`, `settle` or `sources` names something that does not exist.
+            UnknownNameError: a name in `only` or `sources`, or `settle`, does not exist.
         """
         from rvmon.monitor.robustness import RobustnessMonitor
 
@@ -325,11 +330,11 @@ class Spec:
         return SpecCoverage(self._compiled)
 
     def coverage(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Hits:
-        """The coverage of a trace, as hits by group and item; arguments as `evaluate`."""
+        """The coverage of a trace, as hits by group and item; arguments as for `evaluate`."""
         return self.coverage_model.of(self.recording(trace, **reading))
 
     def recording(self, trace: Any, **reading: Unpack[ReadingArguments]) -> Recording:
-        """Open a trace for reading, as `evaluate` does; by default any name may be missing."""
+        """Open a trace for reading as `evaluate` does; by default any name may be missing."""
         from rvmon.monitor.evaluate import open_trace
 
         reading.setdefault("allow_missing", True)
@@ -347,7 +352,7 @@ def load(
         const: constants to override, by name, as text of the language (`{"T": "2 s"}`).
 
     Raises:
-        SpecError: the file cannot be read or has errors; carries all diagnostics, rendered.
+        SpecError: the file cannot be read or has errors; contains all diagnostics, rendered.
     """
     path = Path(path)
     if path.suffix != ".rv" and path.suffix.lower() in FORMATS:
@@ -369,7 +374,7 @@ def loads(text: str, *, name: str = "<string>", const: Mapping[str, str] | None 
         const: constants to override, by name, as text of the language.
 
     Raises:
-        SpecError: the text has errors; carries all diagnostics, rendered.
+        SpecError: the text has errors; contains all diagnostics, rendered.
     """
     return _compile(text, name, const, None)
 
@@ -392,6 +397,6 @@ def _attempt_html(attempt: Attempt) -> str:
     return notebook.attempt_html(attempt)
 
 
-# Verdicts are data and know no pages: what notebooks show of them, they are given here.
+# `verdicts` must not import `report`, so the HTML for notebooks is attached here.
 Report._repr_html_ = _report_html
 Attempt._repr_html_ = _attempt_html

@@ -1,6 +1,7 @@
-"""Texts of others: read within bounds, shown safely, and compared with the name that was meant.
+"""Text from outside: reading it within bounds, showing it safely, and suggesting misspelt names.
 
-Files are regular and of a bounded size; nothing that is shown steers a terminal or hides.
+Only regular files of a bounded size are read. Shown text cannot control a terminal, and it hides
+no characters.
 """
 
 from __future__ import annotations
@@ -19,23 +20,24 @@ from pathlib import Path
 from typing import NamedTuple
 
 MOST_NAMES = 1_000
-"""Names that a misspelt one is compared with."""
+"""The most names that a misspelt name is compared with."""
 
 
 def nearest(name: str, known: Iterable[str], likeness: float = 2 / 3) -> str:
-    """The known name that is most alike; empty if none is.
+    """The most similar known name; empty if none is similar enough.
 
-    What both share by convention does not make them alike: dashes, folders, an ending.
+    Whole parts that both names share at the start or end, such as folders or a file extension, do
+    not count as similarity.
 
     Args:
         name: as written.
         known: the existing names; the first thousand are compared.
-        likeness: from 0 to 1, how much alike it has to be (`difflib.SequenceMatcher.ratio`).
+        likeness: least similarity, from 0 to 1 (`difflib.SequenceMatcher.ratio`).
 
     >>> nearest("gaze_okay", ["gaze_ok", "pressure_ok"]), nearest("nope.csv", ["base.csv"])
     ('gaze_ok', '')
     """
-    import difflib  # most runs misspell nothing
+    import difflib  # imported late: most runs contain no misspelt name
 
     candidates = difflib.get_close_matches(name, list(islice(known, MOST_NAMES)), 3, likeness)
     for candidate in candidates:
@@ -46,7 +48,7 @@ def nearest(name: str, known: Iterable[str], likeness: float = 2 / 3) -> str:
 
 
 def _where_they_differ(name: str, other: str) -> tuple[str, str]:
-    """Both without the whole parts that they share in front and behind.
+    """Both names without the whole parts that they share at the start and the end.
 
     >>> _where_they_differ("monday/nope.csv", "monday/base.csv")
     ('nope', 'base')
@@ -58,14 +60,14 @@ def _where_they_differ(name: str, other: str) -> tuple[str, str]:
 
 
 def _shared_parts(name: str, other: str) -> int:
-    """The characters to the last separator of what both begin with."""
+    """The length of the common prefix up to and including its last separator."""
     pairs = zip(name, other, strict=False)
     shared = len(list(takewhile(lambda pair: pair[0] == pair[1], pairs)))
     return max(name.rfind(separator, 0, shared) for separator in "-./") + 1
 
 
 def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
-    """A question after the known name that is most alike, else `otherwise`.
+    """A question that suggests the most similar known name; `otherwise` if none is similar.
 
     >>> did_you_mean("relased", ["released"])
     'did you mean `released`?'
@@ -75,7 +77,7 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str = "") -> str:
 
 
 def cannot_read(path: str | Path, error: OSError | UnicodeDecodeError) -> str:
-    """Why a file cannot be read, and if there is none, the one in its folder most alike.
+    """Why a file cannot be read; if it does not exist, with a similar name from its folder.
 
     >>> cannot_read("nowhere/base.csv", FileNotFoundError(2, "No such file or directory"))
     'nowhere/base.csv: No such file or directory'
@@ -100,7 +102,7 @@ _PROPOSED = re.compile(r"did you mean `([^`]+)`\?|write `([^`\d{]+)`\Z")
 
 
 def proposed(help_: str) -> str:
-    """The replacement that a help proposes; empty if the help says more than that.
+    """The replacement that a `help` text proposes; empty if it proposes no single word.
 
     >>> proposed("did you mean `released`?  (event, line 9)"), proposed("put brackets around it")
     ('released', '')
@@ -115,11 +117,11 @@ _STEERS_JSON = re.compile(
 
 
 def shown(text: str) -> str:
-    r"""The text with its control and formatting characters written out.
+    r"""The text with control and formatting characters written as escapes.
 
-    Names, cells, labels, texts and files' names may hold escapes of a terminal, and signs that turn
-    the direction of writing: everything that leaves for people goes through here. Ends of lines
-    stay, and every kind of space.
+    Names, cells, labels, texts and file names may contain terminal escapes or marks that reverse
+    the direction of writing, so all output for people passes through this function. Line ends and
+    all kinds of spaces stay.
 
     >>> print(shown("\x1b[31mred\x9b0m \u202eor not"))
     \x1b[31mred\x9b0m \u202eor not
@@ -130,7 +132,7 @@ def shown(text: str) -> str:
 
 
 def shown_line(text: str) -> str:
-    r"""The same on one line: ends of lines, too, are written out.
+    r"""The result of `shown` on one line: line ends are written as escapes, too.
 
     >>> print(shown_line("one\ntwo"))
     one\ntwo
@@ -139,7 +141,7 @@ def shown_line(text: str) -> str:
 
 
 def shown_json(text: str) -> str:
-    r"""JSON text that reads back the same, with what would steer a terminal escaped as JSON does.
+    r"""Equivalent JSON text, in which characters that would control a terminal are JSON escapes.
 
     >>> print(shown_json('"\x9b0m"'))
     "\u009b0m"
@@ -156,7 +158,7 @@ def _shown(char: str) -> str:
 
 
 def quoted(text: str) -> str:
-    r"""A string of DOT or HOA.
+    r"""A string literal of DOT or HOA.
 
     >>> print(quoted('say "\\x1b"'))
     "say \"\\x1b\""
@@ -166,7 +168,7 @@ def quoted(text: str) -> str:
 
 
 def shown_path(path: str | os.PathLike[str]) -> str:
-    """A path as text; names of files need not be.
+    """A path as text; bytes of a file name that are not UTF-8 are replaced.
 
     >>> shown_path("monday.csv")
     'monday.csv'
@@ -177,7 +179,7 @@ def shown_path(path: str | os.PathLike[str]) -> str:
 MEGABYTE = 1 << 20
 
 MOST = 10
-"""Megabytes of a text, unless `RVMON_MAX_TEXT` says otherwise."""
+"""The most megabytes of a text, unless `RVMON_MAX_TEXT` is set."""
 
 
 def text_of_file(path: str | Path, encoding: str = "utf-8") -> str:
@@ -185,11 +187,12 @@ def text_of_file(path: str | Path, encoding: str = "utf-8") -> str:
 
     Args:
         path: of a regular file.
-        encoding: of its characters.
+        encoding: of its text.
 
     Raises:
-        OSError: it cannot be read, is a device or a pipe, or is too large; `strerror` says which.
-        UnicodeDecodeError: it is not text.
+        OSError: the file cannot be read, is a device or a pipe, or is too large; `strerror` says
+            which.
+        UnicodeDecodeError: the file is not text in this encoding.
     """
     with open(path, "rb", opener=_open_at_once) as file:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
@@ -207,7 +210,7 @@ def text_of_input() -> str:
 
 
 def _open_at_once(path: str, flags: int) -> int:
-    """Open without waiting for the other end of a pipe."""
+    """Open a file; if it is a named pipe, do not wait for a writer."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
@@ -227,11 +230,11 @@ SMALLEST = 0.1
 
 
 def percent(part: int, whole: int) -> float:
-    """A share in percent with one decimal; 0 and 100 only where exactly none or all.
+    """A share in percent with one decimal; 0.0 and 100.0 only if it is exactly none or all.
 
     Args:
-        part: the number of parts of `whole`.
-        whole: at least 1; of nothing, all is covered.
+        part: from 0 to `whole`.
+        whole: the total; if it is 0, the result is 100.0.
 
     >>> percent(1, 3), percent(1, 5000), percent(4999, 5000), percent(7, 7)
     (33.3, 0.1, 99.9, 100.0)
@@ -244,7 +247,7 @@ def percent(part: int, whole: int) -> float:
 
 
 def percent_text(part: float, whole: float) -> str:
-    """The same in whole percent, for people.
+    """A share in whole percent for people; `0 %` and `100 %` only if it is exactly none or all.
 
     >>> percent_text(2, 3), percent_text(1, 5000), percent_text(4999, 5000)
     ('67 %', '< 1 %', '> 99 %')
@@ -258,7 +261,7 @@ def percent_text(part: float, whole: float) -> str:
 
 
 def counted(count: int, noun: str, plural: str = "") -> str:
-    """A number of things.
+    """A count with its noun in the singular or plural.
 
     >>> counted(1, "test"), counted(2000, "test"), counted(2, "class", "classes")
     ('1 test', '2,000 tests', '2 classes')
@@ -267,7 +270,7 @@ def counted(count: int, noun: str, plural: str = "") -> str:
 
 
 def listed(names: Sequence[str], word: str) -> str:
-    """Names as a sentence has them; at least one.
+    """At least one name, listed as in a sentence with `word` before the last.
 
     >>> listed(["a", "b", "c"], "and"), listed(["a"], "or")
     ('a, b and c', 'a')
@@ -277,7 +280,7 @@ def listed(names: Sequence[str], word: str) -> str:
 
 
 def share_text(share: float) -> str:
-    """A share for people, that claims neither none nor all where that is not so.
+    """`percent_text` of a share from 0 to 1.
 
     >>> share_text(0.99999), share_text(0.5)
     ('> 99 %', '50 %')
@@ -290,29 +293,29 @@ _MARKS = (".git", "pyproject.toml")
 
 
 class ImportTree(NamedTuple):
-    """The folders that imports may lead into.
+    """The folders from which a specification may import.
 
     Attributes:
         root: of the project.
-        others: folders that a person has allowed.
+        others: further folders that the user allows with `RVMON_ALLOW_IMPORTS`.
     """
 
     root: Path
     others: tuple[Path, ...] = ()
 
     def holds(self, file: Path) -> bool:
-        """Whether a file lies within, where links lead.
+        """Whether a file lies in one of the folders once symbolic links are resolved.
 
         Raises:
-            ValueError: a null character is in the name.
-            OSError: links lead round in a circle.
+            ValueError: the name contains a null character.
+            OSError: symbolic links form a loop.
         """
         real = file.resolve()
         return any(real.is_relative_to(folder) for folder in (self.root, *self.others))
 
 
 def tree_of(directory: Path) -> ImportTree:
-    """The tree of a main file in a folder: that of its project, else the folder itself."""
+    """The import tree of a main file in this folder, with its project, else the folder, as root."""
     root = directory.resolve()
     marked = (
         folder
@@ -324,7 +327,7 @@ def tree_of(directory: Path) -> ImportTree:
 
 
 def shorten(text: str, width: int = 40) -> str:
-    """The text on one line, cut to `width` characters, with what would steer a terminal shown.
+    """The result of `shown_line`, cut to `width` characters.
 
     >>> shorten("a" * 50, 5)
     'aaaa…'

@@ -1,4 +1,4 @@
-"""The units of measure: their table, how they are read, multiplied and compared."""
+"""Units of measure: their table, parsing, products and quotients."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from msgspec import Struct
 
 
 class Unit(Struct, frozen=True):
-    """A unit: `factor` times the product of base units to the powers of `dimension`.
+    """A unit: `factor` times the product of base units raised to the powers in `dimension`.
 
     Attributes:
         symbol: as people write it; empty for a plain number.
-        dimension: exponent by base unit, sorted by its symbol, none zero.
-        factor: exact, but for degrees of angle (60 digits of π).
+        dimension: base unit and exponent, sorted by base unit, no exponent zero.
+        factor: exact, except that degrees and revolutions use 60 digits of π.
     """
 
     symbol: str
@@ -31,8 +31,8 @@ PLAIN = Unit("")
 
 _PI = Fraction("3.14159265358979323846264338327950288419716939937510582097494")
 
-# An angle is no plain number here, so that a limit in radians is not met by a signal without a
-# unit. Degrees Celsius are never converted: they have another zero.
+# The radian is a base unit, so that a signal without a unit cannot be compared with a limit in
+# radians. Degrees Celsius are never converted to kelvins, because their zero differs.
 _BASES = ("m", "kg", "s", "A", "K", "rad", "degC", "px", "B", "mol", "cd")
 
 _DERIVED: tuple[tuple[str, str, Fraction | int], ...] = (
@@ -88,21 +88,21 @@ _PREFIXES = {
 }
 
 SPOKEN = {"A": "ampere", "W": "watt"}
-"""The letters are operators, so behind a number the words stand for them."""
+"""Units written as a word after a number, because `A` and `W` are temporal operators."""
 
 _LONGEST = 60
-"""Longer units are refused: their factors could have thousands of digits."""
+"""The most characters of a unit; the factor of a longer one could have thousands of digits."""
 
 _PART = re.compile(r"([*/]?)\s*([^\s*/^]+)(?:\^(-?\d{1,2}))?\s*")
 
 
 class UnknownUnitError(ValueError):
-    """A part of a unit is not in the table; its only argument is that part."""
+    """A part of a unit is not in the table; the part is the only argument."""
 
 
 @cache
 def unit_table() -> Mapping[str, Unit]:
-    """All simple units by symbol."""
+    """All units that are a single word, with and without prefix, by symbol."""
     table = {base: Unit(base, ((base, 1),)) for base in _BASES}
     table["ampere"] = Unit("ampere", (("A", 1),))
     for symbol, definition, factor in _DERIVED:
@@ -125,10 +125,10 @@ def _add_prefixed(table: dict[str, Unit], symbol: str) -> None:
 
 @cache
 def parse_unit(text: str) -> Unit:
-    """Read a unit such as `m/s`, `kg*m^2`, `1/s`.
+    """Parse a unit such as `m/s`, `kg*m^2` or `1/s`.
 
     Raises:
-        UnknownUnitError: a part is unknown, or the text is no product of parts.
+        UnknownUnitError: a part is unknown, or the text is not a product of parts.
 
     >>> parse_unit("km/h").factor
     Fraction(5, 18)
@@ -143,7 +143,7 @@ def _parse(text: str, table: Mapping[str, Unit]) -> Unit:
 
 
 def _powers(text: str) -> Mapping[str, int]:
-    """The parts of a unit, each with its power."""
+    """The simple units in a compound unit, each with its exponent."""
     powers: Counter[str] = Counter()
     place = 0
     while place < len(text):
@@ -199,7 +199,7 @@ def _combined(left: Unit, right: Unit, power: int) -> Unit:
 
 
 def root(unit: Unit) -> Unit | None:
-    """The unit of a square root of a number in base units, or `None` if there is none."""
+    """The unit of the square root of a number in base units; `None` if an exponent is odd."""
     if any(exponent % 2 for _, exponent in unit.dimension):
         return None
     return base_unit({base: exponent // 2 for base, exponent in unit.dimension})
@@ -212,10 +212,10 @@ def base_unit(dimension: Mapping[str, int]) -> Unit:
 
 
 def compound_pattern(excluded: Iterable[str]) -> str:
-    """A regular expression for units of several known parts, or with powers, without spaces.
+    """A regular expression for products, quotients and powers of known units, without spaces.
 
     Args:
-        excluded: words that are never a part.
+        excluded: words that are never part of a unit.
     """
     refused = frozenset(excluded)
     names = sorted((name for name in unit_table() if name not in refused), key=len, reverse=True)

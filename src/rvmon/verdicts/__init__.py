@@ -1,4 +1,4 @@
-"""The four verdicts and their fold; the modules define attempts, reports and tables of them."""
+"""The four verdicts and their fold; the modules define attempts, reports and tables of verdicts."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Iterable
 from enum import StrEnum
 
 LAW = 3
-"""Version of the semantics ("law"); raised when a run may get another verdict than before.
+"""Version of the semantics ("law"); increased whenever a change can alter the verdict of a run.
 
-It is stored in reports and shown on pages and by commands. All changes are listed in
+Reports store it; pages and commands show it. All changes are listed in
 docs/reference/what-changed-in-the-law.md.
 """
 
@@ -26,9 +26,9 @@ def fold(verdicts: Iterable[Verdict], *, complete: bool = True) -> Verdict:
     """The verdict of a requirement on a run, from the verdicts of its attempts.
 
     Args:
-        verdicts: of its attempts.
-        complete: whether these are all attempts it may have. Not so if its trigger was never TRUE
-            or FALSE: then the result is `F` or `I`.
+        verdicts: the verdicts of its attempts.
+        complete: whether no further attempt can exist. False if its trigger was never TRUE or
+            FALSE: then the result is `F` or `I`.
 
     Source: SEMANTICS, section 3.
 

@@ -1,4 +1,4 @@
-"""The record of one attempt, and sequences whose attempts are made on access."""
+"""The record of one attempt, and sequences whose attempts are created on access."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Decision(StrEnum):
 
 VERDICTS = (Verdict.FAIL, Verdict.PASS, Verdict.INCONCLUSIVE, Verdict.NOT_TRIGGERED)
 DECISIONS = tuple(Decision)
-"""Decisions, and above verdicts, by their numbers in `core.h`."""
+"""Verdicts and decisions by their numbers in `core.h`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,14 +58,14 @@ class Blame:
 class Attempt(Record):
     """One attempt: the obligation that a trigger started, with its verdict. Treat as immutable.
 
-    It is not frozen, as creation would take three times as long.
+    The class is not frozen, because creation would take three times as long.
 
     Attributes:
         requirement: the id of its requirement.
         number: from 1 per requirement, in the order in which triggers became certain; attempts in
             doubt are numbered separately, in the order of their starts.
-        triggered: instant of the trigger, ticks; of an attempt in doubt, the first instant at which
-            there may have been one.
+        triggered: instant of the trigger, ticks; for an attempt in doubt, the first instant at
+            which there may have been a trigger.
         decided: the first instant at which the prefix decided it, ticks; the end of the trace if
             the end rule or a policy settled it; `None` for `I`.
         verdict: `P`, `F` or `I` (undecided).
@@ -73,15 +73,16 @@ class Attempt(Record):
         reason: one sentence.
         deadline: the last instant before time alone decides the obligation, ticks: unless a
             position decides it earlier, it is decided one tick later.
-        at_trigger: by text, the values of its propositions at the trigger.
+        at_trigger: the values of its propositions at the trigger, by their text.
         at_decision: the same at the decision.
-        required: the obligation open at the end, in the language.
+        required: the obligation still open at the end, in the specification language.
         captured: values captured by `let` and `for each`.
         blame: the obligation that failed, for `F`.
-        forecast: of an undecided attempt, `P` or `F` if every continuation leads to that.
+        forecast: for an undecided attempt, `P` or `F` if every continuation leads to that verdict.
         in_doubt: whether the trigger itself is uncertain; its verdict is `P` or `I`, never `F`.
         origin: the first instant of its run, ticks, which is shown as 0 s.
-        robustness: a lower bound of the distance to the other verdict, in SI units; if measured.
+        robustness: a lower bound of the distance to the other verdict, in SI units; `None` if not
+            measured.
     """
 
     requirement: str
@@ -103,17 +104,17 @@ class Attempt(Record):
     origin: int = 0
 
     _repr_html_: ClassVar[Callable[[Attempt], str]]
-    """HTML for notebooks; set by `rvmon.session`, as `report` is a layer above this one."""
+    """HTML for notebooks; set by `rvmon.session`, because `report` is a layer above this one."""
 
     def _work_out(self, name: str) -> None:
-        """Compute a lazy field, and others with it; `Record` calls it on the first access."""
+        """Compute a lazy field and those found with it; `Record` calls it on the first access."""
         if not hasattr(self, "_details"):
             raise AttributeError("of this attempt nothing more is known")
         for attribute, value in self._details(self, self._noted, name).items():
             setattr(self, attribute, value)
 
     def __reduce__(self) -> tuple[type[Attempt], tuple[Any, ...]]:
-        """Copies and pickles have all fields computed."""
+        """Compute all fields before copying or pickling."""
         return Attempt, tuple(getattr(self, attribute.name) for attribute in fields(self))
 
     @property
@@ -127,7 +128,7 @@ class Attempt(Record):
 
     @property
     def numbered(self) -> str:
-        """Its number, after a question mark if it is in doubt."""
+        """The number, with a question mark before it if the attempt is in doubt."""
         return f"?{self.number}" if self.in_doubt else str(self.number)
 
     def __str__(self) -> str:
@@ -169,7 +170,7 @@ _SHOWN = 3  # the number of attempts in the `repr` of a sequence
 
 
 class LazyAttempts(Sequence[Attempt]):
-    """A sequence whose attempts are made on access; equal to any sequence of equal attempts."""
+    """A sequence that creates attempts on access; equal to any sequence of equal attempts."""
 
     @abstractmethod
     def __iter__(self) -> Iterator[Attempt]:

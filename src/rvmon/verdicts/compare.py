@@ -1,4 +1,4 @@
-"""Compares two files of verdicts."""
+"""Comparison of two files of verdicts."""
 
 from __future__ import annotations
 
@@ -151,7 +151,7 @@ def _runs(rows: Iterable[VerdictRow]) -> dict[str, _Run]:
 
 
 def _moved(runs: Mapping[str, _Run]) -> dict[str, _Run]:
-    """The runs by names relative to their common folder."""
+    """The runs by recording name relative to the common folder of all recordings."""
     folders = {os.path.dirname(name) for name in runs}
     try:
         common = os.path.commonpath(folders)

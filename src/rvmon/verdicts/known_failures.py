@@ -1,4 +1,4 @@
-"""Known failures: a file lists which failures are accepted, why, and until when."""
+"""Known failures: a file that lists which failures are accepted, why, and until when."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class KnownFailures(Struct, frozen=True):
         ]
 
     def expected(self, report: Report) -> dict[str, str]:
-        """The requirements whose failure in a recording would be accepted, with reason and day."""
+        """The requirements that may fail in a recording, each with the reason and the last day."""
         accepted = ((name, self.accepting(report.trace, name)) for name in report.verdicts)
         return {
             name: f"{failure.reason} (until {failure.until})"
@@ -69,7 +69,7 @@ class KnownFailures(Struct, frozen=True):
         }
 
     def remarks(self, reports: Sequence[Report]) -> Iterator[str]:
-        """Remarks on entries that have expired but still fail, and on those that no longer fail."""
+        """Remarks on expired entries that still fail and on entries that no longer fail."""
         for failure in self.known:
             about = [
                 (report.trace, report.verdicts[failure.requirement])
@@ -94,12 +94,12 @@ class _File(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def read_known(path: str | Path, requirements: Collection[str]) -> list[KnownFailure]:
-    """Read a file of known failures: TOML, a table `[[known]]` for each.
+    """Read a file of known failures: TOML with a table `[[known]]` for each.
 
     Raises:
         RvmonError: the file cannot be read, is malformed, or has an unknown requirement.
     """
-    import tomllib  # most runs have no such file
+    import tomllib  # imported late: most runs have no such file
 
     try:
         failures = msgspec.convert(tomllib.loads(Path(path).read_text("utf-8")), _File).known

@@ -1,4 +1,4 @@
-"""The report of one run: its attempts in order, counted and folded per requirement."""
+"""The report of one run: its attempts, and the counts and verdict of each requirement."""
 
 from __future__ import annotations
 
@@ -31,26 +31,27 @@ class Report:
 
     Attributes:
         verdicts: by requirement, in the order of the file; those never triggered are `NT`.
-        attempts: the decided ones by decision instant, then order in the file, then number; the
-            undecided ones follow in the order of the file and by number.
+        attempts: the decided attempts by decision instant, then order in the file, then number;
+            the undecided attempts follow in the order of the file and by number.
         counts: by requirement, the number of its attempts by verdict: `P`, `F` and `I`.
         health: the unknown parts of the input, with reasons.
-        trace: name of the recording, or ""; it is ignored when reports are compared.
+        trace: name of the recording, or ""; `==` ignores it.
         origin: the instant that is shown as 0 s, ticks.
         end: the last instant of the trace, ticks; `None` if it has no position.
-        misses: by requirement without attempts, the near miss of its trigger; if computed.
+        misses: by requirement without attempts, how close its trigger came to being true; if
+            computed.
         late: by requirement and number of the attempt, the instant of a response after the
             deadline, ticks; if computed.
-        values: by requirement and number of the attempt, the values at the decision of the signals
-            that the blamed subformula reads, with units; of the first failures, if computed.
+        values: by requirement and number of the attempt, the values of the signals that the blamed
+            subformula reads, with units, at the decision; for the first failures, if computed.
         goals: by cover goal, `P` if the run shows it, `I` if it was still possible at the end, else
             `NT`; if computed.
         illegal: the illegal bins and combinations that were hit; if computed.
         coverage: the hits of coverpoints and crosses; if computed.
         law: version of the semantics; a stored report may have an older one.
-        dropped: by requirement and verdict, the number of attempts not kept: with `keep`, or
-            failures by time alone, of which one silence may bring thousands. They are included in
-            verdicts and counts; no count exceeds 4,294,967,295.
+        dropped: by requirement and verdict, the number of attempts whose records were not kept,
+            because of `keep` or because a long gap in the input made thousands of attempts fail by
+            time alone. Verdicts and counts include them; no count exceeds 4,294,967,295.
     """
 
     verdicts: Mapping[str, Verdict]
@@ -73,7 +74,7 @@ class Report:
     )
 
     _repr_html_: ClassVar[Callable[[Report], str]]
-    """HTML for notebooks; set by `rvmon.session`, as `report` is a layer above this one."""
+    """HTML for notebooks; set by `rvmon.session`, because `report` is a layer above this one."""
 
     @property
     def absent(self) -> frozenset[str]:
@@ -81,7 +82,7 @@ class Report:
         return frozenset(health.name for health in self.health if health.kind is HealthKind.ABSENT)
 
     def of(self, requirement: str, verdict: Verdict) -> Iterator[Attempt]:
-        """The attempts of one requirement with one verdict, in their order.
+        """The attempts of one requirement with one verdict, in order.
 
         Args:
             requirement: its id.
@@ -124,7 +125,8 @@ class Report:
             yield attempt_row(self.trace, attempt)
         for name, verdict in self.verdicts.items():
             verdicts = [verdict for verdict, count in self.counts[name].items() if count]
-            if not verdicts or fold(verdicts) is not verdict:  # none, or there may have been others
+            # No attempts, or the trigger was unknown, so that there may have been more.
+            if not verdicts or fold(verdicts) is not verdict:
                 reason = self.misses.get(name, "")
                 yield VerdictRow(self.trace, name, verdict=verdict.value, reason=reason)
 
@@ -132,7 +134,7 @@ class Report:
         """The report as an Arrow table of `rows`; `VerdictRow` describes the columns.
 
         Raises:
-            RvmonError: pyarrow is needed (`rvmon[arrow]`).
+            RvmonError: pyarrow (`rvmon[arrow]`) is not installed.
 
         >>> report = report_of(["R1"], [Attempt("R1", 1, 0, 5, Verdict.PASS)], trace="a.csv")
         >>> report.to_arrow().select(["attempt", "verdict", "decided"]).to_pylist()
@@ -146,7 +148,7 @@ class Report:
         """The rows as a pandas data frame; instants are the nullable `Int64`.
 
         Raises:
-            RvmonError: pyarrow or pandas is needed.
+            RvmonError: pyarrow or pandas is not installed.
         """
         from rvmon.verdicts.serialise import pandas_frame
 
@@ -156,7 +158,7 @@ class Report:
         """The rows as a polars data frame.
 
         Raises:
-            RvmonError: pyarrow or polars is needed.
+            RvmonError: pyarrow or polars is not installed.
         """
         from rvmon.verdicts.serialise import polars_frame
 
@@ -215,10 +217,10 @@ class Report:
     def from_json(cls, text: str | bytes) -> Report:
         """Read a report written by `to_json`.
 
-        Verdicts and counts are recomputed from the attempts and the numbers of dropped ones.
+        Verdicts and counts are recomputed from the attempts and the numbers of dropped attempts.
 
         Raises:
-            TraceError: the text is no report.
+            TraceError: the text is not a report.
         """
         from rvmon.verdicts.serialise import decode
 
@@ -268,10 +270,10 @@ def report_of(
     Args:
         requirements: the ids of all judged requirements, in the order of the file.
         attempts: their attempts, in any order.
-        dropped: by requirement and verdict, the number of further attempts.
+        dropped: by requirement and verdict, the number of further attempts, which have no record.
         health: findings about the input.
-        incomplete: ids of the requirements whose trigger was never TRUE or FALSE, so that attempts
-            may be missing: they are `I`, unless an attempt failed.
+        incomplete: ids of the requirements whose trigger was never TRUE or FALSE. As attempts may
+            be missing, they are `I`, unless an attempt failed.
         trace: name of the recording.
         origin: the instant that is shown as 0 s, ticks.
         end: the last instant of the trace, ticks.

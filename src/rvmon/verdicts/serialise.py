@@ -1,4 +1,4 @@
-"""Reports as JSON and back; verdicts as rows of tables, one per attempt; data frames."""
+"""Conversion of reports to JSON and back, and of verdicts to table rows and data frames."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ if TYPE_CHECKING:
 
 
 _ALWAYS = ("number", "triggered", "decided", "verdict", "decision", "reason")
-"""Keys that every attempt has in JSON; others are omitted if empty."""
+"""The keys that every attempt has in JSON; other keys are omitted if empty."""
 
 _UNLESS_EMPTY = ("at_trigger", "at_decision", "required", "captured", "blame", "forecast")
 
 
 def packed(attempt: Attempt) -> msgspec.Raw:
-    """The `record` of an attempt as text within JSON: of many, the objects would take much more."""
+    """The `record` of an attempt as JSON text, which takes much less memory than the object."""
     return msgspec.Raw(msgspec.json.encode(record(attempt)))
 
 
 def record(attempt: Attempt) -> dict[str, object]:
     """The JSON object of an attempt, without requirement and origin.
 
-    Instants are in ticks, and under keys ending in `_s` in seconds since the origin.
+    Instants are in ticks; those whose key ends in `_s` are in seconds since the origin.
     """
     shown: dict[str, object] = {name: getattr(attempt, name) for name in _ALWAYS}
     if attempt.deadline is not None:
@@ -91,7 +91,7 @@ class ReportJson(msgspec.Struct):
 
 
 def labels(requirement: Requirement | None) -> dict[str, object]:
-    """A requirement's severity and tags, as far as it has them."""
+    """A requirement's severity and tags, without those that are not set."""
     if requirement is None:
         return {}
     members = {"severity": requirement.severity, "tags": requirement.tags}
@@ -99,9 +99,9 @@ def labels(requirement: Requirement | None) -> dict[str, object]:
 
 
 def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
-    """Write as JSON text the error of a recording that broke off, and the attempts before it.
+    """The JSON text for a recording that broke off: its error and the attempts before it.
 
-    It has no verdicts: later samples could have changed them.
+    It contains no verdicts, because later samples could have changed them.
     """
     attempts: dict[str, list[dict[str, object]]] = {}
     for attempt in before:
@@ -110,7 +110,11 @@ def encode_broken(trace: str, error: str, before: Sequence[Attempt]) -> str:
 
 
 def decode(text: str | bytes) -> tuple[ReportJson, list[Attempt]]:
-    """Read the document and the attempts of a report written by `Report.to_json`."""
+    """Decode a report written by `Report.to_json` into the document and its attempts.
+
+    Raises:
+        TraceError: the text is not a report.
+    """
     try:
         document = msgspec.json.decode(text, type=ReportJson)
         attempts = [
@@ -124,14 +128,14 @@ def decode(text: str | bytes) -> tuple[ReportJson, list[Attempt]]:
 
 
 class VerdictRow(NamedTuple):
-    """An attempt; a requirement that has none in a recording; or a recording without verdicts."""
+    """One attempt, one requirement without attempts, or one recording without verdicts."""
 
     recording: str
-    requirement: str | None = None  # its id; `None` where the recording has no verdicts
-    attempt: str | None = None  # its name, such as `R1#3`; `None` where there is none
+    requirement: str | None = None  # its id; `None` if the recording has no verdicts
+    attempt: str | None = None  # its name, such as `R1#3`; `None` without attempts
     number: int | None = None  # from 1 per requirement; attempts in doubt are numbered separately
-    # `P`, `F` or `I` of an attempt, `NT` or `I` of a requirement without one; `None` where the
-    # recording has none
+    # `P`, `F` or `I` of an attempt, `NT` or `I` of a requirement without attempts; `None` if the
+    # recording has no verdicts
     verdict: str | None = None
     # the way the attempt was settled, a value of `rvmon.verdicts.attempt.Decision`
     decision: str | None = None
@@ -140,7 +144,7 @@ class VerdictRow(NamedTuple):
     decided: int | None = None  # instant, ns; `None` if undecided
     deadline: int | None = None  # instant, ns; `None` if there is none
     triggered_s: float | None = None  # seconds since the recording's origin
-    decided_s: float | None = None  # likewise
+    decided_s: float | None = None  # seconds since the recording's origin
     robustness: float | None = None  # in SI units; `None` if not measured
     captured: str = ""  # values captured by `let` and `for each`, as JSON; "" if there are none
     reason: str = ""  # one sentence
@@ -148,7 +152,7 @@ class VerdictRow(NamedTuple):
 
 
 def broken_rows(recording: str, error: str, before: Iterable[Attempt]) -> Iterator[VerdictRow]:
-    """The rows of a recording that broke off: one with the error, then the attempts before it."""
+    """The rows of a recording that broke off: first the error, then the attempts before it."""
     yield VerdictRow(recording, error=error)
     for attempt in before:
         yield attempt_row(recording, attempt)._replace(error=error)

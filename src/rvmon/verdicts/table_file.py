@@ -1,4 +1,4 @@
-"""Tables of verdicts in files: CSV, Parquet and SQLite are written and read, JSON is read."""
+"""Files of verdicts: writes and reads CSV, Parquet and SQLite, and reads JSON."""
 
 from __future__ import annotations
 
@@ -23,7 +23,11 @@ _SQL_TYPES = {str: "TEXT", int: "INTEGER", float: "REAL", bool: "INTEGER"}
 
 
 def refuse_format(path: str | Path) -> None:
-    """Refuse an output file early, before anything is judged."""
+    """Refuse an unsupported output file before anything is judged.
+
+    Raises:
+        RvmonError: the suffix is unknown, or a package for it is not installed.
+    """
     _, packages = _form(path)
     for package in packages:
         if find_spec(package) is None:
@@ -65,7 +69,7 @@ def csv_table(columns: Sequence[str], rows: Iterable[Sequence[object]]) -> bytes
 
 
 class _Lines(list[str]):
-    """Collects lines ending in CRLF: with a plain LF, the csv module would not quote a lone CR."""
+    """Collects lines that end in CRLF; with LF, the csv module would not quote a lone CR."""
 
     def write(self, line: str) -> None:
         self.append(line)
@@ -103,7 +107,7 @@ _FORMS: dict[str, tuple[_Written, tuple[str, ...]]] = {
     ".parquet": (_parquet, ("pyarrow",)),
     ".sqlite": (_sqlite, ()),
 }
-"""By suffix of a file: its writer, and the packages that this needs."""
+"""By suffix of the file: the writer, and the packages that it needs."""
 
 
 def _form(path: str | Path) -> tuple[_Written, tuple[str, ...]]:
@@ -111,7 +115,7 @@ def _form(path: str | Path) -> tuple[_Written, tuple[str, ...]]:
 
 
 def refuse(path: str | Path, forms: Iterable[str]) -> NoReturn:
-    """Raise the error that a file has none of these suffixes."""
+    """Raise the error for a file whose suffix is not one of `forms`."""
     raise RvmonError(f"{path}: verdicts are kept in files that end in {', '.join(forms)}")
 
 
@@ -122,7 +126,10 @@ _KEPT = ("recording", "requirement", "attempt", "verdict", "reason", "error")
 def read_results(path: str | Path) -> list[VerdictRow]:
     """Read verdicts that `rvmon run` wrote: with `--out`, or as JSON with `--format json`.
 
-    Only names, verdict, reason and error of each row are read.
+    Only the columns recording, requirement, attempt, verdict, reason and error are read.
+
+    Raises:
+        RvmonError: the file does not exist, cannot be read, or contains no verdicts.
     """
     forms = {
         ".csv": _read_csv,
@@ -207,4 +214,4 @@ _FAULTS = (
     ValueError,
     TypeError,
 )
-"""The exceptions raised by reading a file with other contents."""
+"""The exceptions that can arise when a file does not contain verdicts."""
