@@ -1,1 +1,1 @@
-"""From texts to networks: `.ta`, UPPAAL's XML and Python, parsed, resolved, instantiated."""
+"""From texts to networks: parsing of `.ta`, UPPAAL's XML and Python, resolution, instantiation."""

@@ -1,4 +1,4 @@
-"""Automata as they were written, and the queries on them."""
+"""Automata and queries as written."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from rvmon.models.network.expressions import LocationKind
 
 
 class LocationText(Struct, frozen=True):
-    """A location of a template; `leaving` is a rate, as a share."""
+    """A location of a template; `leaving` is the exponential rate `a : b`."""
 
     name: str
     kind: LocationKind
@@ -28,7 +28,7 @@ class SyncText(Struct, frozen=True):
 
 
 class Selection(Struct, frozen=True):
-    """`name : type` of an edge: one edge for each value."""
+    """`name : type` of an edge, which stands for one edge per value."""
 
     name: str
     type: syntax.TypeText
@@ -36,7 +36,7 @@ class Selection(Struct, frozen=True):
 
 
 class EdgeText(Struct, frozen=True):
-    """An edge of a template; `label` names the action for people and recordings."""
+    """An edge of a template; `label` is the name of its action for people and recordings."""
 
     source: syntax.Name
     target: syntax.Name
@@ -47,12 +47,12 @@ class EdgeText(Struct, frozen=True):
     updates: tuple[syntax.UpdateText | syntax.Call, ...] = ()
     weight: float = 1.0
     label: str = ""
-    # of a branch: its weight, and that of all branches together with it
+    # of a branch of a branch point: its own weight, and the weights of all branches
     shares: tuple[syntax.Expression, tuple[syntax.Expression, ...]] | None = None
 
 
 class Template(Struct, frozen=True):
-    """A template; without parameters it is an automaton by itself."""
+    """A template. Without parameters it is itself an automaton."""
 
     name: str
     parameters: tuple[syntax.Parameter, ...]
@@ -74,7 +74,7 @@ class Instance(Struct, frozen=True):
 
 
 class QueryText(Struct, frozen=True):
-    """A query with its id and its sentence for people, either may be empty, and its own text."""
+    """A query with its id, a remark for people (both may be empty), and its text."""
 
     id: str
     remark: str
@@ -84,7 +84,7 @@ class QueryText(Struct, frozen=True):
 
 
 class SignalText(Struct, frozen=True):
-    """`signal name = value`: what a specification calls something of the model."""
+    """`signal name = value`: a name that specifications may use for something of the model."""
 
     name: str
     value: syntax.Expression
@@ -97,12 +97,12 @@ class Document(Struct, frozen=True):
     source: Source
     name: str
     title: str
-    unit: int | None  # ticks of one unit of the model's time; `None` if it says nothing
+    unit: int | None  # ticks of one unit of time; `None` if the model names none
     declarations: tuple[syntax.Declared, ...]
     templates: tuple[Template, ...]
     instances: tuple[Instance, ...]
-    # the automata and templates that run, each with its priority; `None`: all that are there
+    # the automata and templates that run, each with its priority; `None`: all of them
     system: tuple[tuple[syntax.Name, int], ...] | None
     queries: tuple[QueryText, ...]
     signals: tuple[SignalText, ...] = ()
-    open_ints: bool = False  # whether `int` without a range is allowed, as UPPAAL's 16 bits
+    open_ints: bool = False  # whether `int` may lack a range; it then has 16 bits as in UPPAAL

@@ -1,4 +1,4 @@
-"""Declarations to the clocks, variables and channels of a network, and to names in a scope."""
+"""Turns declarations into clocks, variables and channels of a network, and names in a scope."""
 
 from __future__ import annotations
 
@@ -18,46 +18,46 @@ from rvmon.models.network import Channel, Clock
 from rvmon.models.network import scope as sc
 from rvmon.models.network.expressions import BaseType, Constant, Slot, Variable
 
-MAX_FINDINGS = 100  # behind so many, nothing more is looked for
-MOST_SHOWN = 2  # further places that are shown of a finding that stands at many
-MAX_CLOCKS = 4_999  # the most clocks of a network: a zone has the square of it in numbers
+MAX_FINDINGS = 100  # checking stops after so many
+MOST_SHOWN = 2  # further places shown for a finding that occurs in many
+MAX_CLOCKS = 4_999  # limit for the clocks of a network: a zone has the square of it in numbers
 
 MAX_PARTS = 100_000
-"""The most variables, and the most channels, of a network with all elements of its arrays."""
+"""Limit for the variables, and for the channels, of a network, counting elements of arrays."""
 
-WIDE = 1 << 16  # a variable with more values gets a warning; UPPAAL's `int` has so many
+WIDE = 1 << 16  # UPPAAL's `int` has so many values; a variable with more gets a warning
 
 Part = TypeVar("Part", Clock, Variable, Channel)
 
 
 @dataclass(slots=True)
 class Parts:
-    """The parts of a network made so far from the declarations of a model."""
+    """The parts of a network declared so far."""
 
     clocks: list[Clock] = field(default_factory=list)
     variables: list[Variable] = field(default_factory=list)
     channels: list[Channel] = field(default_factory=list)
     channel_spans: list[Span] = field(default_factory=list)
-    # the priorities of channels, if any are declared; `None` is all others
+    # the priority of each channel, if any are declared; `None` stands for all others
     levels: dict[int | None, int] = field(default_factory=dict)
-    are_split: bool = False  # whether some edge as written is several, of which clocks decide
+    are_split: bool = False  # whether a guard with clocks under `or` was split into several edges
 
 
 @dataclass(slots=True)
 class Findings:
-    """Collects what is wrong, each thing once, so that all errors of a model appear together."""
+    """Collects findings without duplicates, so that all errors of a model are reported together."""
 
     found: dict[tuple[str, str, int], Diagnostic] = field(default_factory=dict)
 
     def add(self, diagnostic: Diagnostic) -> None:
-        """Note a finding; template instances repeat those of their template."""
+        """Add a finding. Instances of one template repeat its findings, which count once."""
         start = diagnostic.spans[0].span.start if diagnostic.spans else -1
         self.found.setdefault((diagnostic.code, diagnostic.message, start), diagnostic)
         if len(self.found) >= MAX_FINDINGS:
             self.raise_errors()
 
     def has(self, code: str) -> bool:
-        """Whether a finding of a code is among them."""
+        """Whether there is a finding with a code."""
         return any(found == code for found, _, _ in self.found)
 
     def raise_errors(self) -> None:
@@ -68,7 +68,7 @@ class Findings:
 
     @contextmanager
     def collect(self) -> Iterator[None]:
-        """Note the findings of a `ModelError` raised inside, and go on behind."""
+        """Collect the findings of a `ModelError` raised inside, and continue after the block."""
         try:
             yield
         except ModelError as error:
@@ -77,7 +77,7 @@ class Findings:
 
 
 def _counted(findings: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
-    """Findings that say the same of several places as one, with their number and the first few."""
+    """Merge equal findings about several places into one, with their number and a few places."""
     alike: dict[tuple[str, str, str], list[Diagnostic]] = {}
     for diagnostic in findings:
         key = diagnostic.code, diagnostic.message, diagnostic.help
@@ -98,7 +98,7 @@ def declare(
     resolver: Resolver,
     findings: Findings,
 ) -> None:
-    """Give all declared names a meaning in `scope`, and what they declare a place in `parts`."""
+    """Give all declared names a meaning in `scope`, and add what they declare to `parts`."""
     for item in declared:
         with findings.collect():
             if isinstance(item, syntax.PrioritiesText):
@@ -114,7 +114,7 @@ def declare(
 def _rank(
     written: syntax.PrioritiesText, scope: sc.Scope, parts: Parts, resolver: Resolver
 ) -> None:
-    """Give channels their priorities; `None` is all that are not named."""
+    """Record the priorities of channels; `None` stands for all channels not named."""
     if parts.levels:
         fix = "write one list, from the lowest to the highest"
         raise model_error("TA003", "a second list of priorities", written.span, fix)
@@ -130,7 +130,7 @@ def _rank(
 
 
 def _ranked(name: syntax.Expression, scope: sc.Scope, resolver: Resolver) -> Iterator[int | None]:
-    """The channels that a name in a list of priorities means."""
+    """The channels that a name in a list of priorities denotes; `None` for `default`."""
     if isinstance(name, syntax.Name) and name.name == "default":
         yield None
         return
@@ -169,13 +169,13 @@ def _symbol(item: syntax.Named, scope: sc.Scope, parts: Parts, resolver: Resolve
 
 @dataclass(frozen=True, slots=True)
 class _Placer:
-    """Gives things that are declared their places."""
+    """Adds declared things to the parts of a network."""
 
     parts: Parts
     span: Span
 
     def place(self, kind: sc.ResolvedType, names: Sequence[str], value: symbols.Value) -> int:
-        """Put clocks, variables or channels of some names behind those that are there."""
+        """Append clocks, variables or channels with the given names; return the first index."""
         parts, span = self.parts, self.span
         match kind.base:
             case BaseType.CLOCK | BaseType.CHANNEL if value is not None:
@@ -196,7 +196,7 @@ class _Placer:
 
 
 def _room(parts: Sequence[Part], count: int, most: int, what: str, span: Span) -> int:
-    """The index of the next part, if as many as a declaration makes may be added."""
+    """The index of the next part; refuses a declaration that would exceed the limit."""
     if len(parts) + count > most:
         fix = "declare smaller arrays, or fewer instances that have them"
         raise model_error("TA019", f"more than {most:,} {what}", span, fix)
@@ -237,6 +237,6 @@ def _copied(symbol: sc.Symbol, kind: sc.ResolvedType, span: Span) -> sc.Constant
 
 
 def check_range(value: int, kind: sc.ResolvedType, span: Span) -> None:
-    """Refuse a constant that its type cannot hold."""
+    """Refuse a constant outside the range of its type."""
     if kind.base in (BaseType.INT, BaseType.BOOL) and not kind.low <= value <= kind.high:
         raise model_error("TA007", f"{value} is outside [{kind.low}, {kind.high}]", span)

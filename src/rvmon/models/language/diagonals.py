@@ -1,12 +1,13 @@
-"""Moves constraints that zones cannot have onto edges: diagonals, lower bounds of invariants.
+"""Removes constraints that zones do not support: diagonals, and lower bounds in invariants.
 
-While time passes, `x − y <= c` stays true or false: only an edge that sets x or y changes it. The
-edge that sets x to v makes it `y >= v − c`, so it is taken apart into two: one for where that
-holds, one for where it does not. What is left has no diagonal constraint, and the same runs; zones
-with diagonals would need other searches, for which none of the bounds used here is sound.
+While time passes, the truth of `x − y <= c` does not change; only an edge that sets x or y changes
+it. After an edge sets x to v, it holds if and only if `y >= v − c`. So a variable keeps the truth
+of the diagonal, and each such edge is split into two: one with that guard and one with its
+negation. The result has no diagonal constraints, and has the same runs. Zones with diagonals would
+need other searches, since the abstractions used here are not sound for them.
 
-A clock only grows while a location is occupied, so that a lower bound that holds on entry holds on,
-unless another automaton sets the clock: it moves to the edges that lead there.
+A clock only grows while a location is occupied. A lower bound that holds on entry therefore stays
+true, unless another automaton sets the clock, and is moved to the edges that lead to the location.
 
 Source: Bérard, Petit, Diekert, Gastin, Characterization of the Expressive Power of Silent
 Transitions in Timed Automata, Fundamenta Informaticae 36, 1998, section 4.
@@ -35,24 +36,24 @@ class Diagonal:
     strict: bool
 
     def holds(self, difference: int) -> bool:
-        """Whether it does for clocks that are so far apart."""
+        """Whether the constraint holds for clocks with this difference."""
         return difference < self.number if self.strict else difference <= self.number
 
 
 @dataclass(slots=True)
 class Diagonals:
-    """The diagonal constraints of a model, and the variables that they are."""
+    """The diagonal constraints of a model, each kept in a variable."""
 
-    # clocks, variables: of the model, as far as they are declared
+    # clocks and variables of the model declared so far
     clocks: Sequence[Clock]
     variables: list[ex.Variable]
-    # the index of each one's variable, and where it was first written
+    # the index of the variable of each constraint, and the place where it was first written
     places: dict[Diagonal, tuple[int, Span]] = field(default_factory=dict)
 
     def compare(
         self, first: int, second: int, op: ex.BinaryOp, number: int, span: Span
     ) -> ex.Expression:
-        """`first − second` compared with a number, as a condition on variables."""
+        """`first − second` compared with a number, as a condition on such variables."""
         match op:
             case ex.BinaryOp.LE | ex.BinaryOp.LT:
                 return self._kept(Diagonal(first, second, number, op is ex.BinaryOp.LT), span)
@@ -70,7 +71,7 @@ class Diagonals:
     def _kept(self, diagonal: Diagonal, span: Span) -> ex.Expression:
         if diagonal not in self.places:
             self.places[diagonal] = len(self.variables), span
-            # In the names of variables brackets are indices.
+            # In names of variables brackets mean indices.
             name = self._text(diagonal).replace("[", "(").replace("]", ")")
             self.variables.append(ex.Variable(name, 0, 1, int(diagonal.holds(0)), is_bool=True))
         return ex.VariableValue(ex.Slot(self.places[diagonal][0]))
@@ -80,13 +81,13 @@ class Diagonals:
         return f"{first} - {second} {'<' if diagonal.strict else '<='} {diagonal.number}"
 
     def are_read(self, expression: ex.Expression) -> bool:
-        """Whether an expression reads the variable of one."""
+        """Whether an expression reads one of these variables."""
         places = {place for place, _ in self.places.values()}
         parts = (part for part in parts_of(expression) if isinstance(part, ex.VariableValue))
         return any(part.slot.first in places for part in parts)
 
     def kept_up(self, automata: Sequence[Automaton]) -> Iterator[Automaton]:
-        """The automata with edges that keep the variables up."""
+        """The automata with edges that keep the variables up to date."""
         for diagonal, (_, span) in self.places.items():
             self._refuse_meetings(diagonal, automata, span)
         for automaton in automata:
@@ -98,7 +99,7 @@ class Diagonals:
     def _refuse_meetings(
         self, diagonal: Diagonal, automata: Sequence[Automaton], span: Span
     ) -> None:
-        """Refuse edges that are taken together and set different ones of the clocks."""
+        """Refuse edges that can be taken together and set different clocks of a constraint."""
         setting = [
             (number, edge, frozenset(_values(edge, diagonal)))
             for number, automaton in enumerate(automata)
@@ -114,7 +115,7 @@ class Diagonals:
                     raise model_error("TA008", message, span, fix)
 
     def _apart(self, edge: Edge, diagonal: Diagonal) -> Iterator[Edge]:
-        """The edge, in two if what the other clock shows decides on the difference behind it."""
+        """The edge; split in two if the other clock decides on the difference afterwards."""
         values = _values(edge, diagonal)
         match values.get(diagonal.first), values.get(diagonal.second):
             case None, None:
@@ -134,7 +135,7 @@ class Diagonals:
         if number >= ex.MAX_TIME:
             raise model_error("TA007", f"a clock compared with {number}", edge.span)
         lower = op in (ex.ClockOp.GE, ex.ClockOp.GT)
-        # Clocks are not below 0.
+        # Clocks are never negative, so such a comparison is always true or always false.
         if number < 0 or (number == 0 and op in (ex.ClockOp.GE, ex.ClockOp.LT)):
             yield self._noted(edge, diagonal, lower)
             return
@@ -154,7 +155,7 @@ class Diagonals:
 def difference(
     diagonals: Diagonals | None, first: int, second: int, op: ex.BinaryOp, number: int, span: Span
 ) -> ex.Expression:
-    """`first − second` compared with a number."""
+    """`first − second` compared with a number; refused without `diagonals`."""
     if diagonals is None:
         fix = "ask for it with --query, for which edges are made to keep it up"
         message = "two clocks are compared where edges cannot keep their difference up"
@@ -163,7 +164,7 @@ def difference(
 
 
 def terms_of(written: syntax.Expression, sign: int = 1) -> Iterator[tuple[int, syntax.Expression]]:
-    """The terms of a sum, each with its sign."""
+    """The terms of a sum, each with its sign (1 or −1)."""
     match written:
         case syntax.Binary(ex.BinaryOp.ADD | ex.BinaryOp.SUB as op, left, right):
             yield from terms_of(left, sign)
@@ -173,7 +174,7 @@ def terms_of(written: syntax.Expression, sign: int = 1) -> Iterator[tuple[int, s
 
 
 def _values(edge: Edge, diagonal: Diagonal) -> dict[int, int]:
-    """The values to which an edge sets the clocks of a diagonal."""
+    """The values to which an edge sets the clocks of a constraint."""
     found: dict[int, int] = {}
     for reset in resets_in(edge.updates):
         if reset.clock in (diagonal.first, diagonal.second):
@@ -200,7 +201,7 @@ _LOWER = (ex.ClockOp.GE, ex.ClockOp.GT)
 def without_lower_bounds(
     automata: Sequence[Automaton], channels: Sequence[Channel]
 ) -> tuple[Automaton, ...]:
-    """The automata with invariants that bound clocks from above only, and the same runs."""
+    """The automata with invariants that only bound clocks from above, and with the same runs."""
     return tuple(
         _without(automaton, [a for a in automata if a is not automaton], channels)
         for automaton in automata
@@ -249,7 +250,7 @@ def _holds(bound: ex.ClockCompare, value: int) -> bool:
 def _guarded(
     edge: Edge, bounds: Sequence[ex.ClockCompare], channels: Sequence[Channel]
 ) -> Edge | None:
-    """The edge, taken only where the bounds hold behind it; `None` if they never do."""
+    """The edge with guards such that the bounds hold after it; `None` if they never do."""
     added: list[ex.ClockCompare] = []
     for bound in bounds:
         resets = [reset for reset in resets_in(edge.updates) if reset.clock == bound.clock]

@@ -1,4 +1,4 @@
-"""A model as written to a network: the passes in order, and queries on the result."""
+"""Turns a written model into a network, pass by pass; resolves queries on the result."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ from rvmon.models.network.guards import is_discrete, is_plain
 from rvmon.texts import did_you_mean
 
 MAX_EDGES = 100_000
-"""The most edges that a network may have once templates and selections are unrolled."""
+"""Limit for the edges of a network after templates and selections are unrolled."""
 
-MOST_RUNS = 10_000_000  # the most runs that a query may ask to simulate
+MOST_RUNS = 10_000_000  # limit for the runs that a query may simulate
 
 
 def elaborate(document: Document, constants: Mapping[str, int] | None = None) -> nta.Network:
@@ -62,7 +62,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
     if not automata and not findings.found:
         findings.add(finding("TA021", "there is no automaton", None, "add `automaton name { … }`"))
     names = sc.Names(top, symbols, functions)
-    # Without all automata, which is an error itself, queries have no meaning.
+    # A network with missing automata is an error itself; its queries have no meaning.
     complete = bool(symbols) and not findings.has("TA019")
     queries = _queries(
         document.queries if complete else (), names, findings, diagonals, lenient=document.open_ints
@@ -85,7 +85,7 @@ def elaborate(document: Document, constants: Mapping[str, int] | None = None) ->
 
 
 def _known() -> sc.Scope:
-    """The names that UPPAAL declares by itself."""
+    """The names that UPPAAL predeclares."""
     scope = sc.Scope()
     for bits in (8, 16, 32):
         high = (1 << bits - 1) - 1
@@ -129,11 +129,11 @@ def _with_constants(
 
 
 def asked_on(network: nta.Network, text: str) -> tuple[nta.Network, nta.Query]:
-    """Read a query that may compare differences of clocks: its network keeps them up.
+    """Resolve a query on a network, which is extended if the query compares differences of clocks.
 
     Raises:
-        ModelError: the text is no query, names what the network does not have, or compares clocks
-            that cannot be kept up.
+        ModelError: the text is no query, uses unknown names, or compares a difference of clocks
+            that edges cannot keep up to date.
 
     >>> from rvmon.models.language.load import loads_network
     >>> plain = loads_network("clock x, y automaton a { location l start l edge l -> l do x = 0 }")
@@ -164,7 +164,7 @@ def _queries(
     *,
     lenient: bool = False,
 ) -> tuple[nta.Query, ...]:
-    """The queries that have a meaning; if `lenient`, one that has none is only left out."""
+    """Resolve queries. If `lenient`, a query without a meaning is skipped with a warning."""
     resolver, top = Resolver(names.functions, names.automata, diagonals=diagonals), names.top
     queries, ids = [], sc.Scope()
     for query in written:
@@ -180,7 +180,7 @@ def _queries(
 
 
 def signal_on(network: nta.Network, name: str, text: str) -> nta.Signal:
-    """Give a name of specifications a meaning on a network."""
+    """Resolve an expression as a signal of a network, for specifications."""
     findings = Findings()
     written = SignalText(name, parse_query(text).formula, Span(Source(name, text), 0, len(text)))
     signals = _signals([written], network.names, findings)
@@ -296,10 +296,10 @@ def _check_channels(parts: Parts, automata: Iterable[nta.Automaton], findings: F
 def chosen_queries(
     network: nta.Network, asked: Sequence[str] | None
 ) -> list[tuple[nta.Network, nta.Query]]:
-    """The model's own queries, or those asked for by id or by text, each with its network.
+    """The queries of a model, or those requested by id or text, each with its network.
 
     Raises:
-        ModelError: there is none, or a text is neither an id nor a query.
+        ModelError: the model has none, or a requested text is neither an id nor a query.
     """
     if asked is None:
         if not network.queries:

@@ -1,4 +1,7 @@
-"""Functions as they are called: one for all calls with the same things passed by reference."""
+"""Functions of a model, specialised for the things that calls pass by reference.
+
+All calls with the same references share one function.
+"""
 
 from __future__ import annotations
 
@@ -16,29 +19,30 @@ from rvmon.models.network import scope as sc
 from rvmon.models.network.fractions import marked
 from rvmon.models.network.guards import parts_in
 
-MAX_LOCALS = 100_000  # the most parameters and local variables of all functions together
+MAX_LOCALS = 100_000  # limit for parameters and local variables of all functions together
 
 _NOTHING = sc.ResolvedType(ex.BaseType.INT, 0, 0)
 """The result type of a function that returns nothing."""
 
 _CHOSEN = ex.InLocation(-1, -1)
-"""Stands for an index that is not constant, in the key of a function."""
+"""Stands for a non-constant index in the key of a specialised function."""
 
 
 @dataclass(slots=True)
 class Functions:
-    """The functions called so far, and the memory slots that they use."""
+    """The functions called so far, and the slots that they use."""
 
-    # of the network, as far as they are declared
+    # variables of the network declared so far
     variables: list[ex.Variable] = field(default_factory=list)
     locals: list[ex.Variable] = field(default_factory=list)  # the first has slot −1
-    # by what was written, the scope it was written in, and what it refers to
+    # by the text of the function, its scope, and the things bound to its parameters
     made: dict[tuple[object, ...], ex.Function] = field(default_factory=dict)
-    open: set[tuple[object, ...]] = field(default_factory=set)  # the functions being made
+    # functions under construction, to detect recursion
+    open: set[tuple[object, ...]] = field(default_factory=set)
 
     def place(self, kind: sc.ResolvedType, names: Sequence[str], value: symbols.Value) -> int:
-        """Make room for parameters or local variables."""
-        del value  # they are set whenever the function runs
+        """Reserve slots for parameters or local variables; return the first."""
+        del value  # these variables are set whenever the function runs
         self.locals += [
             symbols.variable_of(kind, name, symbols.default_of(kind)) for name in reversed(names)
         ]
@@ -53,7 +57,7 @@ class Functions:
     def call(
         self, symbol: sc.FunctionSymbol, written: syntax.Call, scope: sc.Scope, resolver: Resolver
     ) -> ex.Expression:
-        """The value of a call."""
+        """Make the expression for a call."""
         text: syntax.FunctionText = symbol.written
         symbols.check_count(text.name, text.parameters, written.arguments, written.span)
         bound: list[sc.Symbol | None] = []
@@ -62,7 +66,7 @@ class Functions:
         for parameter, argument in zip(text.parameters, written.arguments, strict=True):
             kind = resolver.typed(parameter, symbol.scope)
             is_single = not (kind.extents or kind.fields)
-            # Whether it stands for the argument itself, not for its value.
+            # Whether the parameter stands for the argument itself instead of its value.
             is_bound = kind.placed_as is not ex.BaseType.INT or (
                 parameter.reference and not (kind.const and is_single)
             )
@@ -100,13 +104,13 @@ class Functions:
         bound: Sequence[sc.Symbol | None],
         resolver: Resolver,
     ) -> ex.Function:
-        """A function with its parameters bound, or given places of their own."""
+        """Make a function; parameters without a bound symbol get slots of their own."""
         inner, taken = sc.Scope(scope), sc.Scope()
         parameters: list[int] = []
         indices: list[int] = []
 
         def chosen(slot: ex.Slot) -> ex.Slot:
-            """The slot with places for the indices that calls choose."""
+            """The slot with parameters in place of the indices that calls choose."""
             own: list[ex.Expression] = []
             for index, extent in zip(slot.indices, slot.extents, strict=False):
                 if index == _CHOSEN:
@@ -173,7 +177,7 @@ def _with_slots(symbol: sc.Symbol, change: Callable[[ex.Slot], ex.Slot]) -> sc.S
 
 
 def _without_choice(slot: ex.Slot, chosen: list[ex.Expression]) -> ex.Slot:
-    """The slot with a mark for each index that is not constant; those are noted."""
+    """Replace each index of a slot that is not constant by a mark, and collect it in `chosen`."""
     indices: list[ex.Expression] = []
     for index in slot.indices:
         if not isinstance(index, ex.Constant):
@@ -183,7 +187,7 @@ def _without_choice(slot: ex.Slot, chosen: list[ex.Expression]) -> ex.Slot:
 
 
 def _changes(body: Sequence[ex.Statement]) -> bool:
-    """Whether statements set what is not a function's own."""
+    """Whether statements set a clock or a variable outside the function."""
     return any(
         isinstance(one, ex.Reset) or (isinstance(one, ex.Assignment) and one.slot.first >= 0)
         for one in ex.statements_in(body)

@@ -1,4 +1,4 @@
-"""Templates to automata: parameters bound, locations with invariants, `select` unrolled."""
+"""Turns templates into automata: binds parameters, resolves locations, unrolls `select`."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from rvmon.models.network.expressions import TRUE, BaseType, BinaryOp, Expressio
 from rvmon.models.network.guards import guards_of, refuse_changes, split_guard
 
 Family = automaton_syntax.Template | automaton_syntax.Instance
-"""The things that a name in the system line may stand for."""
+"""What a name in the system line may denote."""
 
 
 @dataclass(frozen=True, slots=True)
 class Process:
-    """A template with all its parameters bound: an automaton to be."""
+    """A template with all its parameters bound, which becomes an automaton."""
 
     family: str
     arguments: tuple[int, ...]
@@ -36,7 +36,7 @@ class Process:
 def processes_of(
     document: Document, top: sc.Scope, resolver: Resolver, findings: Findings
 ) -> list[Process]:
-    """All processes of the system, in its order; what is wrong goes to `findings`."""
+    """All processes of the system, in its order; errors go to `findings`."""
     families: dict[str, Family] = {}
     declared: tuple[Family, ...] = (*document.templates, *document.instances)
     for family in declared:
@@ -64,7 +64,7 @@ def processes_of(
 def _instances(
     family: Family, families: Mapping[str, Family], top: sc.Scope, resolver: Resolver, priority: int
 ) -> Iterator[Process]:
-    """One process for each choice of the parameters' values."""
+    """One process for each combination of values of the parameters."""
     _refuse_circle(family, families)
     ranges = []
     for parameter in family.parameters:
@@ -86,7 +86,7 @@ def _instances(
 
 
 def _refuse_circle(family: Family, families: Mapping[str, Family]) -> None:
-    """Refuse an instance of an instance of … itself."""
+    """Refuse an instance that is directly or indirectly an instance of itself."""
     seen: set[str] = set()
     current: Family | None = family
     while isinstance(current, automaton_syntax.Instance):
@@ -116,7 +116,7 @@ def _bind(
         raise unknown("template", family.template.name, family.template.span, families)
     symbols.check_count(target.name, target.parameters, family.arguments, family.span)
     bound: list[sc.Symbol] = []
-    own = sc.Scope(top)  # a parameter's type may speak of the parameters before it
+    own = sc.Scope(top)  # the type of a parameter may use the parameters before it
     for parameter, written in zip(target.parameters, family.arguments, strict=True):
         bound.append(_argument(parameter, written, scope, own, resolver))
         own.symbols[parameter.name] = bound[-1]
@@ -130,7 +130,7 @@ def _argument(
     own: sc.Scope,
     resolver: Resolver,
 ) -> sc.Symbol:
-    """The symbol of an argument; its type is read in the scope `own`, its expression in `scope`."""
+    """The symbol of an argument. Its type is resolved in scope `own`, its expression in `scope`."""
     kind = resolver.typed(parameter, own)
     is_number = kind.base in (BaseType.INT, BaseType.BOOL) and not kind.extents
     if is_number and not parameter.reference:
@@ -154,11 +154,11 @@ def _argument(
     return symbol
 
 
-MAX_CASES = 16  # the most cases of a guard in which clocks stand under `or`: each is an edge
+MAX_CASES = 16  # limit for the cases, each an edge, of a guard with clocks under `or`
 
 
 def location_names(template: automaton_syntax.Template, findings: Findings) -> dict[str, int]:
-    """The index of each location of a template; what is wrong goes to `findings`."""
+    """The index of each location of a template; errors go to `findings`."""
     names: dict[str, int] = {}
     scope = sc.Scope()
     for index, location in enumerate(template.locations):
@@ -171,7 +171,7 @@ def location_names(template: automaton_syntax.Template, findings: Findings) -> d
 def automaton_of(
     process: Process, names: Mapping[str, int], parts: Parts, resolver: Resolver, findings: Findings
 ) -> nta.Automaton:
-    """The automaton that a process is; what is wrong goes to `findings`."""
+    """Build the automaton of a process; errors go to `findings`."""
     template, scope = process.template, process.scope
     locations = []
     for written in template.locations:
@@ -198,7 +198,7 @@ def automaton_of(
 def _place(
     written: automaton_syntax.LocationText, scope: sc.Scope, resolver: Resolver
 ) -> nta.Location:
-    """A location with its invariant, from which the rates of clocks are taken."""
+    """A location with its invariant, from which rates of clocks are separated."""
     condition: Expression = TRUE
     rates, leaving = list[nta.Rate](), None
     parts = [] if written.invariant is None else _parts(written.invariant, scope, resolver)
@@ -242,7 +242,7 @@ def _has_rate(written: syntax.Expression) -> bool:
 def _parts(
     written: syntax.Expression, scope: sc.Scope, resolver: Resolver
 ) -> Iterator[tuple[syntax.Expression, sc.Scope]]:
-    """The conjuncts of an invariant that contains rates."""
+    """The conjuncts of an invariant, split as far as needed to separate rates."""
     match written:
         case syntax.Binary(BinaryOp.AND, left, right) if _has_rate(written):
             yield from _parts(left, scope, resolver)
@@ -268,7 +268,7 @@ def _edges(
     parts: Parts,
     resolver: Resolver,
 ) -> Iterator[nta.Edge]:
-    """One edge for each choice of the selected values, and each case of a guard with clocks."""
+    """One edge for each combination of selected values and each case of a guard with clocks."""
     source, target = _location(written.source, names), _location(written.target, names)
     ranges, selected_names = [], sc.Scope()
     for selection in written.selections:
@@ -310,7 +310,7 @@ def _edges(
 
 
 def _weight(written: automaton_syntax.EdgeText, scope: sc.Scope, resolver: Resolver) -> float:
-    """The share of the runs that take an edge: written by itself, or among its branches."""
+    """The share of the runs that take an edge: written on the edge, or from its branches."""
     if written.shares is None:
         return written.weight
     own, *every = (

@@ -1,4 +1,4 @@
-"""Models from files and texts, or built in Python: what is added becomes lines of a `.ta` text."""
+"""Loads models from files and texts, and builds them in Python as lines of a `.ta` text."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ from rvmon.texts import cannot_read, text_of_file
 
 
 def load_network(path: str | Path, *, constants: Mapping[str, int] | None = None) -> Network:
-    """Read a model from a `.ta` file, or from one in UPPAAL's XML.
+    """Read a model from a `.ta` file or from UPPAAL's XML.
 
     Raises:
-        ModelError: the file cannot be read, or is no model; it has all findings.
+        ModelError: the file cannot be read or is no valid model; it has all findings.
     """
     try:
         text = text_of_file(path, "utf-8-sig")
@@ -38,12 +38,12 @@ def loads_network(
     """Read a model from a text.
 
     Args:
-        text: as in a `.ta` file, or UPPAAL's XML.
-        name: its name in findings.
-        constants: other values for constants of the model.
+        text: a `.ta` text or UPPAAL's XML.
+        name: the name of the text in findings.
+        constants: values that replace those of constants of the model.
 
     Raises:
-        ModelError: the text is no model; it has all findings.
+        ModelError: the text is no valid model; it has all findings.
 
     >>> loads_network("automaton a { location l start l }").automata[0].locations[0].name
     'l'
@@ -58,7 +58,7 @@ def loads_network(
 
 @dataclass(slots=True)
 class AutomatonBuilder:
-    """An automaton in the making; `NetworkBuilder.automaton` makes one."""
+    """Builds an automaton; `NetworkBuilder.automaton` creates it."""
 
     lines: list[str]
     initial: str = ""
@@ -71,7 +71,7 @@ class AutomatonBuilder:
         kind: LocationKind = LocationKind.NORMAL,
         initial: bool = False,
     ) -> AutomatonBuilder:
-        """Add a location; the first one is initial unless another says so."""
+        """Add a location. The first one is initial unless another is added with `initial`."""
         prefix = "" if kind is LocationKind.NORMAL else f"{kind} "
         self.lines.append(f"  {prefix}location {name}{_clause('invariant', invariant)}")
         if initial or not self.initial:
@@ -100,12 +100,12 @@ class AutomatonBuilder:
 
 @dataclass(slots=True)
 class NetworkBuilder:
-    """A network in the making.
+    """Builds a network.
 
     Args:
         name: of the network.
         title: for people.
-        unit: ticks of one unit of time, if recordings shall be held against it.
+        unit: ticks of one unit of time, needed to compare recordings with the network.
 
     >>> net = NetworkBuilder("light").declare("clock x")
     >>> lamp = net.automaton("Lamp").location("off").location("on", invariant="x <= 5")
@@ -128,7 +128,7 @@ class NetworkBuilder:
         return self
 
     def automaton(self, name: str, declarations: str = "") -> AutomatonBuilder:
-        """Add an automaton, with names of its own."""
+        """Add an automaton with local declarations."""
         self.automata.append(AutomatonBuilder([f"automaton {name} {{", f"  {declarations}"]))
         return self.automata[-1]
 
@@ -140,17 +140,17 @@ class NetworkBuilder:
 
     @property
     def text(self) -> str:
-        """The declarations added so far, as a `.ta` text."""
+        """The model built so far, as a `.ta` text."""
         lines = [*self.declarations]
         for builder in self.automata:
             lines += [*builder.lines, f" {_clause('start', builder.initial)}", "}"]
         return "\n".join([*lines, *self.queries])
 
     def build(self) -> Network:
-        """The network.
+        """Build the network.
 
         Raises:
-            ModelError: with everything that is wrong with it, and where that stands in `text`.
+            ModelError: with everything that is wrong, at its place in `text`.
         """
         made = loads_network(self.text, name=self.name)
         return replace(made, name=self.name, title=self.title, unit=self.unit)

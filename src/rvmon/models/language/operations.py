@@ -1,6 +1,7 @@
-"""Operators applied to resolved expressions, and words of linear time in queries.
+"""Operators applied to resolved expressions, and the linear-time words of queries.
 
-Constants are folded; clocks stand only where they may; integers join numbers with a fraction.
+Constants are folded, clocks are refused where they may not occur, and integers are converted where
+they meet numbers with a fraction.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ _TWO_BOUNDS: dict[ex.BinaryOp, tuple[ex.BinaryOp, ex.ClockOp, ex.ClockOp]] = {
 
 
 def compare_clock(clock: int, op: ex.BinaryOp, bound: ex.Expression, span: Span) -> ex.Expression:
-    """A comparison of a clock as one or two bounds."""
+    """Express a comparison of a clock by one or two bounds."""
     if not is_discrete(bound):
         raise model_error("TA008", "a clock compared with clocks", span)
     if isinstance(bound, ex.Constant) and not 0 <= bound.value < ex.MAX_TIME:
@@ -51,7 +52,7 @@ def compare_clock(clock: int, op: ex.BinaryOp, bound: ex.Expression, span: Span)
 
 
 def unary(op: ex.UnaryOp, operand: ex.Expression, span: Span) -> ex.Expression:
-    """An operator on one operand."""
+    """Apply an operator to one operand."""
     if op is not ex.UnaryOp.NOT:
         refuse_clocks(operand, span)
         if gives_fraction(operand):
@@ -63,14 +64,14 @@ def unary(op: ex.UnaryOp, operand: ex.Expression, span: Span) -> ex.Expression:
 
 
 def refuse_clocks(operand: ex.Expression, span: Span) -> None:
-    """Refuse what has no value in a discrete state."""
+    """Refuse expressions that a discrete state alone does not determine."""
     if not is_discrete(operand):
         fix = "arithmetic is for numbers; join conditions by and, or, not, imply"
         raise model_error("TA009", "a condition on clocks or runs is no number", span, fix)
 
 
 def binary(op: ex.BinaryOp, left: ex.Expression, right: ex.Expression, span: Span) -> ex.Expression:
-    """An operator on two operands."""
+    """Apply an operator to two operands."""
     if op not in _LOGICAL and (gives_fraction(left) or gives_fraction(right)):
         if op not in OPERATIONS:
             raise model_error("TA004", f"`{op}` is for integers", span, "round them: fint(…)")
@@ -99,7 +100,7 @@ def binary(op: ex.BinaryOp, left: ex.Expression, right: ex.Expression, span: Spa
 
 
 def joined(op: ex.BinaryOp, parts: Sequence[ex.Expression], span: Span) -> ex.Expression:
-    """Conditions joined as a balanced tree, which stays shallow however many there are."""
+    """Join conditions as a balanced tree, so that many of them stay shallow."""
     if len(parts) == 1:
         return parts[0] if op is ex.BinaryOp.ADD else truth(parts[0])
     half = len(parts) // 2
@@ -108,12 +109,12 @@ def joined(op: ex.BinaryOp, parts: Sequence[ex.Expression], span: Span) -> ex.Ex
 
 
 def truth(it: ex.Expression) -> ex.Expression:
-    """The expression, which counts as a truth value where it stands."""
+    """The expression as a truth value: a constant becomes 0 or 1."""
     return ex.Constant(int(bool(it.value))) if isinstance(it, ex.Constant) else it
 
 
 def whole_compare(op: ex.BinaryOp, left: Symbol, right: Symbol, span: Span) -> ex.Expression:
-    """Arrays or records compared part by part."""
+    """Compare arrays or records part by part."""
     if not is_alike(left, right):
         raise model_error("TA004", "these are not of one type", span)
     values = ((value_of(leaf, span) for leaf in leaves(side)) for side in (left, right))
@@ -137,7 +138,7 @@ _LINEAR = {op: (ex.PathOp(runs), linear) for (runs, linear), op in _OF_CTL.items
 def assuming(
     asked: ex.Expression | LeadsToFormula, premise: ex.Expression, span: Span
 ) -> ex.PathFormula:
-    """A query about those runs only of which a premise holds."""
+    """Restrict a query to the runs that satisfy a premise."""
     match asked:
         case LeadsToFormula(left, right, None):
             answered = ex.BinaryOperation(
@@ -159,7 +160,7 @@ def assuming(
 
 
 def linear_of(name: str, body: ex.Expression, span: Span) -> ex.Expression:
-    """The formula of `G (…)`, `F (…)`, `A (…)`, `E (…)`; the last two in CTL where possible."""
+    """The formula of `G (…)`, `F (…)`, `A (…)` or `E (…)`; the last two become CTL if possible."""
     match name, body:
         case "G", _:
             return ex.PathFormula(ex.PathOp.GLOBALLY, body)
@@ -183,7 +184,7 @@ def linear_of(name: str, body: ex.Expression, span: Span) -> ex.Expression:
 
 
 def as_real(value: ex.Expression, span: Span) -> ex.Expression:
-    """The same number with a fraction, marked as one."""
+    """A number as one with a fraction, marked accordingly."""
     match value:
         case ex.Constant(number):
             return literal(number)
@@ -199,7 +200,7 @@ def as_real(value: ex.Expression, span: Span) -> ex.Expression:
 def choice(
     test: ex.Expression, then: ex.Expression, otherwise: ex.Expression, span: Span
 ) -> ex.Expression:
-    """`test ? then : otherwise`."""
+    """Build `test ? then : otherwise`."""
     if isinstance(test, ex.Constant):
         return then if test.value else otherwise
     if not (gives_fraction(then) or gives_fraction(otherwise)):
@@ -208,7 +209,7 @@ def choice(
 
 
 def fitted(value: ex.Expression, real: bool, span: Span) -> ex.Expression:
-    """A value as a variable holds it, with a fraction or without."""
+    """Convert a value for a variable with or without a fraction."""
     if real:
         return as_real(value, span)
     if gives_fraction(value):
@@ -218,13 +219,13 @@ def fitted(value: ex.Expression, real: bool, span: Span) -> ex.Expression:
 
 
 def fractional_call(name: str, arguments: Sequence[ex.Expression], span: Span) -> ex.Expression:
-    """A function of UPPAAL's."""
+    """Call one of UPPAAL's functions on numbers with a fraction."""
     check_count(name, range(FUNCTIONS[name]), arguments, span)
     return _fractional(name, arguments, span)
 
 
 def clock_number(value: ex.Expression) -> ex.Expression:
-    """The number for a clock in steps of the grid, also of a fraction of a unit."""
+    """The number that a clock is compared with or set to; a fraction of a unit in grid steps."""
     if not gives_fraction(value):
         return value
     if is_fixed(value) and (number := number_of(evaluator(value)((), ()))).is_integer():

@@ -1,4 +1,4 @@
-"""Text to syntax: `.ta` files, single labels for other text forms, and all mistakes of a text."""
+"""Parsing: `.ta` files, and single labels of other text forms. Finds all mistakes of a text."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ STARTS = (
     *("updates", "instances", "system", "query"),
 )
 
-MAX_CHARACTERS = 2_000_000  # longer texts are refused: no model for people is that long
+MAX_CHARACTERS = 2_000_000  # longer texts are refused; no handwritten model is that long
 
 
 def parse_document(source: Source) -> Document:
@@ -44,7 +44,7 @@ def parse_query(text: str) -> QueryText:
 
 
 def parse_part(text: str, start: str, place: Place) -> Any:
-    """What `SyntaxBuilder` makes of a text by a start rule; `place` maps its offsets to spans."""
+    """Parse a text by a start rule and build its syntax; `place` maps offsets to spans."""
     try:
         return _read(start, text, place)
     except ModelError:
@@ -69,7 +69,7 @@ def _read(start: str, text: str, place: Place) -> Any:
 
 @cache
 def _parser(whole: bool) -> lark.Lark:
-    """The parser of `.ta` files, or that of their parts, in which words of the former are names."""
+    """The parser of whole `.ta` files, or of their parts, in which keywords of `.ta` are names."""
     grammar = resources.files("rvmon.models.language").joinpath("ta.lark").read_text("utf-8")
     starts = list(STARTS[:1] if whole else STARTS[1:])
     options = {"parser": "lalr", "start": starts, "propagate_positions": True}
@@ -115,7 +115,7 @@ _EXPRESSION_STARTS = {"NUMBER", "NAME", "LPAR", "SEND", "NOT", "MINUS", "TRUTH"}
 
 
 def _words(terminals: set[str]) -> str:
-    """The terminals that could have stood there, in words; at most eight of them."""
+    """The terminals expected at a place, in words; empty if there are more than eight."""
     words = []
     if terminals >= _EXPRESSION_STARTS:
         words.append("an expression")
@@ -132,7 +132,7 @@ _WORDS = {
     "STRING": 'a text in "quotes"',
     "PATH": "`E<>`, `A[]`, `A<>`, `E[]`",
     **dict.fromkeys(("NUMBER", "DECIMAL"), "a number"),
-    # Lark's names, of the parser's end and of the lexer's.
+    # Lark has two names for the end: one of the parser, one of the lexer.
     **dict.fromkeys(("$END", "<END-OF-FILE>"), "the end"),
 }
 
@@ -145,12 +145,12 @@ def _word(terminal: str) -> str:
 
 
 Place = Callable[[int, int], Span]
-"""From the characters `[start, end)` of a text to their line and column in the file."""
+"""Maps the characters `[start, end)` of a text to their span in the file."""
 
-MOST = 20  # behind so many, nothing more is looked for: the text is read again for each
+MOST = 20  # the search for mistakes stops after so many, since each one needs another parse
 
 LONGEST = 100_000
-"""In a longer text only the first mistake is reported, as each further one needs another parse."""
+"""Of a longer text only the first mistake is reported, since each further one needs a parse."""
 
 _FIRM = "automaton|(?:(?:urgent|committed)[ \t]+)?location|edge|start|query|signal|unit|system"
 _LOOSE = "clock|broadcast|urgent|chan|int|bool|const|meta|struct|typedef|void"
@@ -166,13 +166,16 @@ _TOKENS = {
         ("document", rf"{_DECLARED}|^[ \t]*(?P<firm>{_FIRM})\b"),
     )
 }
-"""The patterns at which parts begin and end, by the rule that reads them; others read one part."""
+"""The patterns at which parts begin and end, by start rule. Other rules read a single part."""
 
 
 def all_mistakes(text: str, rule: str, place: Place) -> tuple[Diagnostic, ...]:
-    """The mistakes that are found when each part with one is left out in turn.
+    """Find all mistakes of a text, by leaving out each part with a mistake in turn.
 
-    `rule` should have read the text; `place` maps its offsets to spans.
+    Args:
+        text: the text to parse.
+        rule: the start rule.
+        place: maps offsets of the text to spans.
     """
     starts = dict[int, int]()
 
@@ -198,8 +201,9 @@ def all_mistakes(text: str, rule: str, place: Place) -> tuple[Diagnostic, ...]:
         at, rest, error = offset(error), text, None
         if len(found) >= MOST or len(text) > LONGEST:
             break
-        # A part that is cut short shows only behind it, as a word that begins a part is a name too:
-        # without the part that is wrong, reading goes on farthest.
+        # A part that is cut short often shows only in the next one, since words that start a part
+        # are names too. So try to leave out each of the last few parts: without the faulty one the
+        # parser gets farthest.
         farthest = at
         for start, end in [part for part in _parts(text, rule) if part[0] <= at][-4:]:
             left = text[:start] + re.sub(r"\S", " ", text[start:end]) + text[end:]
@@ -214,14 +218,14 @@ def all_mistakes(text: str, rule: str, place: Place) -> tuple[Diagnostic, ...]:
 
 
 def _parts(text: str, rule: str) -> Iterator[tuple[int, int]]:
-    """Parts that can be left out, and the rest is still a text: declarations, edges, queries."""
+    """Split a text into parts that can be left out singly: declarations, edges, queries."""
     if rule not in _TOKENS:
         return
     begun, word, is_body, brackets = 0, "", False, list[str]()
     for token in _TOKENS[rule].finditer(text):
         kind = token.lastgroup
         if kind == "end" and "{" not in brackets:
-            brackets.clear()  # they were never closed
+            brackets.clear()  # these brackets were never closed
         while brackets[-1:] == ["["] and (kind == "loose" or token[0] in ("{", "}", ")")):
             brackets.pop()
         match kind:
@@ -242,7 +246,7 @@ def _parts(text: str, rule: str) -> Iterator[tuple[int, int]]:
                 if not brackets and is_body and token[0] == "}":
                     yield begun, token.end()
                     begun, word = token.end(), ""
-            case "close" if token[0] == "}" and rule == "document":  # of an automaton
+            case "close" if token[0] == "}" and rule == "document":  # the end of an automaton
                 yield begun, token.start()
                 begun, word = token.end(), ""
             case "end" if not brackets:

@@ -1,4 +1,4 @@
-"""Expressions as written to expressions over the network; constants are folded on the way."""
+"""Resolves written expressions to expressions over the network, and folds constants."""
 
 from __future__ import annotations
 
@@ -19,24 +19,24 @@ from rvmon.models.network.fractions import FUNCTIONS, literal
 from rvmon.models.network.guards import is_fixed, refuse_changes
 from rvmon.texts import did_you_mean
 
-MAX_UNROLLED = 100_000  # the most conditions that the quantifiers of a model may stand for together
+MAX_UNROLLED = 100_000  # limit for the conditions that all quantifiers of a model stand for
 
 
 @dataclass(slots=True)
 class Resolver:
-    """Resolves expressions, with what they may refer to besides the names of their scope."""
+    """Resolves expressions, given their scope and what they may refer to besides it."""
 
     functions: symbols.Calls  # the functions that can be called
-    # by name and arguments; only queries can see them
+    # by name and arguments; empty except for queries and signals
     automata: Mapping[sc.AutomatonKey, sc.AutomatonSymbol] = field(default_factory=dict)
-    open_ints: bool = False  # whether `int` without a range is allowed
+    open_ints: bool = False  # whether `int` may lack a range
     # replaces differences of clocks; `None` where they may not be compared
     diagonals: Diagonals | None = None
-    unrolled: int = 0  # conditions that quantifiers stood for so far
-    fraction: Span | None = None  # the place of a number with a fraction, if one was met
+    unrolled: int = 0  # number of conditions that quantifiers stood for so far
+    fraction: Span | None = None  # the place of the first number with a fraction
 
     def expression(self, written: syntax.Expression, scope: sc.Scope) -> ex.Expression:
-        """The expression over the network."""
+        """Resolve an expression."""
         match written:
             case syntax.Number(value):
                 return ex.Constant(value)
@@ -71,7 +71,7 @@ class Resolver:
                     return whole
                 first = self.expression(left, scope)
                 if first == ex.Constant(0) and op is ex.BinaryOp.AND:
-                    return first  # what stands behind need not have a meaning then
+                    return first  # the right side need not have a meaning then
                 return operations.binary(op, first, self.expression(right, scope), span)
             case syntax.Conditional(condition, then, otherwise, span):
                 test = self.expression(condition, scope)
@@ -109,13 +109,13 @@ class Resolver:
                 assert_never(written)
 
     def condition(self, written: syntax.Expression, scope: sc.Scope) -> ex.Expression:
-        """An expression that changes nothing where it is evaluated."""
+        """Resolve an expression that may not change anything."""
         condition = self.expression(written, scope)
         refuse_changes(condition, written.span)
         return condition
 
     def constant(self, written: syntax.Expression, scope: sc.Scope, *, real: bool = False) -> int:
-        """The value of an expression that must not depend on the state; `real`: its bits."""
+        """The value of an expression that must be constant; if `real`, as bits."""
         value = self.expression(written, scope)
         value = operations.fitted(value, real, written.span)
         if not is_fixed(value):
@@ -124,7 +124,7 @@ class Resolver:
         return evaluator(value)((), ())
 
     def limit(self, written: syntax.Expression | None, scope: sc.Scope) -> int | None:
-        """The bound of a path operator in units of time, if it has one."""
+        """The bound of a path operator, in units of time; `None` if it has none."""
         if written is None:
             return None
         units = self.constant(written, scope)
@@ -134,13 +134,13 @@ class Resolver:
         return units
 
     def extents(self, sizes: Sequence[syntax.Size], scope: sc.Scope) -> tuple[range, ...]:
-        """The indices of each dimension: those below a number, or a type's values."""
+        """The index range of each dimension: below a number, or the values of a type."""
         return tuple(self._extent(size, scope) for size in sizes)
 
     def typed(
         self, it: syntax.Declaration | syntax.TypeDefinition | syntax.Parameter, scope: sc.Scope
     ) -> sc.ResolvedType:
-        """The type of what is declared, its own dimensions before those of the type."""
+        """The type of a declared thing, with its own dimensions before those of the type."""
         kind = self.type(it.type, scope)
         return replace(kind, extents=(*self.extents(it.sizes, scope), *kind.extents))
 
@@ -209,7 +209,7 @@ class Resolver:
                 if symbol is None and scope.names_automaton(name):
                     raise _no_value(span)
                 if symbol is None and scope.declares(name):
-                    raise refusal()  # why its declaration has no meaning is reported there
+                    raise refusal()  # the faulty declaration has been reported already
                 if symbol is None:
                     known = [*scope.names(), *(n for n, _ in self.automata)]
                     raise unknown("name", name, span, known)
@@ -240,7 +240,7 @@ class Resolver:
                 raise model_error("TA004", "this is no name", written.span, fix)
 
     def clock(self, written: syntax.Expression, scope: sc.Scope) -> int | None:
-        """The clock that an expression names, if it names one."""
+        """The clock that an expression names; `None` if it names none."""
         match self._named(written, scope):
             case sc.PlacedSymbol(ex.BaseType.CLOCK, slot):
                 return symbols.clock_of(slot, written.span)
@@ -248,14 +248,14 @@ class Resolver:
                 return None
 
     def _named(self, written: syntax.Expression, scope: sc.Scope) -> sc.Symbol | None:
-        """The symbol that an expression names, if it names one and that is no location."""
+        """The symbol that an expression names; `None` if it names none, or a location."""
         is_name = isinstance(written, syntax.Name | syntax.Index | syntax.Member)
         if not is_name or self._location(written, scope) is not None:
             return None
         return self.symbol(written, scope)
 
     def _clock_compare(self, written: syntax.Binary, scope: sc.Scope) -> ex.Expression | None:
-        """A comparison in which clocks stand; `None` if none does."""
+        """Resolve a comparison with clocks; `None` if it has none."""
         terms = [*terms_of(written.left), *terms_of(written.right, -1)]
         named = [(sign, part, self.clock(part, scope)) for sign, part in terms]
         clocks = sorted((sign, clock) for sign, _, clock in named if clock is not None)
@@ -283,14 +283,14 @@ class Resolver:
                 raise model_error("TA008", "a sum of clocks is compared", span, fix)
 
     def _whole_compare(self, written: syntax.Binary, scope: sc.Scope) -> ex.Expression | None:
-        """Records or arrays compared element by element."""
+        """Resolve a comparison of whole records or arrays; `None` if it is none."""
         left, right = self._named(written.left, scope), self._named(written.right, scope)
         if not (left and right and symbols.is_whole(left) and symbols.is_whole(right)):
             return None
         return operations.whole_compare(written.op, left, right, written.span)
 
     def _record(self, written: syntax.Expression, scope: sc.Scope) -> sc.RecordSymbol | None:
-        """The record that an expression names, if it names one."""
+        """The record that an expression names; `None` if it names none."""
         match written:
             case syntax.Name(name):
                 symbol = scope.find(name)

@@ -1,4 +1,4 @@
-"""The parser's tree to the types of `syntax`: functions, labels of edges, and queries."""
+"""Builds the types of `syntax` from the parse tree: functions, labels of edges, and queries."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from rvmon.models.network.expressions import BinaryOp, PathOp, UnaryOp
 # ruff: noqa: ARG002, D102 - the methods are the grammar's rules, called with one signature
 
 
-Maker = Callable[[Sequence[Any], Span], Any]  # makes what a rule reads, of its parts and its place
+Maker = Callable[[Sequence[Any], Span], Any]  # makes the value of a rule from its parts and span
 
 
 @v_args(meta=True)
 class StatementBuilder(Transformer[Token, Any]):
-    """A maker or a method per rule of the grammar; `place` maps offsets of the text to spans."""
+    """Has a maker or a method per rule of the grammar; `place` maps offsets to spans."""
 
     makers: ClassVar[Mapping[str, Maker]] = {
         "block": lambda items, span: syntax.Block(_statements(items), span),
@@ -89,10 +89,10 @@ class StatementBuilder(Transformer[Token, Any]):
         span = self._span(meta)
         before: tuple[syntax.Statement, ...] = ()
         behind: tuple[syntax.Statement, ...] = ()
-        if is_rule(target, "stepped"):  # a[i++] = v: i counts on behind
+        if is_rule(target, "stepped"):  # a[i++] = v: i is incremented afterwards
             base, index, step = target.children
             target, behind = syntax.Index(base, index, span), (self.step(meta, (index, step)),)
-        if isinstance(value, tuple):  # a = b = c: first b is set, then a to what b has then
+        if isinstance(value, tuple):  # a = b = c: first sets b, then sets a to the new value of b
             before, value = value, value[-1].target
         elif isinstance(value, syntax.UpdateText):
             before, value = (value,), value.target
@@ -109,7 +109,7 @@ class StatementBuilder(Transformer[Token, Any]):
 
 
 def _statements(items: Sequence[Any]) -> tuple[syntax.Statement, ...]:
-    """Statements one behind the other; updates and declarators stand in lists of their own."""
+    """Flatten items to statements. Updates and declarators are inside lists of their own."""
     flat: list[syntax.Statement] = []
     for item in items:
         if is_rule(item, "declaration"):
@@ -122,7 +122,7 @@ def _statements(items: Sequence[Any]) -> tuple[syntax.Statement, ...]:
 
 
 def is_rule(item: object, rule: str) -> bool:
-    """Whether something is what a rule left as a tree."""
+    """Whether an item is the tree of a rule."""
     return isinstance(item, Tree) and item.data == rule
 
 
@@ -135,7 +135,7 @@ _CTL = {
 
 @v_args(meta=True)
 class QueryBuilder(StatementBuilder):
-    """One method per rule; `place` maps offsets of the text to spans."""
+    """Adds the rules of queries."""
 
     makers: ClassVar[Mapping[str, Maker]] = {
         **StatementBuilder.makers,
@@ -200,7 +200,7 @@ class QueryBuilder(StatementBuilder):
 
 
 def _bound(items: Sequence[Any]) -> Any:
-    """The bound between the first and the last of what was read, if there is one."""
+    """The bound between the first and the last item, if there is one."""
     return items[1] if len(items) > 2 else None
 
 
@@ -212,8 +212,9 @@ def _until(
     span: Span,
     bound: syntax.Expression | None = None,
 ) -> syntax.Path:
-    """`left U right`, or `left W right`: never both of them false before the right one holds."""
+    """`left U right`, or `left W right`, by which `left` may also hold forever."""
     if word == "U":
         return syntax.Path(ops[0], right, bound, span, left)
+    # `p W q`: p or q holds up to and including the first state with q.
     stays = syntax.Binary(BinaryOp.OR, left, right, span)
     return syntax.Path(ops[1], stays, bound, span, syntax.Unary(UnaryOp.NOT, right, span))

@@ -1,4 +1,4 @@
-"""Updates and the bodies of functions: statements as written to statements over the network."""
+"""Updates and bodies of functions: from written statements to statements over the network."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rvmon.models.network.guards import is_discrete
 
 
 def number(written: syntax.Expression, scope: sc.Scope, resolver: Resolver) -> ex.Expression:
-    """An expression whose value the variables give."""
+    """An expression whose value depends on locations and variables alone."""
     value = resolver.expression(written, scope)
     diagonals = resolver.diagonals
     if not is_discrete(value) or (diagonals is not None and diagonals.are_read(value)):
@@ -34,7 +34,7 @@ def updates_of(
 
 
 def is_price(target: syntax.Expression, scope: sc.Scope) -> bool:
-    """Whether this is the cost or the reward of priced automata, which nothing reads."""
+    """Whether this is the cost or reward of priced automata, which nothing reads."""
     match target:
         case syntax.Name("cost" | "reward" as name):
             return not scope.declares(name) and not scope.names_automaton(name)
@@ -70,7 +70,7 @@ def _update(
 def _copy(
     target: sc.Symbol, source: sc.Symbol, span: Span, resolver: Resolver
 ) -> list[ex.Statement]:
-    """An array or record set to another one, element by element."""
+    """Set an array or record to another one, element by element."""
     if not symbols.is_alike(target, source):
         raise model_error("TA004", "these are not of one type", span)
     pairs = zip(symbols.leaves(target), symbols.leaves(source), strict=True)
@@ -90,7 +90,7 @@ def _set(target: sc.Symbol, value: ex.Expression, span: Span, resolver: Resolver
 
 @dataclass(frozen=True, slots=True)
 class Bodies:
-    """Makes the bodies of one function."""
+    """Builds the body of one function."""
 
     text: syntax.FunctionText
     resolver: Resolver
@@ -98,7 +98,7 @@ class Bodies:
     def statements(
         self, written: Sequence[syntax.Statement], scope: sc.Scope
     ) -> tuple[list[ex.Statement], bool]:
-        """The statements that a run reaches, and whether it can go on behind them."""
+        """The statements that can be reached, and whether their end can be reached."""
         made: list[ex.Statement] = []
         for statement in written:
             more, goes_on = self._statement(statement, scope)
@@ -157,7 +157,7 @@ class Bodies:
         name = f"{self.text.name}.{item.name}"
         symbol = symbols.laid_out(kind, [name], None, resolver.functions)
         statements = self._initial(symbol, initial, kind, scope)
-        scope.symbols[item.name] = symbol  # its initial value sees what the name meant before
+        scope.symbols[item.name] = symbol  # only now: the initial value may use an outer meaning
         return statements
 
     def _initial(
@@ -167,7 +167,7 @@ class Bodies:
         kind: sc.ResolvedType,
         scope: sc.Scope,
     ) -> list[ex.Statement]:
-        """Sets all of a local variable, which has no value from before."""
+        """Set a local variable completely; nothing remains from the previous call."""
         resolver = self.resolver
         if written is None:
             single = [leaf for leaf in symbols.leaves(symbol) if isinstance(leaf, sc.PlacedSymbol)]
@@ -191,7 +191,7 @@ class Bodies:
         return [s for member, part in pairs for s in self._initial(member, *part, scope)]
 
     def _single(self, written: syntax.Initial, scope: sc.Scope) -> ex.Expression:
-        """The initial value of a single thing."""
+        """The initial value of a scalar."""
         if isinstance(written, syntax.Values):
             raise model_error("TA004", "one value expected, a list found", written.span)
         return number(written, scope, self.resolver)

@@ -1,4 +1,4 @@
-"""Symbols: the meaning of names, the layout of arrays and records, the operations on a name."""
+"""Symbols: the meaning of names, the layout of arrays and records, and operations on them."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from rvmon.models.network.fractions import marked
 from rvmon.texts import counted, did_you_mean
 
 MAX_VALUES = 10_000
-"""The most values that a quantifier, a `select`, a parameter or an array may range over."""
+"""Limit for the number of values of a quantifier, a `select`, a parameter or an array."""
 
-INT16 = (-32768, 32767)  # UPPAAL's `int` without a range
-INT32 = (-(1 << 31), (1 << 31) - 1)  # the range of a constant that is declared without one
-Extents = tuple[range, ...]  # the indices of each dimension of an array, the outermost first
+INT16 = (-32768, 32767)  # the range of UPPAAL's `int` without a range
+INT32 = (-(1 << 31), (1 << 31) - 1)  # the range of an integer constant declared without one
+Extents = tuple[range, ...]  # the index range of each dimension of an array, outermost first
 
 Value = sc.ConstantValue | None
-"""An initial value: of an array or record one for each part, in order; `None` without one."""
+"""An initial value: a tuple with one value per part for an array or record; `None` if absent."""
 
 
 class Placer(Protocol):
-    """Gives things their places."""
+    """Assigns slots to declared things."""
 
     def place(self, kind: sc.ResolvedType, names: Sequence[str], value: Value) -> int:
-        """Make room for things of one type, side by side; where the first is."""
+        """Reserve adjacent slots for things of one type; return the first."""
         ...
 
 
@@ -42,9 +42,9 @@ def laid_out(
     placer: Placer,
     unnamed: Extents | None = None,
 ) -> sc.Symbol:
-    """The symbol of something declared; a record's fields are laid out one after the other.
+    """Lay out a declared thing and return its symbol. Fields of a record follow each other.
 
-    `unnamed` are the last dimensions, of which the names say nothing yet; default all.
+    `unnamed` are the last dimensions, whose indices the names do not contain yet; default: all.
     """
     suffixes = _suffixes(kind.extents if unnamed is None else unnamed)
     names = [name + suffix for name in names for suffix in suffixes]
@@ -67,7 +67,7 @@ def laid_out(
 
 
 def _field(value: sc.ConstantValue, depth: int, place: int) -> sc.ConstantValue:
-    """The values of a field of all elements of an array of records."""
+    """The values of one field, for all elements of an array of records."""
     assert isinstance(value, tuple), "a record's value has parts"
     if depth == 0:
         return value[place]
@@ -75,25 +75,25 @@ def _field(value: sc.ConstantValue, depth: int, place: int) -> sc.ConstantValue:
 
 
 def _suffixes(extents: Extents) -> list[str]:
-    """The index of each element of an array, such as `[0]`; one empty text for a single thing."""
+    """The indices of all elements of an array, such as `[0]`; one empty text for a scalar."""
     if not extents:
         return [""]
     return [f"[{i}]{rest}" for i in extents[0] for rest in _suffixes(extents[1:])]
 
 
 def variable_of(kind: sc.ResolvedType, name: str, initial: int) -> ex.Variable:
-    """A variable of a type."""
+    """Make a variable of a type."""
     is_bool, is_real = kind.base is ex.BaseType.BOOL, kind.base is ex.BaseType.DOUBLE
     return ex.Variable(name, kind.low, kind.high, initial, is_bool, is_real)
 
 
 def default_of(kind: sc.ResolvedType) -> int:
-    """The value of a variable of a type that is given none."""
+    """The initial value of a variable that is declared without one."""
     return 0 if kind.low <= 0 <= kind.high else kind.low
 
 
 def count_of(kind: sc.ResolvedType) -> int:
-    """The single things that an array or record of a type has."""
+    """The number of scalars in an array or record of a type."""
     each = sum(count_of(field) for _, field in kind.fields) if kind.fields else 1
     return prod(map(len, kind.extents)) * each
 
@@ -101,7 +101,7 @@ def count_of(kind: sc.ResolvedType) -> int:
 def parts_of_initial(
     written: syntax.Initial, kind: sc.ResolvedType
 ) -> list[tuple[syntax.Initial, sc.ResolvedType]] | None:
-    """The values for the parts of an array or a record, and their types; `None`: it has none."""
+    """The values for the parts of an array or record, with their types; `None` for a scalar."""
     if not isinstance(written, syntax.Values):
         if kind.extents or kind.fields:
             fix = "write {a, b, …}"
@@ -119,7 +119,7 @@ def parts_of_initial(
 
 
 def check_size(elements: int, span: Span) -> None:
-    """Refuse an array of too many elements."""
+    """Refuse an array with too many elements."""
     if elements > MAX_VALUES:
         raise model_error("TA019", f"an array of more than {MAX_VALUES:,} elements", span)
 
@@ -135,7 +135,7 @@ def values_of(kind: sc.ResolvedType, span: Span) -> range:
 
 
 def check_count(name: str, parameters: Sized, arguments: Sized, span: Span) -> None:
-    """Refuse too few or too many arguments."""
+    """Refuse a wrong number of arguments."""
     count = len(parameters)
     if count != len(arguments):
         message = f"`{name}` takes {counted(count, 'argument')}, {len(arguments)} given"
@@ -143,7 +143,7 @@ def check_count(name: str, parameters: Sized, arguments: Sized, span: Span) -> N
 
 
 def claim(name: str, span: Span, scope: sc.Scope) -> None:
-    """Note where a name is declared; refuse one that the same level already has."""
+    """Record the place of a declaration; refuse a name that its level already has."""
     if name in scope.places:
         first = Label(scope.places[name], "first declared here")
         raise model_error("TA003", f"two things named `{name}`", span, "rename one", others=[first])
@@ -151,21 +151,21 @@ def claim(name: str, span: Span, scope: sc.Scope) -> None:
 
 
 class Calls(Placer, Protocol):
-    """Functions that can be called, and room for what is local to them (`functions.Functions`)."""
+    """Functions that can be called, and slots for their locals (see `functions.Functions`)."""
 
     def call(
         self, symbol: sc.FunctionSymbol, written: syntax.Call, scope: sc.Scope, resolver: Any
     ) -> ex.Expression:
-        """The value of a call."""
+        """Make the expression for a call."""
         ...
 
     def variable(self, place: int) -> ex.Variable:
-        """The variable at a place."""
+        """The variable with a slot."""
         ...
 
 
 def value_of(symbol: sc.Symbol, span: Span) -> ex.Expression:
-    """The value that a symbol has in an expression."""
+    """The value of a symbol as an expression."""
     match symbol:
         case sc.ConstantSymbol(value, is_real):
             return marked(ex.Constant(value), is_real)
@@ -191,7 +191,7 @@ def value_of(symbol: sc.Symbol, span: Span) -> ex.Expression:
 
 
 def element_of(symbol: sc.Symbol, index: ex.Expression, span: Span | None) -> sc.Symbol:
-    """An element of an array."""
+    """The symbol of an element of an array."""
     match symbol:
         case ex.Lookup(values, ex.Slot(_, (extent, *inner), ())) if (
             isinstance(index, ex.Constant) and index.value in extent
@@ -213,14 +213,14 @@ def element_of(symbol: sc.Symbol, index: ex.Expression, span: Span | None) -> sc
 
 
 def flat(value: sc.ConstantValue) -> list[int]:
-    """The numbers of a constant, those of the last index side by side."""
+    """The numbers of a constant in order; the last index varies fastest."""
     if isinstance(value, int):
         return [value]
     return [number for item in value for number in flat(item)]
 
 
 def is_whole(symbol: sc.Symbol) -> bool:
-    """Whether a symbol is an array or record that holds numbers, not one of them."""
+    """Whether a symbol is a whole array or record of numbers."""
     match symbol:
         case sc.RecordSymbol():
             return True
@@ -231,7 +231,7 @@ def is_whole(symbol: sc.Symbol) -> bool:
 
 
 def is_alike(one: sc.Symbol, other: sc.Symbol) -> bool:
-    """Whether two arrays or records have the same parts."""
+    """Whether two arrays or records have the same shape."""
     if isinstance(one, sc.RecordSymbol) and isinstance(other, sc.RecordSymbol):
         return [name for name, _ in one.fields] == [name for name, _ in other.fields] and all(
             is_alike(a, b) for (_, a), (_, b) in zip(one.fields, other.fields, strict=True)
@@ -241,7 +241,7 @@ def is_alike(one: sc.Symbol, other: sc.Symbol) -> bool:
 
 
 def leaves(symbol: sc.Symbol) -> list[sc.Symbol]:
-    """The single things of an array or record, in order."""
+    """The scalars of an array or record, in order."""
     match symbol:
         case sc.RecordSymbol(fields):
             return [leaf for _, inner in fields for leaf in leaves(inner)]
@@ -254,19 +254,19 @@ def leaves(symbol: sc.Symbol) -> list[sc.Symbol]:
 
 
 def settle(slot: ex.Slot) -> ex.Slot:
-    """The same slot without its array, if its indices are constant and complete."""
+    """The slot of the element itself, if all indices are there and constant; else unchanged."""
     if not slot.is_single:
         return slot
     offset = 0
     for extent, index in zip(slot.extents, slot.indices, strict=True):
         if not isinstance(index, ex.Constant) or index.value not in extent:
-            return slot  # a run that comes to an index outside the array has no meaning
+            return slot  # a run that evaluates an index outside the array is an error
         offset = offset * len(extent) + index.value - extent.start
     return ex.Slot(slot.first + offset, (), (), slot.span)
 
 
 def clock_of(slot: ex.Slot, span: Span) -> int:
-    """The index of the clock that a slot names."""
+    """The index of the clock that a slot denotes."""
     for extent, index in zip(slot.extents, slot.indices, strict=False):
         if isinstance(index, ex.Constant):
             check_index(index.value, extent, span)
@@ -279,7 +279,7 @@ def clock_of(slot: ex.Slot, span: Span) -> int:
 def automaton_at(
     automata: Mapping[sc.AutomatonKey, sc.AutomatonSymbol], key: sc.AutomatonKey, span: Span
 ) -> sc.AutomatonSymbol:
-    """The automaton of a name and arguments."""
+    """The automaton with a name and arguments."""
     if not automata:
         message = f"edges and invariants do not see the locations of `{span.text}`"
         fix = "only queries do: set a variable where it is entered and left, and read that"

@@ -1,6 +1,7 @@
-"""A model as it was written: names unresolved, templates not instantiated, places noted.
+"""A model as written: names unresolved, templates not instantiated, each part with its place.
 
-Both text forms, `.ta` and UPPAAL's XML, are read into these types; `elaborate` makes a `Network`.
+Both text forms, `.ta` and UPPAAL's XML, are read into these types, from which `elaborate` makes a
+`Network`.
 """
 
 from __future__ import annotations
@@ -10,11 +11,11 @@ from msgspec import Struct
 from rvmon.diagnostics import Span
 from rvmon.models.network.expressions import BaseType, BinaryOp, PathOp, UnaryOp
 
-# Expressions: of guards, invariants, updates, declarations and queries alike.
+# Expressions, as in guards, invariants, updates, declarations and queries.
 
 
 class Number(Struct, frozen=True):
-    """An integer; `true` and `false` are 1 and 0."""
+    """An integer, or `true` and `false` as 1 and 0."""
 
     value: int
     span: Span
@@ -28,7 +29,7 @@ class Decimal(Struct, frozen=True):
 
 
 class Name(Struct, frozen=True):
-    """Anything that has a name."""
+    """A name of anything."""
 
     name: str
     span: Span
@@ -51,14 +52,14 @@ class Member(Struct, frozen=True):
 
 
 class Rate(Struct, frozen=True):
-    """`target'`: how fast a clock runs."""
+    """`target'`: the rate of a clock."""
 
     target: Expression
     span: Span
 
 
 class Call(Struct, frozen=True):
-    """`name(arguments)`: a function's value, or in a query an instance of a template."""
+    """`name(arguments)`: the value of a function, or in a query an instance of a template."""
 
     name: str
     arguments: tuple[Expression, ...]
@@ -92,7 +93,7 @@ class Conditional(Struct, frozen=True):
 
 
 class Quantified(Struct, frozen=True):
-    """`forall (name : type) body`, `exists (…) …` or `sum (…) …`: a finite type's values joined."""
+    """`forall (name : type) body`, `exists (…) …` or `sum (…) …` over a finite type."""
 
     op: BinaryOp
     name: str
@@ -121,7 +122,7 @@ class LeadsTo(Struct, frozen=True):
 
 
 class Assuming(Struct, frozen=True):
-    """A query about the runs that a formula holds of."""
+    """A query restricted to the runs that satisfy a formula."""
 
     query: Expression
     premise: Expression
@@ -129,7 +130,7 @@ class Assuming(Struct, frozen=True):
 
 
 class Chance(Struct, frozen=True):
-    """`Pr[<=T; n](<> p)`, or with `[]`; compared with a `level` by `op` if it is a test."""
+    """`Pr[<=T; n](<> p)`, or with `[]`. A test compares it with a `level` by `op`."""
 
     op: PathOp
     body: Expression
@@ -160,7 +161,7 @@ class Simulation(Struct, frozen=True):
 
 
 class Extremes(Struct, frozen=True):
-    """`sup{where}: e, …`, `inf` or `bounds`; `ends` says which: the largest value, the least."""
+    """`sup{where}: e, …`, `inf` or `bounds`; `ends` lists which (`True`: largest values)."""
 
     ends: tuple[bool, ...]
     where: Expression | None
@@ -203,7 +204,7 @@ class Values(Struct, frozen=True):
 Initial = Expression | Values
 
 Size = Expression | TypeText
-"""The size of an array: a number, or a type whose values are its indices."""
+"""The size of an array: a number, or a type whose values are the indices."""
 
 
 class Declaration(Struct, frozen=True):
@@ -217,7 +218,7 @@ class Declaration(Struct, frozen=True):
 
 
 class TypeDefinition(Struct, frozen=True):
-    """`typedef type name`, or that of an array."""
+    """`typedef type name`, or `typedef type name[size]…`."""
 
     name: str
     type: TypeText
@@ -226,7 +227,7 @@ class TypeDefinition(Struct, frozen=True):
 
 
 class Parameter(Struct, frozen=True):
-    """A parameter of a template or function; a `reference` stands for the thing itself."""
+    """A parameter of a template or function; a `reference` stands for the argument itself."""
 
     type: TypeText
     name: str
@@ -239,7 +240,7 @@ class Parameter(Struct, frozen=True):
 
 
 class UpdateText(Struct, frozen=True):
-    """`target = value`; `x += v` and `x++` are written out."""
+    """`target = value`. `x += v` and `x++` are expanded to this."""
 
     target: Expression
     value: Expression
@@ -256,7 +257,7 @@ class Branch(Struct, frozen=True):
 
 
 class Loop(Struct, frozen=True):
-    """`while (condition) body`; behind each round comes what a `for` does then."""
+    """`while (condition) body`; the body includes the step of a `for`."""
 
     condition: Expression
     body: tuple[Statement, ...]
@@ -280,7 +281,7 @@ class ReturnText(Struct, frozen=True):
 
 
 class Block(Struct, frozen=True):
-    """Statements with names of their own."""
+    """Statements with a scope of their own."""
 
     statements: tuple[Statement, ...]
     span: Span
@@ -300,7 +301,7 @@ class FunctionText(Struct, frozen=True):
 
 
 class PrioritiesText(Struct, frozen=True):
-    """`chan priority a, b < default`: channels of one priority together, from the lowest."""
+    """`chan priority a, b < default`: levels of channels of equal priority, lowest first."""
 
     levels: tuple[tuple[Expression, ...], ...]
     span: Span

@@ -1,4 +1,4 @@
-"""The parser's tree to the types of `syntax`, rule by rule."""
+"""Builds the types of `syntax` from the parse tree: the document, declarations, expressions."""
 
 # ruff: noqa: ARG002, D102 - the methods are the grammar's rules, called with one signature
 
@@ -25,7 +25,7 @@ LARGEST = (1 << 31) - 1  # the largest number that a model may contain, as in UP
 
 @v_args(meta=True)
 class SyntaxBuilder(QueryBuilder):
-    """One method per rule of the grammar; `place` maps offsets of the text to spans."""
+    """Has a method or a maker per rule of the grammar; `place` maps offsets to spans."""
 
     makers: ClassVar[Mapping[str, Maker]] = {
         **QueryBuilder.makers,
@@ -198,7 +198,7 @@ class SyntaxBuilder(QueryBuilder):
         return made
 
     def scalar_type(self, meta: Meta, items: Sequence[Any]) -> TypeText:
-        # Which of its values is which makes no difference to any answer.
+        # A scalar set is symmetric, so numbering its values changes no answer.
         span = self._span(meta)
         low, one = syntax.Number(0, span), syntax.Number(1, span)
         return TypeText(BaseType.INT, span, low, syntax.Binary(BinaryOp.SUB, items[0], one, span))
@@ -223,7 +223,7 @@ class SyntaxBuilder(QueryBuilder):
         return syntax.Number(self._whole(items[0]), self._span(meta))
 
     def _whole(self, token: Token) -> int:
-        # Python itself refuses to read a few thousand digits.
+        # Check the length first: Python refuses to convert numbers with thousands of digits.
         if len(token.lstrip("0")) > len(str(LARGEST)) or int(token) > LARGEST:
             fix = f"numbers go up to {LARGEST:,}"
             raise model_error("TA007", "the number is too large", self._token_span(token), fix)
@@ -246,7 +246,7 @@ class SyntaxBuilder(QueryBuilder):
 
 
 def _levels(items: Iterable[Any]) -> list[list[Any]]:
-    """The items split at the signs `<`."""
+    """Split the items at the signs `<`."""
     levels: list[list[Any]] = [[]]
     for item in items:
         if item == "<":
@@ -257,7 +257,7 @@ def _levels(items: Iterable[Any]) -> list[list[Any]]:
 
 
 def _all(items: Sequence[Any], kind: Any) -> tuple[Any, ...]:
-    """The items of a kind; the declarators of one declaration stand in a tree of their own."""
+    """All items of a kind. The declarators of a declaration are inside a tree of their own."""
     flat: list[Any] = []
     for item in items:
         flat += item.children if is_rule(item, "declaration") else [item]

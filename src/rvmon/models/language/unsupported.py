@@ -1,4 +1,4 @@
-"""Parts of UPPAAL's language that are not supported, recognised where reading stops."""
+"""Parts of UPPAAL's language that are not supported, recognised at the place of an error."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from rvmon.diagnostics import Span
 from rvmon.models import model_error
 
-Reason = tuple[str, str]  # an unsupported construct, and the way to do without it
+Reason = tuple[str, str]  # a message about an unsupported construct, and an alternative
 
 _OUTSIDE: Reason = ("functions from outside are not supported", "write their body out")
 _HOOKS: Reason = ("updates around every step are not supported", "write them on the edges")
@@ -47,14 +47,14 @@ _ASKING: dict[str, Reason] = {
     ),
 }
 _CALLS = "abs random random_normal random_poisson isnan exp2 log2 cbrt asin acos atan atan2"
-"""Functions of UPPAAL, over numbers with a fraction."""
+"""Functions of UPPAAL on numbers with a fraction that are not supported."""
 
 _COMMENT = re.compile(r"//[^\n]*|/\*.*?\*/", re.DOTALL)
 _OLD_CONSTANT = re.compile(r"\bconst\s+(\w+)\s+(-?\d+)$")
 
 
 def type_reason(name: str) -> Reason | None:
-    """Why there is no type of a name, if it is one of UPPAAL's.
+    """Why a type of UPPAAL's is not supported; `None` for any other name.
 
     >>> type_reason("string")[1]
     'use numbers'
@@ -63,7 +63,7 @@ def type_reason(name: str) -> Reason | None:
 
 
 def refuse_foreign(name: str, span: Span) -> None:
-    """Refuse a call of a function of UPPAAL's that is not here."""
+    """Refuse a call of an unsupported function of UPPAAL."""
     if name in _CALLS.split():
         fix = "write it as a function of what there is"
         raise model_error("TA016", f"`{name}` is not supported", span, fix)
@@ -91,12 +91,12 @@ def reason_at(text: str, start: int, length: int, rule: str) -> Reason | None:
 
 
 def without_comments(text: str) -> str:
-    """A text with nothing where comments stood."""
+    """A text with comments replaced by spaces."""
     return _COMMENT.sub(" ", text)
 
 
 def _clause(text: str, rule: str) -> str:
-    """The last statement of a text, without comments; in a `.ta` file its last line."""
+    """The last statement of a text, or in a `.ta` file its last line, without comments."""
     plain = without_comments(text)
     if rule == "document":
         return plain.rpartition("\n")[2]

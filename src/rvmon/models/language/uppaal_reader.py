@@ -1,15 +1,15 @@
-"""UPPAAL's XML to syntax.
+"""Reads UPPAAL's XML.
 
-Read: declarations, templates with parameters, locations (invariant, rate of leaving, urgent,
-committed), edges (select, guard, synchronisation, assignment), instances, the system line, queries.
-Colours, coordinates and test code do not change which runs there are: they are passed over.
-Refused, with place and reason: what `ta.lark` has no rule for. A query that cannot be read, or that
-names what is not there, is a warning, and left out. Declarations of entities are refused, nothing
-outside the file is ever read, and size and depth are limited.
+Supported: declarations, templates with parameters, locations (invariant, exponential rate, urgent,
+committed), edges (select, guard, synchronisation, assignment), branch points, instances, the system
+line, queries. Colours, coordinates and test code do not affect runs and are ignored. Anything that
+`ta.lark` has no rule for is refused with its place and the reason. A query that cannot be read or
+resolved is skipped with a warning. Entity declarations are refused, nothing outside the file is
+read, and size and depth are limited.
 
-A unit of time, weights, labels and ids of queries, which UPPAAL does not have, are read from
-comments as `export.uppaal` writes them: `// unit 50 ms` in the declarations; `weight 0.9` and
-`as name` in an edge's comments; `query R1` alone on the first line of a query's comment.
+UPPAAL has no unit of time, weights, labels, or ids of queries. They are read from comments as
+`uppaal_xml` writes them: `// unit 50 ms` in the declarations; `weight 0.9` and `as name` in the
+comments of an edge; `query R1` alone on the first line of the comment of a query.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ from rvmon.models.language.unsupported import without_comments
 from rvmon.models.network.expressions import LocationKind
 from rvmon.trace.time import TICKS_PER_UNIT
 
-MAX_DEPTH = 20  # a model's elements are nested no deeper than this
+MAX_DEPTH = 20  # limit for the nesting of elements; models need less
 
 
 @dataclass(slots=True)
 class Element:
-    """An element with its texts joined, and where each piece of them stands."""
+    """An element with its joined text, and the place of each piece of the text."""
 
     name: str
     attributes: Mapping[str, str]
@@ -47,24 +47,24 @@ class Element:
     start: int
     children: list[Element] = field(default_factory=list)
     text: str = ""
-    pieces: list[str] = field(default_factory=list)  # of the text, as they were read
-    offsets: list[int] = field(default_factory=list)  # of the pieces in `text`
-    places: list[int] = field(default_factory=list)  # of the same pieces in the file
+    pieces: list[str] = field(default_factory=list)  # of the text, as read
+    offsets: list[int] = field(default_factory=list)  # of the pieces, in `text`
+    places: list[int] = field(default_factory=list)  # of the pieces, in the file
 
     def all(self, name: str) -> Iterator[Element]:
-        """The children of a name."""
+        """The children with a name."""
         return (child for child in self.children if child.name == name)
 
     def first(self, name: str) -> Element | None:
-        """The first child of a name."""
+        """The first child with a name."""
         return next(self.all(name), None)
 
     def span(self) -> Span:
-        """The beginning of the element's tag."""
+        """The start of the element's tag."""
         return Span(self.source, self.start, self.start + len(self.name) + 1)
 
     def place(self, start: int, end: int) -> Span:
-        """The place in the file of some characters of the text."""
+        """The place in the file of the characters `[start, end)` of the text."""
         if not self.offsets:
             return self.span()
         first = self._position(start)
@@ -94,19 +94,19 @@ def read_xml(source: Source) -> Element:
 class _Reader:
     def __init__(self, source: Source) -> None:
         self.data = source.text.encode("utf-8")
-        # The text is already decoded, whatever encoding its declaration names.
+        # The text is decoded already, whatever encoding its declaration names.
         self.parser = expat.ParserCreate(encoding="utf-8")
         self.parser.StartElementHandler = self._start
         self.parser.EndElementHandler = self._end
         self.parser.CharacterDataHandler = self._characters
         self.parser.EntityDeclHandler = self._entity
-        self.around = Element("", {}, source, 0)  # what the outermost element stands in
+        self.around = Element("", {}, source, 0)  # holds the outermost element
         self._source = source
         self._open = [self.around]
         self._reached = (0, 0)
 
     def position(self, byte: int) -> int:
-        """The character that a byte of the file belongs to; asked of later and later bytes."""
+        """The character at a byte offset of the file; offsets must not decrease between calls."""
         if len(self.data) == len(self._source.text):
             return byte
         before, characters = self._reached
@@ -153,7 +153,7 @@ _LABEL = re.compile(r"^[ \t]*as[ \t]+(\S+)[ \t]*$", re.MULTILINE)
 
 
 def read_uppaal(source: Source) -> tuple[Document, list[Diagnostic]]:
-    """Read a model in UPPAAL's XML; returns it with the warnings."""
+    """Read a model in UPPAAL's XML, and return it with the warnings."""
     root = read_xml(source)
     if root.name != "nta":
         fix = "the outermost element of UPPAAL's models is `nta`"
@@ -180,7 +180,7 @@ def _text(element: Element | None) -> str:
 
 
 def _part(element: Element | None, start: str, findings: Findings, default: Any) -> Any:
-    """The text of an element, read by a rule of the grammar; `default` if there is none."""
+    """Parse the text of an element by a rule of the grammar; `default` if there is none."""
     if element is not None and element.text.strip():
         with findings.collect():
             return _parsed(element, start)
@@ -188,7 +188,7 @@ def _part(element: Element | None, start: str, findings: Findings, default: Any)
 
 
 def _parsed(element: Element, start: str) -> Any:
-    """The syntax tree of a text. UPPAAL's `not` binds like its `!`, tighter than a comparison."""
+    """Parse a text. UPPAAL's `not` binds like its `!`, tighter than a comparison."""
     return parse_part(_NOT.sub("!  ", element.text), start, element.place)
 
 
@@ -230,7 +230,7 @@ def _labels(element: Element) -> dict[str, Element]:
 
 
 def _reference(element: Element | None, names: Mapping[str, str]) -> syntax.Name | None:
-    """The location that a `ref` means; an unknown one keeps its id, which no location has."""
+    """The location that a `ref` denotes; an unknown one keeps its id, which no location has."""
     if element is None:
         return None
     reference = element.attributes.get("ref", "")
@@ -240,7 +240,7 @@ def _reference(element: Element | None, names: Mapping[str, str]) -> syntax.Name
 def _edges(
     template: Element, names: Mapping[str, str], findings: Findings
 ) -> Iterator[automaton_syntax.EdgeText]:
-    """The edges; one to a branch point is one for each of its branches."""
+    """The edges. An edge to a branch point becomes one edge per branch."""
     branches: dict[str, list[tuple[automaton_syntax.EdgeText, syntax.Expression]]] = {
         point.attributes.get("id", ""): [] for point in template.all("branchpoint")
     }
