@@ -1,7 +1,7 @@
-"""Closure: tests are made, played and looked at until nothing is left that a test could show.
+"""Closure: make and play tests until every reachable item of the coverage model is hit.
 
-`close` is the loop; `goals` says what is open and asks the model for tests and proofs, `vary_test`
-changes the nearest test and says which changes have paid, `propose` chooses among them.
+`close` is the loop. `goals` knows the open items and asks the model for witnesses and proofs,
+`vary_test` changes tests and learns which changes pay off, and `propose` chooses the next test.
 """
 
 from __future__ import annotations
@@ -26,23 +26,24 @@ __all__ = ["Added", "Budget", "Closed", "close"]
 
 
 BATCH = 4
-"""Tests that are played before anything is learned from them, whatever the number of processes."""
+"""Tests that are played before learning from them; independent of the number of processes, so that
+the tests are, too."""
 
 
 MARGIN = 2
-"""Tests of a suite that show each goal, where so many were found."""
+"""The number of tests in a suite that meet each goal, if so many were found."""
 
 
 @dataclass(frozen=True, slots=True)
 class Budget:
     """The limits at which closing gives up."""
 
-    tests: int = 400  # the most that are played
-    seconds: float | None = None  # after which no further ones are begun; `None`: any number
+    tests: int = 400  # the most tests that are played
+    seconds: float | None = None  # wall time after which no batch is started; `None`: unlimited
 
 
 Progress = Callable[[int, int], None]
-"""Called with the number of goals that are met, and that of all."""
+"""Called with the number of goals that are met, and the number of all goals."""
 
 
 def close(
@@ -56,34 +57,34 @@ def close(
     jobs: int | str | None = None,
     progress: Progress | None = None,
 ) -> Closed:
-    """Close the holes of a campaign's coverage, beginning with nothing.
+    """Close the holes of a campaign's coverage, starting without any test.
 
-    Tests are played in small batches; each is aimed at something that is open: by a run of the
-    campaign's model, if it has one and the model says how to get there; else by a change of a test
-    that came near, or by a new one of a strategy, whichever has paid so far. The same seed gives
-    the same tests on any number of processes, if seconds do not end it.
+    Tests are played in small batches. Each aims at an open goal: if the campaign has a model which
+    knows a run to the goal, the test follows that run; otherwise it is a change of a test that came
+    near, or a new test; what paid off so far is more likely. The same seed gives the same tests on
+    any number of processes, unless `budget.seconds` ends the search.
 
     Args:
         campaign: the campaign.
-        robot: of its robots the one that is.
-        seed: everything follows from it.
-        strategies: tests are drawn from; default: those that the campaign closes with.
-        margin: tests of the suite that show each goal, as far as so many were found. One is enough
-            to cover it, and sees fewer faults.
+        robot: name of the robot.
+        seed: determines everything.
+        strategies: the strategies that tests are drawn from; default: those of `Closing`.
+        margin: the number of tests in the suite that meet each goal, if so many were found. One
+            test per goal covers the same but sees fewer faults.
         budget: the limits at which it gives up.
-        jobs: processes, or the address of a scheduler of Dask; default: one process per core.
-        progress: called with how far it is.
+        jobs: number of processes, or address of a Dask scheduler; default: one process per core.
+        progress: called after each test.
 
     Raises:
         TestError: a test cannot be made, or played.
-        UnknownNameError: the campaign calls something unreachable that there is not.
+        UnknownNameError: the campaign declares an unknown item unreachable.
         RvmonError: a specification is wrong, or a system cannot be made.
 
     Source: Fine and Ziv, Coverage Directed Test Generation for Functional Verification using
     Bayesian Networks, DAC 2003 (closing the loop from coverage to generation); Zalewski, American
-    Fuzzy Lop, 2014 (changing what came nearest); Blom, Hessel, Jonsson, Pettersson, FATES 2004
+    Fuzzy Lop, 2014 (mutating the nearest inputs); Blom, Hessel, Jonsson, Pettersson, FATES 2004
     (tests from runs of a timed model); Ma, Franco, McCluskey, An experimental chip to evaluate test
-    techniques, ITC 1995 (what is detected several times finds faults that nobody modelled).
+    techniques, ITC 1995 (covering each goal several times finds faults that nobody modelled).
     """
     begun = time.monotonic()
     campaign = replace(campaign, robots={robot: campaign.robots[robot]})
@@ -150,7 +151,7 @@ def _goals(campaign: Campaign, robot: str, witnesses: Witnesses | None) -> Goals
 
 
 def _smallest(tests: Sequence[Added], goals: Goals, times: int) -> Smallest:
-    """The fewest tests known that meet as much, each goal with so many of them."""
+    """The smallest known set of tests that meets the same goals, each by up to `times` tests."""
     sought = goals.sought
     places = {goal: place for place, goal in enumerate(sought)}
     wanted = {places[goal]: count for goal, count in sought.items()}
@@ -163,7 +164,8 @@ def _smallest(tests: Sequence[Added], goals: Goals, times: int) -> Smallest:
             for item, hit in items.items()
             if (group, item) in places
         }
-        if times > 1:  # each test counts as one, however often it hits
+        if times > 1:
+            # A second set of columns counts tests: each as one, however often it hits the goal.
             row |= {place + len(places): 1 for place in row}
         rows.append(row)
     if times > 1:
@@ -172,7 +174,7 @@ def _smallest(tests: Sequence[Added], goals: Goals, times: int) -> Smallest:
 
 
 def _gone_wrong(tests: Sequence[Added]) -> Iterator[int]:
-    """The first test that went wrong in each way."""
+    """The places of the first test with each failed requirement, illegal hit and bad ending."""
     seen: set[str] = set()
     for place, test in enumerate(tests):
         outcome = test.played.outcome

@@ -1,4 +1,4 @@
-"""A suite that is chosen by the faults that it sees, too, and what each choice of tests costs."""
+"""Extend a suite by tests that kill further mutants; compare choices of tests by their kills."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from rvmon.cdv.system import Code
 from rvmon.coverage.ranking import smallest
 
 Killers = Mapping[str, frozenset[str]]
-"""By identity of a mutant that is killed, tests that kill it; none is known of a lost process."""
+"""The tests that kill each killed mutant, by its identity; empty if its process was lost."""
 
 
 def with_mutants(
@@ -27,11 +27,21 @@ def with_mutants(
     jobs: int,
     progress: Callable[[float], None] = lambda _: None,
 ) -> Closed:
-    """Add to a suite the fewest tests that kill the mutants which it lets live.
+    """Add to a suite the fewest played tests that kill the mutants which it misses.
 
-    Of the mutants of the code that are not known to be equivalent, so many are drawn. A third is
-    held out: these choose nothing, so that what each choice of tests sees of them says what it
-    would see of faults that nobody has planted.
+    About a third of the mutants is held out and does not influence the choice of tests: how many of
+    these a choice kills estimates how many unknown faults it would find.
+
+    Args:
+        campaign: the campaign.
+        robot: name of the robot.
+        closed: the closed campaign.
+        mutants: the number of mutants to play; those declared equivalent are not used.
+        jobs: number of processes.
+        progress: called with the share that is done, from 0 to 1.
+
+    Returns:
+        The closed campaign with the larger suite and a `Trade`.
 
     Raises:
         RvmonError: the campaign measures no code, or none of the tests has a result.
@@ -83,7 +93,7 @@ def with_mutants(
 
 
 def _drawn(code: Code, count: int) -> list[Mutant]:
-    """`count` mutants, spread evenly over the code."""
+    """`count` mutants, or all if there are fewer, spread evenly over the code."""
     all_mutants = code_mutants(code)
     known = {} if code.equivalent is None else equivalents(code.equivalent, all_mutants)
     left = [mutant for mutant in all_mutants if mutant.identity not in known]

@@ -1,4 +1,4 @@
-"""Goals, with their hits so far; tests for them from runs of the model, or proofs of none."""
+"""The goals of closing with their hits so far, and the model's witnesses or proofs for them."""
 
 from __future__ import annotations
 
@@ -37,16 +37,16 @@ if TYPE_CHECKING:
 
 
 class Goals:
-    """The items of a coverage model that are to be hit, and how often they were.
+    """The goals of a coverage model, and how often they were hit.
 
     Args:
         model: the coverage model.
-        argued: by item, the reason why it cannot be covered.
+        argued: items that are declared unreachable, each with the reason.
     """
 
     def __init__(self, model: Model, argued: Mapping[Goal, str]) -> None:
         self.model = model
-        # the hits wanted of each item
+        # The number of hits that each item needs.
         self.wanted: dict[Goal, int] = {
             (group.name, item.name): item.goal
             for group in model.groups.values()
@@ -55,50 +55,50 @@ class Goals:
             if item.kind is BinKind.GOAL
         }
         self.argued = {goal: why for goal, why in argued.items() if goal in self.wanted}
-        # the query that proves an item to be unreachable, by item
+        # Items that are proved unreachable, each with the query that proves it.
         self.proved: dict[Goal, str] = {}
-        # unreachable items that were hit all the same, with the test that hit them first
+        # Unreachable items that were hit nevertheless, each with the first test that hit it.
         self.wrong: dict[Goal, str] = {}
         self._seen: list[tuple[str, Hits]] = []
         self._counts: dict[Goal, int] = {}
 
     @property
     def sought(self) -> dict[Goal, int]:
-        """The hits wanted of each item that is not known to be unreachable."""
+        """The number of hits needed, by item; without unreachable items."""
         return {goal: count for goal, count in self.wanted.items() if not self._is_out(goal)}
 
     @property
     def open(self) -> list[Goal]:
-        """The items with fewer hits than wanted, in the model's order."""
+        """The items with fewer hits than they need, in the model's order."""
         return [goal for goal in self.sought if not self.is_met(goal)]
 
     @property
     def met(self) -> int:
-        """The number of wanted items with all their hits."""
+        """The number of items that are met."""
         return sum(map(self.is_met, self.sought))
 
     def is_met(self, goal: Goal) -> bool:
-        """Whether an item was hit as often as it is to be."""
+        """Whether an item has all the hits that it needs."""
         return self._counts.get(goal, 0) >= self.wanted[goal]
 
     @property
     def share(self) -> float:
-        """The share of the model that is covered, from 0 to 1, without what cannot be."""
+        """The covered share of the model without its unreachable items, from 0 to 1."""
         hits = merged(hits_of_test for _, hits_of_test in self._seen)
         return share(hits, without(self.model, [*self.proved, *self.argued]))
 
     def holes(self) -> dict[Goal, Hole]:
-        """The open items, in words."""
+        """The open items, each with a description of what is missing."""
         hits = merged(hits_of_test for _, hits_of_test in self._seen)
         nearest = nearest_tests(self.open, self._seen, self.model)
         return {goal: hole_of(goal, self.model, hits, nearest.get(goal, "")) for goal in self.open}
 
     def _is_out(self, goal: Goal) -> bool:
-        """Whether an item cannot be hit, as it is proved or declared."""
+        """Whether an item is proved or declared unreachable."""
         return goal in self.proved or goal in self.argued
 
     def add(self, test: str, hits: Hits) -> list[Goal]:
-        """Count what a test hit, and return what was met with it for the first time."""
+        """Count the hits of a test, and return the goals that it is the first to meet."""
         added = []
         self._seen.append((test, hits))
         for group, items in hits.items():
@@ -116,15 +116,15 @@ class Goals:
 
 
 EDGES = "edges of the model"
-"""The group of what tests show of the model."""
+"""The group of the model's edges, which tests show when they follow a run of the model."""
 
 MOST_STATES = 200_000
-"""Symbolic states within which a query is to be decided, else its item stays open."""
+"""The most symbolic states explored for a query; if they do not decide it, its item stays open."""
 
 
 @dataclass(frozen=True, slots=True)
 class Witness:
-    """A run of the model that is to hit an item."""
+    """A run of the model that should hit an item."""
 
     run: Run
     query: str
@@ -138,12 +138,12 @@ class Proof:
 
 
 class Witnesses:
-    """Asks a model about goals, each once.
+    """Asks a model for witnesses of goals; each query is asked once.
 
     Args:
-        model: with its network.
-        describes: whether it describes the robot that is tested: else it proves nothing, and there
-            are no edges to be shown.
+        model: the model.
+        describes: whether the model describes the robot under test. If not, it proves nothing, and
+            its edges are not goals.
     """
 
     def __init__(self, model: ClosingModel, *, describes: bool) -> None:
@@ -165,7 +165,7 @@ class Witnesses:
 
     @cached_property
     def _names(self) -> dict[tuple[int, Edge], str]:
-        """All edges by automaton; those that look the same are numbered."""
+        """The name of each edge, by the index of its automaton; equal names are numbered."""
         names: dict[tuple[int, Edge], str] = {}
         seen: Counter[str] = Counter()
         for index, automaton in enumerate(self._network.automata):
@@ -177,7 +177,7 @@ class Witnesses:
 
     @property
     def groups(self) -> list[Group]:
-        """The edges of the model, as what there is to be covered."""
+        """The edges of the model as a group of goals; empty if it does not describe the robot."""
         if not self._describes:
             return []
         return [group_of(EDGES, Subject.TRANSITIONS, [*map(Item, self._names.values())])]
@@ -187,10 +187,10 @@ class Witnesses:
         return goal[0] == EDGES or bool(self._model.query(*goal))
 
     def answer(self, goal: Goal) -> Witness | Proof | None:
-        """A run that is to hit an item, the proof that there is none, or nothing.
+        """A run that should hit an item, a proof that there is none, or `None` if undecided.
 
         Raises:
-            ModelError: what the campaign asks about the item is no query of the model.
+            ModelError: the campaign's query for the item is not a valid query of the model.
         """
         query = self._model.query(*goal)
         if not query and goal[0] == EDGES:
@@ -200,10 +200,10 @@ class Witnesses:
         return self._answers.get(query)
 
     def test(self, witness: Witness, name: str, seed: int) -> Test:
-        """A test that does what the run's automata do that tests stand for.
+        """A test that acts as the automata controlled by tests do in the run.
 
         Raises:
-            TestError: no whole numbers of units satisfy the limits of the run.
+            TestError: no times in whole units satisfy the limits of the run.
         """
         model, network = self._model, self._network
         steps, limits = project(network, witness.run, model.automata, model.actions)
@@ -212,7 +212,16 @@ class Witnesses:
         return model.make(template, seed)
 
     def shown(self, witness: Witness, test: str, hits: Hits) -> dict[str, dict[str, Hit]]:
-        """The edges of the model that the test of a run has shown, by its name and hits."""
+        """The edges of the model that a test has shown.
+
+        These are all edges of the run if the system first entered the states of the run in the same
+        order, otherwise none; the difference is noted for `explained`.
+
+        Args:
+            witness: the run that the test follows.
+            test: name of the test.
+            hits: its hits.
+        """
         if not self._describes:
             return {}
         edges = [self._names[taken] for taken in _edges_of(witness.run)]
@@ -228,7 +237,7 @@ class Witnesses:
         return {EDGES: dict.fromkeys(edges, Hit(1))}
 
     def explained(self, holes: Mapping[Goal, Hole]) -> dict[Goal, Hole]:
-        """Holes, those of edges with how the first test of such a run went another way."""
+        """Holes, where those of edges tell how the first test for the edge left its run."""
         needs = "a `make` that behaves like the run, or a model that behaves like the system"
         return {
             goal: replace(hole, why=why, needs=needs, nearest=test) if test else hole
@@ -247,7 +256,7 @@ class Witnesses:
         return [*dict.fromkeys(state for state in states if state is not None)]
 
     def _on_edge(self, name: str) -> Witness | Proof | None:
-        """The first run of a suite that takes an edge."""
+        """A run that takes an edge, from a suite that covers all reachable edges."""
         suite = self._suite
         for run, _ in suite.runs:
             if any(self._names[taken] == name for taken in _edges_of(run)):
@@ -265,6 +274,6 @@ class Witnesses:
 
 
 def _edges_of(run: Run) -> Iterator[tuple[int, Edge]]:
-    """The edges that a run takes, each with the number of its automaton."""
+    """The edges that a run takes, each with the index of its automaton."""
     for step in run.steps:
         yield from () if step.action is None else step.action.edges

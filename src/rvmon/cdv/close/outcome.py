@@ -1,4 +1,4 @@
-"""The outcome of closing a campaign: as data, as a document for programs, as text."""
+"""The outcome of closing a campaign: as data, as a JSON document, and as text."""
 
 from __future__ import annotations
 
@@ -16,68 +16,65 @@ from rvmon.texts import counted, percent_text, share_text
 
 @dataclass(frozen=True, slots=True)
 class Added:
-    """A test and what it was good for."""
+    """A played test and what it added."""
 
     played: Played  # the test with its outcome
-    origin: str  # in words
-    goals: Sequence[Goal]  # those met with it for the first time
-    met: int  # the number of goals met with it and those before
+    origin: str  # how it was made, in words
+    goals: Sequence[Goal]  # the goals that it is the first to meet
+    met: int  # number of goals met by it and all tests before
 
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """Tests that were chosen in some way, and how many mutants they kill."""
+    """A choice of tests, and how many mutants they kill."""
 
-    # each goal is shown by so many of them; `None`: by the margin, and they are chosen by mutants
-    # as well; 0: they are all that were played
+    # How many of the tests meet each goal. `None`: the margin, with further tests that kill
+    # mutants; 0: the choice is all played tests.
     times: int | None
-    tests: int  # their number
-    killed: int  # of the mutants that choose
-    held_out: int  # of those that do not
+    tests: int  # number of tests
+    killed: int  # number of killed mutants, without those held out
+    held_out: int  # number of killed mutants among those held out
 
 
 @dataclass(frozen=True, slots=True)
 class Trade:
-    """The cost of smaller choices of tests, in faults that they miss."""
+    """The trade-off between the size of a suite and the faults that it finds."""
 
-    mutants: int  # of the code, by which tests are chosen
-    held_out: int  # mutants that have no part in the choice
-    choices: Sequence[Choice]  # from the smallest on
+    mutants: int  # number of mutants that influence the choice of tests
+    held_out: int  # number of mutants that do not
+    choices: Sequence[Choice]  # the smallest first
 
 
 @dataclass(frozen=True, slots=True)
 class Closed:
-    """A campaign whose holes were looked for."""
+    """The result of closing a campaign."""
 
     tests: Sequence[Added]  # the played tests, in order
-    # of these the fewest known that meet as much with the margin that was asked for, and one for
-    # all that went wrong
+    # The smallest known set of these that meets the same goals with the requested margin, and one
+    # test for each way in which a test went wrong.
     suite: Sequence[Played]
-    # the names of those that meet as much, by how many show each goal, up to the margin
+    # Names of the tests in the smallest known set, by the number of tests that meet each goal.
     choices: Mapping[int, Sequence[str]]
-    fewest: int  # no suite of that margin has fewer; its size if it is known to be the smallest
-    goals: int  # their number, without those that cannot be met
-    share: float  # of the coverage model that is covered, from 0 to 1, without what cannot be
-    # goals that cannot be met, each with the query that the model answers so
-    proved: Mapping[Goal, str]
-    argued: Mapping[Goal, str]  # unreachable by the campaign's own word, each with its reason
-    open: Mapping[Goal, Hole]  # the goals that no test met, in words
-    # goals that cannot be met, as it is declared, and that a test met, with its name
-    wrong: Mapping[Goal, str]
-    groups: Sequence[Group]  # measured besides those of the campaign
-    seconds: float  # its duration
-    ended: str  # why it ended with open goals; empty if there is none
-    # the faults that smaller choices miss, if mutants had a part in its choice
-    trade: Trade | None = None
+    fewest: int  # lower bound of the size of a set with the margin; its size if proved smallest
+    goals: int  # number of goals, without those that cannot be met
+    share: float  # covered share of the model without its unreachable items, from 0 to 1
+    proved: Mapping[Goal, str]  # goals proved unreachable, each with the query that proves it
+    argued: Mapping[Goal, str]  # goals declared unreachable by the campaign, each with its reason
+    open: Mapping[Goal, Hole]  # the goals that are not met, described
+    wrong: Mapping[Goal, str]  # unreachable goals that were hit, each with the name of the test
+    groups: Sequence[Group]  # coverage groups beyond those of the campaign
+    seconds: float  # wall time
+    ended: str  # why it ended with open goals; empty if none is open
+    trade: Trade | None = None  # how many mutants the choices kill; `None`: not tried
 
     @property
     def sizes(self) -> dict[int, int]:
-        """By the number of tests that show each goal, up to the margin: the tests needed."""
+        """The sizes of `choices`, by the number of tests that meet each goal."""
         return {times: len(names) for times, names in self.choices.items()}
 
     @property
     def needed(self) -> int:
-        """The number of tests of the suite that are needed for their goals."""
+        """The number of tests of the suite that are needed to meet the goals."""
         return self.sizes[max(self.sizes)]
 
     @property
@@ -87,14 +84,14 @@ class Closed:
 
     @property
     def proofs(self) -> dict[Goal, str]:
-        """Why goals cannot be met of which the model says so, in words."""
+        """The goals that the model proves unreachable, each with the reason in words."""
         return {goal: f"the model proves it: {query}" for goal, query in self.proved.items()}
 
 
 def closed_document(closed: Closed) -> dict[str, object]:
     """The content of `closing.json`; a goal is a pair of group and item.
 
-    All of it but `seconds` follows from the seed, unless seconds ended it.
+    The seed determines everything but `seconds`, unless `Budget.seconds` ended the search.
     """
     return {
         "goals": closed.goals,
@@ -129,11 +126,11 @@ def _texts(texts: Mapping[Goal, str]) -> Iterable[object]:
 
 
 SHOWN = 3
-"""Goals that are named of those that a test met."""
+"""The most goals named per test."""
 
 
 def print_closed(closed: Closed, printer: Printer) -> None:
-    """Print what each test added, what is open and why, and how small the suite is."""
+    """Print what each test added, which goals are open and why, and the size of the suite."""
     useful = [test for test in closed.tests if test.goals]
     if useful:
         _print_useful(useful, closed, printer)

@@ -1,4 +1,4 @@
-"""Which test is played next: a witness of the model, a change of the nearest test, or a new one."""
+"""Propose the next test: a witness of the model, a change of a near test, or a new one."""
 
 from __future__ import annotations
 
@@ -23,16 +23,16 @@ from rvmon.coverage.holes import Goal, nearness
 _Option = TypeVar("_Option", bound=Hashable)
 
 WITNESSES = 2
-"""Tests of one run of the model, each with other times."""
+"""The most tests per run of the model; their times differ."""
 
 DRAWN = 32
-"""Tests that a strategy makes at a time."""
+"""The number of tests that a strategy is asked for at a time."""
 
 ASKED = 8
-"""Goals that are tried for each test, while none can be made."""
+"""The most goals tried, per test of a batch, before a batch is returned incomplete."""
 
 NEAREST = 3
-"""Tests of which one is changed."""
+"""The number of nearest tests from which one is drawn to be changed."""
 
 _SPECIFIC_FIRST = (Subject.CROSS, Subject.COVERPOINT, Subject.GOAL, Subject.REQUIREMENT)
 
@@ -41,15 +41,15 @@ _SPECIFIC_FIRST = (Subject.CROSS, Subject.COVERPOINT, Subject.GOAL, Subject.REQU
 class Proposal:
     """A test to be played."""
 
-    test: Test  # itself
-    origin: str  # in words
-    goal: Goal  # its aim
+    test: Test
+    origin: str  # how it was made, in words
+    goal: Goal  # the goal that it aims at
     drawn: Sequence[Draw] = ()  # the choices that made it
     witness: Witness | None = None  # the run of the model that it follows
 
 
 class Proposer:
-    """Proposes tests, each aimed at what is open."""
+    """Proposes tests, each aimed at an open goal."""
 
     def __init__(
         self,
@@ -78,11 +78,13 @@ class Proposer:
         self._followed: Counter[str] = Counter()
 
     def batch(self, size: int) -> list[Proposal]:
-        """`size` tests, or fewer if nothing is open; each aims at a goal of its own where possible.
+        """Propose up to `size` tests, which aim at different goals where possible.
+
+        There are fewer tests if no goal is open, or if no further test can be made.
 
         Raises:
-            TestError: a test cannot be made, or not be written to a file.
-            ModelError: what the campaign asks its model about an item is no query.
+            TestError: a test cannot be made, or cannot be written to a file.
+            ModelError: the campaign's query for an item is not a valid query of its model.
         """
         proposals: list[Proposal] = []
         aimed: set[Goal] = set()
@@ -101,7 +103,10 @@ class Proposer:
         return proposals
 
     def learn(self, proposal: Proposal, played: Played, *, added: bool) -> None:
-        """Learn what became of a test: one that came nearer to its goal than before paid, too."""
+        """Learn from a played test.
+
+        A test paid off if it met a goal first, or came nearer to its goal than any test before.
+        """
         near = nearness(proposal.goal, played.outcome.hits, self._goals.model)
         is_nearer = near > self._nearness[proposal.goal]
         self._nearness[proposal.goal] = max(near, self._nearness[proposal.goal])
@@ -110,14 +115,14 @@ class Proposer:
         self._learned.learn(proposal.drawn, paid=added or is_nearer)
 
     def _rank(self, goal: Goal) -> tuple[bool, int]:
-        """Goals of the model first, then the specific ones: others are met on the way to them."""
+        """Goals that the model knows come first, then specific ones, as these meet others, too."""
         is_known = self._witnesses is not None and self._witnesses.knows(goal)
         subject = self._goals.model.groups[goal[0]].subject
         places = [place for place, one in enumerate(_SPECIFIC_FIRST) if one is subject]
         return not is_known, places[0] if places else len(_SPECIFIC_FIRST)
 
     def _following(self, goal: Goal) -> Proposal | None:
-        """A test that follows a run of the model to a goal; notes a proof that there is none."""
+        """A test that follows a run of the model to a goal; if none exists, notes the proof."""
         answer = None if self._witnesses is None else self._witnesses.answer(goal)
         if isinstance(answer, Proof):
             self._goals.proved[goal] = answer.query
@@ -132,7 +137,7 @@ class Proposer:
         return Proposal(self._named(test, name, origin), origin, goal, (), answer)
 
     def _by_chance(self, goal: Goal) -> Proposal | None:
-        """A written test, then changed, biased and drawn ones; `None` if none can be made."""
+        """The next written test, or a changed, biased or drawn one; `None` if none can be made."""
         drawn: list[Draw] = []
         written = next(self._written, None)
         if written is not None:
@@ -155,12 +160,12 @@ class Proposer:
         if made is None:
             return None
         origin = f"{nearest.name}, changed towards {goal[0]}: {goal[1]}"
-        # What the nearest test knows of its run is not known of another.
+        # The expectations of the nearest test do not apply to the changed test.
         made = structs.replace(made, expected={}, reaches={})
         return Proposal(self._named(made, self._name(), origin), origin, goal, drawn)
 
     def _biased(self, goal: Goal, drawn: list[Draw]) -> Proposal | None:
-        """A test whose choices are those of the tests that came nearest to a goal, more often."""
+        """A test of `Closing.biased`, which prefers the choices of the tests nearest to a goal."""
         if self._campaign.closing.biased is None:
             return None
         near = [self._draws.get(played.job.test.name, ()) for played in self._nearest(goal)]
@@ -187,7 +192,7 @@ class Proposer:
         return Proposal(self._named(test, self._name(), origin), origin, goal, drawn)
 
     def _nearest(self, goal: Goal) -> list[Played]:
-        """The tests that met most of what a goal needs; any of those that are equally near."""
+        """The tests nearest to a goal, by `nearness`; ties are broken at random."""
         model, rng = self._goals.model, self._rng
         return heapq.nlargest(
             NEAREST,
@@ -199,7 +204,7 @@ class Proposer:
         """A test that a function of the campaign makes.
 
         Raises:
-            TestError: it fails, or makes none.
+            TestError: the function fails, or returns something other than a test of the campaign.
         """
         with blamed(f"`{what}` of the campaign cannot make a test"):
             test: object = make()
@@ -223,7 +228,7 @@ class Proposer:
 
 
 def _stream(campaign: Campaign, strategy: str, robot: str, seed: int) -> Iterator[Test]:
-    """The tests of a strategy, as long as it makes others than before."""
+    """The tests of a strategy for growing seeds, until a seed gives the same tests as the last."""
     before: Sequence[Test] = ()
     for number in count(seed):
         usable = [*_of_strategies(campaign, [strategy], robot, DRAWN, number)]
@@ -236,7 +241,7 @@ def _stream(campaign: Campaign, strategy: str, robot: str, seed: int) -> Iterato
 def _of_strategies(
     campaign: Campaign, strategies: Sequence[str], robot: str, tests: int, seed: int
 ) -> Iterator[Test]:
-    """The tests of strategies that are for a robot without a planted fault."""
+    """The tests of strategies that fit a robot and have no planted fault."""
     if not strategies:
         return
     by_strategy = plan(campaign, strategies, tests=tests, seed=seed).tests

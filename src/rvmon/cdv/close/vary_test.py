@@ -1,4 +1,4 @@
-"""A test changed a little by the types of its fields; which changes have paid."""
+"""Change tests a little, guided by the types of their fields, and learn which changes pay off."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from rvmon.cdv.test import Test
 _Option = TypeVar("_Option", bound=Hashable)
 
 Draw = tuple[str, Hashable]
-"""A choice by its name, and the option that was taken."""
+"""The name of a choice, and the option that was drawn."""
 
 
 class Learned:
-    """Weights of options, by choice: they grow with what tests of theirs brought.
+    """Weights of the options of each choice; they grow with the success of tests that drew them.
 
-    An option is drawn in proportion to the share of its tests that paid, each with one
-    success and one failure beforehand, so that none is ever given up.
+    An option is drawn in proportion to the share of its tests that paid off. Each option starts
+    with one success and one failure, so that none is ever given up.
 
     Source: Thompson, On the Likelihood that One Unknown Probability Exceeds Another, Biometrika 25,
-    1933 (options are drawn by what is known of them, here the mean of the posterior); Rubinstein,
-    The Cross-Entropy Method for Combinatorial and Continuous Optimization, 1999 (and by what the
-    best tests drew).
+    1933 (draw options by what is known of them, here the mean of the posterior); Rubinstein, The
+    Cross-Entropy Method for Combinatorial and Continuous Optimization, 1999 (and by what the best
+    tests drew).
     """
 
     def __init__(self) -> None:
@@ -42,14 +42,14 @@ class Learned:
         drawn: list[Draw],
         near: Sequence[Collection[Draw]] = (),
     ) -> _Option:
-        """Draw one of some options.
+        """Draw one of several options.
 
         Args:
-            rng: draws.
-            choice: its name.
-            options: at least one; one that is named twice is as likely again.
-            drawn: gets what was drawn.
-            near: the draws of tests that came near to what is sought: theirs are likelier.
+            rng: the source of randomness.
+            choice: name of the choice.
+            options: at least one; an option that is listed twice is twice as likely.
+            drawn: the draw is appended to this list.
+            near: the draws of tests that came near to the goal; these options are more likely.
         """
         weights = [self._weight((choice, option), near) for option in options]
         found = rng.choices(options, weights)[0]
@@ -61,32 +61,38 @@ class Learned:
         return share + sum(draw in one for one in near) / max(1, len(near))
 
     def learn(self, drawn: Iterable[Draw], *, paid: bool) -> None:
-        """Learn whether a test that was made by these draws has paid."""
+        """Learn whether a test that was made by these draws paid off."""
         for draw in dict.fromkeys(drawn):
             self._tries[draw] += 1
             self._gains[draw] += paid
 
 
 ATTEMPTS = 50
-"""Changes that are tried until one gives a test: types say not all that tests demand."""
+"""The most changes tried until one gives a valid test; types cannot express all constraints."""
 
 CHANGES = (1, 1, 2, 3)
-"""The numbers of changes made at once, as often as they are drawn."""
+"""The numbers of changes made at once; one is as likely as two and three together."""
 
 _KEPT = frozenset({"name", "strategy", "text", "robot", "mutation", "expected"})
-"""The fields that describe a test and do not change its run."""
+"""Fields that describe a test and do not affect its run."""
 
 DEEPEST = 5
-"""Structures within structures that are looked into."""
+"""The depth to which nested structures are changed or made."""
 
 _SPREAD = 100.0
-"""Numbers without a bound are drawn up to here."""
+"""Unbounded numbers are drawn at most this far from 0, or from their only bound."""
 
 _SEEDS = 1 << 32
 
 
 class Mutator:
-    """Changes tests of one type."""
+    """Changes tests of one type.
+
+    Args:
+        kind: the type of the tests.
+        fixed: fields that are never changed, such as `horizon_s` or `faults.noise_m`.
+        learned: draws the changes.
+    """
 
     def __init__(self, kind: type[Test], fixed: Collection[str], learned: Learned) -> None:
         described = inspect.type_info(kind)
@@ -106,7 +112,17 @@ class Mutator:
     def mutated(
         self, test: Test, others: Sequence[Test], rng: random.Random, drawn: list[Draw]
     ) -> Test | None:
-        """A test with up to three changes, some borrowed from others; `None` if none was found."""
+        """A test with up to three changes, in which values may come from other tests.
+
+        Args:
+            test: the test to change.
+            others: tests to borrow values from.
+            rng: the source of randomness.
+            drawn: the draws of the changes are appended to this list.
+
+        Returns:
+            The changed test; `None` if no change gave a valid one.
+        """
         for _ in range(ATTEMPTS if self._fields else 0):
             choices: list[Draw] = []
             value = _built(test, self._type)
@@ -129,7 +145,7 @@ class Mutator:
         return None
 
     def _places(self, value: Mapping[str, Any]) -> list[str]:
-        """The fields that can be changed, sequences as often as they have elements."""
+        """The fields that can be changed; a sequence is listed once per element."""
         sizes = {
             name: len(whole) if isinstance(whole := value[name], list | tuple) else 1
             for name in self._fields
@@ -145,9 +161,15 @@ class Mutator:
         rng: random.Random,
         drawn: list[Draw],
     ) -> Any:
-        """A value of plain data with one change; `donor` stands at the same place of another test.
+        """A value, as plain data, with one change.
 
-        The address of that place, `path`, is the same for all elements of a sequence.
+        Args:
+            value: the value to change.
+            kind: its type.
+            donor: the value at the same place of another test.
+            path: the address of this place; all elements of a sequence share one.
+            rng: the source of randomness.
+            drawn: the draws are appended to this list.
         """
         match kind:
             case inspect.StructType():
@@ -189,7 +211,7 @@ class Mutator:
         rng: random.Random,
         drawn: list[Draw],
     ) -> list[Any]:
-        """A sequence with an element more, less, moved or changed, or with a tail of another."""
+        """A sequence with one element inserted, removed, moved or changed, or a tail of `donor`."""
         ways = ["insert", *(["borrow", "tail"] if donor else [])]
         ways += ["remove", "move", *["change"] * len(values)] if values else []
         way = self._learned.choose(rng, f"{path}[]", ways, drawn)
@@ -254,7 +276,7 @@ def _can_make(kind: inspect.Type, depth: int = 0) -> bool:
             return any(_can_make(one, depth) for one in kind.types)
         case inspect.StructType():
             needed = [field.type for field in kind.fields if field.required]
-            # A structure may be part of itself.
+            # Without a limit of depth, a recursive structure would never end.
             return (
                 not kind.array_like
                 and depth < DEEPEST
@@ -267,7 +289,7 @@ def _can_make(kind: inspect.Type, depth: int = 0) -> bool:
 
 
 def _can_change(kind: inspect.Type, depth: int = 0) -> bool:
-    """Whether values of a type can be changed: a text has no neighbours that mean anything."""
+    """Whether values of a type can be changed; text cannot, as similar text means nothing."""
     if isinstance(kind, inspect.StructType):
         inner = (_can_change(field.type, depth + 1) for field in kind.fields)
         return not kind.array_like and depth < DEEPEST and any(inner)
@@ -275,12 +297,12 @@ def _can_change(kind: inspect.Type, depth: int = 0) -> bool:
 
 
 def _built(test: Test, kind: inspect.StructType) -> dict[str, Any]:
-    """A test as plain data, with what has its default."""
+    """A test as plain data, including fields at their defaults."""
     return _filled(msgspec.to_builtins(test), kind)
 
 
 def _filled(value: Mapping[str, Any], kind: inspect.StructType) -> dict[str, Any]:
-    """A structure as plain data, with what has its default and was left out."""
+    """A structure as plain data, with the defaults of fields that were left out."""
     whole = dict(value)
     for field in kind.fields:
         if field.encode_name not in whole and not field.required:
@@ -292,7 +314,7 @@ def _filled(value: Mapping[str, Any], kind: inspect.StructType) -> dict[str, Any
 
 
 def _member(value: Any, kind: inspect.UnionType) -> inspect.Type | None:
-    """The member of a union that a structure or a sequence is of."""
+    """The member type of a union to which a structure or sequence belongs; else `None`."""
     for one in kind.types:
         match one:
             case inspect.StructType() if isinstance(value, dict):
@@ -310,7 +332,7 @@ def _bounds(kind: inspect.IntType | inspect.FloatType) -> tuple[float | None, fl
 
 
 def _number(kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> float:
-    """A number within the bounds of its type: small ones as often as large ones."""
+    """A random number within the bounds of its type; small ones are as likely as large ones."""
     low, high = _bounds(kind)
     spread: float = _SPREAD ** rng.random()
     if low is None and high is None:
@@ -325,7 +347,7 @@ def _number(kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> fl
 
 
 def _near(value: float, kind: inspect.IntType | inspect.FloatType, rng: random.Random) -> float:
-    """A number near another one, within the bounds of its type."""
+    """A random number near another one, within the bounds of its type."""
     low, high = _bounds(kind)
     number = value + rng.gauss(0, 1) * rng.choice((0.01, 0.1, 0.5)) * (abs(value) or 1.0)
     if isinstance(kind, inspect.IntType):

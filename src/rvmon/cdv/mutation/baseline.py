@@ -1,4 +1,4 @@
-"""A suite played on the code as it is, with all that is recorded: what mutants are compared to."""
+"""Play a suite on the unchanged code and record it, as the baseline for mutants."""
 
 from __future__ import annotations
 
@@ -23,31 +23,37 @@ from rvmon.session import Spec
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """The first difference of a run from that of the unchanged code."""
+    """The first difference of a mutant's run from that of the unchanged code."""
 
-    test: str  # the played test
-    t_ns: int  # the instant; of a difference at the end of the run, that
-    name: str  # the signal or event; `state`: of the robot; empty: the run's end itself
-    was: str  # its value; empty: none
-    now: str  # its value with the change; empty: none
-    # requirements that are judged otherwise, none of them F: verdicts before and after
+    test: str  # the name of the test
+    t_ns: int  # the instant of the difference
+    name: str  # the signal or event, or `state` of the robot; empty: the runs end at other instants
+    was: str  # the original value; empty: none
+    now: str  # the mutant's value; empty: none
+    # Requirements with another verdict, none of them a new failure: id, verdict before and after.
     verdicts: tuple[tuple[str, str, str], ...] = ()
 
 
 def recorder(name: str, robot: Robot, code: Code | None = None) -> Callable[[Test], Recorded]:
-    """A function that plays tests of a robot here; `code`: whose statements are measured."""
+    """Make a function that plays and records tests of a robot in this process.
+
+    Args:
+        name: name of the robot.
+        robot: the robot.
+        code: the code whose coverage is measured.
+    """
     bench = Bench(name, robot, code)
 
     def play(test: Test) -> Recorded:
         played = bench.play(test, keeps=True)
-        # Of the report the verdicts are compared: what each attempt was need not be sent.
+        # Only the verdicts of the report are compared, so its attempts need not be sent.
         return played._replace(report=replace(played.report, attempts=()))
 
     return play
 
 
 def difference(test: str, was: Recorded, now: Recorded) -> Difference | None:
-    """The first difference between two recorded runs of a test; `None`: there is none."""
+    """The first difference between two recorded runs of a test, or `None`."""
     verdicts = tuple(
         (name, verdict.value, now.verdicts[name].value)
         for name, verdict in was.verdicts.items()
@@ -72,7 +78,7 @@ def _states(recorded: Recorded) -> Sequence[tuple[int, Values]]:
 
 
 _OVER: tuple[int, Values] = (2**63, {})
-"""Stands for a sample behind the last one."""
+"""Stands for a sample after the last one, later than all others."""
 
 
 def _of_samples(
@@ -94,7 +100,7 @@ def _first(t_ns: int, was: Values, now: Values) -> tuple[int, str, str, str] | N
 
 
 def _as_text(values: Values, name: str) -> str:
-    """A value as text, all digits of it; NaN is as NaN."""
+    """A value as text with all its digits; as text, NaN equals NaN."""
     if name not in values:
         return ""
     value = values[name]
@@ -103,18 +109,18 @@ def _as_text(values: Values, name: str) -> str:
 
 @dataclass(frozen=True)
 class Suite:
-    """A robot, and tests that were played on it."""
+    """A robot with tests that were played and recorded on its unchanged code."""
 
-    name: str
+    name: str  # of the robot
     robot: Robot
-    spec: Spec
-    code: Code
-    tests: Mapping[str, Test]
-    recorded: Mapping[str, Recorded]
-    left_out: Mapping[str, str]
+    spec: Spec  # that judges it
+    code: Code  # that is mutated
+    tests: Mapping[str, Test]  # by name
+    recorded: Mapping[str, Recorded]  # by name of the test
+    left_out: Mapping[str, str]  # tests that gave no result, by name, each with the reason
 
     def reaching(self, mutant: Mutant) -> list[str]:
-        """The tests that run the changed statement; of a constant all, as nothing runs it."""
+        """The names of the tests that run the changed statement; of a constant, all tests."""
         path = str(mutant.path)
         if mutant.function in self.code.constants.get(path, ()):
             return list(self.tests)
@@ -138,10 +144,10 @@ class Suite:
 
 
 def mutated_code(campaign: Campaign) -> Code:
-    """The code of a campaign that is to be mutated.
+    """The code of a campaign, which is to be mutated.
 
     Raises:
-        RvmonError: it names none.
+        RvmonError: the campaign names no code.
     """
     if campaign.code is None:
         raise RvmonError(f"campaign `{campaign.name}` names no code: give it `code` to be mutated")
@@ -156,11 +162,20 @@ def record_suite(
     jobs: int,
     progress: Progress | None = None,
 ) -> Suite:
-    """Play tests on a robot as it is, but those for another one, or with a fault of their own.
+    """Play tests on the unchanged robot and record them.
+
+    Tests for another robot, or with a planted fault, are skipped.
+
+    Args:
+        campaign: the campaign.
+        robot: name of the robot.
+        tests: the suite.
+        jobs: number of processes.
+        progress: called after each test.
 
     Raises:
-        RvmonError: the campaign measures no code, the robot has no requirements, or no test is
-            left.
+        RvmonError: the campaign measures no code, the robot has no requirements, or no test gives a
+            result.
     """
     under_test = campaign.robots[robot]
     code = mutated_code(campaign)

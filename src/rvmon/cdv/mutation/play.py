@@ -1,8 +1,9 @@
-"""Play a suite on mutants, each in a process of its own; what a mutant does there is its result.
+"""Play a suite on mutants, each in its own process.
 
-Functions that are loaded get the changed code in their place, so that it does not matter who holds
-them; a constant is worked out anew, with what follows from it; a file that is not loaded yet will
-be loaded with the change. Nothing is undone: the process is to be ended afterwards.
+A mutant is planted into a running process. Loaded functions get the changed code object, so that
+all references to them see the change. A changed constant is evaluated again, together with the
+constants of its file that depend on it. A file that is not loaded yet is loaded with the change.
+Nothing is undone, so the process must end afterwards.
 """
 
 from __future__ import annotations
@@ -29,10 +30,14 @@ from rvmon.verdicts import Verdict
 
 
 def plant(mutant: Mutant, source: str) -> None:
-    """Change the code of this process.
+    """Apply a mutant to the code of this process.
+
+    Args:
+        mutant: the mutant.
+        source: the unchanged text of its file.
 
     Raises:
-        RvmonError: it cannot be planted; the message says why.
+        RvmonError: the mutant cannot be planted; the message says why.
     """
     path = os.path.abspath(mutant.path)
     changed = compile(mutant.source, path, "exec")
@@ -63,7 +68,7 @@ def _change_loader(path: str, changed: CodeType) -> None:
 
 
 def _codes_of(code: CodeType, name: str) -> list[CodeType]:
-    """The functions of a qualified name in the order of the file: a property has up to three."""
+    """The functions with a qualified name, in file order; the methods of a property share one."""
     return [code_type for code_type in _all_codes(code) if code_type.co_qualname == name]
 
 
@@ -78,8 +83,9 @@ def _change_functions(
     path: str, modules: list[ModuleType], known: list[CodeType], changed: list[CodeType]
 ) -> None:
     by_line = {old.co_firstlineno: new for old, new in zip(known, changed, strict=True)}
-    gc.unfreeze()  # the parent's functions are looked for, too
-    # By their globals: what else there is is not counted as held, and so not copied after a fork.
+    gc.unfreeze()  # so that functions from the parent process are found, too
+    # A function refers to its globals, the module's namespace. Searching only its referrers leaves
+    # the reference counts of other objects alone, so their memory is not copied after a fork.
     found = gc.get_referrers(*map(vars, modules))
     gc.freeze()
     for function in found:
@@ -94,7 +100,7 @@ def _change_functions(
 
 
 def _change_constants(module: ModuleType, mutant: Mutant) -> None:
-    """Work out a constant, and the file's constants that are made of it, and bind them anew."""
+    """Evaluate and rebind a changed constant, and the constants of its file that depend on it."""
     namespace = dict(vars(module))
     names = {mutant.function}
     for statement in ast.parse(mutant.source).body:
@@ -108,23 +114,24 @@ def _change_constants(module: ModuleType, mutant: Mutant) -> None:
     for name in names:
         old = getattr(module, name, None)
         for other in list(sys.modules.values()):
-            # Modules that imported the constant by its name hold it, too.
+            # Other modules may have imported the constant by name.
             if getattr(other, "__dict__", {}).get(name) is old:
                 setattr(other, name, namespace[name])
 
 
 MOST_MEMORY = 2 << 30
-"""Bytes that a mutant may take beyond what its process begins with."""
+"""Bytes that a mutant may allocate in addition to what its process starts with."""
 
 LEAST_CPU_S = 0.5
 TIMES_CPU = 10
-"""A test hangs after so many seconds of processor time, and so many times what it takes else."""
+"""A test hangs if it takes more processor time than `LEAST_CPU_S` plus `TIMES_CPU` times the time
+it takes on the unchanged code."""
 
 HANGS = "it computes without an end: its time, or its memory, was all"
-"""Said of both: an endless loop that also collects something may come first to either."""
+"""The text for both limits: an endless loop that also allocates may reach either one first."""
 
 PATIENCE_S = 60.0
-"""Seconds of wall time that a mutant may take in addition to those of the suite."""
+"""Wall time that a mutant may take in addition to that of the suite."""
 
 
 def play_mutants(
@@ -136,15 +143,21 @@ def play_mutants(
     keep: bool = False,
     progress: Progress | None = None,
 ) -> list[Tried]:
-    """Play tests that run the changed line, on each mutant: `every`, or until a requirement fails.
+    """Play, on each mutant, the tests that run its changed line.
 
-    A mutant that hangs, crashes, or takes too much memory harms no other: it has a process of its
-    own, with limits, which is ended with it. What it writes to files is not held back.
+    A mutant that hangs, crashes or takes too much memory does not affect others, as it has its own
+    process with limits. It can still write files.
 
-    With `keep`, the first run in which a requirement fails is kept.
+    Args:
+        suite: the tests, recorded on the unchanged code.
+        mutants: the mutants to play.
+        jobs: number of processes.
+        every: play all these tests, instead of stopping once a requirement fails.
+        keep: keep the first run in which a requirement fails.
+        progress: called after each mutant.
 
     Returns:
-        What became of each, in their order; it does not depend on `jobs`.
+        The result of each mutant, in the given order; it does not depend on `jobs`.
     """
     _load_what_runs_need(suite)
     sources = {str(mutant.path): text_of_file(mutant.path) for mutant in mutants}
@@ -172,7 +185,7 @@ _Task = tuple[Mutant, Sequence[str]]
 
 
 def _load_what_runs_need(suite: Suite) -> None:
-    """Play the quickest test here, so that not each process loads the same modules anew."""
+    """Play the fastest test here, so that worker processes need not load the same modules again."""
     quickest = min(suite.recorded, key=lambda name: suite.recorded[name].cpu_s)
     Bench(suite.name, suite.robot).play(suite.tests[quickest])
 
@@ -240,10 +253,11 @@ def _most_cpu_s(was: Recorded) -> float:
 
 
 def _most_s(suite: Suite) -> float:
-    """Wall time in which a mutant is to have played: it may wait as the code as it is has waited.
+    """The wall time after which a mutant is killed.
 
-    For its own sake, or because others computed: a test hangs by processor time, this is for what
-    waits for ever.
+    Hanging tests are detected by their processor time; this limit is for those that wait for ever.
+    It allows for the ratio of wall time to processor time of the unchanged code, which may have
+    waited as well, for its own reasons or for a busy machine.
     """
     recorded = suite.recorded.values()
     computed = max(sum(one.cpu_s for one in recorded), LEAST_CPU_S)
@@ -258,12 +272,12 @@ def _ended(task: _Task, ended: Ended) -> Tried:
 
 
 class _Overtime(BaseException):
-    """A test computes too long; no `except Exception` of the code under test is to catch it."""
+    """A test took too long; a `BaseException`, so that the code under test does not catch it."""
 
 
 @contextmanager
 def _at_most(cpu_s: float) -> Iterator[None]:
-    """Interrupt what takes more processor time: how busy the machine is makes no difference."""
+    """Raise `_Overtime` after some processor time, which does not depend on the machine's load."""
     if not hasattr(signal, "setitimer"):
         yield
         return
@@ -280,7 +294,7 @@ def _at_most(cpu_s: float) -> Iterator[None]:
 
 
 def _limit() -> None:
-    """Bound the memory of this process, and let it say nothing on the terminal."""
+    """Limit the memory of this process, and discard its output."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     for stream in (sys.__stdout__, sys.__stderr__):
         if stream is not None:

@@ -1,4 +1,4 @@
-"""The mutants of a campaign's code, found in its syntax tree."""
+"""The mutants of a campaign's code, made from its syntax tree."""
 
 from __future__ import annotations
 
@@ -16,16 +16,17 @@ from rvmon.errors import RvmonError
 from rvmon.texts import text_of_file
 
 THIRDS = ("A", "B", "held out")
-"""Mutants are shared among these by their identities; who improves a suite looks at the first two.
+"""Mutants are divided into these by a hash of their identity; look only at the first two to improve
+a suite.
 
-A score on mutants that were looked at says how well they were looked at.
+The score on mutants that guided the improvement is biased; that on the held-out third is not.
 """
 
 HELD_OUT = THIRDS[-1]
 
 
 def third_of(identity: str) -> str:
-    """The third that an identity is in.
+    """The third to which an identity belongs.
 
     >>> third_of("R1:bound:1") in THIRDS
     True
@@ -38,23 +39,22 @@ class Mutant:
     """One change of one file."""
 
     path: Path  # the file
-    line: int  # its line, from 1
-    kind: str  # of change: the name of an operator
-    before: str  # the changed code as it was
-    after: str  # as it is
-    source: str  # the whole file as it is
-    # the qualified name of the function, or the name of the constant, that is changed
-    function: str = ""
+    line: int  # the changed line, from 1
+    kind: str  # the name of the mutation operator
+    before: str  # the original code
+    after: str  # the changed code
+    source: str  # the whole changed file
+    function: str = ""  # qualified name of the changed function, or name of the changed constant
     ordinal: int = 0  # its number among the changes of this kind to this function, from 1
 
     @property
     def change(self) -> str:
-        """File and change, without the line: what it is known by when the file grows."""
+        """File and change, without the line, so that it stays the same when the file grows."""
         return f"{self.path.name} {self.kind}: `{self.before}` => `{self.after}`"
 
     @property
     def brief(self) -> str:
-        """The change, of several lines the first."""
+        """The change on one line; code of several lines is cut to its first."""
         return f"{_first(self.before)} => {_first(self.after)}"
 
     @property
@@ -64,7 +64,7 @@ class Mutant:
 
     @property
     def third(self) -> str:
-        """The third that it is in, which follows from its identity: nobody can choose."""
+        """The third to which it belongs, by its identity."""
         return third_of(self.identity)
 
     def __str__(self) -> str:
@@ -79,15 +79,15 @@ def _first(code: str) -> str:
 def mutants(
     path: Path, lines: Collection[int], *, constants: Collection[str] = ()
 ) -> Iterator[Mutant]:
-    r"""All changes that are tried in a file: inside functions, on given lines only.
+    r"""All mutants of a file, inside functions and on given lines only.
 
     Args:
-        path: the file, which is read and not run.
-        lines: the lines to change; a change in a line that no test runs could not be seen.
-        constants: names at the file's top whose values are changed as well.
+        path: the file, which is parsed but not run.
+        lines: the lines to change.
+        constants: names of module-level constants whose values are changed as well.
 
     Raises:
-        RvmonError: it cannot be read, or is no Python.
+        RvmonError: the file cannot be read, or is not Python.
 
     >>> import tempfile
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -121,7 +121,7 @@ def mutants(
 def _scopes(
     tree: ast.AST, prefix: str, constants: Collection[str]
 ) -> Iterator[tuple[str, list[ast.stmt]]]:
-    """Functions by their qualified names, each met by itself, and named constants."""
+    """The name and body of each function, nested ones included, and of each named constant."""
     for node in ast.iter_child_nodes(tree):
         match node:
             case ast.FunctionDef(name=name, body=body) | ast.AsyncFunctionDef(name=name, body=body):
@@ -136,9 +136,9 @@ def _scopes(
 
 
 def _executed(node: ast.AST) -> Iterator[ast.AST]:
-    """The node and all below it that can matter, but for functions: they are met by themselves.
+    """The node and all below it whose change could matter, except nested functions.
 
-    Annotations do not matter, nor whether `zip` looks at lengths that are equal.
+    Those are scopes of their own. Annotations do not matter, nor does `strict` of `zip`.
     """
     yield node
     for name, field in ast.iter_fields(node):
@@ -154,14 +154,14 @@ def _executed(node: ast.AST) -> Iterator[ast.AST]:
 def _changes(
     source: str, node: ast.expr | ast.stmt, scope: Scope
 ) -> Iterator[tuple[str, str, str, str]]:
-    """Kind, the code before and after, and the file after, of all changes to a node."""
+    """All changes to a node, each as kind, code before, code after, and changed file."""
     for kind, target, text in changes_of(node, scope):
         before, after = ast.unparse(target), ast.unparse(ast.parse(text))
         if before == after:
             continue
         changed = _replaced(source, target, text)
         if isinstance(target, ast.Constant | ast.Set):
-            # A constant says nothing by itself.
+            # A constant means nothing on its own, so show its line.
             before, after = (
                 code.splitlines()[target.lineno - 1].strip() for code in (source, changed)
             )
@@ -169,7 +169,7 @@ def _changes(
 
 
 def _replaced(source: str, node: ast.expr | ast.stmt, text: str) -> str:
-    """The source with the node's characters replaced; its columns count bytes."""
+    """The source with the text of a node replaced; columns of `ast` count UTF-8 bytes."""
     lines = source.encode().splitlines(keepends=True)
     end_line, end_column = node.end_lineno or node.lineno, node.end_col_offset or 0
     before = b"".join(lines[: node.lineno - 1]) + lines[node.lineno - 1][: node.col_offset]
@@ -178,13 +178,13 @@ def _replaced(source: str, node: ast.expr | ast.stmt, text: str) -> str:
 
 
 def code_mutants(code: Code) -> list[Mutant]:
-    """All mutants of what is measured, and of its constants, in the order of files and lines.
+    """All mutants of the measured code and its constants, in the order of files and lines.
 
-    Of those that Python compiles to one code the first is kept, and none that it compiles to the
-    code as it is, or not at all.
+    Mutants that Python compiles to the same bytecode as the original or as an earlier mutant are
+    left out, and so are those that do not compile.
 
     Raises:
-        RvmonError: one cannot be read, or is no Python.
+        RvmonError: a file cannot be read, or is not Python.
 
     Source: Papadakis, Jia, Harman, Le Traon 2015, Trivial Compiler Equivalence.
     """
@@ -211,7 +211,7 @@ def _meaning_of(mutant: Mutant) -> tuple[object, ...] | None:
 
 
 def _meaning(code: CodeType) -> tuple[object, ...]:
-    """The meaning of code, whatever its place in the file."""
+    """What determines the behaviour of a code object, without its line numbers."""
     return code.co_name, code.co_code, code.co_names, code.co_varnames, tuple(_constants(code))
 
 

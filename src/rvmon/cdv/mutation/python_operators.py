@@ -1,10 +1,10 @@
-"""The mutation operators of Python code: and what they ask of the code around a node.
+"""The mutation operators of Python code, and the context of a node that they need.
 
-Sources of the operators, by the letters that comments cite:
+Sources of the operators, with the abbreviations used in comments:
 
 * **KO** King, Offutt 1991, A Fortran Language System for Mutation-Based Software Testing (Mothra).
 * **OLRUZ** Offutt, Lee, Rothermel, Untch, Zapf 1996, An Experimental Determination of Sufficient
-  Mutant Operators: ROR, LCR, AOR (with ABS and UOI) see nearly what all see.
+  Mutant Operators: ROR, LCR, AOR (with ABS and UOI) are nearly as effective as all operators.
 * **DH** Derezińska, Hałas 2014, Analysis of Mutation Operators for the Python Language.
 * **DOA** Delamaro, Offutt, Ammann 2014, Designing Deletion Mutation Operators.
 * **DOL** Deng, Offutt, Li 2013, Empirical Evaluation of the Statement Deletion Mutation Operator.
@@ -25,7 +25,7 @@ _WAITS = (ast.Yield, ast.YieldFrom)
 
 
 class Strings:
-    """The strings of a file by what they are used for; one may stand for another of its use."""
+    """The strings of a file by their use; a mutant replaces one by another of the same use."""
 
     def __init__(self, tree: ast.Module) -> None:
         self._uses: dict[int, str] = {}
@@ -38,7 +38,7 @@ class Strings:
                     known.append(str(element.value))
 
     def others(self, node: ast.Constant) -> list[str]:
-        """The other strings of the same use, from the next in the file on."""
+        """The other strings of the same use: the later ones of the file, then the earlier ones."""
         known = self._of_use.get(self._uses.get(id(node), ""), [])
         if not known:
             return []
@@ -47,7 +47,7 @@ class Strings:
 
 
 def _used(node: ast.AST) -> Iterator[tuple[str, ast.Constant]]:
-    """The strings right below a node, each with its use."""
+    """The strings that are direct parts of a node, each with its use."""
     match node:
         case ast.Call(func=function, args=arguments):
             pairs = [
@@ -67,7 +67,12 @@ def _used(node: ast.AST) -> Iterator[tuple[str, ast.Constant]]:
 
 
 class Scope:
-    """A function, or the statement that makes a constant, in its file."""
+    """The body of a function, or the statement that assigns a constant.
+
+    Args:
+        body: its statements.
+        strings: the strings of the whole file.
+    """
 
     def __init__(self, body: Sequence[ast.stmt], strings: Strings) -> None:
         self._body = body
@@ -75,23 +80,23 @@ class Scope:
 
     @cached_property
     def _nodes(self) -> list[ast.AST]:
-        """All that belongs to it, in no order."""
+        """All nodes of the scope."""
         return [node for statement in self._body for node in _below(statement)]
 
     def alternatives(self, node: ast.Constant) -> list[str]:
-        """Strings that may stand for one: the next of its use, of what is returned the next two."""
+        """Replacements of a string: the next one of the same use, or two if it is returned."""
         returned = any(isinstance(one, ast.Return) and one.value is node for one in self._nodes)
         return self._strings.others(node)[: 2 if returned else 1]
 
     def further(self, elements: Sequence[ast.expr]) -> list[str]:
-        """The next string that a set of strings has not."""
+        """The next string of the same use that a set does not contain; a list of at most one."""
         constants = [element for element in elements if isinstance(element, ast.Constant)]
         values = [constant.value for constant in constants]
         others = (other for constant in constants for other in self._strings.others(constant))
         return [other for other in others if other not in values][:1]
 
     def bound_before(self, name: str, node: ast.stmt) -> bool:
-        """Whether a name has a value before a statement gives it one."""
+        """Whether a name is assigned above a statement, so that dropping this leaves it defined."""
         return any(
             isinstance(one, ast.Name)
             and one.id == name
@@ -101,7 +106,7 @@ class Scope:
         )
 
     def holds_all_waits(self, node: ast.AST) -> bool:
-        """Whether without a node it would be no generator any more."""
+        """Whether a node holds every `yield`: without it the function would not be a generator."""
         return bool(self._waits) and self._waits <= {id(one) for one in _below(node)}
 
     @cached_property
@@ -109,18 +114,18 @@ class Scope:
         return {id(one) for one in self._nodes if isinstance(one, _WAITS)}
 
     def is_top_level(self, node: ast.stmt) -> bool:
-        """Whether it is one of its statements, and not part of another."""
+        """Whether a statement is directly in the body, and not nested in another statement."""
         return any(one is node for one in self._body)
 
     def returned(self) -> list[str]:
-        """The constants that it returns; nothing, once, if it returns no values."""
+        """The constants that the function returns, as source; `[""]` if it returns no values."""
         returns = [node.value for node in self._nodes if isinstance(node, ast.Return)]
         values = [ast.unparse(one) for one in returns if isinstance(one, ast.Constant)]
         return list(dict.fromkeys(values)) or ([""] if not any(returns) else [])
 
 
 def _below(node: ast.AST) -> Iterator[ast.AST]:
-    """A node and what belongs to it, but for functions and classes that it defines."""
+    """A node and all below it, without nested functions and classes."""
     yield node
     for child in ast.iter_child_nodes(node):
         if not isinstance(child, _DEFINED):
@@ -128,11 +133,11 @@ def _below(node: ast.AST) -> Iterator[ast.AST]:
 
 
 Change = tuple[str, "ast.expr | ast.stmt", str]
-"""The operator, the node to replace, and the code to put there."""
+"""The name of the operator, the node to replace, and the new code."""
 
 
 def either_way(*pairs: tuple[_T, _T]) -> dict[_T, _T]:
-    """From each of a pair to the other."""
+    """Map each element of a pair to the other."""
     return {one: other for pair in pairs for one, other in (pair, pair[::-1])}
 
 
@@ -152,7 +157,7 @@ def _bracketed(new: ast.expr) -> str:
 
 
 def changes_of(node: ast.expr | ast.stmt, scope: Scope) -> Iterator[Change]:
-    """All changes of a node, by the operators of the papers where there are such."""
+    """All changes of a node; comments cite the papers for operators taken from one."""
     match node:
         # ROR, relational operator replacement (KO, OLRUZ)
         case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in _COMPARISONS:
@@ -175,7 +180,7 @@ def changes_of(node: ast.expr | ast.stmt, scope: Scope) -> Iterator[Change]:
                 yield "off by one", node, _bracketed(left)
             if type(op) in _ARITHMETIC:
                 yield "operator", node, _bracketed(ast.BinOp(left, _ARITHMETIC[type(op)](), right))
-        # CRP, constant replacement (KO), also of numbers and strings
+        # CRP, constant replacement (KO), extended to numbers and strings
         case ast.Constant(value=bool() as value):
             yield "constant", node, f"({not value})"
         case ast.Constant(value=int() as value):
@@ -191,7 +196,7 @@ def changes_of(node: ast.expr | ast.stmt, scope: Scope) -> Iterator[Change]:
         case ast.Set(elts=elements):
             for text in scope.further(elements):
                 yield "string", node, f"{ast.unparse(node)[:-1]}, {text!r}}}"
-        # COI, conditional operator insertion (DH), also of negated conditions
+        # COI, conditional operator insertion (DH), as is "negated condition" below
         case ast.IfExp(test=test, body=body, orelse=orelse):
             yield "swapped branches", node, _bracketed(ast.IfExp(test, orelse, body))
         case ast.Call(func=ast.Name(id=name), args=args, keywords=keywords) if name in _FUNCTIONS:
@@ -206,7 +211,7 @@ def _changes_of_statement(node: ast.stmt, scope: Scope) -> Iterator[Change]:
         yield "negated condition", node.test, _bracketed(ast.UnaryOp(ast.Not(), node.test))
     is_needed = scope.holds_all_waits(node)
     match node:
-        # SDL, statement deletion (KO, DOL), as all that is dropped below
+        # SDL, statement deletion (KO, DOL), as are all "dropped …" below
         case ast.Expr(value=ast.Call()) | ast.AugAssign() | ast.Break() | ast.Continue():
             yield "dropped statement", node, "pass"
         case ast.Assign(targets=[ast.Attribute() | ast.Subscript()]):
@@ -225,7 +230,7 @@ def _changes_of_statement(node: ast.stmt, scope: Scope) -> Iterator[Change]:
     match node:
         case ast.Expr(value=ast.Call()):
             yield "doubled statement", node, f"{ast.unparse(node)}; {ast.unparse(node)}"
-        # MXT, a wait's time is modified (BCD)
+        # MXT, modification of a wait's time (BCD)
         case ast.Expr(value=ast.Yield(value=ast.expr() as wait)):
             yield "wait", wait, "0.0"
             yield "wait", wait, f"2 * ({ast.unparse(wait)})"

@@ -1,4 +1,4 @@
-"""Mutants for the terminal and as a page: scores of suites, what kills, survivors as questions."""
+"""The mutation report for the terminal and as a page: scores, killers, survivors as questions."""
 
 from __future__ import annotations
 
@@ -29,37 +29,36 @@ ALL = "all"
 
 @dataclass(frozen=True, slots=True)
 class SuiteTried:
-    """A suite, and what it sees."""
+    """A suite with the results of the mutants."""
 
-    tests: int
-    left_out: Mapping[str, str]
-    tried: tuple[Tried, ...] = ()
-    spec_tried: tuple[SpecTried, ...] = ()
+    tests: int  # number of tests
+    left_out: Mapping[str, str]  # tests that gave no result, by name, each with the reason
+    tried: tuple[Tried, ...] = ()  # mutants of code
+    spec_tried: tuple[SpecTried, ...] = ()  # mutants of requirements
 
 
 @dataclass(frozen=True, slots=True)
 class MutationReport:
-    """Mutants of a robot's code under some suites."""
+    """The results of one or several suites on the mutants of a robot."""
 
     campaign: str  # its name
     robot: str  # its name for people
     suites: Mapping[str, SuiteTried]  # by name
-    # the identities of mutants that change no behaviour, each with the argument
-    equivalent: Mapping[str, str]
-    reading: Mapping[str, Sequence[str]]  # the requirements that read a signal or event
-    shows_held_out: bool = False  # whether single mutants of the third that is held out are shown
+    equivalent: Mapping[str, str]  # identities of equivalent mutants, each with the argument
+    reading: Mapping[str, Sequence[str]]  # requirements that read each signal or event
+    shows_held_out: bool = False  # whether mutants of the held-out third are shown one by one
     seconds: float = field(default=0.0, compare=False)  # wall time
 
     def scores(self, suite: str) -> dict[str, Score]:
-        """The score of each third, and of all."""
+        """The scores on mutants of code, for each third and for all."""
         return _by_third(self.suites[suite].tried, partial(scored, equivalent=self.equivalent))
 
     def spec_scores(self, suite: str) -> dict[str, Score]:
-        """The score on mutants of the requirements; what is equivalent is proved to be."""
+        """The scores on mutants of requirements, for each third and for all."""
         return _by_third(self.suites[suite].spec_tried, spec_scored)
 
     def spec_survivors(self, suite: str) -> list[SpecTried]:
-        """The mutants of requirements that are shown, and that no run tells apart."""
+        """The shown mutants of requirements that give every run its original verdict."""
         return [
             tried
             for tried in self.suites[suite].spec_tried
@@ -67,14 +66,14 @@ class MutationReport:
         ]
 
     def shown(self, suite: str) -> list[Tried]:
-        """The mutants that are shown one by one."""
+        """The mutants of code that are shown one by one."""
         return list(filter(self._shows, self.suites[suite].tried))
 
     def _shows(self, one: Tried | SpecTried) -> bool:
         return self.shows_held_out or one.mutant.third != HELD_OUT
 
     def kills(self, suite: str) -> list[tuple[str, str, str]]:
-        """The killed mutants, of code and of requirements: name, change, and the killer."""
+        """The killed mutants of code and of requirements, each as name, change and killer."""
         killed: list[tuple[Mutant | SpecMutant, str]]
         killed = [(tried.mutant, killer(tried)) for tried in self.shown(suite) if tried.killed]
         killed += [
@@ -85,7 +84,7 @@ class MutationReport:
         return [(mutant.identity, mutant.brief, what) for mutant, what in killed]
 
     def survivors(self, suite: str) -> dict[Missing, list[Tried]]:
-        """The survivors that are not known to be equivalent, by what may be missing."""
+        """The surviving mutants of code not declared equivalent, by what may be missing."""
         by_gap: dict[Missing, list[Tried]] = {kind: [] for kind in Missing}
         for tried in self.shown(suite):
             if not (tried.killed or tried.invalid or tried.mutant.identity in self.equivalent):
@@ -94,13 +93,13 @@ class MutationReport:
 
     @property
     def survives(self) -> bool:
-        """Whether a suite does not see a mutant that is not known to be equivalent."""
+        """Whether any suite lets a mutant survive that is not declared or proved equivalent."""
         both = (scores(name)[ALL] for name in self.suites
                 for scores in (self.scores, self.spec_scores))  # fmt: skip
         return any(score.killed < score.rest for score in both)
 
     def contradictions(self) -> list[str]:
-        """Mutants that are declared equivalent, and are killed, or make a run differ."""
+        """Mutants that are declared equivalent but are killed, or make a run differ; in words."""
         return [
             f"{tried.mutant.identity} is declared equivalent, and {why}"
             for suite in self.suites.values()
@@ -109,13 +108,13 @@ class MutationReport:
         ]
 
     def _refuted(self, tried: Tried) -> str:
-        """The difference of a mutant from the unchanged code; empty: there is none."""
+        """Why a mutant is not equivalent to the unchanged code; empty if nothing shows it."""
         if tried.killed:
             return f"{killer(tried)} kills it"
         return question(tried, self.reading) if tried.difference is not None else ""
 
     def document(self) -> dict[str, object]:
-        """All of it as data."""
+        """The report as a document for JSON."""
         return {
             "campaign": self.campaign,
             "robot": self.robot,
@@ -170,7 +169,7 @@ def _by_third(
 
 
 def killer(tried: Tried) -> str:
-    """The killer of a mutant, in words: the requirement that fails first."""
+    """The killer of a mutant, in words; a failing requirement is preferred."""
     finding = min(tried.findings, key=lambda each: each.how is not How.REQUIREMENT)
     what = ", ".join(finding.what)
     return f"{finding.how} ({what})" + (f" in {finding.test}" if finding.test else "")
@@ -205,9 +204,12 @@ SPEC_TITLE = (
 
 
 def print_mutation(report: MutationReport, printer: Printer, *, most: int | None = None) -> None:
-    """Print scores, what killed, and the survivors of each suite as questions.
+    """Print scores, ways of killing, and the survivors of each suite as questions.
 
-    Of survivors of each kind `most` are listed; `None`: all, and each mutant that is killed.
+    Args:
+        report: the report.
+        printer: prints it.
+        most: the most survivors listed per kind; `None`: all survivors and all killed mutants.
     """
     for title, head, rows in _score_tables(report):
         printer.line(f"Mutants of {title}")
@@ -231,7 +233,7 @@ def print_mutation(report: MutationReport, printer: Printer, *, most: int | None
 
 
 def _survivors(report: MutationReport, suite: str) -> Iterator[tuple[str, list[list[str]]]]:
-    """The survivors, by what may be missing: a heading, and the lines of each."""
+    """The survivors by what may be missing: a heading, and the lines of each survivor."""
     for kind, survivors in report.survivors(suite).items():
         yield TITLES[kind], [list(survivor_lines(survivor, report)) for survivor in survivors]
     if spec_survivors := report.spec_survivors(suite):
@@ -248,7 +250,7 @@ def _survivors(report: MutationReport, suite: str) -> Iterator[tuple[str, list[l
 def _score_tables(
     report: MutationReport,
 ) -> Iterator[tuple[str, Sequence[str], list[Sequence[str]]]]:
-    """Of the code, and of the requirements, a head and the scores of each suite and third."""
+    """Tables of scores for the code and the requirements: title, head and rows."""
     suites = report.suites.values()
     if any(suite.tried for suite in suites):
         yield "the code", HEAD, [*_score_rows(report, report.scores)]
@@ -271,7 +273,7 @@ def _score_rows(
 
 
 def survivor_lines(tried: Tried, report: MutationReport) -> Iterator[str]:
-    """A survivor: its place, the change, the question."""
+    """The lines of a survivor: its place, its change and its question."""
     mutant = tried.mutant
     yield f"  {mutant.path.name}:{mutant.line}  {mutant.identity}"
     yield from _difference(mutant.before, mutant.after)
@@ -285,7 +287,7 @@ def _difference(before: str, after: str) -> Iterator[str]:
 
 
 def _killers(suite: SuiteTried) -> str:
-    """The numbers of mutants by killer: a requirement, an answer, a crash and so on."""
+    """The number of tests, and of mutants killed in each way, as text."""
     counts = dict.fromkeys(How, 0)
     for tried in suite.tried:
         if tried.killed:
@@ -326,7 +328,7 @@ ABOUT = (
 
 
 def mutation_page(report: MutationReport) -> str:
-    """Write the page; it needs no script and nothing but itself."""
+    """The report as an HTML page without scripts or further files."""
     hidden = "" if report.shows_held_out else f"Those {HELD_OUT} are counted, and not shown."
     return render(
         "mutation.html",
@@ -344,7 +346,7 @@ def mutation_page(report: MutationReport) -> str:
 
 
 def _shown(report: MutationReport, suite: str) -> tuple[list[Tried], list[Sequence[str]]]:
-    """Mutants of a suite that were killed, and a row for each that is declared equivalent."""
+    """The shown mutants of a suite that were killed, and rows of those declared equivalent."""
     tried_mutants = report.shown(suite)
     equivalent = [
         (tried.mutant.identity, tried.mutant.brief, report.equivalent[tried.mutant.identity])
@@ -355,7 +357,10 @@ def _shown(report: MutationReport, suite: str) -> tuple[list[Tried], list[Sequen
 
 
 def _kill_rows(killed: Sequence[Tried]) -> list[Sequence[str]]:
-    """By each requirement, and each other way, how many mutants it kills first."""
+    """Rows of requirements, and of other ways of killing, with their tests and numbers of mutants.
+
+    Only the best killer of a mutant counts, in the order of `How`: requirements come first.
+    """
     counts: Counter[str] = Counter()
     tests: dict[str, Counter[str]] = {}
     for tried in killed:

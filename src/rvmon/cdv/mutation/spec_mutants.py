@@ -1,6 +1,6 @@
-"""Mutants of requirements, judged on the recorded runs of a suite; by operators as those of papers.
+"""Mutants of requirements, which judge the recorded runs of a suite.
 
-Sources, by the letters that comments cite:
+Sources of the operators, with the abbreviations used in comments:
 
 * **BOY** Black, Okun, Yesha 2000, Mutation Operators for Specifications.
 * **ALN** Aichernig, Lorber, Ničković 2013, Time for Mutants: Model-Based Mutation Testing with
@@ -51,7 +51,7 @@ _BOUNDARIES = either_way(
 
 
 def _own_changes(formula: rv.Formula) -> Iterator[tuple[str, rv.Formula]]:
-    """The changes of a formula's own operator."""
+    """The changes of a formula's outermost operator."""
     match formula:
         # LRO, logical operator reference; MCO, missing condition (BOY)
         case rv.Binary(op=op, left=left, right=right):
@@ -64,7 +64,7 @@ def _own_changes(formula: rv.Formula) -> Iterator[tuple[str, rv.Formula]]:
         # ENO, expression negation (BOY)
         case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
             yield "dropped not", operand
-        # A guard's constant is changed, or the guard dropped (ALN).
+        # Changing a guard's constant, or dropping the guard (ALN)
         case rv.Unary(op=op, interval=interval):
             if op in _TEMPORAL:
                 yield "temporal operator", structs.replace(formula, op=_TEMPORAL[op])
@@ -101,7 +101,7 @@ def _moved(numeric: rv.Numeric) -> Iterator[rv.Numeric]:
 
 
 def _bounds_moved(formula: rv.Unary | rv.Binary) -> Iterator[rv.Formula]:
-    """One unit more and less: of that in which the bound is a whole number."""
+    """Each bound moved up and down by one of the unit in which it is printed, such as 1 s."""
     if formula.interval is None:
         return
     low, high = formula.interval.low, formula.interval.high
@@ -120,7 +120,7 @@ def _unit(ticks: int) -> int:
 
 
 def changes(formula: rv.Formula) -> Iterator[tuple[str, rv.Formula]]:
-    """All changes of a formula: the operator's name, and the whole formula with it.
+    """All changes of a formula and its parts, each as operator name and changed formula.
 
     >>> from rvmon.language.print import format_formula
     >>> gone = rv.EventAtom("released")
@@ -147,10 +147,10 @@ def changes(formula: rv.Formula) -> Iterator[tuple[str, rv.Formula]]:
 class SpecMutant:
     """One change of one requirement."""
 
-    requirement: Requirement  # as it was
-    kind: str  # of change: the name of an operator
+    requirement: Requirement  # the original
+    kind: str  # the name of the mutation operator
     ordinal: int  # its number among the changes of this kind to this requirement, from 1
-    changed: Requirement  # the requirement as it is
+    changed: Requirement
 
     @property
     def identity(self) -> str:
@@ -159,22 +159,22 @@ class SpecMutant:
 
     @property
     def third(self) -> str:
-        """The third that it is in, which follows from its identity."""
+        """The third to which it belongs, by its identity."""
         return third_of(self.identity)
 
     @property
     def brief(self) -> str:
-        """The change."""
+        """The change on one line."""
         return f"{self.before} => {self.after}"
 
     @property
     def before(self) -> str:
-        """The requirement as it was, as text of the language."""
+        """The original requirement, as text of the language."""
         return _text(self.requirement)
 
     @property
     def after(self) -> str:
-        """The requirement as it is."""
+        """The changed requirement, as text of the language."""
         return _text(self.changed)
 
 
@@ -182,22 +182,22 @@ class SpecMutant:
 class SpecTried:
     """A mutant of a requirement, judged on the recorded runs."""
 
-    mutant: SpecMutant  # the change
-    test: str = ""  # the first whose recorded run is judged otherwise; empty: none is
-    was: Verdict | None = None  # the verdict on that run by the requirement as it was
-    now: Verdict | None = None  # by the mutant
-    proved: bool = False  # whether the analysis proved it equivalent; only asked if no run differs
+    mutant: SpecMutant
+    test: str = ""  # the first test whose recorded run gets another verdict; empty: none
+    was: Verdict | None = None  # the original verdict on that run
+    now: Verdict | None = None  # the mutant's verdict
+    proved: bool = False  # whether it is proved equivalent; only tried if no verdict differs
 
 
 def spec_scored(tried: Iterable[SpecTried]) -> Score:
-    """Count mutants of requirements."""
+    """The score on mutants of requirements."""
     counted = list(tried)
     killed = sum(bool(spec_tried.test) for spec_tried in counted)
     return Score(len(counted), sum(spec_tried.proved for spec_tried in counted), killed, killed, 0)
 
 
 def spec_mutants(spec: CheckedSpec) -> list[SpecMutant]:
-    r"""All mutants of the requirements of a specification, each different from all others.
+    r"""All mutants of the requirements of a specification, without duplicates.
 
     >>> from rvmon import loads
     >>> spec = loads("event a, b\nrequirement R upon a then within 3 s b").checked
@@ -238,10 +238,17 @@ def _text(requirement: Requirement) -> str:
 def try_spec_mutants(
     spec: Spec, mutants: Sequence[SpecMutant], recorded: Mapping[str, Recorded]
 ) -> list[SpecTried]:
-    """Judge recorded runs by mutants of requirements: which get another verdict?
+    """Judge recorded runs by mutants of requirements, to find those with another verdict.
+
+    For each mutant with no such run, the analysis tries to prove that none exists.
+
+    Args:
+        spec: the original specification.
+        mutants: mutants of its requirements.
+        recorded: recorded runs on the unchanged code, by test.
 
     Returns:
-        What became of each; of what no run tells apart it is tried to prove that none can.
+        The result of each mutant, in the given order.
     """
     named = {mutant.identity: mutant for mutant in mutants}
     every = structs.replace(
@@ -268,9 +275,9 @@ def try_spec_mutants(
 
 
 def _is_equivalent(spec: CheckedSpec, mutant: SpecMutant, together: Together) -> bool:
-    """Whether it is proved that, with known values, neither can fail where the other is met.
+    """Whether it is proved that, with known values, neither can fail where the other passes.
 
-    Both have to be decided within a bounded time: what is open for ever is not met, and fails not.
+    Both must have a bounded horizon: one that stays open for ever neither passes nor fails.
     """
     pair = {"before": mutant.requirement, "after": mutant.changed}
     named = {name: replace(one, id=name) for name, one in pair.items()}

@@ -1,6 +1,6 @@
-"""Tried mutants: survivors as questions, and those that are declared equivalent.
+"""Results of mutants: survivors as questions, and mutants that are declared equivalent.
 
-Source: Voas 1992, PIE: A Dynamic Failure-Based Technique (a fault is seen if it is executed,
+Source: Voas 1992, PIE: A Dynamic Failure-Based Technique (a fault is detected if it is executed,
 infects the state, and the infection propagates).
 """
 
@@ -22,12 +22,12 @@ from rvmon.texts import text_of_file
 
 
 class How(StrEnum):
-    """The ways in which a mutant is told from the unchanged code."""
+    """The ways in which a test can kill a mutant."""
 
     REQUIREMENT = "requirement"
-    """One fails that did not."""
+    """A requirement fails that did not fail on the unchanged code."""
     ANSWER = "known answer"
-    """A verdict is not what the test expects, and was."""
+    """A verdict differs from what the test expects; on the unchanged code it did not."""
     CRASHED = "crashed"
     HUNG = "hung"
     LOST = "lost"
@@ -37,55 +37,53 @@ class How(StrEnum):
 class Finding:
     """A test that kills a mutant."""
 
-    test: str  # its name; empty: not known, as the process was ended
-    how: How  # it does
-    # the requirements that fail, or are judged otherwise than expected; else the error
-    what: tuple[str, ...]
+    test: str  # its name; empty: unknown, as the process ended
+    how: How
+    what: tuple[str, ...]  # the requirements that fail, or have an unexpected verdict; or the error
 
 
 @dataclass(frozen=True, slots=True)
 class Tried:
-    """A mutant, and what a suite sees of it."""
+    """A mutant with the results of a suite on it."""
 
-    mutant: Mutant  # the change
-    reaching: int  # tests of the suite that run the changed line
-    played: int = 0  # of them so many were played
+    mutant: Mutant
+    reaching: int  # number of tests that run the changed line
+    played: int = 0  # number of these that were played
     findings: tuple[Finding, ...] = ()  # its killers, in the order of the suite
-    difference: Difference | None = None  # the first in a run that no finding is about
+    difference: Difference | None = None  # the first difference in a run that does not kill it
     invalid: str = ""  # why it cannot be planted; empty if it can
-    # the first test by which a requirement fails, and its run, if runs are kept
+    # The first test in which a requirement fails, and its run, if runs are kept.
     failing: tuple[str, Recorded] | None = field(default=None, compare=False)
 
     @property
     def killed(self) -> bool:
-        """Whether the suite sees the change."""
+        """Whether a test kills the mutant."""
         return bool(self.findings)
 
     @property
     def killed_by_requirement(self) -> bool:
-        """Whether a requirement fails on it: known answers and crashes do not count."""
+        """Whether a requirement fails on the mutant; known answers and crashes do not count."""
         return any(finding.how is How.REQUIREMENT for finding in self.findings)
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """Figures of some mutants."""
+    """Numbers of mutants."""
 
     mutants: int  # all that can be planted
-    # of them so many are declared to change no behaviour, and none of them is killed
-    equivalent: int
-    killed: int  # by whatever
+    equivalent: int  # declared or proved equivalent, and not killed
+    killed: int  # in any way
     by_requirement: int  # killed by a requirement that fails
-    unreached: int  # the number in lines that no test runs
+    unreached: int  # in lines that no test runs
 
     @property
     def rest(self) -> int:
-        """The mutants that are not equivalent."""
+        """The number of mutants that are not equivalent."""
         return self.mutants - self.equivalent
 
 
 def failing_runs(tried: Iterable[Tried]) -> dict[str, Recorded]:
-    """The runs that were kept of mutants which are not held out, by test and mutant."""
+    """The kept failing runs of mutants that are not held out, by a text of test and mutant."""
     return {
         f"{trial.failing[0]} with {trial.mutant.identity}": trial.failing[1]
         for trial in tried
@@ -94,7 +92,12 @@ def failing_runs(tried: Iterable[Tried]) -> dict[str, Recorded]:
 
 
 def scored(tried: Iterable[Tried], equivalent: Iterable[str] = ()) -> Score:
-    """Count mutants; those declared to change no behaviour are known by their identities."""
+    """The score on mutants of code.
+
+    Args:
+        tried: the mutants with their results.
+        equivalent: identities of mutants that are declared equivalent.
+    """
     counted = [trial for trial in tried if not trial.invalid]
     known = set(equivalent)
     return Score(
@@ -107,7 +110,7 @@ def scored(tried: Iterable[Tried], equivalent: Iterable[str] = ()) -> Score:
 
 
 class Missing(StrEnum):
-    """The likely gaps behind a surviving mutant."""
+    """What a suite with a surviving mutant probably lacks."""
 
     REQUIREMENT = "requirement"
     OBSERVATION = "observation"
@@ -125,14 +128,14 @@ TITLES = {
 
 
 def missing(survivor: Tried) -> Missing:
-    """The likely gap behind a surviving mutant."""
+    """What the suite probably lacks, given a surviving mutant."""
     if not survivor.reaching:
         return Missing.STIMULUS
     return Missing.OBSERVATION if survivor.difference is None else Missing.REQUIREMENT
 
 
 def readers(spec: CheckedSpec) -> dict[str, list[str]]:
-    """The requirements that read a signal or event, by its name."""
+    """The ids of the requirements that read each signal or event, by its name."""
     readers_of: dict[str, list[str]] = {}
     for requirement in spec.requirements.values():
         for name in sorted(set(names_of_requirement(requirement))):
@@ -141,7 +144,11 @@ def readers(spec: CheckedSpec) -> dict[str, list[str]]:
 
 
 def question(survivor: Tried, reading: Mapping[str, Sequence[str]]) -> str:
-    """The question that a survivor asks, as a sentence.
+    """What the suite saw of a survivor, as a sentence.
+
+    Args:
+        survivor: the mutant.
+        reading: the result of `readers`.
 
     >>> from pathlib import Path
     >>> from rvmon.cdv.mutation.python_mutants import Mutant
@@ -175,13 +182,20 @@ def _differs(difference: Difference, reading: Mapping[str, Sequence[str]]) -> st
 
 
 def equivalents(path: str | Path, mutants: Iterable[Mutant]) -> dict[str, str]:
-    """Read the file: TOML, a table for each argument, with the changes by the mutants' identities.
+    """Read a TOML file of equivalent mutants.
+
+    Each table has an argument, `because`, and `mutants`, the changes by identity.
+
+    Args:
+        path: the file.
+        mutants: all mutants of the code.
 
     Returns:
-        The argument for each, by identity.
+        The argument for each mutant, by its identity.
 
     Raises:
-        RvmonError: it cannot be read, names no mutant, or one that is another change by now.
+        RvmonError: the file cannot be read or is not of this form, it names an unknown mutant, or
+            the code has changed so that an identity now stands for another change.
     """
     try:
         document = tomllib.loads(text_of_file(path))
