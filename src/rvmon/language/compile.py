@@ -1,4 +1,4 @@
-"""Text to checked specification: the passes in their order."""
+"""Compiles the text of a specification: runs all passes in order, up to the checked result."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from rvmon.texts import text_of_file
 
 
 class Compilation(Struct, frozen=True):
-    """The results of all passes over a text, right or wrong."""
+    """The results of all passes over a text, which may contain errors."""
 
-    files: Sequence[ParsedSpec]  # the text and its imports, with the items that could be read
-    # the items that could be checked; `None` if there were too many errors
+    files: Sequence[ParsedSpec]  # the text and its imports, with the items that could be parsed
+    # the items that passed the check; `None` if there were too many errors
     checked: CheckedSpec | None
-    # errors and warnings, those of the text itself first, in order of place
+    # errors and warnings in order of place, those of the main text before those of imports
     findings: tuple[Diagnostic, ...]
 
     @property
     def broken(self) -> bool:
-        """Whether a finding is an error."""
+        """Whether any finding is an error."""
         return _errors(self.findings)
 
 
@@ -48,15 +48,16 @@ def compile_text(
     Args:
         text: the specification.
         name: its name in messages.
-        constants: constants to override, by name, as text of the language (`{"T": "2 s"}`).
-        directory: of imports.
-        read: gives the text of a file that is imported.
+        constants: constants to override, by name; values are text of the language
+            (`{"T": "2 s"}`).
+        directory: the folder to which imports are relative; by default the current one.
+        read: returns the text of an imported file.
 
     Returns:
         The checked specification and the warnings.
 
     Raises:
-        SpecError: the text is wrong; carries all diagnostics, rendered.
+        SpecError: the text has errors; the exception carries all diagnostics, rendered.
 
     >>> spec, warnings = compile_text("event a, b\nrequirement R upon a then within 3 s b")
     >>> spec.requirements["R"].pulse, warnings
@@ -74,7 +75,7 @@ def compilation(
     constants: Mapping[str, str],
     read: Callable[[Path], str] = text_of_file,
 ) -> Compilation:
-    """Compile a text as far as that goes; arguments as of `compile_text`."""
+    """Compile a text and keep partial results in spite of errors; arguments as `compile_text`."""
     findings = Findings()
     checked: CheckedSpec | None = None
     files: Sequence[ParsedSpec] = ()
@@ -83,7 +84,7 @@ def compilation(
         files = overridden(files, constants, findings)
         resolved = resolve(files, findings)
         checked = check(resolved, findings)
-        # The item that uses a name may be the one with a syntax error.
+        # Only without errors: the item that uses a name may be the one that was not parsed.
         if not _errors(findings.diagnostics):
             findings.extend(unused_names(resolved, checked))
         if not files[0].items and not findings.diagnostics:
@@ -99,7 +100,7 @@ def _errors(findings: Iterable[Diagnostic]) -> bool:
 
 
 def _place(finding: Diagnostic, main: Source) -> tuple[bool, str, int, int]:
-    """The main file comes first."""
+    """The sort key of a finding: those of the main file come first."""
     if not finding.spans:
         return (False, "", 0, 0)
     span = finding.spans[0].span

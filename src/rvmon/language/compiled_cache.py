@@ -1,4 +1,4 @@
-"""Specifications that were compiled before, from the user's cache folder."""
+"""A cache of compiled specifications, in the user's cache folder."""
 
 from __future__ import annotations
 
@@ -27,15 +27,17 @@ def compile_cached(
     constants: Mapping[str, str] | None = None,
     directory: Path | None = None,
 ) -> Compiled:
-    """As `rvmon.language.compile.compile_text`, which is asked once for each text.
+    """Compile a specification, or load the result from the cache if it was compiled before.
 
-    What is kept is keyed by text, name, constants, folder, and rvmon's files by size and
-    time. With it stand the texts of the files that were imported: it is good as long as these may
-    be imported and say the same.
+    Arguments and result are those of `rvmon.language.compile.compile_text`.
+
+    An entry is keyed by text, name, constants, folder, and the sizes and times of rvmon's own
+    files. It also holds the texts of all imported files, and is used only while these files may
+    still be imported and have the same text.
 
     Raises:
-        RvmonError: the text, or a constant, is of another type.
-        SpecError: as `compile_text`.
+        RvmonError: the text, or the value of a constant, is not a string.
+        SpecError: the text has errors, as in `compile_text`.
     """
     if not isinstance(text, str):
         raise RvmonError(f"expected the text of a specification, found {type(text).__name__}")
@@ -75,12 +77,12 @@ def _read(path: Path, directory: Path) -> Compiled | None:
         if imported:
             tree = tree_of(directory)
             for file, text in imported.items():
-                # Which files may be imported depends on the present project and
-                # RVMON_ALLOW_IMPORTS.
+                # Which files may be imported depends on the project folder and on
+                # RVMON_ALLOW_IMPORTS, and both may have changed.
                 if not tree.holds(Path(file)) or text_of_file(file) != text:
                     return None
         spec, warnings = from_plain(data)
-    # A cached file may be truncated or forged: then the specification is compiled again.
+    # A cached file may be truncated or forged; the specification is then compiled again.
     except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
         return None
     return (spec, warnings) if isinstance(spec, CheckedSpec) else None

@@ -1,6 +1,7 @@
-"""The canonical layout of a specification: same meaning, same comments, always the same form.
+"""Formats a specification in the canonical layout and keeps its meaning and its comments.
 
-Each item becomes canonical words with their comments, and these become lines: spaces and breaks.
+Each item is turned into pieces (tokens in canonical spelling, with their comments), and the pieces
+are laid out in lines.
 """
 
 from __future__ import annotations
@@ -21,11 +22,11 @@ from rvmon.language.syntax.keywords import OPERATOR_TERMINALS, split_items
 from rvmon.language.syntax.parse import grammar, parse_spec
 
 Row = tuple[str, str, str, str, str]
-"""Word, names, type, role, what it ignores and its limit of staleness."""
+"""The cells of a declaration: word, names, type, role, and `ignore NaN` with `stale after`."""
 
 
 def aligned(items: Sequence[Sequence[Piece]]) -> list[str]:
-    """One line per `signal` or `event`: their names, types and roles stand below each other."""
+    """One line per `signal` or `event`, with names, types and roles in columns."""
     rows = [_row(pieces) for pieces in items]
     typed = [row for row in rows if row[2]]
     word = max(len(row[0]) for row in rows) if rows else 0
@@ -60,26 +61,26 @@ _CLAUSES = {
     "TEXT_CLAUSE", "SEVERITY", "TAGS", "LET", "FOR_EACH", "AT_END", "PROPERTY", "SCOPE",
     "RUN_SHARE", "GOAL", "WEIGHT", "UNWANTED",
 }  # fmt: skip
-"""Terminals that start a line inside an item."""
+"""Terminals that start a new line inside an item."""
 
 
 class Block(Struct):
-    """An item ready for print."""
+    """An item with its layout."""
 
     pieces: list[Piece]
-    lines: list[str]  # as laid out by itself
-    before: list[str]  # comments and blank lines between the item above and this one
+    lines: list[str]  # its layout; until `_align` that of the item alone
+    before: list[str]  # comments and blank lines between the previous item and this one
 
 
 def format_text(text: str, *, name: str = "<string>") -> str:
-    r"""Lay a specification out in the canonical form.
+    r"""Format a specification in the canonical layout.
 
     Args:
-        text: a specification whose items can all be read.
+        text: a specification without syntax errors.
         name: its name in messages.
 
     Raises:
-        SpecError: an item cannot be read.
+        SpecError: an item has a syntax error.
 
     >>> format_text("requirement R G(a->F b)")
     'requirement R\n  always (a -> eventually b)\n'
@@ -105,7 +106,7 @@ def format_text(text: str, *, name: str = "<string>") -> str:
 
 
 def _item_lines(pieces: Sequence[Piece]) -> list[str]:
-    """The head on the first line, then a line for each clause."""
+    """The head of an item on the first line, then one line for each clause."""
     clauses: list[list[Piece]] = [[pieces[0]]]
     for number, piece in enumerate(pieces[1:], 1):
         if _starts_line(pieces, number):
@@ -123,18 +124,18 @@ def _starts_line(pieces: Sequence[Piece], number: int) -> bool:
         return piece.kind != "THEN" or not _within_choice(pieces[:number])
     if pieces[0].kind != "REQUIREMENT":
         return False
-    # A bare formula has no keyword of its own: it follows the name and the text.
+    # A bare formula has no keyword that starts its line. It follows the name and the text, if any.
     return number == (3 if pieces[2].kind == "STRING" else 2)
 
 
 def _within_choice(before: Sequence[Piece]) -> bool:
-    """Whether an `if` waits for its `then`."""
+    """Whether the next `then` belongs to an `if` rather than to the requirement."""
     kinds = [piece.kind for piece in before if piece.depth == 0]
     return kinds.count("IF") > kinds.count("ELSE")
 
 
 def _own_comments(rest: str) -> tuple[list[str], str]:
-    """The indented comments right below an item, which belong to it; and what follows."""
+    """The indented comments right below an item, which belong to it, and the remaining text."""
     comments = []
     while comment := re.match(r"\n[ \t]+(#[^\n]*)", rest):
         comments.append(comment[1].rstrip())
@@ -143,7 +144,7 @@ def _own_comments(rest: str) -> tuple[list[str], str]:
 
 
 def _gap_lines(lines: Sequence[str]) -> list[str]:
-    """Comments at the left margin, and never two blank lines in a row."""
+    """The lines between items: comments at the left margin, no two blank lines in a row."""
     kept: list[str] = []
     for line in lines:
         comment = line.strip()
@@ -153,7 +154,7 @@ def _gap_lines(lines: Sequence[str]) -> list[str]:
 
 
 def _align(blocks: Sequence[Block]) -> None:
-    """Bring declarations that stand right below each other into columns."""
+    """Align runs of adjacent declarations in columns."""
     runs: list[list[Block]] = [[]]
     for block in blocks:
         row = block.pieces[0].kind in ("SIGNAL", "EVENT") and len(block.lines) == 1
@@ -170,7 +171,7 @@ def _align(blocks: Sequence[Block]) -> None:
 
 
 def _joined(blocks: Sequence[Block], end: Sequence[str]) -> str:
-    """A blank line around whatever takes several lines, and where there was one."""
+    """The whole text: blank lines stay, and one is added around each item of several lines."""
     lines: list[str] = []
     for number, block in enumerate(blocks):
         above = blocks[number - 1] if number else None
@@ -201,15 +202,15 @@ class Piece(Struct, frozen=True):
     """A token in canonical spelling."""
 
     kind: str  # the terminal of the grammar
-    text: str  # as it is printed
-    above: tuple[str, ...] = ()  # comments that stand on lines of their own before it
-    behind: str = ""  # the comment that ends its line, or empty
-    depth: int = 0  # the number of open brackets around it
+    text: str  # the canonical spelling
+    above: tuple[str, ...] = ()  # comments on lines of their own before it
+    behind: str = ""  # the comment at the end of its line, or empty
+    depth: int = 0  # the number of brackets around it
     opens_window: bool = False  # whether it is a round bracket that opens an interval
 
 
 def pieces_of(text: str) -> tuple[list[Piece], str]:
-    """The pieces of an item that can be read, and what follows the last of them."""
+    """The pieces of an item without syntax errors, and the text after the last piece."""
     interactive: Any = grammar().parse_interactive(text, start="item")
     tokens = list(interactive.iter_parse())
     pieces: list[Piece] = []
@@ -227,7 +228,7 @@ def pieces_of(text: str) -> tuple[list[Piece], str]:
         if token.type in _CLOSING:
             brackets.pop()
         elif token.type == "COMMA" and brackets and pieces[brackets[-1]].kind == "LPAR":
-            # A round bracket with a comma of its own opens a window; nothing else has one there.
+            # Only an interval has a comma directly inside `(`: a call's bracket is part of `CALL`.
             pieces[brackets[-1]] = replace(pieces[brackets[-1]], opens_window=True)
         canonical = _canonical(token.type, str(token))
         pieces.append(Piece(token.type, canonical, tuple(above), depth=len(brackets)))
@@ -259,7 +260,7 @@ def _canonical(kind: str, text: str) -> str:
 WIDTH = 100  # longer lines are broken where operators or commas allow it
 
 _OPERATORS = ("LEADS_TO", "IFF", "IMPLIES", "OR", "XOR", "AND", "INFIX")
-"""The operators at which long formulas are broken, the loosest first."""
+"""The operators at which long formulas are broken, the loosest binding first."""
 
 _TAKES_WINDOW = ("TEMPORAL", "INFIX", "PATH", "CTL", "QUANTIFIER", "LEADS_TO")
 _PLAIN = re.compile(r"\d+(\.\d+)?([eE][+-]?\d+)?")
@@ -267,9 +268,9 @@ _OPERANDS = ("NAME", "NUMBER", "RPAR", "RSQB", "TRUTH", "START", "END", "STRING"
 
 
 def lines_of(pieces: Sequence[Piece], indent: int) -> list[str]:
-    """Lay out what belongs on one line, in several lines if it is long or holds comments.
+    """Lay pieces out on one line, or on several if they are long or have comments.
 
-    The first is indented by `indent` columns, further ones by two more.
+    The first line is indented by `indent` columns, continuation lines by two more.
     """
     lines: list[str] = []
     step = indent
@@ -303,7 +304,11 @@ def _spaced(left: Piece, right: Piece) -> bool:
 
 
 def _segments(pieces: Sequence[Piece]) -> list[list[Piece]]:
-    """Cut before comments on their own line, behind those that end a line, and where it matters."""
+    """Split pieces where a line break is needed.
+
+    A break is needed before comments on their own lines, after comments that end a line, and where
+    the meaning would change on one line.
+    """
     segments = [[pieces[0]]]
     for left, right in pairwise(pieces):
         if left.behind or right.above or _would_be_unit(left, right):
@@ -313,7 +318,7 @@ def _segments(pieces: Sequence[Piece]) -> list[list[Piece]]:
 
 
 def _would_be_unit(left: Piece, right: Piece) -> bool:
-    """Whether a name would be read as the unit of the number before it, on one line."""
+    """Whether a name would be read as the unit of the number before it if both share a line."""
     plain = left.kind == "NUMBER" and _PLAIN.fullmatch(left.text) is not None
     return plain and right.kind in ("NAME", "CALL")
 
@@ -345,7 +350,7 @@ def _a_line_per_bin(pieces: Sequence[Piece], indent: int) -> list[str]:
 
 
 def _cut_at_operators(pieces: Sequence[Piece]) -> list[Sequence[Piece]]:
-    """Cut before the loosest operators that stand within the fewest brackets."""
+    """Split before the outermost operators; of these, before those that bind most loosely."""
     places = [
         (piece.depth, _OPERATORS.index(piece.kind), number)
         for number, piece in enumerate(pieces)
@@ -356,7 +361,7 @@ def _cut_at_operators(pieces: Sequence[Piece]) -> list[Sequence[Piece]]:
 
 
 def _cut_at_commas(pieces: Sequence[Piece], indent: int) -> list[Sequence[Piece]]:
-    """Cut behind the last comma of the fewest brackets that still fits on the line."""
+    """Split after an outermost comma: the last that fits on the line, or else the first."""
     depths = [piece.depth for piece in pieces[:-1] if piece.kind == "COMMA"]
     if not depths:
         return []

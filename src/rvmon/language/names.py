@@ -1,7 +1,4 @@
-"""From items to names: declared once, constants replaced, none circular; what nobody uses.
-
-The result is a specification whose names are known: what each is declared as, once.
-"""
+"""Resolves names: collects declarations, overrides constants, finds cycles and unused names."""
 
 from __future__ import annotations
 
@@ -55,7 +52,7 @@ _S = TypeVar("_S", bound=_Stated)
 
 
 def resolve(parsed: Sequence[items.ParsedSpec], findings: Findings) -> ResolvedSpec:
-    """Gather the declarations of a file and of those it imports; the first of every name counts."""
+    """Collect the items of a file and its imports; of equal names the first one is kept."""
     resolver = _Resolver(findings)
     for number, file in enumerate(parsed):
         for item in file.items:
@@ -72,7 +69,8 @@ def resolve(parsed: Sequence[items.ParsedSpec], findings: Findings) -> ResolvedS
         resolver.of(items.CoverItem),
         resolver.of(items.CoverpointItem),
         resolver.of(items.CrossItem),
-        # It is unknown which of two declarations a use refers to: only the second is reported.
+        # With two declarations of a name it is unknown which one a use refers to. The second one
+        # was reported, so findings about uses are suppressed.
         frozenset(resolver.doubled).union(*(file.doubtful for file in parsed)),
     )
 
@@ -108,9 +106,9 @@ class _Resolver:
             case items.ConstItem():
                 self._declare(item)
             case items.ImportItem():
-                pass  # its file is among those given
-            # Requirements, properties, goals and coverpoints share one namespace, as reports list
-            # them by id.
+                pass  # the imported file is itself in `parsed`
+            # Requirements, properties, goals, coverpoints and crosses share one namespace, because
+            # reports list them by id.
             case _ if self._is_new("requirement", item.name):
                 self._stated.append(item)
 
@@ -133,7 +131,7 @@ class _Resolver:
 def overridden(
     files: Sequence[items.ParsedSpec], constants: Mapping[str, str], findings: Findings
 ) -> list[items.ParsedSpec]:
-    """The files with the values of some constants replaced."""
+    """The files with the values of the given constants replaced."""
     values: dict[str, Expression] = {}
     known = [
         item.name.text for file in files for item in file.items if isinstance(item, items.ConstItem)
@@ -156,7 +154,7 @@ def overridden(
 
 
 def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozenset[str]:
-    """The names from which a circle of definitions can be reached; each circle is reported."""
+    """The names of macros and constants that lead into a cycle; each cycle is reported once."""
     uses = {
         name: sorted(set(_used(item)) & declared.keys())
         for name, item in declared.items()
@@ -165,7 +163,7 @@ def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozens
     caught: set[str] = set()
     finished: set[str] = set()
     for root in uses:
-        # Depth-first without recursion: a chain of macros may be as long as the file.
+        # A depth-first search without recursion: a chain of macros may be as long as the file.
         path: list[str] = []
         waiting = [(root, iter(uses[root]))] if root not in finished else []
         while waiting:
@@ -177,8 +175,8 @@ def find_cycles(declared: Mapping[str, Declared], findings: Findings) -> frozens
                 finished.add(name)
                 waiting.pop()
                 path.pop()
-                # A macro that leads into a circle cannot be evaluated either; it has no finding of
-                # its own.
+                # A macro that leads into a cycle cannot be evaluated either, but only the cycle
+                # itself is reported.
                 if caught & set(uses[name]):
                     caught.add(name)
             elif following in path:
@@ -209,9 +207,10 @@ _NAME = re.compile(r"`[^`\n]+`|[^\W\d]\w*(?:\.\w+)*")
 
 
 def unused_names(spec: ResolvedSpec, checked: CheckedSpec) -> Iterator[Diagnostic]:
-    """A finding for each name of the main file that nothing uses.
+    """A finding for each name of the main file that is never used.
 
-    A file that demands nothing, only declares for others, is not looked at.
+    A file without requirements, properties, goals or coverpoints is skipped: it only declares
+    names for the files that import it.
     """
     demands = (spec.requirements, spec.properties, spec.covers, spec.coverpoints)
     if any(demands):
@@ -220,7 +219,7 @@ def unused_names(spec: ResolvedSpec, checked: CheckedSpec) -> Iterator[Diagnosti
 
 
 def _never_read(spec: CheckedSpec) -> Iterator[Diagnostic]:
-    """Signals and events that nothing reads."""
+    """Signals and events of the main file that nothing reads."""
     read = frozenset(names_of_spec(spec))
     declared: dict[str, Signal | Event] = {**spec.signals, **spec.events}
     for name, one in declared.items():
@@ -230,9 +229,10 @@ def _never_read(spec: CheckedSpec) -> Iterator[Diagnostic]:
 
 
 def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
-    """Macros and constants, and the values that requirements capture."""
+    """Macros, constants and `let` values of the main file that are not used."""
     main = spec.sources[0]
-    # Counted in the text, so that uses in unused macros and the declaration itself count, too.
+    # Uses are counted in the text, so that a use in an unused macro counts. The declaration counts
+    # too, so an unused name occurs once.
     uses = Counter(name for source in spec.sources for name in _names(source.text))
     for item in spec.declared.values():
         is_own = isinstance(item, items.DefineItem | items.ConstItem)
@@ -247,6 +247,6 @@ def _never_used(spec: ResolvedSpec) -> Iterator[Diagnostic]:
 
 
 def _names(text: str) -> Iterator[str]:
-    """The names in a text, wherever they stand but in comments and strings."""
+    """All names in a text, except in comments and strings."""
     for match in _NAME.finditer(_NO_CODE.sub(" ", text)):
         yield match[0].strip("`")

@@ -1,4 +1,4 @@
-"""Checked formulas as text of the language, with as few brackets as it takes."""
+"""Prints checked formulas and numbers in the language, with as few brackets as possible."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ _ARITHMETIC = {
 
 
 def format_formula(formula: rv.Formula) -> str:
-    """A checked formula in the words of the language.
+    """The text of a checked formula in the language.
 
     >>> released, window = rv.EventAtom("released"), rv.Interval(0, 3 * 10**9)
     >>> format_formula(rv.Unary(rv.UnaryOp.EVENTUALLY, released, window))
@@ -33,7 +33,7 @@ def format_formula(formula: rv.Formula) -> str:
 
 
 def format_numeric(numeric: rv.Numeric) -> str:
-    """A checked number or label in the words of the language.
+    """The text of a checked number or label in the language.
 
     >>> parts = rv.SignalValue("x"), rv.Literal(0.5, "m")
     >>> format_numeric(rv.Arithmetic(NumericOp.SUB, parts))
@@ -43,7 +43,7 @@ def format_numeric(numeric: rv.Numeric) -> str:
 
 
 def format_duration(ticks: int) -> str:
-    """Ticks in the largest unit of which they are a whole number.
+    """The text of a duration in ticks, in the largest unit that gives a whole number.
 
     >>> [format_duration(ticks) for ticks in (3 * 10**9, 200_000_000, 90 * 10**9, 7, 0)]
     ['3 s', '200 ms', '90 s', '7 ns', '0 s']
@@ -93,7 +93,7 @@ def _formula(formula: rv.Formula, level: int) -> str:
 
 
 def _age(formula: rv.Formula, *, denied: bool) -> str:
-    """The text of a limit on an age, or of its negation; "" if the formula is none."""
+    """The text of a limit on an age, or of its negation; "" for any other formula."""
     match formula:
         case rv.Unary(
             op=rv.UnaryOp.ONCE,
@@ -104,8 +104,8 @@ def _age(formula: rv.Formula, *, denied: bool) -> str:
             ),
             interval=rv.Interval(low=0, high=int() as high),
         ):
-            # `age(x) < 200 ms` was rewritten as at most 199999999 ns: print the shorter, original
-            # form.
+            # The checker turned `age(x) < 200 ms` into "at most 199999999 ns". The shorter text is
+            # the original one.
             most = (rv.CompareOp.LE, format_duration(high))
             below = (rv.CompareOp.LT, format_duration(high + 1))
             op, limit = min(most, below, key=lambda one: len(one[1]))
@@ -123,7 +123,7 @@ def _amount(formula: rv.Amount, *, denied: bool) -> str:
 
 
 def format_window(formula: rv.WindowValue) -> str:
-    """A window in the words of the language.
+    """The text of a window in the language.
 
     >>> format_window(rv.WindowValue(rv.Measured.COUNT, rv.EventAtom("e"), 5 * 10**9))
     'count(e, 5 s)'
@@ -134,7 +134,7 @@ def format_window(formula: rv.WindowValue) -> str:
     conditions = [condition for condition in conditions if condition != rv.since_trigger()]
     if formula.value is None and formula.counted is not None:
         what = _formula(formula.counted, 0)
-    elif formula.value is None or isinstance(formula.value, rv.Literal):  # so many times 1
+    elif formula.value is None or isinstance(formula.value, rv.Literal):  # the integral of 1
         word = "duration" if formula.measured.of_time else word
         what = " and ".join(
             _formula(condition, 0 if len(conditions) == 1 else 4) for condition in conditions
@@ -153,7 +153,11 @@ def format_window(formula: rv.WindowValue) -> str:
 
 
 def _conditions(formula: rv.WindowValue) -> list[rv.Formula]:
-    """The conditions on a member, without those that its number is known and its signal updated."""
+    """The conditions on a member that were written in the specification.
+
+    The checker adds two that are left out: that the number is known, and that the signal of the
+    number is updated.
+    """
     conditions = [without_spans(one) for one in chain(formula.operand)]
     if formula.value is not None and not isinstance(formula.value, rv.Literal):
         conditions = [
@@ -202,7 +206,7 @@ def _binary(formula: rv.Binary) -> str:
         operands = chain(formula, op)
         texts = [_left(operand, level + 1) for operand in operands[:-1]]
         texts.append(_formula(operands[-1], level + 1))
-        # The parser requires these brackets (RV002), but not around `<->`, which binds loosest.
+        # The parser requires brackets here (RV002) except beside `<->`, which binds loosest.
         if op is not rv.BinaryOp.IFF:
             for place, one in enumerate(operands):
                 if isinstance(one, rv.Binary) and one.op.is_kin_of_until:
@@ -216,7 +220,10 @@ def _binary(formula: rv.Binary) -> str:
 
 
 def _left(formula: rv.Formula, level: int) -> str:
-    """A left operand: in brackets also if a temporal prefix would stand before the connective."""
+    """A left operand, bracketed also if it ends in the operand of a temporal prefix.
+
+    Without brackets the prefix could be read as reaching over the connective (RV002).
+    """
     edge = formula
     while True:
         match edge:
@@ -263,7 +270,7 @@ def _arithmetic(numeric: rv.Arithmetic) -> str:
         case NumericOp.NEG:
             return f"-{_numeric(numeric.args[0], _NEGATIVE)}"
         case op:
-            written = numeric.args[: op.entry.most]  # a turn is behind those of an angle
+            written = numeric.args[: op.entry.most]  # the checker appends a full turn for angles
             return f"{op}({', '.join(_numeric(arg, _SUM) for arg in written)})"
 
 
@@ -273,7 +280,7 @@ def _literal(literal: rv.Literal, level: int) -> str:
     text = format(Decimal(repr(literal.value)).normalize(), "f")
     if len(text) > 20:
         text = repr(literal.value)
-    if literal.unit.startswith("1/"):  # a number has no such unit, but its quotient does
+    if literal.unit.startswith("1/"):  # a number cannot have this unit, but a quotient can
         text = f"{text} / 1 {literal.unit[2:].replace('/', '*')}"
         return f"({text})" if level > _PRODUCT else text
     if literal.unit:
@@ -282,6 +289,6 @@ def _literal(literal: rv.Literal, level: int) -> str:
 
 
 def _name(name: str) -> str:
-    """A name, in quotes if it would be read as something else."""
+    """A name, in backticks if it would otherwise be read as something else."""
     plain = all(part.isidentifier() for part in name.split("."))
     return name if plain and name not in RESERVED else f"`{name}`"

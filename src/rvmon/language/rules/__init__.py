@@ -1,6 +1,7 @@
-"""The rules for specifications: a module for each family.
+"""The rules for specifications, one module per family.
 
-A rule has a code, a name and a severity; a breach of it becomes a finding with a place and a fix.
+A rule has a code, a name and a severity. A breach of a rule becomes a finding with a place and a
+fix.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from rvmon.diagnostics import Diagnostic, Label, Severity, Span
 
 
 class Rule(Struct, frozen=True):
-    """A rule; `rvmon/analysis/pages` says why it matters. Its code never comes to mean another."""
+    """A rule, explained in `rvmon/analysis/pages`. A code is never reused for another rule."""
 
     code: str
     name: str
@@ -22,7 +23,7 @@ class Rule(Struct, frozen=True):
 
 
 class Refusal(Exception):  # noqa: N818 - it carries a finding through a parser, no caller sees it
-    """An item, expression or declaration cannot be read further."""
+    """Raised to abandon an item, expression or declaration; carries the finding that says why."""
 
     def __init__(self, finding: Diagnostic) -> None:
         super().__init__(finding.message)
@@ -30,33 +31,33 @@ class Refusal(Exception):  # noqa: N818 - it carries a finding through a parser,
 
 
 class Reported(Exception):  # noqa: N818 - it never leaves this package
-    """Something is wrong, and the finding about it is recorded already."""
+    """Raised to abandon something wrong whose finding is already recorded."""
 
 
 def finding(rule: Rule, message: str, *places: Span | Label, fix: str = "") -> Diagnostic:
-    """A breach of a rule at the first of some places: what is wrong, in one sentence, and a fix."""
+    """A finding at the first of `places`, with one sentence on what is wrong, and a fix."""
     labels = tuple(place if isinstance(place, Label) else Label(place) for place in places)
     return Diagnostic(rule.code, rule.name, rule.severity, message, labels, fix)
 
 
 def short(text: str) -> str:
-    """A piece of the file on one line, its middle left out if it is long."""
+    """A piece of the file on one line, with the middle left out if it is long."""
     line = " ".join(text.split())
     return line if len(line) <= 60 else f"{line[:48]} … {line[-9:]}"
 
 
 class Breach(Struct, frozen=True):
-    """One way to break a rule; called with the place of it, it makes the finding."""
+    """One way to break a rule; calling it with a place makes the finding."""
 
     rule: Rule
-    # one sentence: what is wrong; `{}` is the text of the place, shortened, `{1}` and so on what
-    # else is given
+    # one sentence on what is wrong; `{}` and `{0}` are the shortened text of the place, `{1}` and
+    # so on the further arguments of the call
     message: str
-    fix: str = ""  # a way to fix it, or empty; filled in like the message
-    other: str = ""  # a note at a second place
+    fix: str = ""  # a way to fix it, formatted like the message; may be empty
+    other: str = ""  # a note at each further place
 
     def __call__(self, *given: object) -> Diagnostic:
-        """The finding at the first place that is given."""
+        """The finding at the first span among the arguments."""
         place, *others = [one for one in given if isinstance(one, Span)]
         words = [short(place.text), *(one for one in given if not isinstance(one, Span))]
         labels = [Label(other, self.other) for other in others]
@@ -64,31 +65,30 @@ class Breach(Struct, frozen=True):
         return finding(self.rule, message, place, *labels, fix=fix)
 
 
-MOST = 100  # after so many errors nothing more is looked at; of warnings no more are kept
+MOST = 100  # after this many errors the check stops; of warnings, further ones are dropped
 
 
 class Enough(Exception):  # noqa: N818 - never leaves this package
-    """There are so many findings already that the rest of the file is not looked at."""
+    """Raised to stop the check when there are too many errors."""
 
 
 class Findings(Struct):
-    """Findings in the order in which they were made, none twice."""
+    """Collects findings in order, without duplicates: at most `MOST` errors and `MOST` warnings."""
 
-    # at most so many errors, and as many warnings
     diagnostics: list[Diagnostic] = field(default_factory=list)
-    more: bool = False  # whether there were more
+    more: bool = False  # whether there were more findings than are kept
     _seen: set[tuple[object, ...]] = field(default_factory=set)
     _counts: Counter[Severity] = field(default_factory=Counter)
 
     def add(self, finding: Diagnostic) -> None:
-        """Keep a finding, unless the same was made at the same place.
+        """Add a finding, unless there is one with the same code at the same place.
 
         Raises:
             Enough: there are too many errors.
         """
         place = finding.spans[0].span if finding.spans else None
         key = (finding.code, place and (place.source.name, place.start, place.end))
-        # A macro used twice is reported once.
+        # An error in a macro is found once per use, but reported only once.
         if place is not None and key in self._seen:
             return
         if self._counts[finding.severity] >= MOST:
@@ -101,6 +101,6 @@ class Findings(Struct):
         self.diagnostics.append(finding)
 
     def extend(self, findings: Iterable[Diagnostic]) -> None:
-        """Keep several."""
+        """Add several findings."""
         for finding in findings:
             self.add(finding)

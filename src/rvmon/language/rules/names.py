@@ -48,23 +48,23 @@ RECURSIVE = Rule("RV015", "recursive-definition", Severity.ERROR)
 UNUSED = Rule("RV017", "unused-name", Severity.WARNING)
 
 double = Breach(DOUBLE_NAME, "{2} `{1}` is declared twice", "rename one of them", "first here")
-"""A second declaration: its name, and what of, such as `requirement`."""
+"""A second declaration. Arguments: its name, and the kind of thing, such as `requirement`."""
 
 
 def unknown(span: Span, name: str, close: str) -> Diagnostic:
-    """A name that stands for nothing; `close` describes one that is alike, or is empty."""
+    """An undeclared name; `close` describes a similar declared name, or is empty."""
     fix = close or f"declare it, as `signal {name} : bool` or `event {name}`"
     return finding(UNKNOWN_NAME, f"no signal or event named `{name}`", span, fix=fix)
 
 
 def unknown_constant(name: str, known: Sequence[str]) -> Diagnostic:
-    """A constant that is overridden and does not exist."""
+    """An override of a constant that does not exist."""
     listed = f"there are {', '.join(known)}" if known else "the file declares none"
     return finding(UNKNOWN_NAME, f"no constant named `{name}` to override", fix=listed)
 
 
 def unknown_label(span: Span, name: str, labels: tuple[str, ...]) -> Diagnostic:
-    """A label that the signal does not take."""
+    """A label that the signal does not have."""
     listed = ", ".join(labels[:12]) + (", …" if len(labels) > 12 else "")
     fix = did_you_mean(name, labels, f"the labels are {listed}")
     return finding(UNKNOWN_LABEL, f"no label named `{name}`", span, fix=fix)
@@ -79,4 +79,4 @@ recursive = Breach(
 double_item = Breach(DOUBLE_NAME, "a file has one `{1}` item", other="first here")
 built_in = Breach(DOUBLE_NAME, "`{}` is a function of the language", "choose another name")
 unused = Breach(UNUSED, "`{1} {2}` is used nowhere", "remove it, or look for what should use it")
-"""An unused `define`, `const` or `let`: which of them, and its name."""
+"""An unused `define`, `const` or `let`. Arguments: which of the three, and its name."""

@@ -34,11 +34,11 @@ def false_at_trigger(span: Span, part: str, escape: str, fix: str) -> Diagnostic
 
 
 false_at_first = Breach(AT_FIRST, "`{0}` is false {1}, whatever comes: it fails there", "{2}")
-"""A part required from the start on that cannot hold then: at which instant, and the fix."""
+"""A part required from the start on that cannot hold then. Arguments: the instant, the fix."""
 
 
 def captured_once(span: Span, trigger: str) -> Diagnostic:
-    """A capture under `whenever`; `trigger` is its condition, empty if that always holds."""
+    """A capture under `whenever`; `trigger` is the condition, empty if it always holds."""
     when = f"of each stretch of `{short(trigger)}`" if trigger else "of the run"
     instead = f"`upon {short(trigger)} then …`" if trigger else "`upon … then …`"
     return finding(
@@ -88,7 +88,7 @@ mixed_trigger = Breach(
     "`{0}` is an event and `{1}` a state: while the state holds, the event triggers nothing",
     "write `rise({1})`, or make two requirements",
 )
-"""A disjunction of an event and a state: the places of both, and the text of the state."""
+"""A disjunction of an event and a state. Arguments: the places of both, the text of the state."""
 
 double_clause = Breach(
     DOUBLE_CLAUSE, "a requirement has one `{1}` clause", "join them, or remove one", "first here"
@@ -111,7 +111,7 @@ never_read = Breach(
     "{1} `{2}` is read by no requirement",
     "remove it, or look for the requirement that should read it",
 )
-"""A declared name that nothing reads: `signal` or `event`, and the name."""
+"""A declared name that nothing reads. Arguments: `signal` or `event`, and the name."""
 
 MOST_COMBINATIONS = 10_000  # crosses with more combinations are refused
 
@@ -155,7 +155,7 @@ unwanted_in_point = Breach(
 
 
 def no_coverpoint(span: Span, name: str, known: Sequence[str]) -> Diagnostic:
-    """A cross over something else."""
+    """A cross over a name that is not a coverpoint."""
     fix = did_you_mean(name, known, "declare it with `coverpoint`")
     return finding(CROSS, f"no coverpoint named `{name}`", span, fix=fix)
 
@@ -229,7 +229,7 @@ not_shown = Breach(
 
 
 def not_for_models(found: Diagnostic) -> Diagnostic:
-    """The same finding, where the way out is not the model checker either."""
+    """The same finding without the advice to use `rvmon verify`, which cannot check it either."""
     if found.code != NOT_LINEAR.code or "rvmon verify" not in found.help:
         return found
     fix = "write it for one run; `rvmon verify` does not decide a window that opens later either"
@@ -259,7 +259,7 @@ no_response = Breach(
 
 
 def mixed_roles(span: Span, roles: Mapping[str, str]) -> Diagnostic:
-    """A conjunct that reads inputs and outputs, or nothing at all."""
+    """A conjunct that reads both inputs and outputs, or no signal at all."""
     listed = ", ".join(f"`{name}` is {role}" for name, role in roles.items())
     text = short(span.text)
     message = f"`{text}` mixes roles: {listed}" if roles else f"`{text}` reads no signal"

@@ -1,6 +1,6 @@
-"""Rules on how a specification is written: grammar, brackets, and its size.
+"""Rules on grammar, brackets, and the size of a specification.
 
-Depth, size and cost are those of expressions with their macros expanded.
+Depth, size and cost refer to expressions with expanded macros.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ EMPTY = Rule("RV007", "empty-file", Severity.WARNING)
 
 
 def reach(operator: Span, operand: Span, end: Span) -> Diagnostic:
-    """The operator can be read as reaching over its operand alone or on to `end`."""
+    """An operator that may apply to its operand alone, or to everything up to `end`."""
     head = short(operator.text)
     near = short(operand.text)
     rest = Span(end.source, operand.end, end.end)
@@ -36,7 +36,10 @@ def reach(operator: Span, operand: Span, end: Span) -> Diagnostic:
 
 
 def two_sides(whole: Span, operator: Span, connective: Span, near: Span) -> Diagnostic:
-    """`a unless b and c`: the connective may belong to its neighbour `near` alone."""
+    """`a unless b and c`: the connective may join all of `a unless b` or only its operand `near`.
+
+    `whole` is `a unless b` and `operator` is `unless`.
+    """
     first, second = short(operator.text), short(connective.text)
     behind = connective.start >= whole.end
     text, side = short(whole.text), short(near.text)
@@ -56,11 +59,14 @@ mixed_chain = Breach(
     "`{1}` and `{0}` in one chain need brackets",
     "put brackets around the part that belongs together",
 )
-"""Two different operators of the `until` family: the places of second and first, and the first."""
+"""Two different operators of the `until` family in one chain.
+
+Arguments: the places of the second and the first operator, and the text of the first.
+"""
 
 
 def comparison_chain(left: Span, first: str, middle: Span, second: str, right: Span) -> Diagnostic:
-    """`a <= b <= c`."""
+    """A chain of comparisons, `a <= b <= c`."""
     texts = [short(span.text) for span in (left, middle, right)]
     return finding(
         COMPARISON_CHAIN,
@@ -91,7 +97,7 @@ empty_file = Breach(
 
 
 def too_many(*, broken: bool) -> Diagnostic:
-    """The end of a long list of findings: an error where one of them is."""
+    """The note at the end of a list of findings that was cut; an error if one of them is."""
     message = f"only the first {MOST} findings are shown"
     breach = finding(TOO_MANY, message, fix="fix these first")
     return breach if broken else replace(breach, severity=Severity.WARNING)
@@ -101,20 +107,20 @@ DEEPEST = 100  # deeper nesting is refused
 LARGEST = 5_000  # formulas with more operators are refused
 
 BUDGET = 20_000
-"""A file may expand to this and `PER_CHARACTER` operators for each of its characters."""
+"""Operators to which a file may expand, plus `PER_CHARACTER` for each of its characters."""
 
 PER_CHARACTER = 5
 
 
 class Cost(Struct, frozen=True):
-    """Levels and operators of an expression."""
+    """The levels of nesting and the number of operators of an expression."""
 
     depth: int
     size: int
 
 
 class Effort:
-    """Counts what is evaluated, and refuses what is too much of it; a long file may do more."""
+    """Limits the size of formulas and the total work for a file of so many `characters`."""
 
     def __init__(self, characters: int) -> None:
         self._depth = self._deepest = self._size = 0
@@ -122,16 +128,16 @@ class Effort:
         self._rest = BUDGET + PER_CHARACTER * characters
 
     def begin(self) -> None:
-        """A new formula starts."""
+        """Start to count a new formula."""
         self._size = 0
         self._refused = False
 
     def enter(self, span: Span) -> None:
-        """An operator's operands follow; `leave` has to be called in any case.
+        """Count an operator and descend to its operands; `leave` must be called in any case.
 
         Raises:
-            Refusal: there are too many, or they are nested too deeply.
-            Reported: that has been reported of this formula or file.
+            Refusal: there are too many operators, or they are nested too deeply.
+            Reported: this has already been reported for the formula or the file.
         """
         self._depth += 1
         self._deepest = max(self._deepest, self._depth)
@@ -139,15 +145,15 @@ class Effort:
         self.spend(1, span)
 
     def leave(self) -> None:
-        """The operands are through."""
+        """Return from the operands of an operator."""
         self._depth -= 1
 
     def spend(self, work: int, span: Span) -> None:
         """Take work off the budget of the file.
 
         Raises:
-            Refusal: it is used up now.
-            Reported: it was used up before.
+            Refusal: the budget is used up now.
+            Reported: the budget was used up before.
         """
         if self._rest < 0:
             raise Reported
@@ -156,23 +162,23 @@ class Effort:
             raise Refusal(too_much_work(span))
 
     def mark(self) -> Cost:
-        """Start to measure what follows."""
+        """Start to measure a part; the result is for `since`."""
         mark = Cost(self._deepest, self._size)
         self._deepest = self._depth
         return mark
 
     def since(self, mark: Cost) -> Cost:
-        """The cost since the mark, without that of the mark."""
+        """The cost of everything since the mark."""
         cost = Cost(self._deepest - self._depth, self._size - mark.size)
         self._deepest, self._size = max(mark.depth, self._deepest), mark.size
         return cost
 
     def add(self, cost: Cost, span: Span) -> None:
-        """Count an expression here.
+        """Count an expression at the current level.
 
         Raises:
-            Refusal: it is too much.
-            Reported: that has been reported of this formula.
+            Refusal: the formula is now too large or too deep.
+            Reported: it was reported before that the formula is too large.
         """
         self._size += cost.size
         if self._refused:

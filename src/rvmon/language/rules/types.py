@@ -16,7 +16,7 @@ IGNORED_NAN = Rule("RV027", "nan-of-no-real", Severity.ERROR)
 
 
 def ignored_nan(span: Span, kind: str) -> Diagnostic:
-    """`ignore NaN` where there is none; `kind` is that of the signal."""
+    """`ignore NaN` on a signal that is never NaN; `kind` is the kind of the signal."""
     shown = "with labels" if kind == "label" else f"of type `{kind}`"
     return finding(
         IGNORED_NAN,
@@ -27,7 +27,7 @@ def ignored_nan(span: Span, kind: str) -> Diagnostic:
 
 
 def needs_formula(span: Span, kind: str) -> Diagnostic:
-    """A number or label where something true or false is needed; `kind` says what it is."""
+    """A number or label where a formula is needed; `kind` is `a number` or `a label`."""
     text = short(span.text)
     fix = f"compare it, as in `{text} > 0`" if kind == "a number" else ""
     if kind == "a label":
@@ -121,7 +121,7 @@ not_added = Breach(
     "`{1}` is of {2}, and `{0}` is not",
     "use `integral` or `mean` for signals, `sum` or `mean` for events",
 )
-"""Numbers that are not measured by a function: it, and of what it is."""
+"""Numbers that a function cannot measure. Arguments: the function, and what it measures."""
 
 count_of_state = Breach(
     WRONG_TYPE,
@@ -147,14 +147,14 @@ not_constant = Breach(
 argument_count = Breach(
     WRONG_ARGUMENTS, "`{1}` takes {2}, {3} given", "arguments are separated by commas"
 )
-"""Too many or too few: the function, how many it takes, in words, and how many are given."""
+"""A wrong number of arguments: the function, how many it takes in words, and how many are given."""
 
 argument_kind = Breach(WRONG_ARGUMENTS, "`{1}` needs {2}, `{0}` is none")
-"""An argument of the wrong kind: the function, and which is needed, with its article."""
+"""An argument of the wrong kind: the function, and the needed kind with its article."""
 
 
 def argument_unit(span: Span, name: str, unit: str, needed: str) -> Diagnostic:
-    """An argument of another unit than a function takes; `needed` is empty for a plain number."""
+    """An argument in the wrong unit; `needed` is empty if the function takes a plain number."""
     text = short(span.text)
     shown = f"comes in [{unit}]" if unit else "has no unit"
     fix = (
@@ -176,7 +176,7 @@ power_of_unit = Breach(
     "write a whole number up to 9, or divide the base by one of its units",
 )
 mismatch = Breach(UNIT_MISMATCH, "[{1}] {3} [{2}]", "both sides need units of the same kind")
-"""Units of different kinds: both, and `compared with` and the like."""
+"""Units of different dimensions. Arguments: both units, and a word such as `compared with`."""
 
 missing_unit = Breach(MISSING_UNIT, "`{0}` needs a unit", "did you mean `{0} {1}`?")
 superfluous_unit = Breach(
@@ -192,7 +192,10 @@ no_root = Breach(
 
 
 def unknown_unit(span: Span, part: str, close: str) -> Diagnostic:
-    """A unit that is not in the table, or not joined; `close` is one that is alike, or empty."""
+    """A unit that is not in the table, or one whose parts are not joined by `*` or `/`.
+
+    `close` is a similar unit, or empty. If it equals `part`, only the operator is missing.
+    """
     fix = f"did you mean `{close}`?" if close else "units are made of m, kg, s, A, K, rad, …"
     if close == part:
         joined = "parts of a unit are joined by `*` and `/`: `N*m`, `kg*m/s^2`"
@@ -223,7 +226,7 @@ NO_WINDOW = Rule("RV035", "operator-without-window", Severity.ERROR)
 
 
 def no_duration(span: Span, *, plain: bool = False) -> Diagnostic:
-    """Something that is no constant with a unit of time; `plain`: a number without unit."""
+    """Something other than a constant with a unit of time; `plain`: it is a number without unit."""
     text = short(span.text)
     fix = (
         f"did you mean `{text.strip('() ')} s`?"
@@ -258,7 +261,7 @@ empty = Breach(
 
 
 def reversed_bounds(span: Span, low: Span, high: Span) -> Diagnostic:
-    """An interval whose first bound is after its second."""
+    """An interval whose lower bound is above its upper bound."""
     swapped = f"{span.text[0]}{short(high.text)}, {short(low.text)}{span.text[-1]}"
     return finding(
         EMPTY_INTERVAL,
@@ -269,7 +272,7 @@ def reversed_bounds(span: Span, low: Span, high: Span) -> Diagnostic:
 
 
 not_positive = Breach(EMPTY_INTERVAL, "{1} must be longer than 0", "give it some time: `1 ms`")
-"""A duration of 0 where it makes no sense: its use."""
+"""A duration of 0 where it makes no sense. Argument: the name of the duration."""
 
 late_weak_window = Breach(
     LATE_WEAK_WINDOW,

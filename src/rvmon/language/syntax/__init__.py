@@ -1,1 +1,1 @@
-"""From text to the syntax tree: grammar, words, units, and what fixes a syntax error."""
+"""From text to the syntax tree: grammar, keywords, and fixes for syntax errors."""

@@ -1,4 +1,4 @@
-"""The syntax tree of expressions: formulas, numbers and durations as written; and its walks."""
+"""The syntax tree of expressions: formulas, numbers and durations as they are written."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from rvmon.language.checked.formula import BinaryOp, Bound, CompareOp, UnaryOp
 
 
 class Ident(Struct, frozen=True):
-    """A name where it is written; quotes are taken off."""
+    """A name with its place, without backticks."""
 
     text: str
     span: Span
 
 
 class _Node(Struct, frozen=True):
-    """What an expression is made of; its parts stand in the order of the text."""
+    """A node of an expression; its fields are in the order of the text."""
 
 
 class Number(_Node, frozen=True):
-    """A number with its unit, "" if it has none; `value` is `None` if it is out of range."""
+    """A number with its unit ("" for none); `value` is `None` if it is out of range."""
 
     value: Fraction | None
     unit: str
@@ -69,7 +69,7 @@ class Group(_Node, frozen=True):
 
 
 class Window(_Node, frozen=True):
-    """An interval of durations; `high` is `None` if it has no end."""
+    """An interval of durations; `low` is `None` for 0, `high` is `None` if it has no end."""
 
     low: Expression | None
     high: Expression | None
@@ -92,7 +92,7 @@ class Prefix(_Node, frozen=True):
 
 
 class Immediately(_Node, frozen=True):
-    """`immediately φ`: φ itself, stated on purpose."""
+    """`immediately φ`: the same as φ, but says that one instant is meant."""
 
     operand: Expression
     span: Span
@@ -137,7 +137,10 @@ class Operation(_Node, frozen=True):
 
 
 class Path(_Node, frozen=True):
-    """`AG p`, `E<> p`: `universal` if `A`; `reaching` if, like `A[]`, to the end of the formula."""
+    """`AG p`, `E<> p`; `universal` for `A`.
+
+    `reaching` operators, such as `A[]`, apply to everything up to the end of the formula.
+    """
 
     universal: bool
     op: UnaryOp
@@ -149,7 +152,7 @@ class Path(_Node, frozen=True):
 
 
 class Quantified(_Node, frozen=True):
-    """`A[φ U ψ]`, `E[φ U ψ]`; `path` is what stands in the brackets."""
+    """`A[φ U ψ]`, `E[φ U ψ]`; `path` is the expression in the brackets."""
 
     universal: bool
     path: Expression
@@ -185,7 +188,7 @@ Expression = (
 
 
 def expressions_in(expression: Expression) -> Iterator[Expression]:
-    """The expression and all below it, those of windows too, from left to right."""
+    """The expression and all its parts, those in windows included, from left to right."""
     waiting: list[object] = [expression]
     while waiting:
         node = waiting.pop()

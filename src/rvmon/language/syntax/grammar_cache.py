@@ -1,7 +1,7 @@
-"""Parsers whose tables were worked out before: kept in the user's cache folder, as JSON.
+"""A cache of parser tables, kept as JSON in the user's cache folder.
 
-To work out the tables of a grammar takes ten times as long as to read them. They are keyed by the
-grammar and by the version of the parser generator, so that they are never out of date.
+Computing the tables of a grammar takes ten times as long as loading them. The key is made of the
+grammar, the options and the version of the parser generator, so an entry is never out of date.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ _FORMAT = 2
 
 
 def parser_of(grammar: str, options: Mapping[str, Any]) -> lark.Lark:
-    """The parser of a grammar; `options` as `lark.Lark` takes them, no functions among them."""
+    """The parser of a grammar; `options` are those of `lark.Lark`, without functions."""
     folder = cache_folder()
     if folder is None:
         return lark.Lark(grammar, **options)
@@ -44,13 +44,13 @@ def _read(path: Path) -> lark.Lark | None:
         return None
     try:
         known: lark.Lark = lark.Lark.load(json.loads(body, object_hook=_with_numbers))
-        # Lark's `load` does not set it; tests read all terminals.
+        # Lark's `load` does not set `ignore_tokens`, which tests read.
         known.ignore_tokens = list(known.lexer_conf.ignore)
-    except Exception:  # noqa: BLE001 - whatever is wrong with a cache, it can be done without
+    except Exception:  # noqa: BLE001 - a broken cache entry, in whatever way, is recomputed
         return None
     return known
 
 
 def _with_numbers(tables: dict[str, Any]) -> dict[str | int, Any]:
-    """JSON has no numbers as keys: those of lark, such as states, came as texts of digits."""
+    """Turn keys of digits back into numbers, such as lark's states: JSON keys are texts."""
     return {int(key) if key.isdecimal() else key: value for key, value in tables.items()}

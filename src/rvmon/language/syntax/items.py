@@ -1,4 +1,4 @@
-"""The syntax tree of a file: its items, in its own words and order."""
+"""The syntax tree of a file: its items as written, in the order of the file."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class ImportItem(Struct, frozen=True):
 
 
 class SignalSyntax(Struct, frozen=True):
-    """One signal, declared with its neighbours; `ignored` is the place of `ignore NaN`."""
+    """One signal of a declaration; `ignored` is the place of its `ignore NaN`."""
 
     word: ClassVar = "signal"
     name: Ident
@@ -71,7 +71,7 @@ class FieldSyntax(Struct, frozen=True):
 
 
 class EventSyntax(Struct, frozen=True):
-    """One event, declared with its neighbours, with its payload's fields."""
+    """One event of a declaration, with the fields of its payload."""
 
     word: ClassVar = "event"
     name: Ident
@@ -87,7 +87,7 @@ class Declarations(Struct, frozen=True):
 
 
 class DefineItem(Struct, frozen=True):
-    """`define name = body`, `define name(p, d) = body`; no parameters is `None`."""
+    """`define name = body` (`parameters` is `None`) or `define name(p, d) = body`."""
 
     word: ClassVar = "define"
     name: Ident
@@ -106,7 +106,7 @@ class ConstItem(Struct, frozen=True):
 
 
 class PropertyItem(Struct, frozen=True):
-    """`property ID: CTL` alone."""
+    """`property ID: CTL` as an item of its own."""
 
     name: Ident
     formula: Expression
@@ -194,10 +194,10 @@ class PropertyClause(Struct, frozen=True):
 class ScopeClause(Struct, frozen=True):
     """`scope before (φ)`, `after (φ)`, `between (φ) and (ψ)`, `after (φ) until (ψ)`."""
 
-    # the formula that opens the scope; `None`: it is open from the start
+    # the formula that opens the scope; `None`: the scope is open from the start
     opening: Expression | None
-    closing: Expression | None  # the formula that closes the scope; `None`: nothing does
-    must_close: bool  # whether nothing is required unless the scope is closed
+    closing: Expression | None  # the formula that closes the scope; `None`: it never closes
+    must_close: bool  # whether nothing is required if the scope is never closed
     span: Span
 
 
@@ -247,7 +247,7 @@ class StepsSyntax(Struct, frozen=True):
 
 
 class BinSyntax(Struct, frozen=True):
-    """A bin: its values are those of a window, steps, an expression, or a label of its own name."""
+    """A bin with the values that hit it; `None`: the label with the name of the bin."""
 
     name: Ident
     values: Window | StepsSyntax | Expression | None
@@ -271,7 +271,7 @@ class CountClause(Struct, frozen=True):
 
 
 class UnwantedClause(Struct, frozen=True):
-    """`ignore φ` or `illegal φ` of a cross, over its coverpoints."""
+    """`ignore φ` or `illegal φ` of a cross; φ compares its coverpoints with bins."""
 
     kind: BinKind
     condition: Expression
@@ -317,9 +317,9 @@ Item = (
 
 
 class ParsedSpec(Struct, frozen=True):
-    """One file, item by item; its names are not looked at yet.
+    """The items of one file, before names are resolved.
 
-    What could not be read may have declared any of the `doubtful` words.
+    `doubtful` are all words of items with syntax errors, any of which may be a declared name.
     """
 
     source: Source

@@ -1,4 +1,4 @@
-"""The words of the language, which are never names, and a file split into its items by them."""
+"""The keywords of the language, and the split of a file into items at these words."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ ITEM_WORDS = (
     *("spec", "time", "import", "signal", "event", "define", "const", "requirement", "property"),
     *("cover", "coverpoint", "cross"),
 )
-"""Words that start an item; besides, `max delay` does."""
+"""Words that start an item. `max delay` also does, but `max` alone is a function."""
 
 _PREFIXES = [op for op in UnaryOp if op.entry.level == PREFIXED and op is not UnaryOp.NOT]
 _INFIXES = [op for op in BinaryOp if op.is_kin_of_until]
@@ -20,7 +20,7 @@ OPERATOR_TERMINALS = {
     "TEMPORAL": tuple(text for op in _PREFIXES for text in op.spellings),
     "INFIX": tuple(text for op in _INFIXES for text in op.spellings),
 }
-"""The terminals of the grammar that stand for operators, and all ways to write them."""
+"""The grammar's terminals for operators, each with all spellings."""
 
 _TEMPORAL_WORDS = (
     *OPERATOR_TERMINALS["TEMPORAL"],
@@ -33,10 +33,10 @@ _OTHER_WORDS = (
 )
 
 RESERVED = frozenset((*ITEM_WORDS, *_TEMPORAL_WORDS, *_OTHER_WORDS))
-"""Words that are never names, unless quoted."""
+"""Words that are names only in backticks."""
 
 INFIX_WORDS = frozenset(" ".join(OPERATOR_TERMINALS["INFIX"]).split())
-"""Operators between formulas; where an operand stands they are names."""
+"""Words of operators between formulas. Where an operand is expected they are names."""
 
 CLAUSE_WORDS = frozenset(
     {
@@ -47,18 +47,18 @@ CLAUSE_WORDS = frozenset(
 """Words that start a clause of an item; elsewhere they are names."""
 
 NOT_UNITS = RESERVED | INFIX_WORDS | CLAUSE_WORDS | frozenset(("input", "output", "stale", "of"))
-"""Words that do not count as the unit of a number before them."""
+"""Words that are never read as the unit of a number before them."""
 
-_ITEM = (  # compiled where a text is split: a start of `rvmon` seldom does
+_ITEM = (  # compiled on first use, as most starts of `rvmon` split no text
     rf"^[ \t\ufeff]*(?P<word>{'|'.join(ITEM_WORDS)}|max(?=\s+delay))(?!\w|\.\w)"
     r"(?P<named>[ \t]*(?:\w[\w.]*|`[^`\n]*`)[ \t]*:)?"
 )
 
 
 def split_items(text: str) -> list[tuple[int, int]]:
-    r"""The places `[start, end)` of the items, with what stands before the first one, if anything.
+    r"""The ranges `[start, end)` of the items; text before the first item is a range of its own.
 
-    `property` inside a requirement is a clause of it unless a name and a colon follow.
+    `property` inside a requirement is one of its clauses unless a name and a colon follow.
 
     >>> split_items("spec a\nevent b")
     [(0, 7), (7, 14)]
@@ -77,6 +77,6 @@ def split_items(text: str) -> list[tuple[int, int]]:
 
 
 def _blank(text: str) -> bool:
-    """Whether there are only comments and space."""
+    """Whether a text consists of comments and white space."""
     lines = text.replace("\ufeff", "").split("\n")
     return all(line.lstrip().startswith("#") or not line.strip() for line in lines)

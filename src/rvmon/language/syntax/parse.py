@@ -1,6 +1,6 @@
-"""Text, and the files it imports, to syntax trees.
+"""Parses a specification and the files it imports into syntax trees.
 
-Every item is parsed alone, so that all errors of a file appear at once.
+Each item is parsed on its own, so that all syntax errors of a file appear at once.
 """
 
 from __future__ import annotations
@@ -33,9 +33,9 @@ from rvmon.units import compound_pattern
 DEEPEST = 100  # expressions nested more deeply are refused
 
 MOST_ENCLOSED = 200
-"""The same with brackets that only enclose, which are no levels but take as much to read."""
+"""The same limit if brackets that only enclose are counted, which are not levels of nesting."""
 
-KEPT = 4_000  # trees of items that are kept for the next time that the same text is read
+KEPT = 4_000  # the number of parse trees of items in the cache of `_tree`
 
 _NO_CODE = re.compile(r'"[^"\n]*"|`[^`\n]*`|#[^\n]*')
 _OPERATOR = re.compile(r"(?<![\w.])(?:and|or|xor|implies|iff)(?![\w.])|&&?|\|\|?|[+*]")
@@ -44,7 +44,7 @@ Parsed = tuple[Any, list[Diagnostic]]
 
 
 def parse_spec(source: Source, findings: Findings) -> ParsedSpec:
-    """Read a file; `findings` takes what is wrong with the items that are left out."""
+    """Parse a file; items with syntax errors are left out and reported to `findings`."""
     items: list[Item] = []
     doubtful: set[str] = set()
     waiting = keywords.split_items(source.text)[::-1]
@@ -55,7 +55,8 @@ def parse_spec(source: Source, findings: Findings) -> ParsedSpec:
             items.append(item)
             findings.extend(wrong)
             continue
-        # Split there, the previous item parses, and the error is at the misspelled keyword.
+        # The item may have swallowed the next one, whose keyword is misspelled. If it is split
+        # there, its first part parses, and the error is reported at the misspelled keyword.
         cut = _misspelled_item(source.text, start, wrong)
         if cut is not None:
             waiting += ((cut, end), (start, cut))
@@ -66,7 +67,10 @@ def parse_spec(source: Source, findings: Findings) -> ParsedSpec:
 
 
 def _misspelled_item(text: str, start: int, findings: list[Diagnostic]) -> int | None:
-    """The start of an item that was parsed as part of the one before, as `requirment R2` is."""
+    """The start of a misspelled item, such as `requirment R2`, inside the item before it.
+
+    `None` if the syntax error in `findings` is something else.
+    """
     place = findings[0].spans[0].span.start
     if place <= start or text[place - 1] != "\n":
         return None
@@ -75,13 +79,14 @@ def _misspelled_item(text: str, start: int, findings: list[Diagnostic]) -> int |
 
 
 def parse_expression(source: Source) -> tuple[Expression | None, list[Diagnostic]]:
-    """Read a text that is one expression, such as the value of a constant."""
+    """Parse a text that is one expression, such as the value of a constant."""
     return _parse(source, 0, len(source.text), "expression")
 
 
 def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
     text = source.text[start:end]
-    # A lower bound, checked before parsing, which takes memory and time for each operator.
+    # The text has at least these operators. They are counted before parsing because the parser
+    # takes time and memory for each.
     if len(text) >= LARGEST and len(_OPERATOR.findall(_NO_CODE.sub("", text))) > LARGEST:
         return None, [rules.too_large(Span(source, start, start + len(text.rstrip())), LARGEST)]
     builder = Builder(source, start)
@@ -99,7 +104,7 @@ def _parse(source: Source, start: int, end: int, rule: str) -> Parsed:
 
 @lru_cache(KEPT)
 def _tree(text: str, rule: str) -> lark.Tree[Any]:
-    """The parser's tree; those of items that stay as they are while a file is edited are kept."""
+    """The parse tree of a text, cached so that editing one item does not parse all others again."""
     return grammar().parse(text, start=rule)
 
 
@@ -119,7 +124,7 @@ GRAMMAR_OPTIONS: dict[str, Any] = {
 
 
 def grammar_text() -> str:
-    """The grammar with its terminals filled in from the tables of words and units."""
+    """The grammar, with placeholders replaced from the tables of words and units."""
     text = resources.files("rvmon.language.syntax").joinpath("rv.lark").read_text(encoding="utf-8")
     end = r"(?!\w|\.\w)"
     word = r"[^\W\d]\w*"
@@ -132,7 +137,7 @@ def grammar_text() -> str:
     for terminal, spellings in keywords.OPERATOR_TERMINALS.items():
         fillings[terminal] = "|".join(
             re.escape(spelling).replace(r"\ ", r"\s+") + (end if spelling[-1].isalpha() else "")
-            # `&&` before `&`: an alternation takes the first match.
+            # The longest first, `&&` before `&`: an alternation takes the first match.
             for spelling in sorted(spellings, key=len, reverse=True)
         )
     for key, pattern in fillings.items():
@@ -145,7 +150,10 @@ def _any(words: frozenset[str]) -> str:
 
 
 def _too_deep(tree: lark.Tree[Any]) -> lark.Tree[Any] | None:
-    """The first part that is nested too deeply; brackets that only enclose are no level."""
+    """The first part that is nested too deeply, or `None`.
+
+    Brackets that only enclose are not levels of nesting, but have a limit of their own.
+    """
     within = 0
     level = [tree]
     for _ in range(MOST_ENCLOSED):
@@ -159,7 +167,7 @@ def _too_deep(tree: lark.Tree[Any]) -> lark.Tree[Any] | None:
 
 
 LIBRARIES = ("patterns",)
-"""Folders of this package with specifications that can be imported by name."""
+"""Libraries that can be imported by name: folders of `rvmon.language` with `.rv` files."""
 
 
 def load_files(
@@ -168,10 +176,11 @@ def load_files(
     findings: Findings,
     read: Callable[[Path], str] = text_of_file,
 ) -> list[ParsedSpec]:
-    """Read a file and those it imports.
+    """Parse a file and all files it imports, directly or indirectly.
 
-    The main file comes first, then the imported ones in the order of their first import. Its folder
-    is by default the current one; `read` gives the text of an imported file.
+    The main file comes first, then the others in the order of their first import. `directory` is
+    the folder of the main file, by default the current one. `read` returns the text of an imported
+    file.
     """
     loader = _Loader(findings, tree_of(directory or Path()), read)
     loader.read(source, directory or Path(), _key(Path(source.name)), {})
@@ -189,7 +198,10 @@ class _Loader:
     def read(
         self, source: Source, directory: Path, key: str, path: Mapping[str, ImportItem]
     ) -> None:
-        """Read a file; `path` are the files that are being read, with the imports in them."""
+        """Parse a file and its imports.
+
+        `path` is the chain of imports that leads here: the import item by the key of its file.
+        """
         self._seen.add(key)
         parsed = parse_spec(source, self._findings)
         self.files.append(parsed)
@@ -210,7 +222,7 @@ class _Loader:
             self._findings.add(refusal.finding)
 
     def _sources(self, item: ImportItem, directory: Path) -> Iterator[tuple[Source, Path, str]]:
-        """The texts that an import means, each with its folder and a key of its own."""
+        """The texts behind an import, each with its folder and a unique key."""
         if not item.library:
             path = directory / item.target
             yield Source(str(path), self._read(path, item)), path.parent, _key(path)
@@ -233,7 +245,7 @@ class _Loader:
             reason = error.strerror or str(error)
         except UnicodeDecodeError:
             reason = "it is not UTF-8 text"
-        except ValueError as error:  # a null character in the name
+        except ValueError as error:  # a null character in the path
             reason = str(error)
         raise Refusal(name_rules.unreadable(item.span, item.target, reason))
 

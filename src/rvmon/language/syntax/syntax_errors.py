@@ -1,4 +1,4 @@
-"""Syntax errors in the words of the language: what stands there, what could, what fixes it."""
+"""Explains syntax errors: what was found, what could stand there, and how to fix it."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ _FIX = {
 _TRIGGER_WORDS = "for `{}` write `upon` (an instant) or `whenever` (as long as it holds)"
 NEVER = "for `never` write `always not (…)`"
 NAMELESS = RESERVED - frozenset(ITEM_WORDS)
-"""Words that are no name and may start what a requirement demands."""
+"""Reserved words that may start the formula of a requirement: all but those of items."""
 _CLAUSE = re.compile(
     r'requirement\s+(?:[\w.]+|`[^`]+`)\s*(?:"[^"\n]*")?\s*'
     r"(source|rationale|severity|tags|scope|at\s+end|for\s+each|in\s+at|property)"
@@ -49,12 +49,16 @@ _CLAUSE = re.compile(
 _LET = "`let` stands behind the trigger or the consequent: `upon … let x = … then …`"
 _SHARE = "write `in at least 95 % of runs`, or `in at most 5 % of runs`"
 _BEGINNINGS = r"(?<![\w.])(?:upon|whenever|then|always|and|or)(?![\w.])|->"
-"""Before what a formula begins."""
+"""Words after which a formula starts."""
 _DURATION_OF = r"(?<![\w.])(?:within|for)[ \t]+[\w.]+(?:[ \t]+\w+)?[ \t]*"
-_BEHIND = 100  # so many characters behind the word are looked at
+_BEHIND = 100  # characters after the unexpected word that patterns see
 _Rows = tuple[tuple[str, str, str], ...]
-"""Of an item, the text before a word that cannot stand there, `\\0`, that word, `\\0` and what
-follows; a terminal that could stand there, or none; and the fix."""
+"""Rows of known mistakes: a pattern, a terminal, and the fix.
+
+The pattern is searched in `before\\0word\\0after`: the item up to the unexpected word, that word,
+and the text after it. The terminal must be accepted at the word; "" puts no condition. Groups of
+the pattern fill the placeholders of the fix.
+"""
 _CERTAIN: _Rows = (
     *(
         (
@@ -134,10 +138,11 @@ _TYPES = {
 def fix_of(unexpected: str, accepted: set[str], parser: lark.Lark, before: Span) -> str:
     """The fix for a syntax error; empty if none is known.
 
-    `accepted` are the terminals that could stand at `unexpected`, which is empty at the item's end.
+    `accepted` are the terminals that could stand in the place of `unexpected`, which is empty at
+    the end of the item.
     """
     return (
-        # Ordered from certain to guessed: the first that knows a fix is used.
+        # Ordered from certain to guessed; the first fix that is found is used.
         if_fix(before.text)
         or _FIX.get(unexpected, "")
         or _row_fix(_CERTAIN, unexpected, accepted, before)
@@ -151,7 +156,7 @@ def fix_of(unexpected: str, accepted: set[str], parser: lark.Lark, before: Span)
 
 
 def if_fix(before: str) -> str:
-    """The fix for an `if` that is no choice between numbers; empty if there is none."""
+    """The fix for an `if` without `else`, which is meant as a trigger; empty if there is none."""
     unfinished = re.search(r"(?<![\w.])if(?![\w.])(?!.*(?<![\w.])else(?![\w.]))", before, re.DOTALL)
     return _TRIGGER_WORDS.format("if") if unfinished else ""
 
@@ -165,7 +170,7 @@ def _dash_fix(before: str) -> str:
 
 
 def _row_fix(rows: _Rows, unexpected: str, accepted: set[str], before: Span) -> str:
-    """The fix of the first row that fits."""
+    """The fix of the first row that matches; empty if none does."""
     end = before.end + len(unexpected)
     text = f"{before.text}\0{unexpected}\0{before.source.text[end : end + _BEHIND]}"
     for pattern, terminal, fix in rows:
@@ -181,13 +186,13 @@ def _bare_unit_fix(unexpected: str, before: str) -> str:
 
 
 def _clause_fix(unexpected: str, before: str) -> str:
-    """The fix for a clause above the formula, where the first word of most reads as a name."""
+    """The fix for a clause before the formula, where its first word is mostly read as a name."""
     clause = _CLAUSE.fullmatch(f"{before.rstrip()} {unexpected}")
     return f"a clause, as `{clause[1]} …`, stands behind the formula" if clause else ""
 
 
 def _word_fix(unexpected: str, accepted: set[str], parser: lark.Lark, before: str) -> str:
-    """The fix for a word that the language does not have, or does not allow there."""
+    """The fix for a word that the language does not have or does not allow here."""
     if not re.fullmatch(r"[^\W\d]\w*", unexpected):
         return ""
     if "LBRACE" in accepted and unexpected.lower() in _TYPES:
@@ -216,7 +221,7 @@ _LOOK_AHEAD = re.compile(r"\(\?[!=](?:[^()]|\([^()]*\))*\)")
 
 
 def words_of(terminal: str, parser: lark.Lark) -> list[str]:
-    """The words that a terminal of the grammar stands for; signs and single letters are left out.
+    """The words that a terminal of the grammar matches, without signs and single letters.
 
     >>> from rvmon.language.syntax.parse import grammar
     >>> words_of("RUN_SHARE", grammar()), words_of("CTL", grammar())[:2]
@@ -263,7 +268,7 @@ _SWALLOWED = re.compile(r"(?<![\w.])(\d+(?:\.\d+)?)[ \t]+([^\W\d]\w*)\s*\Z")
 def explain_unexpected(
     error: UnexpectedInput, parser: lark.Lark, source: Source, start: int, end: int, rule: str
 ) -> Diagnostic:
-    """Say what was found between `start` and `end` of a file, and what could have stood there."""
+    """The finding for a syntax error between `start` and `end` of a file."""
     place = _place(error, source, start, end)
     accepted, _ = accepted_terminals(parser, source.text[start:end], rule)
     unexpected = place.text
@@ -283,9 +288,9 @@ def explain_unexpected(
 
 
 def _is_demanded(before: str, word: Span) -> bool:
-    """Whether a word begins what a requirement without a name demands; else it is the name.
+    """Whether a word after `requirement` starts its formula, as the name was left out.
 
-    A name stands on the line of `requirement`, with its text or nothing behind it.
+    The word is the name if it stands on the line of `requirement` and only a text may follow it.
     """
     named = re.fullmatch(r"requirement[ \t]+", before) and _TITLE.match(word.source.text, word.end)
     return before.split() == ["requirement"] and not named
@@ -296,7 +301,7 @@ def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span
         first = start + (error.token.start_pos or 0)
         return Span(source, first, first + max(len(error.token), 1))
     at_end = isinstance(error, UnexpectedToken) and error.token.type == "$END"
-    if not at_end:  # UNIT matches almost anything, so the word is looked for here
+    if not at_end:  # UNIT matches almost anything, so its token is too long: find the word here
         first = start + (error.pos_in_stream or 0)
         word = re.compile(r"\w+|.", re.DOTALL).match(source.text, first)
         return Span(source, first, word.end() if word else first)
@@ -306,9 +311,9 @@ def _place(error: UnexpectedInput, source: Source, start: int, end: int) -> Span
 
 
 def accepted_terminals(parser: lark.Lark, text: str, rule: str) -> tuple[set[str], bool]:
-    """The terminals with which a text could really go on, and whether it can be read up to its end.
+    """The terminals with which a text could continue, and whether all of the text can be read.
 
-    The list of an error is too long.
+    The list in lark's error is not used: it also has terminals that fail later.
     """
     interactive: Any = parser.parse_interactive(text, start=rule)
     try:
@@ -334,7 +339,7 @@ def _in_words(accepted: set[str], parser: lark.Lark) -> str:
         words.append("an operator such as `and`, `or`, `->`, `until`")
         rest -= _INFIX | _ARITHMETIC
     if "THEN" in rest:
-        rest -= _CLAUSES  # what has to come is told, not what may stand before it
+        rest -= _CLAUSES  # name the word that must come, not the optional clauses before it
     if rest >= _CLAUSES:
         words.append("a clause (`source`, `scope`, `let`, …)")
         rest -= _CLAUSES

@@ -1,4 +1,4 @@
-"""From the parser's tree of an item to the syntax tree."""
+"""Turns the parse tree of an item into the syntax tree."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from rvmon.language.syntax import items
 
 _NUMBER = re.compile(r"\d+(?:\.\d+)?(?:[eE][+-]?\d+)?")
 _LARGEST = 400
-"""Numbers with more digits before the point, or more zeros behind it, are out of range."""
+"""Numbers with more digits before the point, or more zeros after it, are out of range."""
 _MARKS = {
     "SPEC", "TIME", "MAX_DELAY", "IMPORT", "COVER", "COVERPOINT", "CROSS", "SCOPE", "BEFORE",
     "AFTER", "BETWEEN", "UNTIL", "SIGNAL", "EVENT", "DEFINE", "CONST", "REQUIREMENT",
@@ -30,25 +30,27 @@ _MARKS = {
     "IGNORE_NAN", "STALE_AFTER", "STEP", "MONITOR_AS_RESPONSE", "MONITOR_AS_WRITTEN",
     "MONITOR_AS_COVER",
 }  # fmt: skip
-"""Terminals that only show where a part begins: the rule says the same."""
+"""Terminals without content: the name of the grammar rule says the same."""
 
 
 class Builder:
-    """Makes the syntax tree of one item, of depth that the parser has limited.
+    """Builds the syntax tree of one item by recursion; the depth was limited before.
 
-    `offset` is the start in the file of the text given to the parser.
+    `offset` is the position in the file at which the parsed text starts.
     """
 
     def __init__(self, source: Source, offset: int) -> None:
-        self.findings: list[Diagnostic] = []  # on the syntax of the item
+        self.findings: list[Diagnostic] = []  # about the syntax of the item
         self._source = source
         self._offset = offset
 
     def built(self, tree: Tree[Token]) -> Any:
-        """What a rule reads: made of its place, and of its parts without marks.
+        """The syntax node of a grammar rule, made of its span and its parts.
+
+        Terminals in `_MARKS` are not parts.
 
         Raises:
-            Refusal: it cannot be read further.
+            Refusal: it has an error beyond the grammar, such as a chain of comparisons.
         """
         parts = [
             self.built(child) if isinstance(child, Tree) else self._word(child)
@@ -63,7 +65,10 @@ class Builder:
         return Span(self._source, self._offset + start, self._offset + end)
 
     def _word(self, token: Token) -> ast.Ident | str:
-        """A name without quotes or bracket, or another word, with its place; a text without."""
+        """The word of a token with its place, without backticks or the bracket of a call.
+
+        A string token gives its plain text.
+        """
         start, end = token.start_pos or 0, token.end_pos or 0
         if token.type == "STRING":
             return re.sub(r"\\(.)", r"\1", token[1:-1])
@@ -72,7 +77,7 @@ class Builder:
         return ast.Ident(token[1:-1] if token[0] == "`" else str(token), self._span(start, end))
 
     def chain(self, _: Span, *parts: Any) -> ast.Infix:
-        """Operands with one connective, or several of one precedence, between them."""
+        """A chain of operands with connectives of one precedence between them."""
         operands, words = parts[::2], parts[1::2]
         if not _are_alike(operands):
             for operand in operands[:-1]:
@@ -92,7 +97,7 @@ class Builder:
         return ast.Infix(op, left, first_of(window), right, word.span, span)
 
     def _check_sides(self, operands: Sequence[ast.Expression], words: Sequence[ast.Ident]) -> None:
-        """Between `until` or its kin and a connective a reader may see the other bracket first."""
+        """Report operands of a connective that are an unbracketed `until` or its kin."""
         for number, operand in enumerate(operands):
             if isinstance(operand, ast.Infix) and operand.op.is_kin_of_until:
                 word = words[min(number, len(words) - 1)]
@@ -102,7 +107,7 @@ class Builder:
                 )
 
     def _check_reach(self, left: ast.Expression, last: ast.Expression) -> None:
-        """A temporal prefix right before a connective has to say how far it reaches."""
+        """Report a temporal prefix with an unbracketed operand right before a connective."""
         edge = left
         while True:
             match edge:
@@ -119,13 +124,13 @@ class Builder:
 
 
 def _are_alike(operands: Sequence[ast.Expression]) -> bool:
-    """Whether all begin with the same operator of time, which nobody takes for one in the other."""
+    """Whether all operands start with the same temporal prefix, so nobody misreads the chain."""
     firsts = {operand.op if isinstance(operand, ast.Prefix) else None for operand in operands}
     return len(firsts) == 1 and not firsts & {None, UnaryOp.NOT}
 
 
 def _balanced(operands: Sequence[Any], words: Sequence[ast.Ident]) -> Any:
-    """All four connectives are associative, so a long chain need not become a deep tree."""
+    """A balanced tree of a chain: the connectives are associative, so it need not become deep."""
     if len(operands) == 1:
         return operands[0]
     middle = (len(operands) + 1) // 2
@@ -136,7 +141,7 @@ def _balanced(operands: Sequence[Any], words: Sequence[ast.Ident]) -> Any:
 
 
 def first_of(parts: Sequence[Any]) -> Any:
-    """The first part, if there is one."""
+    """The first part, or `None`."""
     return parts[0] if parts else None
 
 
@@ -236,7 +241,7 @@ def _requirement(span: Span, name: ast.Ident, *rest: Any) -> items.RequirementIt
 
 
 def _triggered(mode: Mode, trigger: ast.Expression, *rest: Any) -> tuple[items.Triggered, Any]:
-    """A trigger with what is required, and the clauses between the two."""
+    """A trigger with its consequent, and the clauses between the two."""
     *clauses, consequent = rest
     return items.Triggered(mode, trigger, consequent), clauses
 
@@ -342,4 +347,7 @@ _MADE: Mapping[str, Callable[..., Any]] = {
         BinKind(word.text), condition, span
     ),
 }
-"""By rule of `rv.lark`, what it makes of its place and parts; `Builder` has the other two."""
+"""For each rule of `rv.lark`, the maker of its node from span and parts.
+
+The rules `chain` and `infix` are methods of `Builder`, because they report findings.
+"""
