@@ -30,7 +30,7 @@ T = TypeVar("T")
 
 
 def check(spec: ResolvedSpec, findings: Findings) -> specification.CheckedSpec:
-    """Check all that a specification says; the result is fit for use if no finding is an error."""
+    """Check all items of a specification; the result is valid only if no finding is an error."""
     recursive = find_cycles(spec.declared, findings)
     table = _table(spec, recursive, findings)
     checker = Checker(table, findings, sum(len(source.text) for source in spec.sources))
@@ -58,7 +58,7 @@ def check(spec: ResolvedSpec, findings: Findings) -> specification.CheckedSpec:
         requirement = checker.collected(checked_requirement, checker, item)
         if requirement is not None:
             requirements[name] = requirement
-    # Macros used by requirements were checked with these; unused ones may have errors, too.
+    # A macro is checked where it is used, so errors in unused macros are still to be found.
     check_unused(checker, spec)
     stated: list[specification.Requirement | Cover] = [*requirements.values(), *goals.values()]
     properties = {part.id: part.ctl for part in stated if part.ctl is not None}
@@ -77,7 +77,7 @@ def check(spec: ResolvedSpec, findings: Findings) -> specification.CheckedSpec:
 
 
 def _right(make: Callable[[S], T | None], written: Mapping[str, S]) -> dict[str, T]:
-    """By name, what could be made of what is written."""
+    """The results of `make` by name, without those that are `None`."""
     return {name: made for name, syntax in written.items() if (made := make(syntax)) is not None}
 
 
@@ -100,8 +100,8 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
             case items.EventSyntax():
                 fields = {}
                 for field in declared.fields:
-                    # A signal may have a dotted name: `pick.id` would be ambiguous, signal or field
-                    # of `pick`.
+                    # A signal may have a dotted name, so `pick.id` could be both a signal and a
+                    # field of `pick`.
                     taken = spec.declared.get(f"{name}.{field.name.text}")
                     first = declared if field.name.text in fields else taken
                     if first is not None:
@@ -116,7 +116,7 @@ def _table(spec: ResolvedSpec, recursive: frozenset[str], findings: Findings) ->
 
 
 def _type(syntax: items.TypeSyntax, findings: Findings) -> tuple[specification.Type, Unit] | None:
-    """A type with its unit; `None` if there is no such unit, and then that is recorded."""
+    """A type with its unit; `None`, with a finding, if the unit does not exist."""
     labels = tuple(label.text for label in syntax.labels)
     firsts: dict[str, Span] = {}
     for label in syntax.labels:
@@ -139,7 +139,7 @@ def _positive(checker: Checker, expression: Expression, what: str) -> int | None
 
 
 def check_unused(checker: Checker, spec: ResolvedSpec) -> None:
-    """Report what is wrong in macros; those with parameters have their names looked up only."""
+    """Report errors in macros and constants; in macros with parameters, undeclared names only."""
     for item in spec.declared.values():
         match item:
             case items.DefineItem(parameters=None, name=name) | items.ConstItem(name=name):

@@ -1,4 +1,4 @@
-"""Comparisons: numbers, labels with their signal, ages, and durations."""
+"""Checks comparisons of numbers, labels, ages, `now` and measured windows."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def compared(operands: sc.Operands, node: Comparison, scope: sc.Scope) -> rv.For
 
     Raises:
         Refusal: the sides cannot be compared.
-        Reported: a side is wrong.
+        Reported: a side has an error.
     """
     sides = _sides(operands, node, scope)
     time = operands.table.time
@@ -39,7 +39,7 @@ def compared(operands: sc.Operands, node: Comparison, scope: sc.Scope) -> rv.For
 
 def _compared(time: TimeModel, node: Comparison, left: sc.Value, right: sc.Value) -> rv.Formula:
     op, places = node.op, (node.left.span, node.right.span)
-    # Ages and `now` are moved to the left side, which halves the cases below.
+    # Ages and `now` are moved to the left side, to halve the cases below.
     if isinstance(right, sc.TimeValue) and not isinstance(left, sc.TimeValue):
         left, right, op, places = right, left, op.mirrored, places[::-1]
     if isinstance(left, sc.Moment) and isinstance(right, sc.Now):
@@ -52,8 +52,8 @@ def _compared(time: TimeModel, node: Comparison, left: sc.Value, right: sc.Value
     first = _comparable(left, places[0])
     if limit[0].lone and not first[0].lone:
         first, limit, op = limit, first, op.mirrored
-    # A window compared alone is compared exactly, in ticks or whole numbers; within an expression
-    # it is a rounded number (SEMANTICS 5).
+    # A window that is a side by itself is compared exactly, in ticks or whole numbers. Within an
+    # expression it is a rounded number (SEMANTICS 5).
     windows = [_windows_of(side) for side in (first, limit)]
     if first[0].lone and not windows[1]:
         lone = first[0].lone
@@ -77,11 +77,11 @@ def _windows_of(placed: quantities.Placed) -> tuple[rv.WindowValue, ...]:
 
 
 def _sides(operands: sc.Operands, node: Comparison, scope: sc.Scope) -> list[sc.Value]:
-    """Both values; a name that is a label of the other side's signal is that label."""
+    """The values of both sides; a name is a label if the other side is a signal with that label."""
     for first, second in ((node.left, node.right), (node.right, node.left)):
         name, place = operands.peeled(second, scope)
         other, _ = operands.peeled(first, scope)
-        # Else it is not worth while to evaluate the other side in search of a signal with labels.
+        # An unknown name on the other side is not evaluated in search of a signal with labels.
         may_be_signal = not isinstance(other, Name) or operands.known(other.text, scope)
         if not isinstance(name, Name) or not may_be_signal:
             continue
@@ -106,7 +106,7 @@ def _amount(
 
 
 def _counted(lone: sc.Lone, limit: quantities.Placed, strict: bool, span: Span) -> rv.Formula:
-    """A comparison of a count or duration with a constant, in whole numbers."""
+    """The comparison of a count, duration or share with a constant, in whole numbers."""
     value, place = limit
     exact = (value.constant or 0) * value.unit.factor
     if lone.share or lone.of.measured is rv.Measured.COUNT:
@@ -115,7 +115,7 @@ def _counted(lone: sc.Lone, limit: quantities.Placed, strict: bool, span: Span) 
         exact *= lone.of.window or 1 if lone.share else 1
     else:
         exact = Fraction(quantities.ticks_of(value, place))
-    # A count is whole: more than 2.5 is at least 3.
+    # What is compared is whole, so both `> 2.5` and `>= 2.5` are `>= 3`.
     if exact.denominator > 1:
         exact, strict = Fraction(ceil(exact)), False
     always = exact < 0 if strict else exact <= 0
@@ -127,7 +127,7 @@ def _counted(lone: sc.Lone, limit: quantities.Placed, strict: bool, span: Span) 
 
 
 def _bound(lone: sc.Lone, unit: Unit, limit: quantities.Placed, span: Span) -> rv.Numeric:
-    """A limit that does not move between samples, in the unit of what is measured."""
+    """The limit of a window, in the unit of the measure; it does not move between samples."""
     value, place = limit
     if value.node is not None and any(rv.fields_in(value.node)):
         raise Refusal(rules.limit_of_event(place))
@@ -141,10 +141,11 @@ def _bound(lone: sc.Lone, unit: Unit, limit: quantities.Placed, span: Span) -> r
 def _extreme(
     lone: sc.Lone, op: rv.CompareOp, limit: quantities.Placed, span: Span
 ) -> rv.Formula | None:
-    """`max(x, D) <= c` is: `x <= c` all through the last D; `max(x, D) >= c`: at some instant.
+    """A comparison of `min`, `max` or `ago` with a constant, as a formula of the past.
 
-    `ago(x, D) <= c` is that comparison D ago: false where there was no such instant. `None`: it is
-    beside what changes, and looked at as a number.
+    `max(x, D) <= c` means that `x <= c` holds throughout the last D, and `max(x, D) >= c` that
+    `x >= c` held at some instant. `ago(x, D) <= c` is `x <= c` D ago, and false where there was no
+    such instant. `None` if the limit reads names: the window is then compared as a number.
     """
     bound, added = limit[0].node, lone.added
     if added is None or (bound is not None and any(names_in(bound))):
@@ -158,8 +159,9 @@ def _extreme(
     occurs = added.node is not None and any(rv.fields_in(added.node))
 
     def over(how: rv.CompareOp) -> rv.Formula:
-        # Without members, `all` is true of any limit, but a comparison of a field is false where
-        # its event does not occur. So "all are" is written as "none is not".
+        # A comparison of a field is false where its event does not occur, so "all members satisfy
+        # it" is written as "no member violates it", which is also right for a window without
+        # members.
         if how in every and (lone.begun or of.most or occurs):
             return rv.Unary(rv.UnaryOp.NOT, over(how.denied), None, span)
         one: rv.Formula = quantities.compare(how, (added, span), limit, span)
@@ -178,7 +180,7 @@ def _extreme(
 
 
 def alone(value: sc.TimeValue, span: Span) -> Diagnostic:
-    """The finding for a value of time that is no side of a comparison."""
+    """The finding for a value of time outside a comparison."""
     return (rules.age_alone if isinstance(value, sc.Age) else rules.now_alone)(span)
 
 
@@ -186,7 +188,7 @@ def formula_of(value: sc.Value, span: Span) -> rv.Formula:
     """The value as a formula.
 
     Raises:
-        Refusal: it is a number or label.
+        Refusal: it is a number, a label or a value of time.
     """
     if isinstance(value, sc.TimeValue):
         raise Refusal(alone(value, span))
@@ -209,7 +211,7 @@ def number_of(value: sc.Value, span: Span) -> sc.Quantity:
     """The value as a number.
 
     Raises:
-        Refusal: it is a formula or label.
+        Refusal: it is a formula, a label, a choice or a value of time.
     """
     if isinstance(value, sc.TimeValue):
         raise Refusal(alone(value, span))
@@ -245,7 +247,7 @@ def _quantities(
 
 
 def moved(op: NumericOp, values: Sequence[sc.Value]) -> sc.Now | sc.Moment | None:
-    """`now - t0`, `t0 + x`, `x + t0`, `t0 - x`; `None`: something else."""
+    """The value of `now - t0`, `t0 + x` or `x + t0`; `None` for any other operation."""
     match op, values:
         case NumericOp.SUB, [sc.Now(since=None), sc.Moment(name=name, later=None)]:
             return sc.Now(name)
@@ -258,7 +260,10 @@ def moved(op: NumericOp, values: Sequence[sc.Value]) -> sc.Now | sc.Moment | Non
 
 
 def _now(now: sc.Now, op: rv.CompareOp, limit: sc.Value, place: Span, span: Span) -> rv.Formula:
-    """`now >= D` is: there was an instant D ago, or earlier; others look at data for how long."""
+    """A comparison of `now`: `now >= D` with a constant D means that there was an instant D ago.
+
+    Comparisons with a captured instant, or with data, become `Passed`.
+    """
     if isinstance(limit, sc.Moment) and now.since is None:
         later = sc.Quantity(constant=Fraction(0)) if limit.later is None else limit.later
         now, limit = sc.Now(limit.name), later
@@ -278,7 +283,7 @@ def _now(now: sc.Now, op: rv.CompareOp, limit: sc.Value, place: Span, span: Span
 
 
 def _age(age: sc.Age, op: rv.CompareOp, limit: quantities.Placed, span: Span) -> rv.Formula:
-    """`age(x) > D` is: neither an update within the last D, nor the beginning of the trace.
+    """A comparison of an age: `age(x) > D` means no update, and no start, within the last D.
 
     In whole ticks, `>= D` is `> D - 1 tick`.
     """

@@ -1,4 +1,4 @@
-"""From the syntax of cover goals, coverpoints and crosses to their checked form."""
+"""Checks cover goals, coverpoints and crosses."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ from rvmon.language.rules import names as name_rules
 from rvmon.language.rules import requirements as rules
 from rvmon.language.syntax import expressions, items
 
-_MOST = 10**9  # the largest goal and weight: what a test will never do is a slip of the pen
+_MOST = 10**9  # the largest goal and weight; no test reaches more, so it must be a typing error
 
 
 def checked_cover(checker: Checker, item: items.CoverItem) -> Cover | None:
-    """Check a cover goal; `None` if it is wrong, and then that is reported."""
+    """Check a cover goal; `None`, with a finding, if it has an error."""
     formula = checker.top(item.formula, EVERYWHERE)
     if formula is None:
         return None
@@ -41,7 +41,7 @@ def checked_cover(checker: Checker, item: items.CoverItem) -> Cover | None:
 
 
 def checked_coverpoint(checker: Checker, item: items.CoverpointItem) -> Coverpoint | None:
-    """Check a coverpoint; `None` if it is wrong, and then that is reported."""
+    """Check a coverpoint; `None`, with findings, if it has an error."""
     value: Value | None = None
     if item.expression is not None:
         value = checker.value(item.expression, EVERYWHERE)
@@ -78,11 +78,11 @@ def checked_cross(
     points: Mapping[str, Coverpoint],
     declared: Mapping[str, items.CoverpointItem],
 ) -> Cross:
-    """Check a cross.
+    """Check a cross of `declared` coverpoints; `points` are those of them without errors.
 
     Raises:
-        Refusal: it is wrong.
-        Reported: it is wrong, and that is recorded.
+        Refusal: it has an error.
+        Reported: it has an error that is already recorded, or one of its coverpoints has one.
     """
     names = [point.text for point in item.points]
     for number, point in enumerate(item.points):
@@ -116,7 +116,7 @@ def checked_cross(
 
 
 def present(formula: rv.Formula) -> rv.Formula:
-    """The formula itself, which must not look ahead.
+    """The formula itself, which must not refer to the future or to `end`.
 
     Raises:
         Refusal: it does.
@@ -131,7 +131,10 @@ def present(formula: rv.Formula) -> rv.Formula:
 
 
 def _is_empty(formula: rv.Formula, value: Value | None) -> bool:
-    """Whether comparisons of the value with constants, of which a bin consists, exclude all."""
+    """Whether no value satisfies a bin that compares `value` with constants.
+
+    False for bins of any other form.
+    """
     parts: tuple[rv.Formula, ...] = (formula,)
     if isinstance(formula, rv.Binary) and formula.op is rv.BinaryOp.AND:
         parts = formula.left, formula.right
@@ -146,7 +149,8 @@ def _is_empty(formula: rv.Formula, value: Value | None) -> bool:
                 limits.append((op, Fraction(bound)))
             case _:
                 return False
-    # If any value is left, so is one that is a bound, beyond all, or in the middle of two.
+    # If any value satisfies all comparisons, so does a bound, a value beyond all bounds, or the
+    # middle of two neighbouring ones.
     bounds = sorted(bound for _, bound in limits)
     middles = ((one + other) / 2 for one, other in pairwise(bounds))
     tried: Iterable[Fraction | int] = (bounds[0] - 1, *bounds, *middles, bounds[-1] + 1)
@@ -156,7 +160,7 @@ def _is_empty(formula: rv.Formula, value: Value | None) -> bool:
 
 
 class _Point(Struct, frozen=True):
-    """A coverpoint, whose bins are formulas, or values of its expression if it has one."""
+    """Makes the formulas of a coverpoint's bins, from values of its expression if it has one."""
 
     checker: Checker
     expression: expressions.Expression | None
@@ -177,7 +181,7 @@ class _Point(Struct, frozen=True):
                 return self._valued(wanted)
 
     def _valued(self, wanted: expressions.Expression) -> rv.Formula:
-        """The condition that the expression has a value; without one, the bin's own formula."""
+        """The condition that the expression has the wanted value, or the bin's own formula."""
         expression = self.expression
         if self.labelled and isinstance(wanted, expressions.Name):
             return self._compared(rv.CompareOp.EQ, wanted, wanted.span)
@@ -191,9 +195,9 @@ class _Point(Struct, frozen=True):
         return formula
 
     def _stepped(self, steps: items.StepsSyntax) -> rv.Formula:
-        """The condition that the last updates took the expression through the steps, in order.
+        """The condition that the last updates took the expression through the steps in order.
 
-        Between two values of the steps there was no third one.
+        The expression had no other value between two steps.
         """
         span, expression = steps.span, self.expression
         if expression is None:
@@ -209,8 +213,8 @@ class _Point(Struct, frozen=True):
                 raise Refusal(rules.same_value(end.span))
             rise = rv.Unary(rv.UnaryOp.RISE, now, None, span)
             came = make.both(rise, was)
-            # The value that is left now was entered by the previous step: no `entered` since
-            # `taken`.
+            # The value that is left now must have been entered by the previous step, so it was not
+            # entered again (`entered`) since that step (`taken`).
             if taken is not None and entered is not None:
                 stayed = rv.Unary(rv.UnaryOp.NOT, entered, None, span)
                 came = make.both(came, make.since(stayed, taken, rv.Interval()))
@@ -219,7 +223,7 @@ class _Point(Struct, frozen=True):
         return taken
 
     def _in_window(self, window: expressions.Window) -> rv.Formula:
-        """The bounds of a range as comparisons; `inf` bounds nothing."""
+        """The condition that the expression lies in a range; `inf` is no bound."""
         if self.expression is None or window.low is None:
             raise Refusal(rules.bin_needs_expression(window.span))
         above = rv.CompareOp.GT if window.low_open else rv.CompareOp.GE
@@ -238,14 +242,14 @@ class _Point(Struct, frozen=True):
 
 
 def _alike(formula: rv.Formula, other: rv.Formula) -> bool:
-    """Whether two formulas say the same in the same words, wherever they stand."""
+    """Whether two formulas have the same text, regardless of their places."""
     return format_formula(formula) == format_formula(other)
 
 
 def _clauses(
     checker: Checker, clauses: Sequence[items.GoalClauses]
 ) -> tuple[rv.Formula | None, int, int] | None:
-    """The formula at which it is sampled, the goal and the weight; `None` if one is wrong."""
+    """The formula at which a point is sampled, its goal and weight; `None` if one has an error."""
     upon: rv.Formula | None = None
     counts = {"goal": 1, "weight": 1}
     for clause in clauses:
@@ -269,7 +273,7 @@ def _clauses(
 def _combinations(
     checker: Checker, item: items.CrossItem, bins: Mapping[str, Sequence[str]], kind: BinKind
 ) -> frozenset[tuple[str, ...]]:
-    """The combinations for which a clause of that kind holds."""
+    """The combinations of bins for which some clause of the kind holds."""
     scope = Scope(
         {name: Quantity(rv.SignalValue(name), labels=tuple(names)) for name, names in bins.items()}
     )
@@ -289,7 +293,7 @@ def _combinations(
 
 
 def _about_bins(formula: rv.Formula, bins: Mapping[str, Sequence[str]]) -> bool:
-    """Whether it is made of comparisons of coverpoints with bins, and connectives."""
+    """Whether a formula consists of comparisons between coverpoints and bins, and connectives."""
     for part in subformulas(formula):
         match part:
             case rv.Constant():
@@ -308,7 +312,7 @@ def _about_bins(formula: rv.Formula, bins: Mapping[str, Sequence[str]]) -> bool:
 
 
 def _holds(formula: rv.Formula, combination: Mapping[str, str]) -> bool:
-    """Whether a formula that is about bins holds for a combination of these."""
+    """Whether a formula about bins holds for a combination, the bin of each coverpoint by name."""
     facts: dict[Hashable, bool] = {}
     for part in subformulas(formula):
         if isinstance(part, rv.Compare):

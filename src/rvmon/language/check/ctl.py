@@ -1,4 +1,4 @@
-"""From the syntax of a property to checked CTL, and universal CTL as a formula of one run.
+"""Checks CTL properties, and translates universal ones to formulas over one run.
 
 Source: Maidl, The common fragment of CTL and LTL, FOCS 2000: ACTL^det.
 """
@@ -37,10 +37,10 @@ from rvmon.language.syntax.items import PropertyClause, RequirementItem, TagsCla
 
 
 def linear_form(property_: Property, place: Span, time: TimeModel) -> Formula:
-    """The formula that a run fulfils if and only if it is one of a system with the property.
+    """The linear equivalent of a property: a system has the property iff all its runs satisfy it.
 
     Raises:
-        Refusal: the property is not in the fragment; which part and why is in the message.
+        Refusal: the property is not in the fragment; the message names the part and the reason.
     """
     try:
         return _Linear(place, time).of(property_.formula, True)
@@ -49,10 +49,10 @@ def linear_form(property_: Property, place: Span, time: TimeModel) -> Formula:
 
 
 def shown_form(property_: Property, place: Span, time: TimeModel) -> Formula:
-    """The formula of a run that shows a property of some path.
+    """The formula that a run satisfies if it shows an existential property.
 
     Raises:
-        Refusal: no single run shows it.
+        Refusal: no single run can show it.
     """
     denied = Property(property_.id, property_.text, StateNot(property_.formula), property_.span)
     try:
@@ -66,7 +66,7 @@ def shown_form(property_: Property, place: Span, time: TimeModel) -> Formula:
 
 
 def _not_for_models(refusal: Refusal, property_: Property) -> Refusal:
-    """The refusal, which sends nobody to `rvmon verify` with what that refuses, too."""
+    """The refusal, without the advice to use `rvmon verify` if it would refuse the property too."""
     for part in state_formulas(property_.formula):
         if isinstance(part, PathUnary | PathBinary) and part.interval and part.interval.low > 0:
             return Refusal(rules.not_for_models(refusal.finding))
@@ -79,7 +79,7 @@ class _Linear:
         self.time = time
 
     def of(self, state: StateFormula, positive: bool) -> Formula:
-        """A state formula, or its negation, on one run."""
+        """The formula over one run of a state formula, or of its negation."""
         match state:
             case StateAtom(formula=formula, span=span):
                 return formula if positive else Unary(UnaryOp.NOT, formula, None, span)
@@ -105,7 +105,7 @@ class _Linear:
                 return self.joined(state, (left, positive), (right, positive), not positive)
             case BinaryOp.IMPLIES:
                 return self.joined(state, (left, not positive), (right, positive), not positive)
-            case _:  # both or neither; for `xor`, or the negation, one alone
+            case _:  # `iff`: both or neither; `xor`, or a negated `iff`: exactly one
                 same = (state.op is BinaryOp.IFF) is positive
                 both = StateBinary(BinaryOp.AND, left, _signed(right, same), state.span)
                 none = StateBinary(
@@ -123,7 +123,8 @@ class _Linear:
         parts = self.of(*left), self.of(*right)
         if conjunction:
             return Binary(BinaryOp.AND, *parts, None, state.span)
-        # `AG p or AG q` requires that all runs satisfy the same operand; a single run cannot tell.
+        # `AG p or AG q` requires that all runs satisfy the same operand, which no single run shows.
+        # It is safe if the operands exclude each other at once, or one is about one instant.
         apart = self.excludes(left, right)
         if not (apart or isinstance(left[0], StateAtom) or isinstance(right[0], StateAtom)):
             raise Refusal(rules.choice_of_paths(state.span or self.place))
@@ -139,7 +140,7 @@ class _Linear:
         op = state.op if positive else UnaryOp.of(state.op.entry.dual)
         if op is UnaryOp.NEXT and self.time is TimeModel.HELD:
             raise Refusal(type_rules.step_in_held_time("next", span))
-        # `AF φ` is `A[true U φ]`, and no operand excludes `true`, so φ must be about one instant.
+        # `AF φ` is `A[true U φ]`. Nothing excludes `true`, so φ must be about one instant.
         if op is UnaryOp.EVENTUALLY and not isinstance(state.operand, StateAtom):
             raise Refusal(rules.not_on_one_path(span))
         return Unary(op, self.of(state.operand, positive), state.interval, state.span)
@@ -151,7 +152,8 @@ class _Linear:
         op = state.op if positive else BinaryOp.of(state.op.entry.dual)
         left, right = state.left, state.right
         if op in (BinaryOp.UNTIL, BinaryOp.WEAK_UNTIL):
-            # Where the right one comes has to be seen at once: p and φ until not p and ψ.
+            # The instant at which the right operand comes must be evident at once: either it is
+            # about one instant, or the operands have the form `p and φ`, `not p and ψ`.
             plain = isinstance(right, StateAtom) or self.excludes(
                 (left, positive), (right, positive)
             )
@@ -163,7 +165,7 @@ class _Linear:
         return Binary(op, *parts, state.interval, state.span)
 
     def excludes(self, left: tuple[StateFormula, bool], right: tuple[StateFormula, bool]) -> bool:
-        """Whether one has a conjunct p and the other not p, p about one instant."""
+        """Whether one operand has a conjunct p and the other `not p`, with p about one instant."""
         mine, its = set(_present_parts(*left)), set(_present_parts(*right))
         return any((text, not sign) in its for text, sign in mine)
 
@@ -177,11 +179,11 @@ def _signed(state: StateFormula, positive: bool) -> StateFormula:
 
 
 _CONJOINED = {True: (BinaryOp.AND,), False: (BinaryOp.OR, BinaryOp.IMPLIES)}
-"""Connectives that are conjunctions as they are, and that are ones if they are denied."""
+"""The connectives that are conjunctions as they are (True), or when negated (False)."""
 
 
 def _present_parts(state: StateFormula, positive: bool) -> list[tuple[str, bool]]:
-    """The conjuncts about one instant, each as text and sign."""
+    """The conjuncts of a state formula that are about one instant, each as text and sign."""
     match state:
         case StateAtom(formula=formula):
             return _signs(formula, positive)
@@ -207,7 +209,7 @@ def _signs(formula: Formula, positive: bool) -> list[tuple[str, bool]]:
 def checked_property(
     checker: Checker, name: str, expression: expressions.Expression
 ) -> Property | None:
-    """Check a property; `None` if it is wrong, and then that is reported."""
+    """Check a property; `None`, with a finding, if it has an error."""
     foreign = checker.undeclared(expression)
     for part in foreign:
         close = close_name(checker.table, part.text)
@@ -220,17 +222,17 @@ def checked_property(
 
 
 class _States(Struct, frozen=True):
-    """Makes state formulas of expressions; `foreign` names of a model need no declaration."""
+    """Turns expressions into state formulas; `foreign` are the undeclared names, of a model."""
 
     checker: Checker
     foreign: frozenset[str]
 
     def of(self, expression: expressions.Expression) -> StateFormula:
-        """The state formula.
+        """The state formula of an expression.
 
         Raises:
-            Refusal: it is none.
-            Reported: a part of it is wrong.
+            Refusal: it is not a state formula.
+            Reported: a part of it has an error.
         """
         span = expression.span
         match expression:
@@ -280,7 +282,7 @@ class _States(Struct, frozen=True):
         return PathBinary(universal, path.op, left, right, interval, path.span)
 
     def _needs_splitting(self, expression: expressions.Expression) -> bool:
-        """Whether path quantifiers or names of a model stand somewhere inside."""
+        """Whether an expression contains path quantifiers or names of a model."""
         return any(
             isinstance(part, _PATHS)
             or (isinstance(part, expressions.Name) and part.text in self.foreign)
@@ -289,7 +291,11 @@ class _States(Struct, frozen=True):
 
 
 def property_of(checker: Checker, item: RequirementItem) -> Property | None:
-    """The CTL property that a requirement states; `None` if it is none."""
+    """The CTL property of a requirement; `None` if it has none.
+
+    Raises:
+        Reported: the property has an error.
+    """
     for clause in item.clauses:
         if isinstance(clause, PropertyClause):
             ctl = checked_property(checker, item.name.text, clause.formula)
@@ -300,11 +306,11 @@ def property_of(checker: Checker, item: RequirementItem) -> Property | None:
 
 
 def checked_goal(checker: Checker, item: RequirementItem, span: Span) -> Cover:
-    """Check what is monitored as a cover goal.
+    """Check a requirement with `monitor as cover`, whose place is `span`.
 
     Raises:
-        Refusal: it is wrong.
-        Reported: it is wrong, and that is recorded.
+        Refusal: it has an error.
+        Reported: it has an error that is already recorded.
     """
     for clause in item.clauses:
         if not isinstance(clause, PropertyClause | TextClause | TagsClause):

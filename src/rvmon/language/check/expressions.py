@@ -1,4 +1,4 @@
-"""From expressions to checked formulas and quantities: names, macros, operators, windows."""
+"""Checks expressions and turns them into formulas and quantities."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ NOW = "now"
 
 
 class Checker:
-    """Evaluates expressions to what they stand for; findings gather in a list.
+    """Evaluates expressions to formulas or quantities, and records findings.
 
-    `characters` are those of the whole specification: a long file may do more.
+    `characters` is the length of the whole specification, on which the limit of work depends.
 
-    A method that takes an expression reports what is wrong in *all* its operands before it raises.
+    A method that takes an expression reports the errors of *all* its operands before it raises.
     """
 
     def __init__(self, table: sc.Table, findings: Findings, characters: int) -> None:
@@ -55,12 +55,12 @@ class Checker:
         self._findings.add(finding)
 
     def top(self, expression: ast.Expression, scope: sc.Scope) -> rv.Formula | None:
-        """A whole formula, or `None` if it is wrong."""
+        """A complete formula; `None` if it has an error, which is recorded."""
         self.effort.begin()
         return self.collected(self.formula, expression, scope)
 
     def collected(self, make: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:
-        """The result of `make`, or `None` if it refuses; the refusal is recorded."""
+        """The result of `make`, or `None` if it raises a refusal, which is recorded."""
         try:
             return make(*args, **kwargs)
         except Refusal as refusal:
@@ -74,14 +74,14 @@ class Checker:
 
         Raises:
             Refusal: it is a number or label.
-            Reported: it is wrong.
+            Reported: it has an error.
         """
         return formula_of(self.values((expression,), scope)[0], expression.span)
 
     def calculated(
         self, op: NumericOp, args: tuple[ast.Expression, ...], scope: sc.Scope, span: Span
     ) -> sc.Value:
-        """An operation on numbers, or on choices between them."""
+        """The result of an operation on numbers, or on choices between numbers."""
 
         def calculate(values: Sequence[sc.Value]) -> sc.Value:
             if (instant := moved(op, values)) is not None:
@@ -95,7 +95,7 @@ class Checker:
         """The values that the expressions stand for.
 
         Raises:
-            Reported: one is wrong; the findings of all are recorded.
+            Reported: one has an error; the findings of all are recorded.
         """
         checked = [self.value(expression, scope) for expression in expressions]
         values = [value for value in checked if value is not None]
@@ -107,13 +107,13 @@ class Checker:
         """A constant duration in ticks.
 
         Raises:
-            Refusal: it is none.
-            Reported: it is wrong.
+            Refusal: it is not a constant duration.
+            Reported: it has an error.
         """
         return ticks_of(self.values((expression,), scope)[0], expression.span)
 
     def value(self, expression: ast.Expression, scope: sc.Scope) -> sc.Value | None:
-        """The value that the expression stands for; `None` if it is wrong, which is recorded."""
+        """The value of the expression; `None` if it has an error, which is recorded."""
         try:
             self.effort.enter(expression.span)
             return self._value(expression, scope)
@@ -213,14 +213,14 @@ class Checker:
         if field := table.field(name.text):
             return sc.typed(*field, unit)
         if name.text in table.declared or name.text in table.doubtful:
-            raise Reported  # its declaration is wrong, and that is recorded
+            raise Reported  # its declaration has an error, which is recorded
         if name.text == NOW:
             return sc.Now()
         close = sc.close_name(table, name.text, tuple(scope.names))
         raise Refusal(name_rules.unknown(name.span, name.text, close))
 
     def _defined_value(self, name: ast.Name, declared: DefineItem | ConstItem) -> sc.Value:
-        """A macro without parameters or a constant: evaluated once, shared by all its uses."""
+        """The value of a constant or a macro without parameters, evaluated once for all uses."""
         if isinstance(declared, DefineItem) and declared.parameters is not None:
             count = len(declared.parameters)
             raise Refusal(rules.argument_count(name.span, name.text, f"{count} argument(s)", 0))
@@ -233,8 +233,8 @@ class Checker:
         body_value, cost = self._defined[name.text]
         if body_value is None:
             raise Reported
-        # The value is shared, but later passes visit it once per use: in a chain of macros that
-        # each use the previous one twice, the work doubles with every macro.
+        # The value is shared, but later passes visit it once per use, so each use counts. In a
+        # chain of macros that use the previous one twice, the work doubles with every macro.
         self.effort.add(cost, name.span)
         return body_value
 
@@ -265,7 +265,7 @@ class Checker:
     def peeled(
         self, expression: ast.Expression, scope: sc.Scope
     ) -> tuple[ast.Expression, sc.Scope]:
-        """The expression itself, without brackets and macro parameters around it."""
+        """The expression without brackets, with macro parameters replaced by their arguments."""
         while True:
             match expression:
                 case ast.Group(inner=inner):
@@ -281,7 +281,7 @@ class Checker:
 
     def _prefix(self, prefix: ast.Prefix, scope: sc.Scope) -> rv.Formula:
         present = prefix.op.entry.tense is Tense.PRESENT
-        # Both operand and window are checked before either is refused, to show all findings.
+        # Both operand and window are checked before either raises, to show all findings.
         operand = self.value(prefix.operand, scope if present else scope.later())
         bound = bound_of(self, prefix.op, prefix.window, scope)
         if bound is None:
@@ -328,11 +328,11 @@ class Checker:
         return rv.Binary(infix.op, *sides, interval, infix.span)
 
     def interval(self, window: WindowSyntax | None, scope: sc.Scope) -> rv.Interval:
-        """The window in ticks; none is from 0 on.
+        """The closed interval of a window in ticks; `None` is `[0, ∞)`.
 
         Raises:
-            Refusal: a bound is no duration, or no tick lies between them.
-            Reported: a bound is wrong.
+            Refusal: a bound is not a duration, or no tick lies in the window.
+            Reported: a bound has an error.
         """
         if window is None:
             return rv.Interval()

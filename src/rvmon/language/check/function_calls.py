@@ -1,4 +1,4 @@
-"""The functions of the language applied to arguments; expressions read as formula or number."""
+"""Checks calls of the language's built-in functions."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ _INSTEAD = {
     "rms": "its square is the mean of squares: `mean(x * x, 10 s) <= 0.04`",
     **dict.fromkeys(("stddev", "std"), "its square is the variance: `variance(e.x, 10 s) <= 0.04`"),
 }
-"""By name of a function that the language lacks, the way to write nearly the same."""
+"""Advice for functions that the language lacks, by name: how to write nearly the same."""
 _EXTREMES = {NumericOp.MIN: rv.Measured.MIN, NumericOp.MAX: rv.Measured.MAX}
 _COUNTS = ("no argument", "one argument", "two arguments")
 
 
 def applied(operands: Operands, call: Call, scope: Scope) -> Value:
-    """The value of a call of a function of the language.
+    """The value of a call of a built-in function.
 
     Raises:
         Refusal: there is no such function, or the arguments do not fit.
-        Reported: an argument is wrong.
+        Reported: an argument has an error.
     """
     name = call.function.text
     function = FUNCTIONS.get(name)
@@ -82,7 +82,10 @@ def _check_count(call: Call, function: Function) -> None:
 
 
 def _named(operands: Operands, call: Call, scope: Scope, function: Function) -> tuple[str, Span]:
-    """The only argument, which has to be the name of a signal (or of an event)."""
+    """The name that a call has as its only argument, with its place.
+
+    It must be the name of a signal, or of an event if the function accepts one.
+    """
     events = function.arguments[0] is Argument.SOURCE
     name, inner = operands.peeled(call.args[0], scope)
     if isinstance(name, Name) and name.text not in inner.names:

@@ -1,7 +1,8 @@
-"""Windows that move: between samples, in `time held`, and by an end that comes from data.
+"""Comparisons of windows whose value moves between samples, and windows whose end is data.
 
-What is compared is brought to a moving window alone. An end that comes from data is counted from
-the trigger, at which it is captured.
+In `time held`, measures such as `duration` change between samples. A comparison with one is
+rearranged until the moving window stands alone, so that its crossing can be computed. A window
+whose end is data starts at the trigger, where the end is captured.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ from rvmon.language.syntax.expressions import Window
 
 
 def by_limits(op: rv.CompareOp, make: Callable[[bool], rv.Formula], span: Span) -> rv.Formula:
-    """A comparison made of `>= c` and, strict, `> c`."""
+    """A comparison by any operator, made of `>= c`, which is `make(False)`, and of `> c`."""
     if op in (rv.CompareOp.EQ, rv.CompareOp.NE):
         above = rv.Unary(rv.UnaryOp.NOT, make(True), None, span)
         made: rv.Formula = rv.Binary(rv.BinaryOp.AND, make(False), above, None, span)
@@ -35,7 +36,7 @@ def by_limits(op: rv.CompareOp, make: Callable[[bool], rv.Formula], span: Span) 
 
 
 def above(of: rv.WindowValue, limit: rv.Numeric, strict: bool, span: Span) -> rv.Amount:
-    """A comparison of a window with a number; a duration is the integral of 1."""
+    """The comparison of a window with a limit; a duration is measured as the integral of 1."""
     if of.measured is rv.Measured.DURATION:
         of = structs.replace(of, measured=rv.Measured.INTEGRAL, value=rv.Literal(1))
     known = None if isinstance(limit, rv.Literal) else rv.itself(limit, span)
@@ -43,7 +44,7 @@ def above(of: rv.WindowValue, limit: rv.Numeric, strict: bool, span: Span) -> rv
 
 
 def refuse_moving(time: TimeModel, captured: rv.Numeric, span: Span) -> None:
-    """Refuse to capture what moves between samples."""
+    """Refuse to capture a number that moves between samples."""
     if time is TimeModel.HELD and _moves(captured):
         raise Refusal(rules.captured_moving(span))
 
@@ -57,13 +58,13 @@ _INVERSE = {
 
 
 def brought_alone(compared: rv.Compare, span: Span) -> rv.Formula:
-    """A comparison whose moving window stands alone on the left.
+    """A comparison rearranged so that its moving window stands alone on the left.
 
-    What stands with it goes to the other side, from the outside in, each step rounded there as any
-    operation is; a magnitude is compared twice.
+    Operations around the window are inverted on the other side, the outermost first; each inverse
+    is rounded like any operation. `abs` gives two comparisons.
 
     Raises:
-        Refusal: it cannot be brought there.
+        Refusal: the comparison cannot be rearranged.
     """
     left, right = compared.left, compared.right
     if not _moves(left):
@@ -89,7 +90,7 @@ def _alone(op: rv.CompareOp, moving: rv.Numeric, other: rv.Numeric, span: Span) 
             if _moves(first) and _may_combine(how, second):
                 turned = op if _is_upward(how, second) else op.mirrored
                 return _alone(turned, first, _joined(_INVERSE[how], other, second), span)
-            # `c / x` is not monotonic: it jumps where x passes 0.
+            # `c / x` is left out because it is not monotonic: it jumps where x passes 0.
             if how is not NumericOp.DIV and _moves(second) and _may_combine(how, first):
                 turned = op if _is_upward(how, first) else op.mirrored
                 if how is NumericOp.SUB:
@@ -99,14 +100,14 @@ def _alone(op: rv.CompareOp, moving: rv.Numeric, other: rv.Numeric, span: Span) 
 
 
 def _negative(number: rv.Numeric) -> rv.Numeric:
-    # `-0.0` equals 0 but would be printed differently.
+    # A literal 0 is not negated here: `-0.0` equals 0 but would be printed differently.
     if isinstance(number, rv.Literal) and not isinstance(number.value, str) and number.value != 0:
         return replace(number, value=-number.value)
     return rv.Arithmetic(NumericOp.NEG, (number,))
 
 
 def _joined(how: NumericOp, left: rv.Numeric, right: rv.Numeric) -> rv.Numeric:
-    """The same number as people write it: `+ 3` for `- -3`."""
+    """An operation as people write it: `x + 3` for `x - -3`."""
     below = isinstance(right, rv.Literal) and not isinstance(right.value, str) and right.value < 0
     if below and how in (NumericOp.ADD, NumericOp.SUB):
         how, right = _INVERSE[how], _negative(right)
@@ -114,22 +115,22 @@ def _joined(how: NumericOp, left: rv.Numeric, right: rv.Numeric) -> rv.Numeric:
 
 
 def _may_combine(how: NumericOp, other: rv.Numeric) -> bool:
-    """Whether a moving operand may be combined with another: a fixed term, or a constant factor."""
+    """Whether an operation with `other` can be inverted: a fixed term, or a constant factor."""
     if how in (NumericOp.ADD, NumericOp.SUB):
         return not _moves(other)
-    # The sign of a factor decides whether the comparison is reversed, so it must be known here.
+    # The sign of a factor decides whether the comparison is mirrored, so it must be known here.
     return isinstance(other, rv.Literal) and other.value != 0
 
 
 def _is_upward(how: NumericOp, other: rv.Numeric) -> bool:
-    """Whether the whole grows as the moving side of it does."""
+    """Whether the result of the operation grows when its moving side grows."""
     if how in (NumericOp.ADD, NumericOp.SUB) or not isinstance(other, rv.Literal):
         return True
     return not isinstance(other.value, str) and other.value > 0
 
 
 def _magnitude(op: rv.CompareOp, inner: rv.Numeric, other: rv.Numeric, span: Span) -> rv.Formula:
-    """`abs(x) <= c` is `x <= c and x >= -c`; the others are made of it and `abs(x) < c`."""
+    """A comparison of `abs(x)`: `abs(x) <= c` is `x <= c and x >= -c`, the others follow."""
 
     def within(how: rv.CompareOp) -> rv.Formula:
         less = _alone(how, inner, other, span)
@@ -148,17 +149,17 @@ def _magnitude(op: rv.CompareOp, inner: rv.Numeric, other: rv.Numeric, span: Spa
 
 
 _BOUNDED = (rv.UnaryOp.EVENTUALLY, rv.UnaryOp.ALWAYS, rv.BinaryOp.UNTIL, rv.BinaryOp.WEAK_UNTIL)
-"""The operators whose window may end where data says."""
+"""The operators whose window may have an end that is data."""
 
 
 class Bounded(Struct, frozen=True):
-    """A window from now on whose end comes from data; what it bounds is required at the trigger."""
+    """A window that starts at the trigger and whose length is data."""
 
     seconds: rv.Numeric
     scope: Scope
 
     def late(self, word: str, span: Span) -> rv.Passed:
-        """The condition that the window is over."""
+        """The condition that the window is over; its length is captured under a name of `word`."""
         trigger = self.scope.trigger
         assert trigger is not None, "what is required at the trigger has one"
         trigger.begun(span)
@@ -168,12 +169,12 @@ class Bounded(Struct, frozen=True):
 def bound_of(
     operands: Operands, op: rv.UnaryOp | rv.BinaryOp, window: Window | None, scope: Scope
 ) -> Bounded | None:
-    """The end of a window that comes from data, where that is captured; `None`: another.
+    """The window of an operator if its end is data that can be captured, else `None`.
 
     Raises:
-        Reported: it is wrong.
+        Reported: a bound has an error.
     """
-    # Values are captured at the trigger only; below another temporal operator the data would have
+    # Values are captured at the trigger only. Below another temporal operator the data would have
     # to be read at other instants.
     if op not in _BOUNDED or window is None or not window.high or not scope.at_once:
         return None
@@ -192,13 +193,14 @@ def bound_of(
 def bounded(
     op: rv.UnaryOp | rv.BinaryOp, operands: Sequence[rv.Formula], bound: Bounded, span: Span
 ) -> rv.Formula:
-    """`within (x) φ`, `for (x) φ`, `φ until[0, x] ψ`, `φ unless[0, x] ψ`.
+    """`within (x) φ`, `for (x) φ`, `φ until[0, x] ψ` or `φ unless[0, x] ψ`, where x is data.
 
-    What must come has to come before it is too late; what must hold has to hold until it is.
+    A formula that must come has to come before the window is over; one that must hold has to hold
+    until then.
     """
     make = Formulas(span)
-    # Automata have constant bounds, so the window becomes unbounded, and its end a proposition that
-    # is true once the captured duration has passed.
+    # Automata have constant bounds. So the window becomes unbounded, and its end becomes a
+    # proposition that is true once the captured duration has passed.
     if op in (rv.UnaryOp.ALWAYS, rv.BinaryOp.WEAK_UNTIL):
         lasting, *end = operands
         ended: rv.Formula = bound.late("for", span)

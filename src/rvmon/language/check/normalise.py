@@ -1,4 +1,4 @@
-"""Surface forms as trigger and consequent: bare formulas, responses, scopes (SEMANTICS 3)."""
+"""Turns bare formulas, response monitors and scopes into trigger and consequent (SEMANTICS 3)."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ _not = Formulas().no
 def normalised(formula: rv.Formula) -> tuple[Mode, rv.Formula, rv.Formula]:
     """Mode, trigger and consequent of a requirement that is one formula.
 
-    `G(θ → ψ)` is `whenever θ then ψ`, any other unbounded `G ψ` is `whenever true then ψ`, the
-    rest is `upon start then φ`.
+    `G(θ → ψ)` is `whenever θ then ψ`, any other unbounded `G ψ` is `whenever true then ψ`, and
+    any other φ is `upon start then φ`.
     """
     required = _always(formula)
     if required is None:
@@ -42,7 +42,7 @@ def normalised(formula: rv.Formula) -> tuple[Mode, rv.Formula, rv.Formula]:
 
 
 def _always(formula: rv.Formula) -> rv.Formula | None:
-    """The φ of a formula that is `G φ` once `G G φ` and `G φ and G ψ` are joined."""
+    """The φ of a formula equivalent to `G φ`, such as `G G φ` or `G φ and G ψ`; else `None`."""
     match formula:
         case rv.Unary(op=rv.UnaryOp.ALWAYS, interval=interval) if interval == _ALL:
             return _always(formula.operand) or formula.operand
@@ -58,7 +58,7 @@ def _both(left: rv.Formula, right: rv.Formula) -> rv.Formula:
 
 
 def joined(first: Span | None, second: Span | None) -> Span | None:
-    """The range over two places of one text."""
+    """The range over both places; the first one if they are of different texts."""
     if first is None or second is None or first.source is not second.source:
         return first or second
     return first.to(second)
@@ -67,7 +67,7 @@ def joined(first: Span | None, second: Span | None) -> Span | None:
 def derived_response(
     table: Table, property_: Property, within: int, place: Span
 ) -> tuple[rv.Formula, rv.Formula]:
-    """Trigger and consequent of the monitor that awaits the outputs upon the inputs.
+    """Trigger and consequent of a response monitor: on the inputs, the outputs must follow.
 
     Raises:
         Refusal: the property has another form, a conjunct mixes roles, or there is no output.
@@ -91,7 +91,7 @@ def derived_response(
 
 
 def _required(outputs: Sequence[rv.Formula], interval: rv.Interval) -> rv.Formula:
-    """Positive outputs have to come together, each negated one has to stay away."""
+    """The consequent: positive outputs must come together, and each negated one must hold."""
     negated = [part for part in outputs if isinstance(part, rv.Unary) and part.op is rv.UnaryOp.NOT]
     positive = [part for part in outputs if part not in negated]
     required: list[rv.Formula] = []
@@ -117,7 +117,7 @@ def _role(table: Table, conjunct: rv.Formula, place: Span) -> Role:
 def scoped_trigger(
     trigger: rv.Formula, opening: rv.Formula | None, closing: rv.Formula | None
 ) -> rv.Formula:
-    """The trigger inside the scope; `start` alone is where the scope opens."""
+    """The trigger restricted to the scope; a trigger `start` becomes the opening of the scope."""
     inside = _inside(opening, closing)
     match trigger:
         case rv.BoundAtom(bound=rv.Bound.START) if opening is not None:
@@ -131,7 +131,7 @@ def scoped_trigger(
 def scoped_consequent(
     consequent: rv.Formula, closing: rv.Formula | None, *, must_close: bool
 ) -> rv.Formula:
-    """The consequent restricted to the scope."""
+    """The consequent restricted to the scope; with `must_close`, an unclosed scope excuses it."""
     if closing is None:
         return consequent
     required = _until_closed(consequent, closing)
@@ -152,14 +152,15 @@ def _inside(opening: rv.Formula | None, closing: rv.Formula | None) -> rv.Formul
 
 
 def _until_closed(formula: rv.Formula, closing: rv.Formula) -> rv.Formula:
-    """The formula over the run that ends right before `closing` first holds from here on.
+    """The formula over a run that ends right before `closing` next holds.
 
-    What must come has to come before that (`U` takes `not closing` on both sides); what must hold
-    has to hold until then (the dual).
+    What must come has to come before that (`U` takes `not closing` on both sides), and what must
+    hold has to hold until then (the dual).
     """
     if not has_future(formula):
         return formula
-    # People read what comes of it: these have shorter forms than what they are made of.
+    # People read the result, so `F`, `G`, `W` and `M` keep short forms of their own instead of
+    # being rewritten by `U` and `R`.
     match formula:
         case rv.Unary(op=op, operand=operand, interval=interval, span=span):
             inner = _until_closed(operand, closing)

@@ -1,6 +1,6 @@
-"""Arithmetic and comparison of quantities: constants exactly, units converted.
+"""Arithmetic on quantities and comparison of quantities, with exact constants and units.
 
-What is made of a choice between numbers is a choice between what is made of both.
+An operation on a choice between numbers gives a choice between the results for both.
 """
 
 from __future__ import annotations
@@ -26,11 +26,11 @@ Placed = tuple[Quantity, Span]  # a quantity with the place of its expression
 _RADIAN = parse_unit("rad")
 _OF_ANGLES = {UnitRule.OF_ANGLE: PLAIN, UnitRule.PLACES: parse_unit("m")}
 _HIGHEST = 9  # the highest power of a unit
-_DOING = {NumericOp.ADD: "added to", NumericOp.SUB: "reduced by"}
+_DOING = {NumericOp.ADD: "added to", NumericOp.SUB: "reduced by"}  # words for findings
 
 
 def compare(op: rv.CompareOp, left: Placed, right: Placed, span: Span) -> rv.Compare | rv.Constant:
-    """Compare numbers in the unit of the first side that is no constant.
+    """Compare numbers in the unit of the first side that is not a constant.
 
     Raises:
         Refusal: the units do not fit, or a constant is out of range.
@@ -45,7 +45,7 @@ def compare(op: rv.CompareOp, left: Placed, right: Placed, span: Span) -> rv.Com
 
 
 def arithmetic(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
-    """Apply an operation.
+    """Apply an operation to numbers.
 
     Raises:
         Refusal: the units do not fit, or a constant is out of range.
@@ -88,7 +88,7 @@ def node_of(placed: Placed) -> rv.Numeric:
     """The expression that yields the quantity at run time, in its own unit.
 
     Raises:
-        Refusal: a constant that is out of range.
+        Refusal: it is a constant that is out of range.
     """
     return _nodes((placed,), placed[0].unit)[0]
 
@@ -96,7 +96,7 @@ def node_of(placed: Placed) -> rv.Numeric:
 def _check_dimension(
     op: NumericOp, args: Sequence[Placed], unit: Unit, *, whole: bool = False
 ) -> None:
-    """Refuse an argument of another kind than a function of such values takes."""
+    """Refuse arguments in other dimensions than that of `unit`; `whole`: also non-integers."""
     for value, place in args:
         if value.unit.dimension != unit.dimension and not _bare_zero(value):
             raise Refusal(rules.argument_unit(place, op, value.unit.symbol, unit.symbol))
@@ -107,7 +107,7 @@ def _check_dimension(
 def _applied(
     op: NumericOp, args: Sequence[Placed], unit: Unit, result: Unit, span: Span
 ) -> Quantity:
-    """An operation on values that are brought to `unit`; its result comes in another."""
+    """An operation on values converted to `unit`, with a result in the unit `result`."""
     truth = op is NumericOp.BIT
     constants = [_exact(value, unit) for value, _ in args if value.constant is not None]
     if len(constants) == len(args) and not truth:
@@ -117,7 +117,7 @@ def _applied(
 
 
 def _power(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
-    """A power of what has a unit, which has to be known beforehand."""
+    """A power of a value with a unit; the exponent must be a small whole constant."""
     (base, _), (exponent, place) = args
     power = exponent.constant
     if power is None or exponent.unit.symbol or power.denominator != 1 or abs(power) > _HIGHEST:
@@ -131,7 +131,7 @@ def _power(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
 
 
 def _folded(op: NumericOp, constants: Sequence[Fraction], span: Span) -> Fraction:
-    """The result for constants, which stay within what is written in a few hundred digits."""
+    """The result of an operation on constants, refused if it needs more than 4096 bits."""
     whole = op.entry.unit is UnitRule.BITS
     value = Fraction(op.entry.apply(*(map(int, constants) if whole else constants)))
     if max(value.numerator.bit_length(), value.denominator.bit_length()) > 4096:
@@ -153,7 +153,7 @@ def _scale(op: NumericOp, args: Sequence[Placed], span: Span) -> Quantity:
 
 
 def _root(op: NumericOp, placed: Placed, span: Span) -> Quantity:
-    """The square root, taken in base units, since a factor need not have an exact root."""
+    """The square root, computed in base units, as the factor of a unit may have no exact root."""
     value, place = placed
     unit = root(value.unit)
     if unit is None:
@@ -168,7 +168,10 @@ def _root(op: NumericOp, placed: Placed, span: Span) -> Quantity:
 
 
 def _common_unit(args: Sequence[Placed], doing: str, span: Span) -> Unit:
-    """The unit that values are brought to: that of the first that is no constant."""
+    """The unit to which values are converted: that of the first value that is not a constant.
+
+    If all are constants, it is that of the first with a unit. `doing` is a word for findings.
+    """
     varying = [value.unit for value, _ in args if value.constant is None]
     named = [value.unit for value, _ in args if value.unit.symbol]
     unit = (varying or named or [PLAIN])[0]
@@ -198,12 +201,12 @@ def _is_integral(value: Quantity) -> bool:
 
 
 def _exact(value: Quantity, unit: Unit) -> Fraction:
-    """The value of a constant in another unit of its kind."""
+    """The value of a constant in another unit of the same dimension."""
     return (value.constant or Fraction(0)) * value.unit.factor / unit.factor
 
 
 def _nodes(args: Sequence[Placed], unit: Unit) -> tuple[rv.Numeric, ...]:
-    """All values in `unit`; constants as whole numbers if all others are, else as floats."""
+    """All values in `unit`; constants are ints if possible where all others are, else floats."""
     whole = all(value.integral for value, _ in args if value.constant is None)
     return tuple(_node(value, unit, whole, place) for value, place in args)
 
@@ -223,14 +226,14 @@ def _node(value: Quantity, unit: Unit, whole: bool, place: Span) -> rv.Numeric:
         raise Refusal(rules.out_of_range(place)) from None
 
 
-MOST_OUTCOMES = 64  # between so many numbers an expression may choose
+MOST_OUTCOMES = 64  # the most numbers between which an expression may choose
 
 
 def spread(values: Sequence[Value], span: Span, make: Callable[[Sequence[Value]], Value]) -> Value:
-    """The result of `make` over values, some of which may be choices.
+    """Apply `make` to values; for values that are choices, to each combination of outcomes.
 
     Raises:
-        Refusal: they have too many outcomes, or what `make` says.
+        Refusal: there are too many outcomes, or `make` raises it.
     """
     if prod(map(_outcomes, values)) > MOST_OUTCOMES:
         raise Refusal(rules.many_outcomes(span, MOST_OUTCOMES))
@@ -255,7 +258,7 @@ def _spread(values: Sequence[Value], make: Callable[[Sequence[Value]], Value]) -
 
 
 def decided(value: Value, span: Span) -> rv.Formula:
-    """A choice between formulas, as one."""
+    """A choice between formulas, as one formula."""
     if isinstance(value, Chosen):
         chosen, otherwise = decided(value.chosen, span), decided(value.otherwise, span)
         return either(value.condition, chosen, otherwise, span)
@@ -266,7 +269,8 @@ def decided(value: Value, span: Span) -> rv.Formula:
 def either(
     condition: rv.Formula, chosen: rv.Formula, otherwise: rv.Formula, span: Span
 ) -> rv.Formula:
-    """`if φ then ψ else χ`, which is known where both sides are the same, whatever φ is."""
+    """The formula `if φ then ψ else χ`."""
+    # The last disjunct makes it known where both sides are true though the condition is unknown.
     make, denied = Formulas(span), rv.Unary(rv.UnaryOp.NOT, condition, None, span)
     one = make.either(make.both(condition, chosen), make.both(denied, otherwise))
     return make.either(one, make.both(chosen, otherwise))
@@ -276,10 +280,10 @@ _SECOND = (("s", 1),)
 
 
 def ticks_of(value: Value, span: Span) -> int:
-    """A constant with a unit of time, exactly; 0 needs no unit.
+    """A constant duration in whole ticks; 0 needs no unit.
 
     Raises:
-        Refusal: it is no such constant, no whole number of ticks, negative, or too long.
+        Refusal: it is not a constant duration, not a whole number of ticks, negative, or too long.
     """
     if not isinstance(value, Quantity) or value.constant is None:
         moves = isinstance(value, Quantity) and is_time(value)
@@ -297,14 +301,14 @@ def ticks_of(value: Value, span: Span) -> int:
 
 
 def is_time(value: Quantity) -> bool:
-    """Whether it has a unit of time."""
+    """Whether a quantity has a unit of time."""
     return value.unit.dimension == _SECOND
 
 
 def closed_interval(
     low: int, high: int | None, *, low_open: bool, high_open: bool, span: Span
 ) -> rv.Interval:
-    """The closed interval of ticks with these ends.
+    """The closed interval of ticks equal to one with open or closed ends.
 
     Raises:
         Refusal: no tick lies in it.
@@ -321,10 +325,10 @@ def closed_interval(
 
 
 def seconds_of(duration: Placed) -> rv.Numeric:
-    """A duration of data, in seconds.
+    """A duration, constant or data, as a number in seconds.
 
     Raises:
-        Refusal: it is none.
+        Refusal: it is not a duration.
     """
     if duration[0].constant is not None:
         ticks_of(*duration)
@@ -332,7 +336,7 @@ def seconds_of(duration: Placed) -> rv.Numeric:
 
 
 def brought_to(unit: Unit, placed: Placed, span: Span) -> rv.Numeric:
-    """A number converted to a unit, as in a comparison.
+    """A number converted to a unit as the right side of a comparison is.
 
     Raises:
         Refusal: the units do not fit, or a constant is out of range.

@@ -1,4 +1,4 @@
-"""From a requirement's syntax to the checked requirement."""
+"""Checks a requirement: from its syntax to trigger, consequent and clauses."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ def checked_requirement(checker: Checker, item: items.RequirementItem) -> spec.R
     """Check a requirement.
 
     Raises:
-        Refusal: it is wrong.
-        Reported: it is wrong, and that is recorded.
+        Refusal: it has an error.
+        Reported: it has an error that is already recorded.
     """
     policy = _policy(checker, item)
     share = _run_share(checker, item)
@@ -72,7 +72,11 @@ def checked_requirement(checker: Checker, item: items.RequirementItem) -> spec.R
 
 
 def _refuse_fields_in_sums(formulas: Iterable[rv.Formula], place: Span) -> None:
-    """Refuse fields where occurrences are added up: each has to tell by itself if it counts."""
+    """Refuse windows over fields if it cannot be decided for each occurrence whether it counts.
+
+    With `for each`, several occurrences of an event may coincide. So the number may read fields of
+    one event only, and conditions on its fields must be conjuncts (`WindowValue.chosen`).
+    """
     for window in classify.windows_of(*formulas):
         events = {value.event for value in rv.fields_in(window.value)} if window.value else None
         if not events:
@@ -87,7 +91,7 @@ def _refuse_fields_in_sums(formulas: Iterable[rv.Formula], place: Span) -> None:
 
 
 def check_clauses(checker: Checker, item: items.RequirementItem) -> None:
-    """Report clauses that stand twice, and names that are taken."""
+    """Report repeated clauses, and local names that are already taken."""
     first: dict[str, Span] = {}
     named: dict[str, Ident] = {}
     for clause in item.clauses:
@@ -102,7 +106,7 @@ def check_clauses(checker: Checker, item: items.RequirementItem) -> None:
 
 
 def _check_name(checker: Checker, name: Ident, named: dict[str, Ident]) -> None:
-    """A name of a requirement is neither one of the file nor another of the requirement."""
+    """Report a local name that equals a name of the file or an earlier one of the requirement."""
     declared = checker.table.declared.get(name.text)
     taken = named.setdefault(name.text, name) if declared is None else declared.name
     if taken is not name:
@@ -139,7 +143,7 @@ def _parts(
 
 
 def _scoped(checker: Checker, item: items.RequirementItem, outer: Scope, parts: Parts) -> Parts:
-    """Trigger and consequent with the `scope` clause worked in."""
+    """Mode, trigger and consequent, restricted to the `scope` clause."""
     mode, trigger, consequent = parts
     for clause in _clauses(item, items.ScopeClause):
         ends = [
@@ -192,7 +196,7 @@ def _warn_of_traps(
     mode, trigger, consequent = parts
     time = checker.table.time
     traps = [*traps_at_trigger(trigger, consequent, time, item.span)]
-    if not any(_clauses(item, items.ScopeClause)):  # else the start is where the scope opens
+    if not any(_clauses(item, items.ScopeClause)):  # a scope moves the start to its opening
         traps += traps_at_start(mode, trigger, consequent, item.span)
     lets = zip(_clauses(item, items.LetClause), captures, strict=True)
     traps += capture_traps(mode, trigger, lets, time)
@@ -219,11 +223,11 @@ def _run_share(checker: Checker, item: items.RequirementItem) -> spec.RunShare |
 
 
 def _instances(checker: Checker, item: items.RequirementItem) -> tuple[spec.ForEach | None, Scope]:
-    """The `for each` clause, and the scope of the trigger: what it names."""
+    """The `for each` clause, and the scope of the trigger, which has its name."""
     for clause in _clauses(item, items.ForEachClause):
         field = checker.table.field(clause.field.text)
         if field is None:
-            # An undeclared name is refused here, with a suggestion.
+            # If the name is undeclared, this reports it with a suggestion.
             checker.values((clause.field,), EVERYWHERE)
             raise Refusal(type_rules.argument_kind(clause.field.span, "for each", "an event.field"))
         value, type_ = field
@@ -236,7 +240,7 @@ def _instances(checker: Checker, item: items.RequirementItem) -> tuple[spec.ForE
 def _captures(
     checker: Checker, item: items.RequirementItem, outer: Scope
 ) -> tuple[tuple[spec.Capture, ...], Scope]:
-    """The `let` clauses, and the scope of the consequent: what they and `for each` name."""
+    """The `let` clauses, and the scope of the consequent with their names and `for each`'s."""
     captures = []
     values, names = dict(outer.names), dict(outer.names)
     for clause in _clauses(item, items.LetClause):
@@ -250,7 +254,9 @@ def _captures(
         node = node_of((value, clause.value.span))
         refuse_moving(checker.table.time, node, clause.value.span)
         captures.append(spec.Capture(clause.name.text, node))
-        values[clause.name.text] = value  # both are of the trigger's instant
+        # A later `let` is evaluated at the same instant, so it reads the value itself. Only the
+        # consequent has to read the captured one.
+        values[clause.name.text] = value
         names[clause.name.text] = replace(value, node=rv.Captured(clause.name.text), constant=None)
     return tuple(captures), Scope(names)
 

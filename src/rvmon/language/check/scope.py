@@ -1,4 +1,4 @@
-"""The values of expressions under check, and the scopes and table in which names are looked up."""
+"""The values of expressions during the check, and the scopes and tables that resolve names."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ class Quantity(Struct, frozen=True):
     node: rv.Numeric | None = None
     constant: Fraction | None = None  # the exact value in `unit` if it is a constant
     unit: Unit = PLAIN  # of the value
-    integral: bool = False  # whether all values are whole numbers by type
-    labels: tuple[str, ...] = ()  # the labels it may take, if it is one
-    truth: bool = False  # whether it is a bool, for which 0 and 1 stand
-    lone: Lone | None = None  # the window that it is, if it is no expression of one
+    integral: bool = False  # whether its type allows whole numbers only
+    labels: tuple[str, ...] = ()  # the possible labels if it is a label
+    truth: bool = False  # whether it is a bool, represented by 0 and 1
+    lone: Lone | None = None  # the window, if the expression is just a window
 
 
 def typed(node: rv.Numeric, type_: Type, unit: Unit) -> Quantity:
-    """What an expression of a declared type yields."""
+    """The quantity of an expression with a declared type."""
     return Quantity(
         node, unit=unit, integral=type_.kind is Kind.INT,
         labels=type_.labels, truth=type_.kind is Kind.BOOL,
@@ -42,13 +42,13 @@ def typed(node: rv.Numeric, type_: Type, unit: Unit) -> Quantity:
 
 
 class Age(Struct, frozen=True):
-    """`age(x)`: the time since the last update; only compared with durations."""
+    """`age(x)`: the time since the last update; may only be compared with a duration."""
 
     name: str
 
 
 class Chosen(Struct, frozen=True):
-    """`if φ then x else y` of numbers; a comparison of it becomes one of each, with φ."""
+    """`if φ then x else y` between numbers; a comparison with it is made for each side."""
 
     condition: rv.Formula
     chosen: Value
@@ -56,77 +56,80 @@ class Chosen(Struct, frozen=True):
 
 
 class Now(Struct, frozen=True):
-    """`now`, `now - t0`: the time since an instant, else the first; only compared, or captured."""
+    """`now` or `now - t0`: a time that may only be compared; plain `now` may be captured too."""
 
-    since: str | None = None
+    since: str | None = None  # the name of the captured instant; `None`: the first of the trace
 
 
 class Moment(Struct, frozen=True):
-    """An instant that was captured, or so much `later`; `now` is compared with it."""
+    """A captured instant, or one `later` by a duration; may only be compared with `now`."""
 
     name: str
     later: Quantity | None = None
 
 
 class Lone(Struct, frozen=True):
-    """A number that is just a window; with a limit it has a comparison of its own."""
+    """A number that is just a window; its comparison with a limit is exact (`Amount`)."""
 
-    of: rv.WindowValue  # the window; of a share, its duration
-    added: Quantity | None = None  # its x, if it is of numbers
-    share: bool = False  # whether it is divided by D
+    of: rv.WindowValue  # the window; for a share, the duration that is divided by D
+    added: Quantity | None = None  # the x of a window over numbers
+    share: bool = False  # whether it is a share, divided by D
     # the condition that the trigger has come, if only members since then count
     begun: rv.Formula | None = None
 
 
 TimeValue = Age | Now | Moment
-"""The values of time, which are only allowed as one side of a comparison."""
+"""Values of time, which are allowed only as a side of a comparison."""
 
 Value = rv.Formula | Quantity | TimeValue | Chosen
 
 
 class Closure(Struct, frozen=True):
-    """A macro's argument: an expression that keeps the names of the place it was written at."""
+    """A macro's argument: an expression with the scope in which it was written."""
 
     expression: Expression
     scope: Scope
 
 
 class AtTrigger(Struct, frozen=True):
-    """Values captured at the trigger besides `let`, as far as the consequent reads them."""
+    """Collects the values that a consequent needs from its trigger, in addition to `let`."""
 
     captures: list[Capture] = field(default_factory=list)
 
     def begun(self, span: Span) -> rv.Passed:
-        """The condition that the trigger has come."""
+        """The condition that the trigger has come; captures its instant."""
         if not any(capture.name == rv.TRIGGERED for capture in self.captures):
             self.captures.append(Capture(rv.TRIGGERED, rv.NowValue()))
         return rv.since_trigger(span)
 
     def number(self, word: str, value: rv.Numeric) -> str:
-        """The name of a number of that instant, which begins as a word of the language does."""
+        """Capture a number at the trigger; the result is its name, which starts with `word`.
+
+        `word` is a keyword.
+        """
         for capture in self.captures:
             if capture.value == value and capture.name.startswith(word):
                 return capture.name
-        # A keyword, or a name with a space: no `let` can declare it.
+        # The name is a keyword or has a space, so that it cannot clash with the name of a `let`.
         taken = sum(capture.name.startswith(word) for capture in self.captures)
         self.captures.append(Capture(f"{word} {taken + 1}" if taken else word, value))
         return self.captures[-1].name
 
 
 class Scope(Struct, frozen=True):
-    """The names that hold inside a macro or requirement, besides those of the file."""
+    """The local names of a macro or requirement, in addition to the names of the file."""
 
-    # by name, its meaning
+    # the meaning of each local name
     names: Mapping[str, Closure | Quantity | Moment] = field(default_factory=dict)
-    trigger: AtTrigger | None = None  # in what is required, what is captured with it
-    at_once: bool = False  # whether it is required at the trigger, and not at some later instant
+    trigger: AtTrigger | None = None  # in a consequent, collects the captures at its trigger
+    at_once: bool = False  # whether the formula is evaluated at the trigger, not at a later instant
 
     def later(self) -> Scope:
-        """The same below an operator of time."""
+        """The scope below a temporal operator."""
         return replace(self, at_once=False) if self.at_once else self
 
     def inside(self, names: Mapping[str, Closure]) -> Scope:
-        """The scope of the body of a macro."""
+        """The scope of the body of a macro; `names` are its parameters."""
         return Scope(names, self.trigger, self.at_once)
 
 
@@ -140,7 +143,7 @@ _LONG_NAMES = {
     "turn": "rev", "celsiu": "degC", "kelvin": "K", "volt": "V", "amp": "ampere", "hertz": "Hz",
     "percent": "%", "mp": "m/s", "kmh": "km/h", "kph": "km/h", "pixel": "px", "byte": "B",
 }  # fmt: skip
-"""By what people write for a unit, in lower case and without a last `s`: its symbol."""
+"""The symbols of units by what people write instead, in lower case and without a final `s`."""
 
 
 class Table(Struct, frozen=True):
@@ -151,9 +154,9 @@ class Table(Struct, frozen=True):
     events: Mapping[str, Event] = field(default_factory=dict)  # checked, by name
     # of real signals, and of payload fields as `event.field`
     units: Mapping[str, Unit] = field(default_factory=dict)
-    # everything by name, macros and constants too
+    # all declarations by name, with macros and constants
     declared: Mapping[str, Declared] = field(default_factory=dict)
-    recursive: frozenset[str] = frozenset()  # macros and constants that are defined by themselves
+    recursive: frozenset[str] = frozenset()  # macros and constants that lead into a cycle
     # words that an item with a syntax error may have declared
     doubtful: frozenset[str] = frozenset()
 
@@ -166,7 +169,7 @@ class Table(Struct, frozen=True):
 
 
 def close_name(table: Table, name: str, local: tuple[str, ...] = ()) -> str:
-    """A proposal in place of an unknown name, in words; empty if no name is similar."""
+    """A suggestion for an unknown name, in words; empty if no name is similar."""
     fields = [f"{e.name}.{f}" for e in table.events.values() for f in e.fields]
     if close := nearest(name, [*local, *table.declared, *fields]):
         return f"did you mean `{close}`?{_described(table, close)}"
@@ -186,7 +189,7 @@ def _described(table: Table, name: str) -> str:
 
 
 def close_unit(part: str) -> str:
-    """A unit that is alike, or empty."""
+    """A similar unit, or empty."""
     singular = part.lower().removesuffix("s")
     if singular in _LONG_NAMES:
         return _LONG_NAMES[singular]
@@ -194,7 +197,7 @@ def close_unit(part: str) -> str:
 
 
 class Operands(Protocol):
-    """Evaluates operands; each method reports what is wrong in all of them before it raises."""
+    """Evaluates operands; each method reports the errors of all operands before it raises."""
 
     table: Table
 
@@ -204,7 +207,7 @@ class Operands(Protocol):
     def calculated(
         self, op: NumericOp, args: tuple[Expression, ...], scope: Scope, span: Span
     ) -> Value:
-        """An operation on numbers, or on choices between them."""
+        """The result of an operation on numbers, or on choices between numbers."""
 
     def formula(self, expression: Expression, scope: Scope) -> rv.Formula:
         """The formula that an operand stands for."""
@@ -216,4 +219,4 @@ class Operands(Protocol):
         """Whether a name stands for anything but a label."""
 
     def peeled(self, expression: Expression, scope: Scope) -> tuple[Expression, Scope]:
-        """An operand without brackets and macro parameters around it."""
+        """An operand without brackets, with macro parameters replaced by their arguments."""

@@ -1,4 +1,4 @@
-"""Requirements that fail, or stay open, by their own wording on every run."""
+"""Finds requirements whose own wording makes them fail, or captures values by mistake."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ def traps_at_trigger(
 ) -> Iterator[Diagnostic]:
     """Find parts that are required at the trigger and cannot hold there.
 
-    Trigger and consequent are without the parts of a scope; `span` is for parts without a place.
+    Trigger and consequent are those before a scope is applied; `span` is the place to report for
+    parts without one.
     """
     facts = {
         about: truth for about, truth in facts_of(trigger).items() if about is not rv.Bound.START
@@ -65,7 +66,7 @@ def traps_at_start(
 def capture_traps(
     mode: Mode, trigger: rv.Formula, captures: Iterable[tuple[LetClause, Capture]], time: TimeModel
 ) -> Iterator[Diagnostic]:
-    """Captured values that are not those that a reader takes them for."""
+    """Find captures whose value is not the one that a reader expects."""
     occurring = {name for name, truth in facts_of(trigger).items() if truth}
     for clause, capture in captures:
         for field in rv.fields_in(capture.value):
@@ -79,7 +80,7 @@ def capture_traps(
 
 
 def _required_at_once(formula: rv.Formula) -> Iterator[rv.Formula]:
-    """The parts of what is required that have to hold at the instant at which it is required."""
+    """The parts of a required formula that must hold at the very instant it is required."""
     match formula:
         case rv.Binary(op=rv.BinaryOp.AND, left=left, right=right):
             yield from _required_at_once(left)
@@ -95,7 +96,7 @@ def _required_at_once(formula: rv.Formula) -> Iterator[rv.Formula]:
 def _at_trigger(
     part: rv.Formula, facts: Facts, time: TimeModel, place: Span
 ) -> Iterator[Diagnostic]:
-    """A part of what is required that is false by what the trigger says."""
+    """Report a required part that is false by the facts of the trigger."""
     if isinstance(part, rv.Binary) and part.op in (rv.BinaryOp.UNTIL, rv.BinaryOp.WEAK_UNTIL):
         left, right = truth_at(part.left, facts), truth_at(part.right, facts)
         late = part.interval is not None and part.interval.low > 0
@@ -111,7 +112,7 @@ def _at_trigger(
 
 
 def _from_later_on(part: rv.Binary, time: TimeModel) -> str:
-    """`a until b` and `a unless b` that begin behind the trigger."""
+    """The fix that lets `a until b` or `a unless b` start after the trigger."""
     if time is not TimeModel.HELD:
         return f"let it begin at the next position: `next ({format_formula(part)})`"
     low, high = (part.interval.low, part.interval.high) if part.interval else (0, None)
@@ -125,7 +126,7 @@ def _from_later_on(part: rv.Binary, time: TimeModel) -> str:
 
 
 def _later(part: rv.Formula) -> str:
-    """The way to require a part that looks back only where there is a past to look at."""
+    """The fix that requires a part only where there is enough past for it to look at."""
     due = max(map(_reach, subformulas(part)))
     if not due:
         return f"leave out the first instant: `start or {_operand(part)}`"
@@ -134,7 +135,7 @@ def _later(part: rv.Formula) -> str:
 
 
 def _reach(part: rv.Formula) -> int:
-    """The distance of the latest instant that an operator looks back at, ticks."""
+    """The ticks that must have passed before an operator of the past can be true."""
     match part:
         case rv.Unary(op=rv.UnaryOp.HELD, interval=window) if window is not None:
             return window.high or 0
@@ -148,19 +149,19 @@ def _reach(part: rv.Formula) -> int:
 
 
 def _operand(formula: rv.Formula) -> str:
-    """A formula as an operand of a temporal operator is printed."""
+    """The text of a formula as an operand of a temporal operator."""
     text = format_formula(formula)
     is_call = isinstance(formula, rv.Unary) and formula.op.entry.called
     return text if is_call or isinstance(formula, rv.Atom) else f"({text})"
 
 
 def at_start_by_mistake(expression: Expression, formula: rv.Formula) -> bool:
-    """Whether a bare formula speaks of no time, and not of the start either."""
+    """Whether a bare formula has no temporal operator and reads neither `start` nor `end`."""
     if on_purpose(expression) or not is_timeless(formula):
         return False
     return not any(isinstance(part, rv.BoundAtom) for part in subformulas(formula))
 
 
 def on_purpose(expression: Expression) -> bool:
-    """Whether `immediately` says that one instant is meant."""
+    """Whether the expression is marked by `immediately`, so that one instant is intended."""
     return isinstance(ungrouped(expression), Immediately)

@@ -1,4 +1,4 @@
-"""Windows of the past as numbers: what is measured of which members, and what is refused."""
+"""Checks calls that measure a window of the past: `count`, `sum`, `mean` and the like."""
 
 from __future__ import annotations
 
@@ -27,28 +27,28 @@ from rvmon.trace.time import TICKS_PER_SECOND
 from rvmon.units import PLAIN, Unit, parse_unit, product
 
 TRIGGER = "trigger"
-"""The word after `since` in a window that begins at the trigger: `x since trigger`."""
+"""The word after `since` in a window that starts at the trigger: `x since trigger`."""
 _SECONDS = parse_unit("s")
-MOST_LAST = 1_000_000  # the most updates that a window may hold
+MOST_LAST = 1_000_000  # the greatest n of `last(n, x)`
 
 
 class _Window(Struct, frozen=True):
-    """The window of a call: its members and its extent."""
+    """The window of a call: the expression that is measured, and the extent."""
 
     of: Expression
-    scope: Scope
-    ticks: int | None = None  # D; `None`: no such window
-    most: int | None = None  # the number of updates; `None`: any number
+    scope: Scope  # of the expression
+    ticks: int | None = None  # D in ticks; `None`: no duration is given
+    most: int | None = None  # the n of `last(n, x)`; `None`: any number of updates
     since: bool = False  # whether only members since the trigger count
 
     @property
     def span(self) -> Span:
-        """The place of the expression."""
+        """The place of the measured expression."""
         return self.of.span
 
 
 def _window(operands: Operands, call: Call, scope: Scope) -> _Window:
-    """The window of the last D, of `last(n, x)`, since the trigger, or since the first instant."""
+    """The window of a call: the last D, `last(n, x)`, since the trigger, or since the start."""
     of, inner = operands.peeled(call.args[0], scope)
     window = _Window(call.args[0], scope)
     match of:
@@ -84,11 +84,11 @@ def _count(operands: Operands, expression: Expression, scope: Scope) -> int:
 
 
 def amount(operands: Operands, measured: rv.Measured, call: Call, scope: Scope) -> Quantity:
-    """The quantity that a call measures.
+    """The quantity of a call that measures a window.
 
     Raises:
-        Refusal: there is no such window, or that is not measured of such members.
-        Reported: an operand is wrong.
+        Refusal: the window is invalid, or the measure does not apply to its members.
+        Reported: an operand has an error.
     """
     window = _window(operands, call, scope)
     lone = (_added if measured.of_numbers else _counted)(operands, measured, call, window)
@@ -110,7 +110,7 @@ def amount(operands: Operands, measured: rv.Measured, call: Call, scope: Scope) 
 
 
 def _unit_of(measured: rv.Measured, unit: Unit) -> Unit:
-    """The unit of what is measured of numbers."""
+    """The unit of a measure over numbers of the given unit."""
     match measured.dimension:
         case Dimension.PLAIN:
             return PLAIN
@@ -123,7 +123,7 @@ def _unit_of(measured: rv.Measured, unit: Unit) -> Unit:
 
 
 def _counted(operands: Operands, measured: rv.Measured, call: Call, window: _Window) -> Lone:
-    """The count or duration of a formula, whose members have to be known at once."""
+    """A count, duration or share of a formula, which must not refer to the future."""
     formula = operands.formula(window.of, window.scope)
     _refuse_future(formula, call, call.function.text)
     share = call.function.text == "share"
@@ -146,7 +146,7 @@ def _refuse_future(formula: rv.Formula, call: Call, name: str) -> None:
 
 
 def _updates(operands: Operands, names: set[str], span: Span) -> rv.Formula:
-    """The formula that is true where the only name of an expression is updated."""
+    """The formula that is true where the only name that an expression reads is updated."""
     if len(names) != 1:
         raise Refusal(rules.last_of_several(span))
     (name,) = names
@@ -156,7 +156,7 @@ def _updates(operands: Operands, names: set[str], span: Span) -> rv.Formula:
 
 
 def _added(operands: Operands, measured: rv.Measured, call: Call, window: _Window) -> Lone:
-    """The numbers of occurrences, of updates, or what is held."""
+    """A measure over numbers: fields of occurrences, updates of a signal, or held values."""
     place = window.span
     (value,) = operands.values((window.of,), window.scope)
     conditions: list[rv.Formula] = []
@@ -195,14 +195,14 @@ def _added(operands: Operands, measured: rv.Measured, call: Call, window: _Windo
 
 
 def _is_of_occurrence(formula: rv.Formula, events: set[str]) -> TypeGuard[rv.Compare]:
-    """Whether it is a comparison that says something of one occurrence of the only event."""
+    """Whether a formula is a comparison that reads fields of the single event in `events`."""
     if not isinstance(formula, rv.Compare) or len(events) != 1:
         return False
     return {value.event for value in rv.fields_in(formula.left, formula.right)} == events
 
 
 def _can_be_added(measured: rv.Measured, node: rv.Numeric, *, fields: bool, signals: bool) -> bool:
-    """Whether a measure adds up numbers of occurrences, of held values, or of either."""
+    """Whether a measure applies to a number that reads fields of events, or signals, or both."""
     match measured.of:
         case Members.EVENTS:
             return fields or isinstance(node, rv.SignalValue)
@@ -215,7 +215,11 @@ def _can_be_added(measured: rv.Measured, node: rv.Numeric, *, fields: bool, sign
 
 
 def _refuse_curve(operands: Operands, call: Call, window: _Window) -> None:
-    """Between samples a variance of what is held is no line; on a clock it is looked at anew."""
+    """Refuse a variance over held values in `time held`, and on a clock without a duration.
+
+    In held time it moves along a curve between samples, and its crossing of a limit is not
+    computed.
+    """
     time = operands.table.time
     if time is TimeModel.HELD:
         raise Refusal(rules.variance_moves(call.span))
@@ -224,7 +228,11 @@ def _refuse_curve(operands: Operands, call: Call, window: _Window) -> None:
 
 
 def is_extreme(operands: Operands, call: Call, scope: Scope) -> bool:
-    """Whether `min` or `max` is of a window: only the second argument is a duration."""
+    """Whether a call of `min` or `max` is a window `max(x, D)`, not the greatest of arguments.
+
+    It is a window if it has one argument, or if the second of two is a constant duration and the
+    first is not a duration.
+    """
     if len(call.args) == 1:
         return True
     if len(call.args) > 2:

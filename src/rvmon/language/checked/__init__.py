@@ -1,1 +1,1 @@
-"""Specifications whose names, types and units are settled: data, and what is read off them."""
+"""Checked specifications as data, with the analyses that many packages share."""

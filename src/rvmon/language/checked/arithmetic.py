@@ -1,6 +1,6 @@
-"""The operations on numbers: one entry for each, which checker, core and oracle read.
+"""The operations on numbers: one entry each, which the checker and the core read.
 
-The oracle has readings of its own, of which this is to be found right.
+The oracle has its own, independent evaluation, against which these entries are tested.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ EARTH = 6_371_008.8
 
 Source: Moritz, Geodetic Reference System 1980, Journal of Geodesy 74, 2000.
 """
-MOST_SHIFT = 63  # by so many bits a whole number can be shifted
+MOST_SHIFT = 63  # the most bits by which a whole number can be shifted
 
 
 def nearest_whole(x: float) -> float:
-    """The nearest whole number; of two, the one farther from 0.
+    """The nearest whole number; a half is rounded away from 0.
 
     >>> [nearest_whole(x) for x in (0.5, -0.5, 2.5, 0.49999999999999994)]
     [1, -1, 3, 0]
@@ -36,12 +36,12 @@ def sign(x: float) -> int:
 
 
 def clamp(x: float, low: float, high: float) -> float:
-    """The value, at least `low`, and then at most `high`."""
+    """The value limited to at least `low` and then to at most `high`, which wins if below `low`."""
     return min(max(x, low), high)
 
 
 def angle_between(a: float, b: float, turn: float = math.tau) -> float:
-    """By how much to turn from a to b, the shorter way; a half turn is positive.
+    """The angle by which to turn from a to b, the shorter way; a half turn is positive.
 
     >>> angle_between(170.0, -170.0, 360.0), angle_between(0.0, -180.0, 360.0)
     (20.0, 180.0)
@@ -51,7 +51,7 @@ def angle_between(a: float, b: float, turn: float = math.tau) -> float:
 
 
 def distance_on_earth(lat1: float, lon1: float, lat2: float, lon2: float) -> float:
-    """The way along the surface of a sphere of the Earth's size, in m, of angles in rad.
+    """The distance in m along the surface of a sphere of the Earth's size; angles in rad.
 
     Source: Sinnott, Virtues of the Haversine, Sky and Telescope 68, 1984.
 
@@ -65,17 +65,20 @@ def distance_on_earth(lat1: float, lon1: float, lat2: float, lon2: float) -> flo
 
 
 def shifted_left(x: float, by: float) -> int:
-    """A whole number times a power of 2."""
+    """A whole number shifted left; raises `ValueError` unless `by` is 0 to `MOST_SHIFT`."""
     return int(x) << _shift(by)
 
 
 def shifted_right(x: float, by: float) -> int:
-    """A whole number divided by a power of 2, rounded down."""
+    """A whole number shifted right, rounded down; errors as `shifted_left`."""
     return int(x) >> _shift(by)
 
 
 def bit(x: float, n: float) -> int:
-    """Bit n of a whole number, the least is 0; of a negative one in two's complement."""
+    """Bit n of a whole number in two's complement, where bit 0 is the lowest.
+
+    Errors as `shifted_left`.
+    """
     return int(x) >> _shift(n) & 1
 
 
@@ -104,7 +107,7 @@ class UnitRule(Enum):
 
 
 class Exactness(StrEnum):
-    """The accuracy of a result."""
+    """How exactly a result is computed."""
 
     EXACT = "exact"
     ROUNDED = "rounded once"
@@ -115,19 +118,19 @@ class Operation(Struct, frozen=True):
     """The entry of an operation: arity, units, evaluation, documentation."""
 
     least: int  # the least number of arguments
-    most: int | None  # the greatest; `None`: any number, folded from the left
-    unit: UnitRule  # of the result
-    # yields the result, of exact fractions too; an error of arithmetic is unknown
+    most: int | None  # the greatest number; `None`: any, folded from the left
+    unit: UnitRule
+    # computes the result, also of exact fractions; an arithmetic error means unknown
     apply: Callable[..., float]
-    whole: bool  # whether the result of whole numbers is one
+    whole: bool  # whether the result is whole if all arguments are
     doc: str  # its value in a few words
-    exactness: Exactness = Exactness.ROUNDED  # of the result, of reals
+    exactness: Exactness = Exactness.ROUNDED  # for real arguments
 
 
 def _exact(
     least: int, most: int | None, unit: UnitRule, apply: Callable[..., float], doc: str
 ) -> Operation:
-    """One that picks its result, or whose result is always a number that there is."""
+    """An entry whose result is never rounded."""
     return Operation(least, most, unit, apply, True, doc, Exactness.EXACT)
 
 
@@ -136,7 +139,7 @@ def _library(count: int, unit: UnitRule, apply: Callable[..., float], doc: str) 
 
 
 class NumericOp(StrEnum):
-    """The operations by their signs, or the names of functions.
+    """The operations, by sign or function name.
 
     >>> NumericOp.of("hypot").entry.apply(3, 4)
     5.0
@@ -145,7 +148,7 @@ class NumericOp(StrEnum):
     entry: Operation
 
     def __new__(cls, sign: str, entry: Operation) -> NumericOp:
-        """A member: the text that it is written as, with its entry."""
+        """A member: its sign or name, with its entry."""
         member = str.__new__(cls, sign)
         member._value_ = sign
         member.entry = entry
@@ -153,7 +156,7 @@ class NumericOp(StrEnum):
 
     @classmethod
     def of(cls, sign: str) -> NumericOp:
-        """The one that is written so."""
+        """The operation with a sign or name."""
         return next(op for op in cls if op.value == sign)
 
     ADD = "+", Operation(2, 2, UnitRule.SAME, operator.add, True, "the sum")

@@ -1,4 +1,4 @@
-"""Classifies formulas by syntax: present or future, pulse or level, constant at an instant."""
+"""Classifies formulas by syntax: tense, pulse or level, and facts known at an instant."""
 
 from __future__ import annotations
 
@@ -10,19 +10,20 @@ from rvmon.language.checked.operators import OPERATORS, Connectives, Reading, Te
 from rvmon.language.checked.rewrite import read
 
 FUTURE = frozenset(op for op in OPERATORS if op.entry.tense is Tense.FUTURE)
-"""The operators that look ahead."""
+"""The operators of the future."""
 
 
 def subformulas(formula: rv.Formula) -> Iterator[rv.Formula]:
-    """The formula and all below it, from the outside in, left to right.
+    """The formula and its subformulas, operators before operands, from left to right.
 
-    A part that a macro shares between several places comes once.
+    A part that a macro shares between several places is yielded once.
     """
     waiting = [formula]
     seen: set[int] = set()
     while waiting:
         node = waiting.pop()
-        # By identity: hashing a formula visits all of it, and shared parts are the same object.
+        # Parts are told apart by identity: hashing a formula would visit all of it, and shared
+        # parts are the same object.
         if id(node) in seen:
             continue
         seen.add(id(node))
@@ -44,7 +45,7 @@ def subformulas(formula: rv.Formula) -> Iterator[rv.Formula]:
 
 
 def windows_of(*formulas: rv.Formula) -> Iterator[rv.WindowValue]:
-    """The windows in formulas, those in windows among them."""
+    """All measured windows in formulas, including those inside other windows."""
     for part in (part for formula in formulas for part in subformulas(formula)):
         if isinstance(part, rv.Amount):
             yield part.of
@@ -53,18 +54,18 @@ def windows_of(*formulas: rv.Formula) -> Iterator[rv.WindowValue]:
 
 
 def future_part(formula: rv.Formula) -> rv.Formula | None:
-    """The first subformula that looks ahead."""
+    """The first subformula with an operator of the future, or `None`."""
     temporal = (part for part in subformulas(formula) if isinstance(part, rv.Unary | rv.Binary))
     return next((part for part in temporal if part.op in FUTURE), None)
 
 
 def has_future(formula: rv.Formula) -> bool:
-    """Whether a formula looks ahead."""
+    """Whether a formula has an operator of the future."""
     return future_part(formula) is not None
 
 
 def looks_back_at_future(formula: rv.Formula) -> bool:
-    """Whether something that looks ahead stands below an operator of the past."""
+    """Whether an operator of the future stands below an operator of the past."""
     return any(
         isinstance(part, rv.Unary | rv.Binary)
         and part.op.entry.tense is Tense.PAST
@@ -74,17 +75,17 @@ def looks_back_at_future(formula: rv.Formula) -> bool:
 
 
 def end_part(formula: rv.Formula) -> rv.Formula | None:
-    """The first `end` in a formula."""
+    """The first `end` in a formula, or `None`."""
     return next((part for part in subformulas(formula) if is_end(part)), None)
 
 
 def is_end(formula: rv.Formula) -> bool:
-    """Whether a formula is `end`, wherever it stands."""
+    """Whether a formula is just `end`."""
     return isinstance(formula, rv.BoundAtom) and formula.bound is rv.Bound.END
 
 
 def is_timeless(formula: rv.Formula) -> bool:
-    """Whether no operator of time occurs, neither of the future nor of the past."""
+    """Whether a formula has no temporal operator except `rise` and `fall`."""
     return all(
         part.op.entry.tense is Tense.PRESENT or part.op.entry.pulse
         for part in subformulas(formula)
@@ -108,7 +109,7 @@ Pulses = tuple[bool, bool]  # whether a formula is a pulse, and whether its nega
 
 
 class _Pulsing(Connectives[Pulses]):
-    """Pulses: a conjunction is one if either operand is, a disjunction if both are."""
+    """Reads pulses: a conjunction is a pulse if either operand is, a disjunction if both are."""
 
     def constant(self, value: bool) -> Pulses:
         return not value, value
@@ -144,7 +145,7 @@ def _pulses(formula: rv.Formula) -> Pulses:
 
 
 def mixed_disjunction(trigger: rv.Formula) -> tuple[rv.Formula, rv.Formula] | None:
-    """A pulse and a level that a trigger joins by `or`, if it is no pulse altogether."""
+    """The pulse and the level of a disjunction that mixes both, or `None`; pulse first."""
     waiting = [trigger]
     while waiting:
         node = waiting.pop()
@@ -158,12 +159,12 @@ def mixed_disjunction(trigger: rv.Formula) -> tuple[rv.Formula, rv.Formula] | No
     return None
 
 
-Facts = Mapping[Hashable, bool]  # the known truth values of propositions at an instant
+Facts = Mapping[Hashable, bool]  # known truth values of propositions at an instant
 FIRST: Facts = {rv.Bound.START: True}  # the facts of the first instant of a run
 
 
 def facts_of(formula: rv.Formula) -> dict[Hashable, bool]:
-    """The facts that hold wherever a formula of the present and past is true.
+    """The facts that hold wherever a formula without future operators is true.
 
     >>> no_p = rv.Unary(rv.UnaryOp.NOT, rv.SignalAtom("p"))
     >>> facts_of(rv.Binary(rv.BinaryOp.AND, rv.EventAtom("e"), no_p))
@@ -173,11 +174,11 @@ def facts_of(formula: rv.Formula) -> dict[Hashable, bool]:
 
 
 Both = tuple[dict[Hashable, bool], dict[Hashable, bool]]
-"""The facts where a formula is true, and those where it is false."""
+"""The facts where a formula is true, and the facts where it is false."""
 
 
 class _Facts(Reading[Both]):
-    """The facts of operators; of what looks elsewhere there are none."""
+    """Reads facts; operators of time give none, because they refer to other instants."""
 
     def constant(self, _: bool) -> Both:
         return {}, {}
@@ -199,9 +200,8 @@ def _both_facts(formula: rv.Formula) -> Both:
     match formula:
         case rv.Constant():
             return {}, {}
-        case rv.Unary(
-            op=rv.UnaryOp.HELD, operand=operand
-        ):  # it says more than its parts: also here
+        # `held` includes the present instant, which its expansion by `since` does not show.
+        case rv.Unary(op=rv.UnaryOp.HELD, operand=operand):
             return _both_facts(operand)[0], {}
         case rv.Unary() | rv.Binary():
             return read(formula, _both_facts, _Facts())
@@ -216,7 +216,7 @@ def _both_facts(formula: rv.Formula) -> Both:
 
 
 def truth_at(formula: rv.Formula, facts: Facts) -> bool | None:
-    """The truth of a formula at an instant with such facts; `None` if they do not decide it."""
+    """The truth of a formula at an instant with the given facts; `None` if they do not decide."""
     match formula:
         case rv.Constant(value=value):
             return value
@@ -235,7 +235,7 @@ def truth_at(formula: rv.Formula, facts: Facts) -> bool | None:
 
 
 class _Here(Reading[bool | None]):
-    """Operators by what their operands are now; what else they look at is not known."""
+    """Reads truth from the present values of operands; values at other instants are not known."""
 
     def __init__(self, facts: Facts) -> None:
         self._first = facts.get(rv.Bound.START) is True
@@ -258,22 +258,23 @@ class _Here(Reading[bool | None]):
         return False if self._first else None
 
     def until(self, left: bool | None, right: bool | None, window: rv.Interval) -> bool | None:
-        """The right side may come later."""
+        """Decided by the operands now, as the right one may come later."""
         if not window.low and right is not False:
             return right
         return False if left is False else None
 
     def since(self, left: bool | None, right: bool | None, window: rv.Interval) -> bool | None:
-        """There is nothing before the first instant."""
+        """As `until`, but there is no position before the first one."""
         if self._first:
             return False if window.low else right
         return self.until(left, right, window)
 
 
 def _compared(formula: rv.Compare) -> tuple[Hashable, bool]:
-    """A comparison or its opposite, and whether it is the comparison itself.
+    """The key of a comparison or of its opposite, and whether it is that of the comparison.
 
-    One that reads a field of an event has no opposite: both are false where that does not occur.
+    A comparison that reads a field of an event has no opposite: both would be false where the
+    event does not occur.
     """
     positive = formula.op in (rv.CompareOp.LT, rv.CompareOp.LE, rv.CompareOp.EQ) or bool(
         _events(formula)

@@ -1,7 +1,7 @@
-"""Formulas and numbers whose names, types and units are settled.
+"""Checked formulas and numbers: names, types and units are resolved.
 
-Macros and constants are expanded, durations are ticks, intervals are closed. `age(x) > D` and its
-kin are rewritten with `updated(x)` and past operators. Operators are otherwise as written; their
+Macros and constants are expanded, durations are ticks, intervals are closed. Comparisons of ages
+are rewritten with `updated(x)` and past operators. All other operators are as written; their
 meaning is SEMANTICS 2.
 """
 
@@ -28,7 +28,7 @@ from rvmon.trace.time import TICKS_PER_SECOND
 
 @dataclass(frozen=True, slots=True)
 class Literal:
-    """A label, or a number in the unit of its comparison, whose symbol people are shown."""
+    """A label, or a number in the unit of its comparison; `unit` is its symbol, for display."""
 
     value: float | int | str
     unit: str = field(default="", compare=False)
@@ -54,7 +54,7 @@ class Captured(Struct, frozen=True):
 
 
 class UpdateFunction(StrEnum):
-    """Functions of a signal's last two updates (SEMANTICS 2)."""
+    """The functions of a signal's last two updates (SEMANTICS 2)."""
 
     PREV = "prev"
     DELTA = "delta"
@@ -69,42 +69,42 @@ class UpdateValue(Struct, frozen=True):
 
 
 class Arithmetic(Struct, frozen=True):
-    """An operation on numbers; a result that is no number (0/0, sqrt(-1), overflow) is unknown."""
+    """An operation on numbers; an undefined result (0/0, sqrt(-1), overflow) is unknown."""
 
     op: NumericOp
     args: tuple[Numeric, ...]
 
 
 class NowValue(Struct, frozen=True):
-    """`now`: ticks since the first instant; unknown if an outage hides which that was."""
+    """`now`: ticks since the first instant; unknown if an outage hides which instant that was."""
 
 
 class WindowValue(Struct, frozen=True):
-    """`count(φ, D)`, `sum(x, D)` and their kin: what the members of a window come to.
+    """`count(φ, D)`, `sum(x, D)` and the like: a measure of the members of a window.
 
-    A member is a position at which φ is true, with the number x there; where φ is not born there is
-    none. Where x reads fields of one event each occurrence is a member that `chosen` holds of.
+    A member is a position at which φ is true, with the number x there; where φ is unborn there is
+    no member. If x reads fields of one event, each occurrence that satisfies `chosen` is a member.
     """
 
-    measured: Measured  # the measure of the members
+    measured: Measured
     operand: Formula  # φ, of the present and past
     window: int | None  # D, ticks; `None`: since the first instant
     value: Numeric | None = None  # x; `None`: positions or ticks are counted
-    # the greatest number of members, the last ones; `None`: all of the window
+    # the n of `last(n, …)`: only the last n members count; `None`: all members of the window
     most: int | None = None
-    # with `most`, whether a member counts; of numbers, a comparison of x with itself
+    # with `most`, the condition on which a member counts; over numbers, that x is known
     counted: Formula | None = None
-    chosen: tuple[Compare, ...] = ()  # comparisons of fields that are asked of each occurrence
+    chosen: tuple[Compare, ...] = ()  # comparisons of fields, tested for each occurrence
 
     @property
     def operands(self) -> tuple[Formula, ...]:
-        """φ, what says whether a member counts, and what is chosen."""
+        """All formulas of the window: φ, `counted` if there is one, and `chosen`."""
         operands = (self.operand, self.counted, *self.chosen)
         return tuple(part for part in operands if part is not None)
 
     @property
     def moves(self) -> bool:
-        """Whether it goes on changing between samples, and not by jumps."""
+        """Whether its value changes continuously between samples."""
         held = self.measured in (Measured.MEAN, Measured.VARIANCE) and self.most is None
         return self.measured.of_time or (
             held and not (self.value is not None and any(fields_in(self.value)))
@@ -112,19 +112,19 @@ class WindowValue(Struct, frozen=True):
 
     @property
     def born_with(self) -> tuple[Compare, ...]:
-        """A comparison that is born first: of x, where of nothing there is no number."""
+        """The comparison that must be born first: that of x, if the measure needs a member."""
         asks = self.value is not None and self.measured.asks_for_one
         return (itself(self.value),) if asks and self.value is not None else ()
 
 
 Read = NowValue | SignalValue | FieldValue | Captured | UpdateValue
-"""The numbers that are read off the input or captured."""
+"""Numbers that are read from the input or captured."""
 
 Numeric = Literal | Read | WindowValue | Arithmetic
 
 
 def numbers_in(*numbers: Numeric) -> Iterator[Numeric]:
-    """Numbers and what they are made of, from the left; not what stands inside of windows."""
+    """Numbers and the operands of their arithmetic, from the left, without those in windows."""
     for number in numbers:
         yield number
         if isinstance(number, Arithmetic):
@@ -132,18 +132,18 @@ def numbers_in(*numbers: Numeric) -> Iterator[Numeric]:
 
 
 def windows_in(*numbers: Numeric) -> tuple[WindowValue, ...]:
-    """The windows that numbers are made of, each once, from the left."""
+    """The windows in numbers, each once, from the left."""
     windows = (one for one in numbers_in(*numbers) if isinstance(one, WindowValue))
     return tuple(dict.fromkeys(windows))
 
 
 def fields_in(*numbers: Numeric) -> Iterator[FieldValue]:
-    """The payload fields that numbers are made of, from the left."""
+    """The payload fields in numbers outside of windows, from the left."""
     return (one for one in numbers_in(*numbers) if isinstance(one, FieldValue))
 
 
 class CompareOp(StrEnum):
-    """Comparisons of numbers; labels know only `==` and `!=`.
+    """The comparisons of numbers; labels have only `==` and `!=`.
 
     >>> CompareOp.LE.holds(2, 3), CompareOp.LE.mirrored, CompareOp.LE.denied
     (True, <CompareOp.GE: '>='>, <CompareOp.GT: '>'>)
@@ -157,12 +157,12 @@ class CompareOp(StrEnum):
     GT = ">", operator.gt, "is above"
 
     holds: Callable[[Any, Any], Any]  # compares two numbers, or arrays of them
-    said: str  # an English verb for it
+    said: str  # its wording in English
 
     def __new__(
         cls, sign: str, holds: Callable[[Any, Any], Any] = operator.eq, said: str = ""
     ) -> CompareOp:
-        """A member: its sign, with the comparison, and how it is said."""
+        """A member: its sign, with the comparison and its wording."""
         member = str.__new__(cls, sign)
         member._value_ = sign
         member.holds, member.said = holds, said
@@ -215,7 +215,7 @@ class Compare(Struct, frozen=True):
 
 
 class Probe(StrEnum):
-    """Propositions about the updates of a signal (or event, for `updated`)."""
+    """Propositions about the updates of a signal; `updated` also applies to events."""
 
     KNOWN = "known"
     UPDATED = "updated"
@@ -231,14 +231,14 @@ class ProbeAtom(Struct, frozen=True):
 
 
 class Bound(StrEnum):
-    """The two ends of a trace as propositions; `end` stands only alone, as a trigger."""
+    """The two ends of a trace as propositions; `end` may only be a trigger by itself."""
 
     START = "start"
     END = "end"
 
 
 class BoundAtom(Struct, frozen=True):
-    """`start` is true at the first position; `end` when the trace is finished."""
+    """`start`, true at the first position, or `end`, true when the trace is finished."""
 
     bound: Bound
     span: Span | None = None
@@ -264,20 +264,20 @@ class Binary(Struct, frozen=True):
 
 
 class Amount(Struct, frozen=True):
-    """`count(φ, D) >= n`, `sum(x, D) > c` and their kin: a window compared exactly with a limit."""
+    """`count(φ, D) >= n`, `sum(x, D) > c` and the like: a window compared exactly with a limit."""
 
     of: WindowValue
-    # n or c, in the unit of what is measured: of a duration ticks, of an integral that of x times
-    # seconds, of a variance the square of that of x
+    # n or c, in the unit of the measure: ticks for a duration, the unit of x times seconds for an
+    # integral, the square of the unit of x for a variance
     limit: Numeric
-    strict: bool = False  # whether it is `> c`
+    strict: bool = False  # whether the comparison is `>`, not `>=`
     span: Span | None = None
-    known: Compare | None = None  # a comparison of c with itself, if it may change
+    known: Compare | None = None  # the condition that the limit is known; `None` for a literal
 
     @property
     def operands(self) -> tuple[Formula, ...]:
         """The operands of the window, then the condition that the limit is known."""
-        # Chosen comparisons come last: `core/nodes.py` counts them from the end.
+        # The chosen comparisons come last, because `core/nodes.py` counts them from the end.
         operands = self.of.operands
         chosen = len(operands) - len(self.of.chosen)
         known = () if self.known is None else (self.known,)
@@ -285,44 +285,44 @@ class Amount(Struct, frozen=True):
 
     @property
     def comparison(self) -> Compare:
-        """The same of numbers, that of a duration in seconds: by how much it holds."""
+        """The same as a comparison of numbers, for robustness; a duration is in seconds."""
         of, limit = self.of, self.limit
         if of.measured is Measured.DURATION and isinstance(limit, Literal):
             limit = Literal(int(limit.value) / TICKS_PER_SECOND, "s")
         return Compare(CompareOp.GT if self.strict else CompareOp.GE, of, limit, self.span)
 
     def has_distance(self, *, held: bool) -> bool:
-        """Whether by how much it holds is worked out: not where it moves between samples."""
+        """Whether its robustness is computed: not if it moves between samples in held time."""
         return not (held and self.of.moves)
 
     @property
     def born_with(self) -> tuple[Compare, ...]:
-        """Comparisons that are born first: of c, and of x where of nothing there is none."""
+        """The comparisons that must be born first: that of the limit, and that of the window."""
         return (*(() if self.known is None else (self.known,)), *self.of.born_with)
 
 
 class Passed(Struct, frozen=True):
-    """`now - t0 >= x`: at least so long has passed since an instant that was captured."""
+    """`now - t0 >= x`: at least x has passed since a captured instant."""
 
-    since: str | None  # the name of that instant; `None`: since the first
-    after: Numeric  # x, seconds, rounded to whole ticks; halves to even ones
-    strict: bool  # whether it is `> x`
-    known: Compare  # a comparison with itself of what it reads: where that is known
+    since: str | None  # the name of the captured instant; `None`: the first instant of the trace
+    after: Numeric  # x in seconds, rounded to whole ticks, halves to even
+    strict: bool  # whether the comparison is `>`, not `>=`
+    known: Compare  # the condition that everything it reads is known
     span: Span | None = None
 
     @property
     def begins(self) -> bool:
-        """Whether it is true from a captured instant on."""
+        """Whether it is true from a captured instant on, that is, `>= 0`."""
         return self.since is not None and self.after == Literal(0) and not self.strict
 
 
 def itself(value: Numeric, span: Span | None = None) -> Compare:
-    """A comparison of a number with itself: unknown where that is, else true."""
+    """The comparison of a number with itself: unknown where the number is, else true."""
     return Compare(CompareOp.EQ, value, value, span)
 
 
 TRIGGERED = "upon"
-"""The instant of the trigger, as it is captured where something is measured since then."""
+"""The name under which the instant of the trigger is captured, for windows since the trigger."""
 
 
 def since_trigger(span: Span | None = None) -> Passed:
@@ -331,7 +331,7 @@ def since_trigger(span: Span | None = None) -> Passed:
 
 
 def passed(since: str | None, after: Numeric, strict: bool, span: Span | None = None) -> Passed:
-    """The condition that a duration has passed since a captured instant, or since the first."""
+    """The condition that a duration has passed since a captured instant, or since the start."""
     read = after if since is None else Arithmetic(NumericOp.ADD, (Captured(since), after))
     return Passed(since, after, strict, itself(read), span)
 

@@ -1,6 +1,7 @@
-"""The functions of the language: one entry for each, which parser, checker and documentation read.
+"""The built-in functions: one entry each, which parser, checker and documentation read.
 
-Those that are operators of formulas or operations on numbers have the rest in their own entries.
+Functions that are operators of formulas, operations on numbers, or measures of windows have further
+data in the entries of these.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from rvmon.language.checked.operators import UnaryOp, Window
 
 
 class Argument(Enum):
-    """The kinds of arguments."""
+    """The kinds of arguments, as messages name them."""
 
     FORMULA = "a formula"
     DURATION = "a duration"
@@ -27,16 +28,16 @@ class Argument(Enum):
 
 
 class Function(Struct, frozen=True):
-    """A function."""
+    """The entry of a built-in function."""
 
     name: str
-    # the formula of a call; `None`: an age, which stands in comparisons only, or the last updates,
-    # which stand in windows only
+    # the operator or measure that a call becomes; `None` for `age`, which stands only in
+    # comparisons, and `last`, which stands only in windows
     means: UnaryOp | Probe | UpdateFunction | NumericOp | Measured | None
-    arguments: tuple[Argument, ...]  # of a call
+    arguments: tuple[Argument, ...]
     doc: str  # its value in a few words
     more: bool = False  # whether further arguments like the last may follow
-    optional: int = 0  # the number of last arguments that may be left out
+    optional: int = 0  # the number of trailing arguments that may be left out
 
 
 _OF_UPDATES = (
@@ -59,7 +60,7 @@ _OF_UPDATES = (
     Function("rate", UpdateFunction.RATE, (Argument.SIGNAL,), "that difference per second"),
 )
 
-LAST = "last"  # the function that only stands in windows: `last(n, x)`
+LAST = "last"  # `last(n, x)`, which stands only in windows
 _COUNTED = (Argument.FORMULA, Argument.DURATION)
 _ADDED = (Argument.NUMBER, Argument.DURATION)
 
@@ -99,4 +100,4 @@ def _all() -> Iterator[Function]:
             yield Function(operation.value, operation, numbers, entry.doc, many, int(many))
 
 
-FUNCTIONS = {function.name: function for function in _all()}  # all of them, by name
+FUNCTIONS = {function.name: function for function in _all()}  # all functions by name

@@ -1,4 +1,4 @@
-"""Which signals and events a formula or specification reads; requirements asked for by name."""
+"""The names that formulas and specifications read, and the selection of requirements by name."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def names_read(formula: rv.Formula) -> Iterator[str]:
 
 
 def names_in(numeric: rv.Numeric) -> Iterator[str]:
-    """The names that a number is made of."""
+    """The names of the signals and events that a number reads, with repetitions."""
     waiting = [numeric]
     while waiting:
         match waiting.pop():
@@ -38,7 +38,7 @@ def names_in(numeric: rv.Numeric) -> Iterator[str]:
 
 
 def names_of_requirement(requirement: Requirement) -> Iterator[str]:
-    """The names that a requirement reads to be judged, with repetitions."""
+    """The names that are needed to judge a requirement, with repetitions."""
     yield from names_read(requirement.trigger)
     yield from names_read(requirement.consequent)
     for capture in requirement.captures:
@@ -48,7 +48,7 @@ def names_of_requirement(requirement: Requirement) -> Iterator[str]:
 
 
 def names_of_spec(spec: CheckedSpec) -> Iterator[str]:
-    """The names that requirements, properties and goals read, with repetitions."""
+    """The names that requirements, properties, goals and coverage read, with repetitions."""
     for requirement in spec.requirements.values():
         yield from names_of_requirement(requirement)
     for property_ in spec.properties.values():
@@ -62,7 +62,10 @@ def names_of_spec(spec: CheckedSpec) -> Iterator[str]:
 
 
 def names_of_coverage(spec: CheckedSpec) -> Iterator[tuple[str, Iterator[str]]]:
-    """Each coverpoint and cross, and the names that it reads itself, with repetitions."""
+    """Each coverpoint, and each cross with its own `upon`, with the names read by its formulas.
+
+    Names may repeat; a cross does not repeat those of its coverpoints.
+    """
     for point in spec.coverpoints.values():
         formulas = [bin_.formula for bin_ in point.bins]
         formulas += [] if point.upon is None else [point.upon]
@@ -73,10 +76,10 @@ def names_of_coverage(spec: CheckedSpec) -> Iterator[tuple[str, Iterator[str]]]:
 
 
 def several(names: Iterable[str] | None) -> tuple[str, ...] | None:
-    """Names that were asked for; `None`: all.
+    """The given names as a tuple; `None` stands for all names.
 
     Raises:
-        RvmonError: it is one text, whose letters would be the names.
+        RvmonError: a single text was given, whose letters would be taken for names.
     """
     if isinstance(names, str):
         raise RvmonError(f"expected names, such as [{names!r}], found one text: {names!r}")
@@ -84,11 +87,11 @@ def several(names: Iterable[str] | None) -> tuple[str, ...] | None:
 
 
 def requirements_asked(spec: CheckedSpec, only: Iterable[str] | None) -> tuple[str, ...] | None:
-    """Ids of requirements; `None`: all.
+    """The requested ids of requirements, checked; `None` stands for all.
 
     Raises:
         UnknownNameError: there is no such requirement.
-        RvmonError: one text was given for several names.
+        RvmonError: a single text was given instead of several names.
     """
     chosen = several(only)
     for name in chosen or ():
@@ -104,12 +107,12 @@ def labelled(
     severities: Iterable[Collection[str]],
     tags: Iterable[Collection[str]],
 ) -> tuple[str, ...]:
-    """Ids of the requirements that have, of each list, one of the severities or tags in it.
+    """The ids of the requirements that have a severity or tag of each list.
 
-    It chooses among `only`, ids that exist; `None`: among all.
+    Only the existing ids in `only` are considered; `None` stands for all.
 
     Raises:
-        UnknownNameError: no requirement has such a severity or tag, or none has one of each list.
+        UnknownNameError: no requirement has one of the words, or none is left.
     """
     left = list(spec.requirements) if only is None else list(only)
     wanted = [("severity", one) for one in severities] + [("tag", one) for one in tags]
@@ -133,11 +136,11 @@ def _labels(requirement: Requirement, kind: str) -> set[str]:
 
 
 def sources_asked(spec: CheckedSpec, names: Iterable[str] | None) -> frozenset[str] | None:
-    """Names of signals and events; `None`: all.
+    """The requested names of signals and events, checked; `None` stands for all.
 
     Raises:
         UnknownNameError: there is no such signal or event.
-        RvmonError: one text was given for several names.
+        RvmonError: a single text was given instead of several names.
     """
     given = several(names)
     chosen = None if given is None else frozenset(given)

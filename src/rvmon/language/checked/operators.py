@@ -1,9 +1,10 @@
-"""The operators of formulas: one entry for each, which all readers of formulas use.
+"""The operators of formulas: one entry each, which all code that reads formulas uses.
 
-What an operator means is defined by its entry in terms of those of `Reading`, so that whoever reads
-formulas gives a meaning to these few and has all others. A new operator that is made of known ones
-is one entry here. `rise`, `fall` and `held` mean a little more where something is not born yet: see
-`logic/three_valued.py`. The oracle has readings of its own, of which this is to be found right.
+An entry defines its operator in terms of the primitive operators of `Reading`. An interpreter of
+formulas implements only these and gets all others. A new operator that can be derived from known
+ones is one entry here. `rise`, `fall` and `held` have special cases before birth, see
+`logic/three_valued.py`. The oracle has its own, independent definitions, against which these are
+tested.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ class Interval(Struct, frozen=True):
 
 
 class Connectives(Protocol[T]):
-    """A reading of the connectives that all others are made of."""
+    """An interpretation of the primitive connectives, from which all others are derived."""
 
     def constant(self, value: bool, /) -> T:
         """`true` or `false`."""
@@ -42,7 +43,7 @@ class Connectives(Protocol[T]):
 
 
 class Reading(Connectives[T], Protocol[T]):
-    """A reading of the operators, of time too, that all others are made of."""
+    """An interpretation of the primitive operators, with those of time."""
 
     def next(self, operand: T, /) -> T:
         """`next`."""
@@ -58,7 +59,7 @@ class Reading(Connectives[T], Protocol[T]):
 
 
 class Tense(Enum):
-    """Which instants an operator speaks of."""
+    """The instants to which an operator refers."""
 
     PRESENT = auto()
     PAST = auto()
@@ -66,41 +67,41 @@ class Tense(Enum):
 
 
 class Window(Enum):
-    """Which interval an operator takes."""
+    """The interval that an operator takes."""
 
     NONE = auto()
     ANY = auto()
-    FROM_NOW = auto()  # from 0 on: the usual definitions differ for others
+    FROM_NOW = auto()  # lower bound 0, because the usual definitions differ for other bounds
     LENGTH = auto()  # `[0, D]`, written as an argument D
 
 
 PREFIXED, CALLED = 6, 7
-"""The precedence of prefixes, and of calls."""
+"""The precedence levels of prefixes and of calls."""
 
 
 class Operator(Struct, frozen=True):
     """The entry of an operator."""
 
     sign: str
-    word: str  # as it is printed
+    word: str  # the spelling that is printed
     tense: Tense
-    window: Window  # the interval that it takes
-    level: int  # its precedence, from 0
-    meaning: Callable[..., Any]  # in a `Reading`, of that, its operands and the interval
-    # an English clause for it; `{left}` and `{right}` (`{it}`) are its operands, `{no_left}` and so
-    # on what they are if they do not hold; `{some}` and `{all}` name its interval. Empty:
-    # `analysis/plain_english.py` says it in a way of its own
+    window: Window
+    level: int  # its precedence; 0 binds loosest
+    meaning: Callable[..., Any]  # its value from a `Reading`, the operands and the interval
+    # an English clause; `{left}` and `{right}`, or `{it}`, are its operands, `{no_left}` and so on
+    # their negations, `{some}` and `{all}` name its interval. If empty,
+    # `analysis/plain_english.py` words it in its own way
     said: str
-    denied: str  # its negation; empty: "not so" before `said`
+    denied: str  # the clause of its negation; if empty, "not so" is put before `said`
     doc: str  # its value in a few words
-    dual: str = ""  # the sign of the operator that is `not φ` of the negations of its operands
+    dual: str = ""  # the sign of its dual, `not op(not φ)`; empty if it has none
     chained: bool = False  # whether it is associative and written in chains without brackets
     pulse: bool = False  # whether it is true at single instants only
-    also: tuple[str, ...] = ()  # other ways to write it, besides its word and sign
+    also: tuple[str, ...] = ()  # other spellings in addition to its word and sign
 
     @property
     def called(self) -> bool:
-        """Whether it is written as a function."""
+        """Whether it is written as a function call."""
         return self.level == CALLED
 
 
@@ -116,12 +117,12 @@ class _Sign(StrEnum):
 
     @classmethod
     def of(cls, text: str) -> Self:
-        """The one that is written so."""
+        """The operator with a spelling."""
         return next(one for one in cls if text in one.spellings)
 
     @property
     def spellings(self) -> tuple[str, ...]:
-        """All ways to write it, the printed one first."""
+        """All spellings, the printed one first."""
         return tuple(dict.fromkeys((self.entry.word, self.value, *self.entry.also)))
 
 
@@ -138,7 +139,7 @@ def _historically(reading: Reading[T], it: T, window: Interval) -> T:
 
 
 def _held(reading: Reading[T], it: T, window: Interval) -> T:
-    """`held`: before the first instant nothing has held."""
+    """`held`: `historically` for D, and D has passed since the first instant."""
     begun = _once(reading, reading.constant(True), Interval(window.high or 0, None))
     return reading.both(_historically(reading, it, window), begun)
 
@@ -153,7 +154,7 @@ def _same(reading: Reading[T], left: T, right: T, _: Interval) -> T:
 
 
 class UnaryOp(_Sign):
-    """Unary operators; those of time but `X Y rise fall` carry an interval (`held` is [0, D]).
+    """Unary operators; temporal ones except `X Y rise fall` carry an interval (`held`: [0, D]).
 
     >>> UnaryOp.of("eventually")
     <UnaryOp.EVENTUALLY: 'F'>
@@ -211,7 +212,7 @@ class UnaryOp(_Sign):
 
 
 class BinaryOp(_Sign):
-    """Binary operators; those of time carry an interval.
+    """Binary operators; the temporal ones carry an interval.
 
     >>> BinaryOp.of("weak until").entry.word
     'unless'
@@ -277,8 +278,8 @@ class BinaryOp(_Sign):
 
     @property
     def is_kin_of_until(self) -> bool:
-        """Whether it is one of time: all bind as `until` does."""
+        """Whether it is temporal; all of these have the precedence of `until`."""
         return self.entry.level == BinaryOp.UNTIL.entry.level
 
 
-OPERATORS: tuple[UnaryOp | BinaryOp, ...] = (*UnaryOp, *BinaryOp)  # all of them
+OPERATORS: tuple[UnaryOp | BinaryOp, ...] = (*UnaryOp, *BinaryOp)  # all operators

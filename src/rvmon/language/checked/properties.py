@@ -19,7 +19,7 @@ class StateAtom(Struct, frozen=True):
 
 
 class ModelAtom(Struct, frozen=True):
-    """A proposition that reads clocks or locations of a model; its text as written."""
+    """A proposition that reads clocks or locations of a model, as its text."""
 
     text: str
     span: Span | None = None
@@ -33,7 +33,7 @@ class StateNot(Struct, frozen=True):
 
 
 class StateBinary(Struct, frozen=True):
-    """A connective of state formulas, one of them at least with path quantifiers."""
+    """A connective of state formulas, at least one of which has path quantifiers."""
 
     op: BinaryOp
     left: StateFormula
@@ -42,17 +42,17 @@ class StateBinary(Struct, frozen=True):
 
 
 class PathUnary(Struct, frozen=True):
-    """On all (`universal`) or some paths: next, eventually, always."""
+    """Next, eventually or always, on all (`universal`) or some paths."""
 
     universal: bool  # whether the quantifier is `A`
     op: UnaryOp  # `NEXT`, `EVENTUALLY` or `ALWAYS`
-    operand: StateFormula  # the formula that holds there
-    interval: Interval | None = None  # of durations; `None` exactly for `NEXT`
-    span: Span | None = None  # its place in the text
+    operand: StateFormula
+    interval: Interval | None = None  # `None` exactly for `NEXT`
+    span: Span | None = None
 
 
 class PathBinary(Struct, frozen=True):
-    """On all (`universal`) or some paths: `U`, `W`, `R` or `M` with an interval."""
+    """`U`, `W`, `R` or `M` with an interval, on all (`universal`) or some paths."""
 
     universal: bool
     op: BinaryOp
@@ -66,7 +66,7 @@ StateFormula = StateAtom | ModelAtom | StateNot | StateBinary | PathUnary | Path
 
 
 def state_formulas(formula: StateFormula) -> Iterator[StateFormula]:
-    """The formula and all below it, from the outside in, left to right."""
+    """The formula and its subformulas, operators before operands, from left to right."""
     yield formula
     match formula:
         case StateNot(operand=operand) | PathUnary(operand=operand):
@@ -86,17 +86,18 @@ class Property(Struct, frozen=True):
 
 
 class Cover(Struct, frozen=True):
-    """`cover ID = formula`: some run should show the formula at some instant."""
+    """A cover goal, `cover ID = formula`: some run should satisfy the formula at some instant."""
 
-    id: str  # of the goal
-    formula: Formula  # true at the start of a run that shows the goal: `eventually` what is written
+    id: str
+    # true at the start of a run that reaches the goal: `eventually` applied to what is written
+    formula: Formula
     span: Span | None = None
-    # the property that is shown, for model checking; `None` for `cover ID = …`
+    # the property of `monitor as cover`, for model checking; `None` for `cover ID = …`
     ctl: Property | None = None
 
 
 class BinKind(StrEnum):
-    """The kinds of bins: the meaning of a hit."""
+    """The kinds of bins, which say what a hit means."""
 
     GOAL = "goal"
     IGNORE = "ignore"
@@ -119,7 +120,7 @@ class Coverpoint(Struct, frozen=True):
     bins: tuple[Bin, ...]  # in order; they may overlap and need not be exhaustive
     upon: Formula | None = None  # the formula at which bins are sampled; `None`: every position
     goal: int = 1  # hits that each bin needs
-    weight: int = 1  # in the total, relative to other coverpoints and crosses; 0: for nothing
+    weight: int = 1  # in the total, relative to other coverpoints and crosses; 0: does not count
     span: Span | None = None
 
 
@@ -128,12 +129,12 @@ class Cross(Struct, frozen=True):
 
     name: str
     points: tuple[str, ...]  # names of its coverpoints
-    # combinations (one bin name per point) that count for nothing
+    # combinations (one bin name per coverpoint) that are ignored
     ignored: frozenset[tuple[str, ...]] = frozenset()
     illegal: frozenset[tuple[str, ...]] = frozenset()  # combinations that are an error
-    # the formula at which it is sampled: its own, else that of its coverpoints; `None`: every
+    # the formula at which it is sampled, its own or else that of its coverpoints; `None`: every
     # position
     upon: Formula | None = None
     goal: int = 1  # hits that each combination needs
-    weight: int = 1  # as of a coverpoint
+    weight: int = 1  # as in `Coverpoint`
     span: Span | None = None

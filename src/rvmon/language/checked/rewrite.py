@@ -1,4 +1,4 @@
-"""Operators read by those that they are made of."""
+"""Reads derived operators through the primitive ones that define them."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ Part = TypeVar("Part", bound=Formula | Numeric | Interval)
 
 
 def read(formula: Unary | Binary, of: Callable[[Formula], T], reading: Connectives[T]) -> T:
-    """The reading of a formula, from the readings of its operands, each asked for once.
+    """The reading of a formula; `of` reads its operands, each once.
 
-    A connective needs no `Reading`.
+    For a formula of connectives only, `reading` need not be a `Reading` with temporal operators.
     """
     operands = (formula.operand,) if isinstance(formula, Unary) else (formula.left, formula.right)
     window = formula.interval or Interval()
@@ -27,7 +27,7 @@ def read(formula: Unary | Binary, of: Callable[[Formula], T], reading: Connectiv
 
 
 class Formulas(Struct, frozen=True):
-    """The reading of operators as formulas of `not and or X U Y S`."""
+    """Reads operators as formulas of `not and or X U Y S`."""
 
     span: Span | None = None
 
@@ -78,7 +78,7 @@ def rewritten(formula: Unary | Binary) -> Formula:
 
 
 def chain(formula: Formula, op: BinaryOp = BinaryOp.AND) -> list[Formula]:
-    """The operands of an associative connective, from the left, however they are grouped."""
+    """The operands of nested associative connectives, from the left, however they are grouped."""
     operands: list[Formula] = []
     waiting = [formula]
     while waiting:
@@ -91,7 +91,7 @@ def chain(formula: Formula, op: BinaryOp = BinaryOp.AND) -> list[Formula]:
 
 
 def without_spans(part: Part) -> Part:
-    """A formula, or a number, wherever in a spec it stands.
+    """A formula or number without places, so that equal ones compare equal.
 
     >>> from rvmon.diagnostics import Source, Span
     >>> without_spans(Constant(True, Span(Source("", ""), 0, 0)))

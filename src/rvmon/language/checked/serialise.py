@@ -1,6 +1,6 @@
-"""Checked specifications as plain data, and back; and as a text that tells them apart.
+"""Converts checked specifications to plain data and back, and to a text that identifies them.
 
-Nothing but the classes of a checked specification is made of it, and nothing is executed.
+Reading creates only objects of the classes of a checked specification, and executes nothing.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from rvmon.trace.schema import Kind
 @cache
 @cache
 def _classes() -> Mapping[str, type]:
-    """By name, the classes that specifications and their warnings are made of."""
+    """The classes of checked specifications and their warnings, by name."""
     classes: list[type] = [Measured, NumericOp, UnaryOp, BinaryOp, Interval, Kind]
     for module in (formula, specification, properties, diagnostics):
         own = (one for one in vars(module).values() if isinstance(one, type))
@@ -32,10 +32,10 @@ def _classes() -> Mapping[str, type]:
 
 
 def to_plain(value: Any) -> Any:
-    """A value as lists, numbers and texts; each source stands in it once.
+    """A value as lists, numbers and texts; the text of each source is stored once.
 
     Raises:
-        TypeError: something in it is of no class of a specification.
+        TypeError: a part of the value is of a class that specifications do not have.
 
     >>> from_plain(to_plain((1, "a", None))) == (1, "a", None)
     True
@@ -66,10 +66,10 @@ def _to_plain(value: Any, sources: dict[int, int]) -> Any:
 
 
 def from_plain(data: Any) -> Any:
-    """The value that was stored.
+    """The value that `to_plain` converted.
 
     Raises:
-        ValueError, LookupError, TypeError: the data are no such value.
+        ValueError, LookupError, TypeError: the data were not made by `to_plain`.
     """
     return _from_plain(data, [])
 
@@ -100,15 +100,15 @@ def _from_plain(data: Any, sources: list[Source]) -> Any:
 
 
 def identity_text(spec: specification.CheckedSpec, *, without: Collection[str] = ()) -> str:
-    """A text that two specifications share if they are equal but for where things stand in files.
+    """A text that is equal for specifications that differ only in places in files.
 
-    It is the same in all processes; attributes named in `without` are passed over.
+    It is the same in all processes. Attributes named in `without` are left out.
     """
     return json.dumps(spec, default=partial(_parts, without), separators=(",", ":"))
 
 
 def _parts(without: Collection[str], value: Any) -> Any:
-    """The parts of a value for a JSON text: one level, freed once it is written."""
+    """One level of a value for a JSON text, so that only what is being written is in memory."""
     class_: Any = type(value)
     names = _attributes(class_)
     if names is not None:
@@ -122,6 +122,6 @@ def _parts(without: Collection[str], value: Any) -> Any:
 
 @cache
 def _attributes(class_: type) -> tuple[str, ...] | None:
-    """The attributes of objects of a class of a specification; `None`: it is no such class."""
+    """The attributes of a class of specifications, in order; `None` for any other class."""
     names: tuple[str, ...] | None = getattr(class_, "__match_args__", None)
     return names if _classes().get(class_.__name__) is class_ else None

@@ -1,4 +1,4 @@
-"""A specification whose names, types and units are settled: what monitors start from.
+"""A checked specification: names, types and units are resolved. Monitors are made from it.
 
 Bare formulas are split into trigger and consequent (SEMANTICS 3).
 """
@@ -34,7 +34,7 @@ class Role(StrEnum):
 
 
 class Type(Struct, frozen=True):
-    """The type of a signal or field: `unit` as written for reals ("" if none), labels in order."""
+    """The type of a signal or field: reals have the `unit` as written ("" for none)."""
 
     kind: Kind
     unit: str = ""
@@ -44,11 +44,11 @@ class Type(Struct, frozen=True):
 class Signal(Struct, frozen=True):
     """A declared signal."""
 
-    name: str  # of the signal
-    type: Type  # of its values
-    role: Role | None = None  # the side that sets it
-    stale_after: int | None = None  # the ticks after its last update from which on it is unknown
-    # whether NaN and null are no update of it, instead of an unknown value
+    name: str
+    type: Type
+    role: Role | None = None
+    stale_after: int | None = None  # ticks after which a value without an update is unknown
+    # whether NaN and null are ignored as updates; otherwise they make the value unknown
     ignores_nan: bool = False
     span: Span | None = None  # the place of its declaration
 
@@ -63,7 +63,7 @@ class Event(Struct, frozen=True):
 
 
 class Mode(StrEnum):
-    """The ways in which attempts start, with what each requires (SEMANTICS 3)."""
+    """How attempts start, and over which positions the consequent is required (SEMANTICS 3)."""
 
     UPON = "upon"
     WHENEVER = "whenever"
@@ -95,13 +95,16 @@ class ForEach(Struct, frozen=True):
 
 
 class RunShare(Struct, frozen=True):
-    """`in at least 95 % of runs`: single runs are judged as always, campaigns decide by all."""
+    """`in at least 95 % of runs`: a campaign decides by the share of runs.
 
-    at_least: bool  # whether the requirement is to hold in so many runs, or in so many at most
+    Single runs are judged as without the clause.
+    """
+
+    at_least: bool  # whether the share is a lower bound; otherwise it is an upper bound
     percent: float  # above 0, below 100
 
     def __str__(self) -> str:
-        """As it is written."""
+        """The clause as it is written."""
         return f"in at {'least' if self.at_least else 'most'} {self.percent:.15g} % of runs"
 
 
@@ -112,15 +115,17 @@ class Requirement:
     Attributes:
         id: unique in the spec.
         mode: `upon` or `whenever`.
-        trigger: present and past only; `BoundAtom(END)` only alone.
+        trigger: a formula of the present and past; `BoundAtom(END)` stands only alone.
         consequent: the required formula.
         text: the requirement in words.
         at_end: policy for undecided attempts.
         pulse: whether the trigger is a pulse (SEMANTICS 3): it starts an attempt wherever it holds.
-        ctl: the same, checked.
-        scope: the `scope` clause as written; trigger and consequent have it worked in.
-        run_share: in what share of runs it is to hold; `None`: in each.
-        span: of the whole item.
+        captures: the values captured at the trigger, by `let` and by the checker.
+        for_each: the `for each` clause, if there is one.
+        ctl: the CTL property of the requirement, if it has one.
+        scope: the `scope` clause as written; trigger and consequent already include it.
+        run_share: the share of runs in which it must hold; `None`: in every run.
+        span: the place of the whole item.
     """
 
     id: str
@@ -143,13 +148,13 @@ class Requirement:
 
     @property
     def captured(self) -> Mapping[str, Numeric]:
-        """By name, what an attempt has values of its own of: by `for each`, then by `let`."""
+        """The values that each attempt has of its own, by name: `for each`, then `captures`."""
         each = {} if self.for_each is None else {self.for_each.name: self.for_each.value}
         return each | {capture.name: capture.value for capture in self.captures}
 
 
 class TimeModel(StrEnum):
-    """Which instants are positions (SEMANTICS 1)."""
+    """The time models, which define what instants are positions (SEMANTICS 1)."""
 
     HELD = "held"
     SAMPLED = "sampled"
@@ -166,9 +171,9 @@ class CheckedSpec(Struct, frozen=True):
     events: Mapping[str, Event]
     requirements: Mapping[str, Requirement]
     period: int | None = None  # the D of `sampled every D`, ticks; `None` in the other time models
-    max_delay: int | None = None  # the watermark of `max delay D`, ticks
-    source: Source | None = None  # the text it came from
-    # the CTL properties, of requirements (under their id) and alone
+    max_delay: int | None = None  # the D of `max delay D`, ticks
+    source: Source | None = None  # the text of the main file
+    # the CTL properties by id, those of requirements and those that are items of their own
     properties: Mapping[str, Property] = field(default_factory=dict)
     covers: Mapping[str, Cover] = field(default_factory=dict)  # the cover goals by id
     coverpoints: Mapping[str, Coverpoint] = field(default_factory=dict)  # by name
@@ -181,12 +186,12 @@ class CheckedSpec(Struct, frozen=True):
 
     @property
     def ignoring(self) -> frozenset[str]:
-        """The signals of which NaN and null are no update."""
+        """The signals with `ignore NaN`."""
         return frozenset(name for name, signal in self.signals.items() if signal.ignores_nan)
 
     @property
     def schema(self) -> Schema:
-        """The declared names with the kinds of their values."""
+        """The declared names with kinds and units."""
         return Schema(
             {name: signal.type.kind for name, signal in self.signals.items()},
             {
@@ -198,7 +203,7 @@ class CheckedSpec(Struct, frozen=True):
         )
 
     def kind_of(self, value: Numeric, requirement: Requirement) -> Kind | None:
-        """The kind of a value that a requirement reads; `None`: a number, which is calculated."""
+        """The kind of a value that a requirement reads; `None` for a calculated number."""
         match value:
             case SignalValue(name=name) | UpdateValue(function=UpdateFunction.PREV, name=name):
                 return self.signals[name].type.kind

@@ -1,4 +1,4 @@
-"""The measures of windows of the past: an entry each, which all users of windows share."""
+"""The measures of windows of the past: one entry each, shared by all users of windows."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import Enum, StrEnum
 
 
 class Members(Enum):
-    """The kinds of members of a window."""
+    """What the members of a window are, as documentation names it."""
 
     TRUTHS = "a formula that is true at single instants"
     TIME = "a formula"
@@ -16,7 +16,7 @@ class Members(Enum):
 
 
 class Dimension(Enum):
-    """The unit of what comes out."""
+    """The unit of a measure, as documentation names it."""
 
     PLAIN = "a plain number"
     TIME = "a duration"
@@ -26,7 +26,7 @@ class Dimension(Enum):
 
 
 class Measured(StrEnum):
-    """The measures of a formula, or of a number, over the last D.
+    """The measures of a formula or a number over a window, such as the last D.
 
     >>> Measured.SUM.dimension.value, Measured("integral").of.value
     ('its unit', 'signals')
@@ -87,13 +87,13 @@ class Measured(StrEnum):
         ),
     )
 
-    of: Members  # the kind of its members
+    of: Members
     dimension: Dimension
     doc: str  # its value in a few words
     unknown: str  # its value where a member of the window is unknown
-    each: int  # bytes that a member, or a stretch of equal ones, takes at most
-    fixed: int  # bytes besides
-    steady: bool  # whether it takes no more without D, however long the run
+    each: int  # the most bytes per member, or per stretch of equal members
+    fixed: int  # bytes in addition to those of members
+    steady: bool  # whether a window without D needs bounded memory, however long the run
 
     def __new__(
         cls,
@@ -106,7 +106,7 @@ class Measured(StrEnum):
         fixed: int = 0,
         steady: bool = True,
     ) -> Measured:
-        """A member: the name that it is called by, with the rest of its entry."""
+        """A member: the name of its function, with the rest of its entry."""
         member = str.__new__(cls, name)
         member._value_ = name
         member.of, member.dimension, member.doc, member.unknown = of, dimension, doc, unknown
@@ -115,25 +115,25 @@ class Measured(StrEnum):
 
     @property
     def memory(self) -> str:
-        """The memory that it takes, in words."""
+        """The memory that a window needs, in words."""
         return f"{self.fixed} bytes, and up to {self.each} a member, or stretch of equal ones"
 
     @property
     def of_numbers(self) -> bool:
-        """Whether members are numbers."""
+        """Whether its members are numbers, not truths of a formula."""
         return self.of not in (Members.TRUTHS, Members.TIME)
 
     @property
     def asks_for_one(self) -> bool:
-        """Whether it is not born before its numbers are: of nothing there is none."""
+        """Whether it has no value without a member, and so is unborn until its numbers are born."""
         return self.dimension in (Dimension.SAME, Dimension.SQUARE) and self is not Measured.SUM
 
     @property
     def recalls(self) -> bool:
-        """Whether it is one of the values that there were."""
+        """Whether its value is one of the values in the window."""
         return self in (Measured.MIN, Measured.MAX, Measured.AGO)
 
     @property
     def of_time(self) -> bool:
-        """Whether what is held between positions counts, up to this instant."""
+        """Whether it integrates over time, so that stretches between positions count."""
         return self.dimension in (Dimension.TIME, Dimension.TIMES_TIME)
