@@ -67,7 +67,7 @@ WINDOW = NOW + 1  # the code of the value of a window
 
 
 _UNKNOWN = Arithmetic(NumericOp.DIV, (Literal(0), Literal(0)))
-"""An expression whose value is always unknown."""
+"""An expression whose value is always unknown, for a captured value known to be unknown."""
 
 
 class Names:
@@ -164,8 +164,8 @@ class Programs:
     def _number(self, value: float | str) -> int:
         """The index of a constant in `NUMBERS`."""
         if isinstance(value, str):
-            # Labels are compared as numbers; the order of declaration means nothing, so only `==`
-            # and `!=` are allowed on them.
+            # Labels are compared as numbers. Their order means nothing: the checker allows only
+            # `==` and `!=` on them.
             value = self._names.numbering.labels.get(value, -1)  # −1: equal to no label
         if isinstance(value, int) and -_INT64 <= value < _INT64:
             return self._sections.shared(Section.NUMBERS, _WHOLE, int(value))
@@ -231,12 +231,12 @@ class Atom(Struct, frozen=True):
 
     @property
     def lone_signals(self) -> tuple[int, ...]:
-        """The signals, each of which, if it has a source, makes the atom momentary."""
+        """The signals that, if they have a source, make the atom true at single positions."""
         return self.updates if self.op in (AtomOp.UPDATED_SIGNAL, AtomOp.CHANGED) else ()
 
     @property
     def momentary(self) -> int:
-        """The number of names that, if they have a source, make it true at single positions."""
+        """The number of names that make it true at single positions, if they have a source."""
         return len(self.lone_signals) + len(self.occurrences) + (self.op is AtomOp.START)
 
 
@@ -293,7 +293,7 @@ class Atoms:
                 raise ValueError(f"{leaf} is not read off the input")
 
     def _real(self, leaf: Compare) -> Atom | None:
-        """The special atom for a real signal against a constant; `None` if it is not that."""
+        """The special atom for a real signal against a constant; `None` for other comparisons."""
         match leaf.left, leaf.right:
             case SignalValue(name=name), Literal(value=int() | float() as value):
                 op = leaf.op
@@ -301,9 +301,9 @@ class Atoms:
                 op = leaf.op.mirrored
             case _:
                 return None
-        # Most comparisons are of this kind, so the core has an instruction for it. It compares
-        # doubles: a whole number beyond 2⁵³ or a signal of another kind takes the exact, general
-        # way.
+        # Most comparisons are of this kind, so the core has an instruction for it, which compares
+        # doubles. A constant that no double equals, or a signal of another kind, takes the exact,
+        # general path.
         constant = exact(value)
         if constant is None or self._plan.spec.signals[name].type.kind is not Kind.REAL:
             return None

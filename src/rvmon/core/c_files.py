@@ -1,4 +1,4 @@
-"""A specification as C that runs without rvmon: the core, and the plan that it judges by."""
+"""Exports a specification as C that runs without rvmon: the core, and the plan it interprets."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from rvmon.version import __version__
 
 _CORES = "rv"  # the prefix of the core's own identifiers
 _PLAIN = frozenset(range(0x20, 0x7F)) - frozenset(map(ord, '"?\\'))
-"""The bytes that mean themselves within a string; a `?` may begin a trigraph."""
+"""The bytes that stand for themselves in a string literal; a `?` may start a trigraph."""
 
 
 def prefix_of(name: str) -> str:
@@ -35,9 +35,10 @@ def prefix_of(name: str) -> str:
 
 
 def identifiers(names: Sequence[str]) -> list[str]:
-    """A different identifier for each name, to be put behind a prefix.
+    """Distinct identifiers for names, to follow a prefix.
 
-    Names of which the same would be left get their number, whose `n` no other identifier has.
+    Names that would get the same identifier have their number appended; no other identifier can
+    equal the result, as its `n` is lower case.
 
     >>> identifiers(["speed", "the speed", "the_speed", "名前"])
     ['SPEED', 'THE_SPEED_n1', 'THE_SPEED_n2', 'n3']
@@ -61,16 +62,16 @@ def string(text: str) -> str:
 
 
 def _safe(name: str) -> str:
-    """The ASCII letters and digits of a name, with one underscore for all between them."""
+    """The ASCII letters and digits of a name, with one underscore for each gap between them."""
     return re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")
 
 
 _HARMLESS = {"\\": "/", '"': "'", "*/": "* /", "/*": "/ *"}
-"""The signs that would end a comment or a docstring; replaced in this order."""
+"""The characters that could end a comment or a docstring, replaced in this order."""
 
 
 def comment(text: str) -> str:
-    r"""One line that ends no comment of C or Python and no docstring.
+    r"""A text as one line that cannot end a comment of C or Python, nor a docstring.
 
     >>> comment('*\\ int x; /*')
     '* // int x; / *'
@@ -82,9 +83,9 @@ def comment(text: str) -> str:
 
 
 CORE = "rvmon_core"  # the name of the core's files
-ALIGNMENT = 16  # the most that is lost where a block begins
+ALIGNMENT = 16  # the most bytes lost to aligning the start of a block
 FEWEST, MOST = 4, 64
-"""For so many open attempts it is measured what memory they take."""
+"""The least and most open attempts for which the memory they take is measured."""
 
 
 def c_files(plan: Plan) -> dict[str, str]:
@@ -94,8 +95,8 @@ def c_files(plan: Plan) -> dict[str, str]:
         plan: the plan to run without rvmon.
 
     Raises:
-        RvmonError: there is no requirement, an expression is beyond the core, or there is a
-            `max delay`.
+        RvmonError: there is no requirement, an expression exceeds the limits of the core, or there
+            is a `max delay`.
     """
     if plan.spec.max_delay is not None:
         raise RvmonError(
@@ -106,7 +107,7 @@ def c_files(plan: Plan) -> dict[str, str]:
 
 
 def core_files() -> dict[str, str]:
-    """The texts of the core's files, which are the same for each specification."""
+    """The texts of the core's files, which are the same for all specifications."""
     head = f"/* The monitor core of rvmon {__version__}. SPDX-License-Identifier: Apache-2.0 */\n"
     face = Path(sources.FOLDER, "core.hpp").read_text(encoding="utf-8")
     return {
@@ -117,7 +118,7 @@ def core_files() -> dict[str, str]:
 
 
 def plan_files(plan: Plan) -> dict[str, str]:
-    """The texts of all files but the core; see `c_files`."""
+    """The texts of all files except the core's; see `c_files`."""
     packed = pack(plan)
     prefix = prefix_of(plan.spec.name)
     return {
@@ -186,7 +187,7 @@ def _enum(
     start: int = 0,
     of: str = "",
 ) -> Iterator[str]:
-    """Numbers of names, and how many they are."""
+    """An enumeration of names, and their count."""
     yield f"enum {{{f' /* {of} */' if of and names else ''}"
     for number, (name, made) in enumerate(zip(names, identifiers(names), strict=True)):
         words = f": {said[number]}" if said else ""
@@ -195,7 +196,7 @@ def _enum(
 
 
 def _fields(spec: CheckedSpec, packed: Packed, what: str) -> Iterator[str]:
-    """The fields of events, counted within each."""
+    """An enumeration of the fields of events, numbered within each event."""
     if not packed.fields:
         return
     names = identifiers([f"{event} {field}" for event, field in packed.fields])
@@ -209,7 +210,7 @@ def _fields(spec: CheckedSpec, packed: Packed, what: str) -> Iterator[str]:
 
 
 def _tables(packed: Packed) -> dict[str, tuple[str, list[str], str]]:
-    """Tables for who reads or prints names: their types, values, and what they are."""
+    """Tables for programs that read or print names: type, values and comment of each."""
     text = "const char *const"
     kinds = ["RV_REAL" if kind is Kind.REAL else "RV_WHOLE" for kind in packed.signals.values()]
     return {
@@ -221,7 +222,7 @@ def _tables(packed: Packed) -> dict[str, tuple[str, list[str], str]]:
 
 
 def _source(packed: Packed, prefix: str) -> Iterator[str]:
-    """The plan, aligned to 8, and tables of names."""
+    """The plan, aligned to 8 bytes, and the tables of names."""
     order = f"__ORDER_{sys.byteorder.upper()}_ENDIAN__"
     yield from (f'#include "{prefix}_plan.h"', "")
     yield f"#if defined(__BYTE_ORDER__) && (__BYTE_ORDER__ != {order})"

@@ -1,6 +1,6 @@
 """Packs the judges of requirements, and the links by which nodes notify them.
 
-Of a requirement with captured values (`let`, `for each`) each attempt or instance is a run of its
+For a requirement with captured values (`let`, `for each`), each attempt or instance is a run of its
 own, forked from the state of the run that started it.
 """
 
@@ -174,7 +174,7 @@ class Judges:
         )
 
     def _names_noted(self, rule: PlannedRule) -> list[int]:
-        """The numbers of the names that leaves of notes read; events count behind all signals."""
+        """The numbers of the names that leaves of notes read; events are numbered after signals."""
         signals, events = self._names.signals, self._names.events
         leaves = [state.leaf for state in rule.noted if state.leaf is not None]
         read = {name for leaf in leaves for name in names_of(leaf)}
@@ -187,16 +187,17 @@ class Judges:
 def machine_of(rule: PlannedRule, gap: int | None) -> Automaton | tuple[NetworkPlan, Chain | None]:
     """The machine that judges a rule: an automaton, or a network, with its chain if it is one.
 
-    Where open attempts would scatter over an automaton, which steps them apart, networks and
-    chains are preferred: they judge all of them at once.
+    If open attempts would scatter over an automaton, which steps each state separately, a network
+    or chain is preferred, as it judges all attempts at once.
     """
     if rule.automaton is not None and (rule.stepped or not rule.scatters):
         return rule.automaton
     network = plan_of(rule.required, gap)
     chain = None if rule.stepped else chain_of(network, gap)
     nested = chain is not None and len(chain.windows) > 1
-    # Episodes do not overlap, so that their clocks ascend: automata step them together. An outage
-    # may hold any number of samples: automata read its letter at each instant.
+    # Two cases for the automaton nevertheless. Episodes do not overlap, so their clocks ascend and
+    # the automaton steps them together. In sampled time an outage may hide any number of samples,
+    # and an automaton reads its letter at each instant.
     episodic = rule.requirement.mode is Mode.WHENEVER
     if rule.automaton is not None and (episodic or gap is None) and not nested:
         return rule.automaton
@@ -214,7 +215,7 @@ def outcomes(policy: EndPolicy) -> tuple[int, ...]:
 
     Indexed by bits, the arguments of `settle_at_end`: held (1), cannot pass (2), cannot fail (4).
     """
-    # A table instead of the rule: the core knows no policies, only eight outcomes.
+    # The core knows no policies: it gets this table of eight outcomes.
     found = []
     for state in range(8):
         verdict, decision = settle_at_end(
@@ -254,8 +255,8 @@ class Unit:
         yield -1 if key is None else names.field(key.event, key.field)
         graph = self._plan.graph
         vary = sorted(varying(graph))
-        # What depends on captured values is valued anew in each attempt; all else is shared with
-        # the run that starts it.
+        # What depends on captured values is evaluated anew in each attempt; everything else is
+        # shared with the run that starts it.
         lapsed = [place for place, node in enumerate(nodes.all) if node.op is NodeOp.LAPSED]
         lists: Sequence[Sequence[int]] = (
             [programs.place(capture.value) for capture in self._requirement.captures],
@@ -311,9 +312,9 @@ class Unit:
     def _is_fresh(self) -> bool:
         """Whether a new instance can be forked from the current state of the root run.
 
-        In clocked time the root has, between two ticks, already moved to the letter of the next
-        tick, so that the previous value of a trigger, which an edge needs, is gone. That does not
-        matter where attempts start independently of the previous value.
+        In clocked time the root run, between two ticks, has already moved to the letter of the next
+        tick, so the previous value of a trigger, which an edge needs, is gone. That does not matter
+        if attempts start independently of the previous value.
         """
         reach = self._reach
         if reach is None or not reach.is_fresh:
@@ -331,7 +332,7 @@ class Unit:
 
     @property
     def _starters(self) -> tuple[int, int]:
-        """Which judges start attempts in the root run, and which in instances, as bits."""
+        """The judges that start attempts in the root run, and those in instances, as bit sets."""
         bits = {rule: 1 << index for index, (_, rule) in enumerate(self._plan.judges)}
         known = bits[self._rule]
         hidden, doubted = self._rule.hidden, self._rule.doubted

@@ -87,7 +87,7 @@ class Node(Struct):
     # indices of nodes; for leaves and births, 2 × signal, plus 1 if an update after the first value
     # is required
     operands: Sequence[int] = ()
-    slot: int = -1  # index of its memory among nodes of the same sort of memory; −1 if it has none
+    slot: int = -1  # index of its memory among nodes with the same kind of memory; −1 if none
     timer: int = -1  # index of its timer; −1 if time alone cannot change it
     # of a window that adds numbers, the index of its exact sum; −1 of any other window
     tally: int = 0
@@ -144,13 +144,13 @@ class Nodes:
         """Per atom, the places of the nodes that read its truth value or its number.
 
         Args:
-            live: only the nodes needed once all is born and determined.
+            live: only the nodes needed once signals are born and triggers determined.
         """
         found: list[list[int]] = [[] for _ in self._atoms.all]
         for place, node in enumerate(self.all):
-            # Births and doubt of triggers cost at each row, but most streams have them behind them
-            # soon: from then on the core follows the second set of lists, without the nodes that
-            # serve only these.
+            # Tracking births and undetermined triggers costs time at each row, but most streams are
+            # soon past them. From then on the core follows the second set of lists, which leaves
+            # out the nodes that serve only this tracking.
             if not live or place in self.needed:
                 for atom in (node.a,) if node.op is NodeOp.LEAF else node.reads:
                     found[atom].append(place)
@@ -162,7 +162,7 @@ class Nodes:
         return frozenset(atom for node in self.all for atom in node.reads)
 
     def parents(self, place: int) -> tuple[Sequence[int], Sequence[int]]:
-        """The parents of a node: at first, and once all is born and determined."""
+        """The parents of a node: at first, and once signals are born and triggers determined."""
         found = self.graph.parents[place]
         if place not in self.needed:
             return found, ()
@@ -262,8 +262,8 @@ class Nodes:
 
 def _since(state: State) -> NodeOp:
     """The kind of a `since` node, by what it has to remember."""
-    # Without a lower bound the last instant at which both sides allowed it decides; with both
-    # bounds several stretches may still come to lie in the window, so all are kept.
+    # Without a lower bound, the last instant at which both sides allowed it decides. With both
+    # bounds, several stretches may still come to lie in the window, so all of them are kept.
     if state.low == 0:
         return NodeOp.EVER if state.high is None else NodeOp.EDGE
     return NodeOp.EDGE if state.high is None else NodeOp.STRETCH
@@ -285,7 +285,7 @@ def _asked(rule: PlannedRule, plan: Plan) -> Iterator[State]:
     yield from rule.alphabet.propositions
     yield from rule.noted
     yield from rule.captures_known
-    # Robustness reads nodes of its own, which no verdict asks for.
+    # Robustness reads nodes of its own, which no verdict needs.
     leaves = () if rule.measured is None else plan_of(rule.measured, plan.gap).leaves
     for _, core in leaves:
         if isinstance(core, Literal) and is_followed(core, plan.spec, rule.requirement):

@@ -1,6 +1,7 @@
-"""Packs what attempts require: automata as tables, and formulas evaluated as networks.
+"""Packs what attempts require: automata as tables, formulas as networks.
 
-Equal tables are packed once, letter classes as diagrams. Networks are for verdicts and robustness.
+Equal tables are packed once. Letter classes are packed as tables or diagrams. Networks serve
+verdicts and robustness.
 """
 
 from __future__ import annotations
@@ -61,7 +62,7 @@ def add_form(
     Args:
         sections: the sections of the plan.
         plan: the network of the formula.
-        chain: its description as a chain; `None` if it is not one.
+        chain: its description as a chain of windows; `None` if it is not one.
         index: the node of each proposition.
     """
     operators = add_operators(sections, plan, index)
@@ -77,7 +78,7 @@ def add_form(
 
 
 def add_operators(sections: Sections, plan: NetworkPlan, index: Mapping[State, int]) -> Listed:
-    """Add the nodes of a network; see `add_form`."""
+    """Add the nodes of a network; returns their slice. Arguments are those of `add_form`."""
     first = sections.count(Section.OPERATORS)
     leaves = 0
     for node in plan.nodes:
@@ -169,7 +170,7 @@ def _measure(
     spec: CheckedSpec,
     requirement: Requirement,
 ) -> tuple[float, int, int, int]:
-    """The measure of a leaf: factor to base units, kind, whether it is negated, and its node."""
+    """The measure of a leaf: factor to base units, kind, whether it is negated, and node."""
     if isinstance(core, Constant):
         return 1.0, Measure.CONSTANT, not core.value, -1
     state = core.proposition
@@ -205,7 +206,7 @@ def _compares_labels(leaf: Compare, spec: CheckedSpec, requirement: Requirement)
 
 
 def base_factor(leaf: Compare, spec: CheckedSpec) -> float:
-    """The factor from the unit of a comparison to SI base units; 1 if the unit is a product."""
+    """The factor from the unit of a comparison to SI base units; 1 for products of units."""
     sides = (leaf.left, leaf.right)
     written: Sequence[str] = [side.unit for side in sides if isinstance(side, Number) and side.unit]
     units = [*written, *(_unit(side, spec) for side in sides)]
@@ -213,7 +214,7 @@ def base_factor(leaf: Compare, spec: CheckedSpec) -> float:
 
 
 def _unit(expression: Numeric, spec: CheckedSpec) -> str:
-    """The unit of an expression's value; "" if it has none or it is a product."""
+    """The unit of an expression's value; "" if it has none, or a product of units."""
     match expression:
         case Number(unit=unit):
             return unit
@@ -268,7 +269,7 @@ class Automata:
             ints([max(edge, 0) for edge in automaton.edges]),  # unreachable: any edge will do
             ints(automaton.targets or [0]),
             ints([one for own in automaton.sources or [()] for one in _padded(own, width)]),
-            ints(tuple(automaton.time_values)),  # as numbers, not as bytes
+            ints(tuple(automaton.time_values)),  # bytes: `array` would take them as raw memory
             ints(clause_first),
             ints(test_first),
             ints(tests),
@@ -311,7 +312,7 @@ def _decisions(root: Tree) -> list[tuple[int, tuple[Tree, ...]]]:
         if not isinstance(node, int) and id(node[1]) not in found:
             found[id(node[1])] = node
             stack += node[1]
-    # Strides grow with the level, and a decision only leads to lower levels.
+    # A decision leads only to decisions with smaller strides.
     return sorted(found.values(), key=lambda node: -node[0])
 
 

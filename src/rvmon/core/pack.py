@@ -106,7 +106,7 @@ class Part:
         )
 
     def _phased(self, first: Sequence[int], then: Sequence[int]) -> tuple[int, ...]:
-        """Two lists: until all signals are born and triggers determined, and from then on."""
+        """Two lists: one in use until all signals are born and triggers determined, one after."""
         return *self._sections.listed(first), *self._sections.listed(then)
 
     def _add_groups(self) -> dict[int, list[int]]:
@@ -178,7 +178,7 @@ class Part:
         return found
 
     def _alive(self, atoms: Sequence[int]) -> list[int]:
-        """The atoms with a node still needed once all is born and determined."""
+        """The atoms with a node still needed once signals are born and triggers determined."""
         return [number for number in atoms if self._live[number]]
 
     def _add_signals(self) -> int:
@@ -246,12 +246,11 @@ class Part:
         return first
 
     def _keyed(self) -> dict[str, int]:
-        """By event, the field that selects the instance; events without one concern them all."""
+        """By event, the field that selects the instance; an event without one concerns all."""
         each = next((rule.requirement.for_each for rule in self._plan.rules), None)
         if each is None:
             return {}
-        # A field captured by `let` is read wherever its event occurs, whatever instance that
-        # concerns.
+        # A field captured by `let` is read wherever its event occurs, in whatever instance.
         asked = (state for rule in self._plan.judged for state in rule.states)
         fields = keys_of(self._plan.graph, each, asked)
         for event in events_of(*self._captured):
@@ -261,7 +260,7 @@ class Part:
 
 
 def pack(plan: Plan) -> Packed:
-    """Pack a plan: one part for all requirements without captures, and one for each of the others.
+    """Pack a plan: one part for all requirements without captures, and one for each other one.
 
     Raises:
         RvmonError: an expression, or the number of bins, exceeds the limits of the core.

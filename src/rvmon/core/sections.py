@@ -78,7 +78,7 @@ class Section(IntEnum):
     record: struct.Struct
 
     def __new__(cls, layout: str) -> Section:
-        """The next section."""
+        """The section with the next number."""
         section = int.__new__(cls, number := len(cls.__members__))
         section._value_ = number
         section.record = struct.Struct(f"={layout}")
@@ -166,7 +166,7 @@ class Sections:
             sizes: the numbers of signals, events, fields, requirements, and the most captured
                 values of an attempt.
         """
-        # Each section begins at a multiple of 8, so that the core reads its records in place.
+        # Each section starts at a multiple of 8, so that the core can read its records in place.
         padded = [bytes(data) + bytes(-len(data) % 8) for data in self._bytes.values()]
         begin = HEADER.size + len(padded) * _ENTRY.size
         offsets = accumulate(map(len, padded), initial=begin)
@@ -181,7 +181,7 @@ class Sections:
 
 
 def hash_of(data: bytes) -> int:
-    """FNV-1a over words of 8 bytes: byte by byte it would take as long as all other packing."""
+    """FNV-1a over words of 8 bytes; byte by byte it would take as long as all the other packing."""
     found = 0xCBF29CE484222325
     for word in array("Q", data):
         found = (found ^ word) * 0x100000001B3 & 0xFFFFFFFFFFFFFFFF

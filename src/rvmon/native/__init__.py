@@ -1,7 +1,7 @@
-"""The extensions, each built with the package from C sources of its own; the core at once.
+"""Loads the C extensions, each built with the package from its own sources; the core on import.
 
 Raises:
-    CoreError: the core is not built, or was built from other sources than those that lie here.
+    CoreError: the core is not built, or was built from sources other than those found here.
 """
 
 from __future__ import annotations
@@ -20,12 +20,12 @@ def extension(name: str, folder: str, called: str) -> ModuleType:
     """Import an extension.
 
     Args:
-        name: of its module in `rvmon.native`.
-        folder: of its sources.
+        name: the name of its module in `rvmon.native`.
+        folder: the folder of its sources.
         called: its name in messages.
 
     Raises:
-        CoreError: it is not built, or was built from other sources than those that lie there.
+        CoreError: it is not built, or was built from sources other than those found there.
     """
     module = f"rvmon.native.{name}"
     try:

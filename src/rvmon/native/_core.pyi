@@ -7,14 +7,14 @@ from rvmon.verdicts.attempt import Attempt
 source_hash: str
 
 def memory_of(plan: bytes, attempts: int, /) -> int:
-    """The bytes of a block, aligned to 16, in which a run begins with room for open attempts.
+    """The size in bytes of a block, aligned to 16, for a run with room for this many open attempts.
 
     Raises:
-        ValueError: the plan is damaged, or the bytes are not aligned to 8.
+        ValueError: the plan is damaged, or its bytes are not aligned to 8.
     """
 
 class Record:
-    """The fields of an attempt that the core tells; `Attempt` derives from it and types them."""
+    """The fields of an attempt, as the core sets them; `Attempt` derives from it and types them."""
 
     _details: Callable[[Any, Any, str], Mapping[str, Any]]
     _noted: Any
@@ -23,24 +23,26 @@ class Bounds:
     """Three numbers; `Robustness` derives from it and names them."""
 
 class Figure:
-    """What a figure says, of which bounds are made as they are read; `Measured` derives from it."""
+    """A robustness figure that makes its `Bounds` when read; `Measured` derives from it."""
 
 class Monitor:
-    """A run of a packed plan; what a call does that is not explained here, `core.h` says.
+    """A run of a packed plan; `core.h` explains the calls that are not explained here.
 
     Args:
         plan: the bytes.
-        reading: the numbers of the names that can come; per signal, event and field a number for
-            each label or field, or `None`; of each what it is, in the order of `Kind`; of each
-            event whether only one occurrence of it can be judged at an instant, of each signal
-            whether that it is unknown is no update.
-        absent: of each name whether it has no source.
-        look_closer: take the samples that are not plain values in a `dict`, at seconds, at ticks.
-        attempts: the type, which derives from `Record`, ids of requirements, verdicts, decisions,
-            what gives an attempt its other fields, what makes a sequence of raw records.
+        reading: the numbers of the names that can arrive; per signal, event and field the number of
+            each label or field, or `None`; for each of these its kind, in the order of `Kind`; per
+            event whether only one occurrence can be judged at an instant, and per signal whether
+            an unknown value is no update.
+        absent: per name, whether it has no source.
+        look_closer: two functions that take samples which are not plain values in a `dict`: stamped
+            in seconds, and in ticks.
+        attempts: the type of attempts, which derives from `Record`; the ids of requirements; the
+            verdicts; the decisions; a function that computes the other fields of an attempt; a
+            function that makes a sequence from raw records, or `None`.
 
     Raises:
-        ValueError: the plan is damaged, or all this does not fit it.
+        ValueError: the plan is damaged, or the other arguments do not fit it.
     """
 
     def __new__(
@@ -62,127 +64,130 @@ class Monitor:
     def step(self, t: float, values: Mapping[str, Any]) -> Sequence[Attempt]: ...
     def step_ns(self, t_ns: int, values: Mapping[str, Any]) -> Sequence[Attempt]: ...
     def judge(self, t: int, values: Mapping[str, Any], looked: bool, /) -> bool:
-        """Take a sample; false, and nothing happened, if it is not plain or not in order.
+        """Take a sample; returns False, without effect, if it is not plain or not in order.
 
-        `looked`: it is known that all its occurrences can be judged.
+        `looked`: Python has checked that all its occurrences can be judged.
         """
 
     def rows(self, times: Any, columns: tuple[tuple[Any, ...], ...], /) -> int:
-        """Judge rows; how many were: fewer than given if one is before those above it.
+        """Judge rows; returns how many were judged.
 
-        Fewer, too, before the first instant with two payloads of an event of which only one can be
-        judged.
+        It stops before a row that is earlier than the one above it, and before the first instant
+        with two payloads of an event of which only one can be judged.
 
         Args:
-            times: int64[n] ticks; those of one instant are one sample.
-            columns: of a signal (number, cells), of an event (number, says, cells of each field or
-                `None`). Cells are (kind, values, says): the `RV_COLUMN_…` of `core.h`, an array of
-                n values, which may be `None` of a field, and uint8[n] of what each row says or
-                `None`.
+            times: int64[n] ticks; the rows of one instant are one sample.
+            columns: for a signal (number, cells), for an event (number, says, the cells of each
+                field or `None`). Cells are (kind, values, says): an `RV_COLUMN_…` of `core.h`; an
+                array of n values, which may be `None` for a field; and uint8[n], what each row
+                says, or `None`.
         """
 
     def advance(self, t: int, /) -> None: ...
     def lose(self, names: Iterable[int], since: int, /) -> bool:
-        """See `rv_lose`; false, and nothing happened, if what is there was judged already.
+        """See `rv_lose`; returns False, without effect, if that instant was already judged.
 
         Raises:
-            ValueError: the plan is of a law by which nothing is lost, or has no such name.
+            ValueError: the plan has no such name.
         """
 
     def found(self, names: Iterable[int], at: int, /) -> bool:
-        """See `rv_found`; else as `lose`."""
+        """See `rv_found`; otherwise like `lose`."""
 
     def late(self, names: Iterable[int] | None, t: int, /) -> bool:
-        """See `rv_late`; `None`: what came cannot be read.
+        """See `rv_late`; `None`: the sample cannot be read.
 
         Raises:
             ValueError: the plan has no such name.
         """
 
     def finish(self, until: int | None, /) -> int | None:
-        """End the run; gives the last instant of the trace."""
+        """End the run; returns the last instant of the trace."""
 
     def reset(self) -> None: ...
     def save(self) -> bytes:
-        """The run as it stands; what was decided counts as given out."""
+        """The state of the run; a loaded run does not return the decided attempts again."""
 
     def load(self, data: bytes, /) -> bool:
-        """Go on as a run that was saved; false, and nothing is done, if it is none of this plan."""
+        """Continue a saved run; returns False, without effect, if it is not a run of this plan."""
 
     def arrivals(self) -> bytes:
-        """What came of each name, then of each field of events: five int64.
+        """Input health per name, then per field of events, as five int64 each.
 
-        The first instant at which a signal was told, or the least number; how often the value was
-        `None`, and when first; the same of NaN.
+        These are the instant of a signal's first update (the least int64 if none); how often the
+        value was `None`, and when first; the same for NaN.
         """
 
     def take_arrivals(self, data: bytes, /) -> bool:
-        """Go on from what `arrivals` gave; false, if it is none of this plan."""
+        """Continue from what `arrivals` returned; returns False if it does not fit the plan."""
 
     def keep(self, most: int, /) -> None:
-        """See `rv_keep`; records are dropped once they were given out."""
+        """See `rv_keep`; records are dropped only after they were returned."""
 
     def flush(self) -> Sequence[Attempt]:
-        """The attempts that were decided since the last call."""
+        """The attempts decided since the last call."""
 
     def failed(self, first: int, wanted: bytes, /) -> tuple[int, tuple[Attempt, ...]]:
-        """The number of records, and the attempts that failed among those from `first` on.
+        """The number of records, and the failed attempts among the records from `first` on.
 
-        Of the requirements with a 1 in `wanted`, which has a byte for each.
+        Only those of requirements whose byte in `wanted` is not 0.
         """
 
     def open(self) -> tuple[Attempt, ...]:
-        """The attempts that are undecided now, and those that will stay so."""
+        """The attempts that are undecided now, and those that will stay undecided."""
 
     def records(self) -> tuple[bytes, bytes, bytes, list[tuple[tuple[bytes, ...], bytes, int]]]:
-        """All records as `rv_record`, and as many `rv_number` for each as any captures.
+        """All records as `rv_record`; their captured values as `rv_number`; notes; and letters.
 
-        Then the words of notes, and the letters that these refer to: pieces, and bytes that begin
-        with the last piece, which has so many words.
+        Each record has room for the most values that any requirement captures. Notes are int64
+        words. Each span of letters that notes refer to is a tuple: the full pieces; bytes that
+        start with the last piece; and the number of words of the last piece.
         """
 
     def counts(self) -> list[tuple[int, int, int, int]]:
-        """Of each requirement how many attempts failed, passed, stayed open.
+        """Per requirement, how many attempts failed, passed and stayed open, and a flag.
 
-        The last number is 1 if its trigger was ever true or false, and nothing came too late.
+        The flag is 1 if its trigger was ever true or false, and no sample came too late for it.
         """
 
     def truths(self, operator: int, /) -> tuple[bytes, bytes]:
-        """Where an operator of the plan's truths is surely true, and where surely false.
+        """Where an operator of the plan's truths is certainly true, and where certainly false.
 
-        Ranges of positions, see `rv_truths`: first and last, int64 each.
+        Ranges of positions as pairs of int64, first and last; see `rv_truths`.
 
         Raises:
-            ValueError: the plan keeps no truths of that.
+            ValueError: the plan does not record the truths of that operator.
         """
 
     def stale(self) -> list[tuple[int, int, int]]:
-        """Of each signal that went stale its number, how often it did, and when first."""
+        """For each signal that went stale, its number, how often it did, and when first."""
 
     def passages(self, requirement: int, /) -> tuple[int, bytes]:
-        """How many locations its automaton has, and from each to each how often attempts went.
+        """The number of locations of an automaton, and the moves of attempts between them.
 
-        With that, when first: int64 each; see `rv_moves`. 0: the plan does not ask for it.
+        For each pair of locations two int64: how often, and when first; see `rv_moves`. The number
+        is 0 if the plan does not request them.
         """
 
     def situation(self, now: int, /) -> tuple[bytes, int | None]:
-        """How the run stands; equal for runs that go on alike. See `rv_situation`.
+        """The state of the run relative to `now`, equal for runs that continue alike.
 
-        With that, the next instant at which time alone may change something.
+        Also the next instant at which time alone may change something. See `rv_situation`.
 
         Raises:
-            ValueError: the run is over, `now` is before its last sample, or the plan has a chain.
+            ValueError: the run is over or in an outage, `now` is before its last sample, or the
+                plan has a chain.
         """
 
     def hits(self) -> bytes:
-        """Of each item of the plan's groups how often it was hit, and when first: int64 each."""
+        """For each item of the plan's groups two int64: how often it was hit, and when first."""
 
     def times(self) -> tuple[int | None, int | None, int | None]:
-        """The instants of the first and the last sample, and that which time has come to."""
+        """The instants of the first and the last sample, and how far time has advanced."""
 
     def next_due(self) -> int | None: ...
     def measure(self, figures: tuple[type[Measured], type[Robustness]], positions: bool, /) -> None:
-        """Have steps give figures, not attempts; of a plan that says what is measured.
+        """Have steps return figures instead of attempts; for a plan that measures robustness.
 
         Args:
             figures: the types, which derive from `Figure` and `Bounds`.
@@ -190,19 +195,19 @@ class Monitor:
         """
 
     def figures(self) -> Sequence[Measured]:
-        """The figures that were settled since the last call; no records are kept."""
+        """The figures that became final since the last call; records of attempts are dropped."""
 
     def open_figures(self) -> list[Measured]:
-        """What is known of attempts whose figures are to come."""
+        """The current bounds of the figures that are not final."""
 
     def margins(self) -> bytes:
-        """The figures that were settled since the last call as `rv_margin`."""
+        """The figures that became final since the last call, as `rv_margin`."""
 
     def memory_used(self) -> int:
-        """The bytes that it has taken for what it keeps; those given back serve again."""
+        """The bytes of memory taken so far; reused memory counts once. See `rv_memory_used`."""
 
     def hold(self, held: bool, /) -> bool:
-        """Begin or end a call of which Python does a part: meanwhile no sample is taken quickly.
+        """Start or end a call that is partly done in Python; meanwhile `step` takes no fast path.
 
-        False, and nothing is done, amid another call.
+        Returns False, without effect, during another call.
         """

@@ -1,4 +1,4 @@
-"""The extension that reads CSV text; what its numbers mean stands in `csv.h`."""
+"""The extension that reads CSV text; `csv.h` explains its numbers."""
 
 from typing import Any
 
@@ -25,23 +25,23 @@ def read(
     """Read rows.
 
     Args:
-        text: is read from `start` on.
-        start: where a row begins.
-        is_last: whether no text follows; else a row without end is left.
-        longest: bytes of a cell.
-        slots: int32 of each place in a row: its column, or -1.
-        kinds: int32 of each column, the first of which is the stamp.
-        absent: text that stands for no update.
+        text: the text, which is read from `start` on.
+        start: where a row starts, in bytes.
+        is_last: whether no text follows; if text follows, a row without an end is left unread.
+        longest: the most bytes of a cell.
+        slots: int32 for each place in a row: its column, or -1.
+        kinds: int32 for each column, of which the first is the stamp.
+        absent: the text that stands for no update; `None` if there is none.
         numbers: int64[columns, rows] or float64, to be filled.
-        says: uint8[columns, rows], likewise.
-        lines: int64[rows], on which each ends.
-        odd: int64[n, 4], row, column, start and end of cells that are not read.
-        labels: int64[n, 3], column, start and end of each.
-        table: int32[2 n], zeros.
+        says: uint8[columns, rows], to be filled.
+        lines: int64[rows], to be filled with the line on which each row ends.
+        odd: int64[n, 4], to be filled with row, column, start and end of cells left to Python.
+        labels: int64[n, 3], to be filled with column, start and end of each label.
+        table: int32[2 n], zeros; a hash table of labels.
 
     Returns:
-        How it ended; rows, where the next one begins and, if it is for Python, ends; lines, odd
-        cells and labels.
+        Why it ended (`csv_end`); the number of rows; where the next row starts and, if it is left
+        to Python, where it ends; the numbers of lines, odd cells and labels.
 
     Raises:
         ValueError: the arrays do not fit together.
@@ -52,12 +52,12 @@ def as_plain(text: bytes, separator: int, has_commas: int, /) -> bytes | None:
 
     Args:
         text: some lines.
-        separator: of cells, one byte.
-        has_commas: whether numbers have commas, which become points.
+        separator: the separator of cells, one byte.
+        has_commas: whether numbers have decimal commas, which become points.
 
     Returns:
-        `None` if a line needs a closer look: a quote, a comma that stays, a row without a value.
+        `None` if Python has to read a line: it has a quote, a comma that stays, or no value.
     """
 
 def rise(times: NDArray[Any], /) -> bool:
-    """Whether each of these int64 is more than the one before."""
+    """Whether these int64 are strictly ascending."""

@@ -1,4 +1,4 @@
-"""The extension that searches through zones; what its numbers mean stands in `zones.h`."""
+"""The extension that searches the zones of a model; `zones.h` explains its numbers."""
 
 from collections.abc import Callable
 
@@ -17,20 +17,22 @@ def search(
     """Search a plan.
 
     Args:
-        plan: int32 of the machine.
-        costs: float64, one of each edge of the plan.
-        goes_on: called now and then with states visited and waiting; 0 stops the search.
-        counts: called with the path to a loop, where that starts, and the zone there; whether time
-            passes on it without bound.
-        most_states: to visit; -1: no limit.
-        most_bytes: of memory; -1: no limit.
-        proper_only: whether a way to stay counts only if time passes on it without bound.
+        plan: the plan as int32 in the byte order of the machine.
+        costs: float64, one for each edge of the plan.
+        goes_on: called from time to time with the numbers of states visited and waiting; 0 stops
+            the search.
+        counts: called with the path to a loop, where the loop starts, and the zone there; returns
+            whether time diverges on the loop.
+        most_states: the most states to visit; -1: no limit.
+        most_bytes: the most bytes of memory in use; -1: no limit.
+        proper_only: whether only runs on which time diverges count.
 
     Returns:
-        State, ending, loop, whether a way was passed by, states visited, stored, discrete ones,
-        most bytes in use; the path as int32, the parts and the spans as int64.
+        The state, ending and loop of the search; whether a run was skipped on which time stops; the
+        numbers of states visited, states stored and discrete states; the most bytes in use; the
+        path as int32; the parts and the spans as int64.
 
     Raises:
         ValueError: the plan is damaged.
-        MemoryError: there is none for the plan itself.
+        MemoryError: there is no memory for the plan itself.
     """

@@ -1,6 +1,6 @@
-"""The C sources of the extensions: their hash, which tells a forgotten build; the core as one file.
+"""The C sources of the extensions: their hash, to notice outdated builds, and the core as one file.
 
-The build hook runs this file alone: it imports nothing of rvmon.
+The build hook runs this file on its own, so it imports nothing of rvmon.
 """
 
 from __future__ import annotations
@@ -14,11 +14,11 @@ FOLDER = os.path.join(_PACKAGE, "core", "native")
 ZONES_FOLDER = os.path.join(_PACKAGE, "models", "native")
 CSV_FOLDER = os.path.join(_PACKAGE, "recordings", "native")
 BLOCK = 1 << 17
-"""Bytes that are read at once: more than any source has."""
+"""Bytes read at once: more than any source file has."""
 
 
 def source_names(folder: str = FOLDER) -> list[str]:
-    """All C files and headers in a folder, that of the core, and in those within, sorted."""
+    """All C files and headers in a folder and its subfolders, sorted; by default the core's."""
     found = []
     for name in os.listdir(folder):
         if name.endswith((".c", ".h")):
@@ -29,16 +29,16 @@ def source_names(folder: str = FOLDER) -> list[str]:
 
 
 def source_hash(folder: str = FOLDER) -> str:
-    """Hash of the names and contents of the C sources; empty where there are none.
+    """A hash of the names and contents of the C sources; empty if there are none.
 
-    A checksum against forgotten builds, not against forgery: it is computed at each import, in
-    2 ms for 870 kB in 118 files.
+    It guards against outdated builds, not against forgery. It is computed at each import, in 2 ms
+    for 870 kB in 118 files.
     """
     names = source_names(folder)
     value = 0
     for name in names:
         value = zlib.crc32(os.fsencode(name) + b":", value)
-        # Not `open`, which would take longer than all the rest.
+        # Not `open`, which would take longer than everything else.
         file = os.open(f"{folder}/{name}", os.O_RDONLY | getattr(os, "O_BINARY", 0))
         try:
             while block := os.read(file, BLOCK):
@@ -55,13 +55,13 @@ HEADER = "core.h"
 BINDING = "python"
 """The folder of the Python binding, which is not amalgamated."""
 
-# Not compiled here: each start imports this file, and the patterns are for builds.
+# Not compiled here: every start of rvmon imports this file, but only builds need the patterns.
 _INCLUDE = r'^#include (?:"(?P<own>[^"]+)"|<(?P<system>[^>]+)>).*\n'
 _PROTOTYPE = r"^(?!typedef |static |extern |return )(?=[A-Za-z_][\w ]*[ *]+\w+\([^;{}]*\);)"
 
 
 def core_header(folder: str = FOLDER) -> str:
-    """The text of the public header of the core, which includes no other file of it."""
+    """The text of the public header of the core, which includes no other file of the core."""
     return _text(folder, HEADER)
 
 
@@ -80,12 +80,12 @@ def core_files(folder: str = FOLDER) -> list[str]:
 def core_source(header: str, folder: str = FOLDER, *, lines: bool = False) -> str:
     """All sources of the core except the Python binding, concatenated.
 
-    Functions shared between files become static, so that only `rv_…` is visible outside.
+    Functions shared between files become static, so that only `rv_…` names are visible outside.
 
     Args:
-        header: the name by which the public header is included.
+        header: the name under which the public header is included.
         folder: the folder of the sources.
-        lines: whether `#line` directives name the original files in compiler messages.
+        lines: whether to add `#line` directives, so that compiler messages name the original files.
     """
     names = core_files(folder)
     done = {HEADER}
@@ -106,7 +106,7 @@ def _body(folder: str, name: str, done: set[str], system: dict[str, None], lines
             system[found["system"]] = None
         elif found["own"] not in done:
             needed += _body(folder, found["own"], done, system, lines)
-    # With `#line` directives, the line numbers of the original have to be preserved.
+    # With `#line` directives, the original line numbers must be preserved.
     text = re.sub(_INCLUDE, "\n" if lines else "", text, flags=re.MULTILINE)
     if name.endswith(".h"):
         text = re.sub(_PROTOTYPE, "static ", text, flags=re.MULTILINE)
