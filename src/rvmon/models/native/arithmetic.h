@@ -1,4 +1,4 @@
-/* Arithmetic of programs in 64 bits; false where there is no result. */
+/* Arithmetic of programs in 64 bits; each function returns false where there is no result. */
 #ifndef RVMON_ZONES_ARITHMETIC_H
 #define RVMON_ZONES_ARITHMETIC_H
 
@@ -81,7 +81,7 @@ static bool combine(int32_t op, int64_t a, int64_t b, int64_t *to)
         return true;
     case OP_LEFT:
         return (b >= 0) && (b < 32) && multiplied(a, (int64_t)1 << b, to);
-    case OP_RIGHT: /* rounds down */
+    case OP_RIGHT: /* rounds down, which C does not guarantee for negative numbers */
         if ((b < 0) || (b >= 32)) {
             return false;
         }

@@ -1,10 +1,10 @@
-/* The moves between all discrete states, without regard to clocks, for backward search. */
+/* The moves between all discrete states, ignoring clocks, for backward search. */
 #ifndef RVMON_ZONES_ARROWS_H
 #define RVMON_ZONES_ARROWS_H
 
 #include "unions.h"
 
-/* Store a move with its target, and its guard intersected with the invariant of its source. */
+/* Store a move with its target, and with its guard intersected with the invariant of its source. */
 static bool note_move(engine *h, walk *w, const int32_t *edges, int n)
 {
     const uint32_t had = h->into_room;
@@ -17,7 +17,7 @@ static bool note_move(engine *h, walk *w, const int32_t *edges, int n)
     }
     if (!apply(h, w, edges, n)) {
         const bool numbers_fit = h->failed;
-        h->failed = false; /* reported by the forward search, if it can happen */
+        h->failed = false; /* the forward search reports it, if it can happen */
         return numbers_fit && runs(h);
     }
     if (!invariant_data_holds(h, &w->there)) {
@@ -42,7 +42,7 @@ static bool note_move(engine *h, walk *w, const int32_t *edges, int n)
     return runs(h);
 }
 
-/* All discrete states reachable without regard to clocks. */
+/* Find all discrete states that are reachable if clocks are ignored, and the moves between them. */
 static void find_moves(engine *h)
 {
     walk *w = &h->out;
@@ -64,7 +64,7 @@ static void find_moves(engine *h)
     h->from_node = NONE;
 }
 
-/* The valuations from which a move leads into a zone of its target, in place; false if empty. */
+/* The valuations from which a move leads into a zone of its target, in place; false if there are none. */
 static bool back(engine *h, uint32_t m, bound *z)
 {
     const int32_t *resets = h->pool + h->arrows[m].resets;

@@ -1,4 +1,4 @@
-/* Zones: closed DBMs that are not empty. z[x * d + y] bounds clock y less clock x; clock 0 is zero.
+/* Zones: closed, non-empty DBMs. z[x * d + y] bounds clock y - clock x; clock 0 is zero.
  *
  * Source: Bengtsson and Yi, Timed Automata: Semantics, Algorithms and Tools, 2004, section 4. */
 #ifndef RVMON_ZONES_BOUNDS_H
@@ -6,6 +6,7 @@
 
 #include "engine.h"
 
+/* The bound on a sum of two bounded numbers: non-strict only if both bounds are. */
 static inline bound sum(bound a, bound b)
 {
     const bound s = a + b - ((a | b) & 1);
@@ -34,7 +35,7 @@ static void copy_zone(const engine *h, bound *to, const bound *from)
     (void)memcpy(to, from, h->zone_bytes);
 }
 
-/* row = min(row, bound + other), entry by entry. */
+/* row = min(row, b + other), entry by entry. */
 static inline void tighten(bound *restrict row, const bound *restrict other, bound b, int d)
 {
     int j;
@@ -100,8 +101,8 @@ static void delay(bound *z, int d)
     }
 }
 
-/* Let time pass while all n upper bounds hold. One pass closes the zone: the new bounds are the only
- * upper bounds of clocks, so that each tightest path uses one of them. */
+/* Let time pass while all n upper bounds hold. One pass closes the zone: the new bounds are the only upper
+ * bounds of clocks, so each tightest path uses one of them. */
 static bool delay_within(bound *z, int d, bound *top, const int32_t *clocks, const bound *bounds,
                          int n)
 {
@@ -150,7 +151,8 @@ static void universe(bound *z, int d)
     }
 }
 
-/* The valuations from which a delay leads into a zone. */
+/* The valuations from which a delay leads into a zone. Lower bounds drop to those that differences imply:
+ * -c <= j - c for each clock j, since j >= 0. */
 static void before(bound *z, int d)
 {
     int c;
@@ -200,7 +202,7 @@ static bool is_within(const bound *z, const bound *other, int entries)
     return true;
 }
 
-/* Whether all entries are below `safe`; if not, the search ends. */
+/* Whether all finite entries are within `safe`; if not, the search ends. */
 static bool fits(engine *h, const bound *z)
 {
     int e;
@@ -215,8 +217,8 @@ static bool fits(engine *h, const bound *z)
     return true;
 }
 
-/* Extra_M: bounds above the greatest constants are dropped, up to bisimulation; a clock without constants
- * is free. Source: Behrmann, Bouyer, Larsen, Pelanek, Lower and Upper Bounds in Zone-Based Abstractions
+/* Extra_M: drops bounds above the greatest constants, which keeps bisimilarity; frees clocks without
+ * constants. Source: Behrmann, Bouyer, Larsen, Pelanek, Lower and Upper Bounds in Zone-Based Abstractions
  * of Timed Automata, 2006, section 3. */
 static void blur(engine *h, bound *z)
 {

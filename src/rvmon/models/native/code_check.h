@@ -4,7 +4,8 @@
 
 #include "plan.h"
 
-/* By op: its operands, and its effect on the depth of the stack at the next instruction. */
+/* For each op: its operands, the depth of the stack that it needs, and its effect on the depth at the next
+ * instruction. */
 static const struct {
     int8_t operands;
     int8_t needs;
@@ -32,8 +33,8 @@ enum { UNSEEN = -1, NO_WAY = -2 };
 typedef struct {
     const int32_t *plan;
     int16_t *depth;   /* of the stack, at targets of jumps */
-    uint8_t *starts;  /* at starts of programs: one more than their depth of calls */
-    int32_t begin;    /* of the present program */
+    uint8_t *starts;  /* at the start of a program, one more than the depth of its nested calls; else 0 */
+    int32_t begin;    /* of the current program */
 } checker;
 
 static bool within(int64_t first, int64_t count, int64_t all)
@@ -81,7 +82,7 @@ static bool operands_fit(const checker *c, int32_t op, const int32_t *operand)
     }
 }
 
-/* A jump goes forwards; all jumps to a target have the same depth of the stack. */
+/* Jumps go forward, and all jumps to one target have the same depth of the stack. */
 static bool jumps(checker *c, int32_t from, int32_t to, int depth)
 {
     if ((to <= from) || (to >= rows(c, AT_CODE))) {
@@ -93,8 +94,8 @@ static bool jumps(checker *c, int32_t from, int32_t to, int depth)
     return c->depth[to] == depth;
 }
 
-/* A call goes to an earlier program, so that none is recursive; a loop goes back to its head, with an
- * empty stack. */
+/* Calls go to earlier programs, so that none is recursive. A loop goes back to its head, with an empty
+ * stack. */
 static bool flows(checker *c, int32_t op, int32_t at, int32_t to, int depth)
 {
     if (op == OP_HEAD) {
@@ -116,7 +117,7 @@ static bool flows(checker *c, int32_t op, int32_t at, int32_t to, int depth)
     return true;
 }
 
-/* All programs, one after the other. */
+/* Check all programs, one after the other. */
 static bool programs_fit(checker *c)
 {
     const int32_t *code = plan_rows(c->plan, AT_CODE);
@@ -128,7 +129,7 @@ static bool programs_fit(checker *c)
         const int32_t op = code[at];
         int32_t i;
         if (begins) {
-            if (c->depth[at] != UNSEEN) { /* a jump out of the program before */
+            if (c->depth[at] != UNSEEN) { /* a jump out of the previous program */
                 return false;
             }
             c->starts[at] = 1;
@@ -147,7 +148,7 @@ static bool programs_fit(checker *c)
             || !flows(c, op, at, (shapes[op].operands > 0) ? code[at + 1] : 0, depth)) {
             return false;
         }
-        for (i = 1; i <= shapes[op].operands; i++) { /* no jump leads between these */
+        for (i = 1; i <= shapes[op].operands; i++) { /* no jump may lead between the operands */
             if (c->depth[at + i] != UNSEEN) {
                 return false;
             }

@@ -1,4 +1,4 @@
-/* The state of a search, and its memory. Compiled twice: for bounds of 32 bits and of 64. */
+/* The state of a search and its memory. Compiled twice, for bounds of 32 bits and of 64. */
 #ifndef RVMON_ZONES_ENGINE_H
 #define RVMON_ZONES_ENGINE_H
 
@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A bound: 2c + 1 for `<= c`, 2c for `< c`, so that strictness needs no case of its own in sums.
- * Entries of stored zones stay below `safe`, so that no path through entries of zones and guards that
- * visits each clock once comes near UNBOUNDED. */
+/* A bound: 2c + 1 for `<= c`, 2c for `< c`, so that sums need no separate case for strictness. Entries of
+ * stored zones stay below `safe`, so that no path through entries of zones and guards that visits each
+ * clock once comes near UNBOUNDED. */
 #ifdef WIDE
 typedef int64_t bound;
 #define UNBOUNDED (((bound)1 << 60) | 1)
@@ -24,7 +24,7 @@ typedef int32_t bound;
 #define NONE UINT32_MAX
 #define ZONES_IN_CHUNK 256
 
-/* A symbolic state: its parent, its discrete state, the next node of that state, its zone, and the step
+/* A symbolic state: its parent, its discrete state, the next node with that state, its zone, and the step
  * that led here: the number of a move, a crossing or a mark, with the kind in the upper bits. */
 typedef struct {
     uint32_t parent, state, next, zone, link;
@@ -34,29 +34,32 @@ typedef struct {
 #define LINK_CROSSING 0x40000000U
 #define LINK_MARK 0x80000000U
 
+/* An entry of the heap: a node (`goal`: at the goal), its cost, and its age to break ties. */
 typedef struct {
     double cost;
     uint32_t order, node, goal;
 } entry;
 
+/* A union of zones. */
 typedef struct {
     uint32_t count, room;
     bound *zones;
 } federation;
 
+/* The bits of a location or variable in a packed state, and its least value. */
 typedef struct {
     uint8_t shift;
     uint32_t word, mask;
     int32_t low;
 } field;
 
-/* A move between discrete states: the next move into the same target, its resets in a pool; its guard is
- * in a federation, at the same index. The moves out of a state are adjacent. */
+/* A move between discrete states: the next move into the same target, and its resets in a pool. Its guard
+ * is in a federation, at the same index. The moves out of a state are adjacent. */
 typedef struct {
     uint32_t from, to, next, resets;
 } arrow;
 
-/* A frame of the depth-first search: a node, the link by which it was entered, its next successor, the
+/* A frame of the depth-first search: a node, the link by which it was entered, its next successor and the
  * end of its successors. */
 typedef struct {
     uint32_t node, link, next, end;
@@ -66,11 +69,12 @@ typedef struct {
     uint32_t node, link, flags;
 } successor;
 
-/* An open component: the number of its first node, the flags met in it, and those of the edge into it. */
+/* An open component: the rank of its first node, the flags found in it, and those of the edge into it. */
 typedef struct {
     uint32_t number, flags, in;
 } root;
 
+/* A step of a breadth-first search inside a component. */
 typedef struct {
     uint32_t node, parent, link, flags;
 } step;
@@ -81,7 +85,7 @@ typedef struct {
     bound b;
 } cut;
 
-/* A conjunction of bounds that must not hold: one of them has to fail. */
+/* A conjunction of bounds that must not hold: at least one of them has to fail. */
 typedef struct {
     uint32_t first, count;
     int32_t rank;
@@ -98,15 +102,17 @@ typedef struct {
     int32_t *places, *values;
 } spot;
 
-/* The source of moves, and the target of the present one. */
+/* The source of moves, and the target of the current one. */
 typedef struct walk {
     spot here, there;
     bound *source, *zone;
     int32_t *resets; /* clock, value */
     int32_t reset_count;
-    int32_t *chosen, *group, *first, *pick;
+    int32_t *chosen, *group, *first, *pick; /* a broadcast: its edges; receivers in groups, where these
+                                             * start, and the choice in each */
     int32_t *together, *watching; /* a move with an edge of the watcher; the edges that can join it */
-    denials skipped, blockers; /* guards of receivers left out; conditions of moves by priority */
+    denials skipped, blockers; /* guards of receivers left out; conditions of moves, with priorities */
+    /* the blockers of the current move, and the bound of each that fails */
     uint32_t blocker_count, *against, against_room, against_count, *skip, skip_room;
     bound *limits; /* the bounds of the invariant */
     uint8_t *committed;
@@ -114,12 +120,12 @@ typedef struct walk {
     uint32_t ordinal;
 } walk;
 
-/* A hash table of numbers; NONE: an empty slot. */
+/* A hash table of indices; NONE is an empty slot. */
 typedef struct {
     uint32_t *at, size;
 } table;
 
-/* The header of each memory block of a search: a list, by which all are freed at the end. */
+/* The header of each memory block of a search: a list, so that all are freed at the end. */
 typedef struct held {
     struct held *next, **back;
 } held;
@@ -136,7 +142,7 @@ typedef struct {
     uint32_t words;
     search_state state;
     bool failed;
-    struct walk *sets; /* where a program writes */
+    struct walk *sets; /* the move whose updates run, if clocks may be set */
     int32_t rounds;    /* of loops of programs */
     uint64_t bytes, peak, work, visited, stored;
     field *fields;
@@ -154,7 +160,7 @@ typedef struct {
     entry *heap;
     uint32_t heap_count, heap_room, order;
     double price;
-    /* limits in the present locations */
+    /* limits in the current locations */
     bound *lower, *upper;
     int32_t *lowers, *uppers, lower_count, upper_count;
     int32_t *test_entries, *tightest;
@@ -162,10 +168,10 @@ typedef struct {
     walk out, look; /* `look` looks for deadlocks while `out` enumerates moves */
     federation alive, dead, rest;
     uint32_t from_node, link, found;
-    int32_t *step_edges, step_edge_count, *failed_edges; /* of a move that failed, or that is reconstructed */
-    numbers step_bounds;                                 /* the bounds by which nothing blocks the latter */
+    int32_t *step_edges, step_edge_count, *failed_edges; /* of a move that failed, or is reconstructed */
+    numbers step_bounds;                                 /* the bounds by which nothing blocks that move */
     uint32_t wanted;
-    numbers crossings, last_crossings; /* present ones; those of the end that was found */
+    numbers crossings, last_crossings; /* the current ones; those of the end that was found */
     numbers path;
     int64_t *spans; /* by location of the watcher: least and greatest value of the last clock */
     federation parts;
@@ -197,7 +203,7 @@ typedef struct {
     int32_t *pool;
     uint32_t pool_count, pool_room;
     federation guards;
-    federation **tables; /* by row and state, and two auxiliary ones */
+    federation **tables; /* by row and state; two further ones are auxiliary */
     uint32_t *table_rooms;
     federation pending;
     uint32_t *whose, whose_count, whose_room;
@@ -205,7 +211,7 @@ typedef struct {
 
 /* --- memory ------------------------------------------------------------------------------------ */
 
-/* Room for at least so many rows; new arrays are zeros. Without memory the old rows stay, and the search
+/* Room for at least `wanted` rows; new arrays are zeros. Without memory the old rows stay, and the search
  * ends. */
 static void *enlarge(engine *h, void *old, uint32_t *room, uint64_t wanted, size_t each)
 {
@@ -256,7 +262,7 @@ static void give_back(engine *h, void *rows, uint32_t room, size_t each)
      || ((rows) = enlarge((h), (rows), &(room), (wanted), sizeof *(rows)),                       \
          (uint64_t)(wanted) <= (room)))
 
-/* A block of zeros for as long as the search lasts. */
+/* A block of zeros that lasts as long as the search. */
 static void *block(engine *h, size_t count, size_t each)
 {
     uint32_t room = 0;
@@ -272,7 +278,7 @@ static bool put(engine *h, numbers *to, int32_t number)
     return true;
 }
 
-/* Count work, and ask the caller from time to time whether to go on. */
+/* Count work, and ask the caller from time to time whether to continue. */
 static void count_work(engine *h)
 {
     h->work += (uint64_t)h->entries + 16;

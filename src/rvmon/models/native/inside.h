@@ -1,7 +1,7 @@
 /* The network restricted to a formula that runs never leave.
  *
- * A formula with clocks holds on a union of convex pieces in each discrete state; while time passes a run
- * stays in one piece, or crosses to another. */
+ * In each discrete state, a formula with clocks holds on a union of convex pieces. While time passes, a
+ * run stays in one piece or crosses to another. */
 #ifndef RVMON_ZONES_INSIDE_H
 #define RVMON_ZONES_INSIDE_H
 
@@ -17,7 +17,7 @@ static int piece_of(const engine *h, uint32_t n)
     return (int)mark_of(h, h->nodes[n].state) - 1;
 }
 
-/* Whether a discrete state has a piece: its condition holds, or it is the only piece, of all valuations. */
+/* Whether a discrete state has a piece. The first piece without clocks makes all others redundant. */
 static bool has_piece(engine *h, int k, const spot *here)
 {
     int i;
@@ -30,7 +30,8 @@ static bool has_piece(engine *h, int k, const spot *here)
     return holds(h, piece_at(h, k)[ROW_CONDITION], here) && !h->failed;
 }
 
-/* A piece as it is, or closed by the instants at which time leaves it, or after which time enters it. */
+/* A piece as it is, or closed so that it includes the instant at which time leaves it (UNTIL), or the
+ * instant after which time enters it (SINCE). */
 enum { AS_IS, UNTIL, SINCE };
 
 static bool cut_piece(engine *h, bound *z, int k, int how, const spot *here)
@@ -52,8 +53,8 @@ static bool cut_piece(engine *h, bound *z, int k, int how, const spot *here)
     return true;
 }
 
-/* Let a zone cross from piece k to piece m as time passes: at the last instant of the one, or at the
- * first of the other, whichever exists. */
+/* Let a zone cross from piece k to piece m as time passes: at the last instant of k (`since`) or at the
+ * first instant of m, if such an instant exists. */
 static bool cross(engine *h, bound *to, const bound *z, int k, int m, bool since,
                   const spot *here)
 {
@@ -70,7 +71,8 @@ static bool cross(engine *h, bound *to, const bound *z, int k, int m, bool since
 
 /* --- the search for late responses, with subsumption --------------------------------------------- */
 
-/* Store a state whose time counts; found if the bound is exceeded there, or reached while time goes on. */
+/* Store a state in which the timer runs; found if the bound is exceeded here, or reached while time may
+ * still pass. */
 static void keep_late(engine *h, uint32_t state, const bound *z, int k, bool delays,
                       const spot *here)
 {
@@ -106,7 +108,7 @@ static void keep_late(engine *h, uint32_t state, const bound *z, int k, bool del
 }
 
 /* --- the search for runs that stay, without subsumption: a loop of larger zones need not be a loop of
- * runs ---------------------------------------------------------------------------------------------- */
+ * runs --------------------------------------------------------------------------------------------- */
 
 static uint32_t hash_inside(const engine *h, uint32_t state, const bound *z)
 {
@@ -118,7 +120,7 @@ static uint32_t hash_node(const engine *h, uint32_t n)
     return hash_inside(h, h->nodes[n].state, zone_of(h, n));
 }
 
-/* Add a symbolic state, new or known, as a successor of the present one. */
+/* Add a symbolic state, new or known, as a successor of the current one. */
 static void succeed(engine *h, uint32_t state, const bound *z)
 {
     const size_t bytes = h->zone_bytes;
@@ -147,7 +149,8 @@ static void succeed(engine *h, uint32_t state, const bound *z)
     }
 }
 
-/* The invariant, a piece and, if time may pass, all delays in it; false if nothing is left. */
+/* Intersect with the invariant and a piece and, if time may pass, add all delays in it; false if nothing
+ * is left. */
 static bool settle_in_piece(engine *h, bound *z, int k, bool delays, const spot *here)
 {
     if (piece_at(h, k)[ROW_ATOMS] == 0) {

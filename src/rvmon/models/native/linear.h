@@ -1,11 +1,11 @@
-/* Runs that a generalised Buechi automaton accepts: those of a formula of LTL, without next.
+/* Runs that a generalised Buechi automaton accepts, namely those of an LTL formula without next.
  *
- * The pieces are the states of the automaton, each with the condition that holds there; a run takes an
- * arc with each move, and while time passes. A piece lasts through moves that do not change its
- * condition, which is right for automata of formulas without next. Strongly connected components are
- * found depth first; one is accepting if it meets all acceptance sets and has moves. Runs with finitely
- * many moves, idle or stuck, are searched separately (rest.h). If the plan has a timer, time diverges
- * where infinitely many moves find that a unit of time has passed.
+ * The pieces are the states of the automaton, each with its condition. A run takes an arc with each move,
+ * and while time passes. A piece lasts through moves that do not change its condition, which is sound for
+ * formulas without next. The search finds strongly connected components depth first; a component is
+ * accepting if it meets all acceptance sets and has moves. Runs with finitely many moves, idle or stuck,
+ * are searched separately (rest.h). If the plan has a timer, time must diverge: infinitely many moves have
+ * to find that a unit of time has passed.
  *
  * Source: Couvreur, On-the-Fly Verification of Linear Temporal Logic, FM 1999; Alur, Courcoubetis,
  * Dill, Model-Checking in Dense Real-Time, 1993; Tripakis, Yovine, Bouajjani, Checking Timed Buechi
@@ -22,7 +22,7 @@ static uint32_t flags_of(const engine *h, uint32_t n)
 
 /* --- successors ------------------------------------------------------------------------------------- */
 
-/* Add a zone inside a piece as a successor of the present node. */
+/* Add a zone inside a piece as a successor of the current node. */
 static void succeed_in(engine *h, bound *z, int k, uint32_t flags, const spot *here)
 {
     const uint32_t before = h->successor_count;
@@ -69,7 +69,7 @@ static void enter_way(engine *h, const bound *z, const spot *here)
     }
 }
 
-/* The successors of a node: after moves, and as time passes. */
+/* Add the successors of a node: after moves, and by crossings as time passes. */
 static void expand_way(engine *h, uint32_t n)
 {
     walk *w = &h->out;
@@ -101,7 +101,7 @@ static bool in_component(const engine *h, uint32_t n, uint32_t rank)
 }
 
 /* Append a shortest path inside a component, from a node to an edge with a wanted flag, or to the root if
- * no flag is left. Its flags are removed from the wanted ones; returns its last node, or NONE. */
+ * no flag is wanted any more. Its flags are removed from `wanted`. Returns its last node, or NONE. */
 static uint32_t tell_part(engine *h, uint32_t from, uint32_t root_node, uint32_t *wanted)
 {
     const uint32_t rank = h->rank[root_node];
@@ -151,7 +151,7 @@ static uint32_t tell_part(engine *h, uint32_t from, uint32_t root_node, uint32_t
     return h->trail[last].node;
 }
 
-/* An accepting component: append the path to it, and a loop in it with all wanted flags. */
+/* Handle an accepting component: append the path to it, and a loop in it with all wanted flags. */
 static void tell_round(engine *h, uint32_t rank)
 {
     uint32_t wanted = wanted_flags(h);
@@ -177,7 +177,7 @@ static void tell_round(engine *h, uint32_t rank)
     }
 }
 
-/* Enter a node for the first time. */
+/* Enter a new node, as a component of its own. */
 static void open_node(engine *h, successor s)
 {
     const uint32_t had = h->rank_room;
@@ -207,7 +207,7 @@ static void open_node(engine *h, successor s)
     h->frames[h->frame_count - 1].end = h->successor_count;
 }
 
-/* Leave a node; if it is the root of a component, close that. */
+/* Leave a node. If it is the root of a component, that component is complete and closed. */
 static void leave_way(engine *h, uint32_t n)
 {
     const uint32_t rank = h->rank[n];
@@ -219,7 +219,8 @@ static void leave_way(engine *h, uint32_t n)
     }
 }
 
-/* An edge to a node on the stack merges the components between; found, if the result is accepting. */
+/* Handle an edge to a node on the stack, which merges the components between; found, if the result is
+ * accepting. */
 static void merge(engine *h, successor s)
 {
     const uint32_t wanted = wanted_flags(h);

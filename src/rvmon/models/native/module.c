@@ -1,4 +1,4 @@
-/* rvmon.native._zones for CPython: one function, without state. */
+/* The module rvmon.native._zones for CPython: one function, no state. */
 #include "zones.h"
 
 #include "../../core/native/python/python_abi.h"
@@ -13,7 +13,7 @@ typedef struct {
     PyThreadState *thread;
 } callbacks;
 
-/* Call a Python function; steals the arguments; returns its integer result, -1 if it raised. */
+/* Call a Python function and return its integer result, or -1 if it raised. Steals the arguments. */
 static long ask(PyObject *function, PyObject *arguments)
 {
     PyObject *given;
@@ -71,7 +71,7 @@ static PyObject *answered(const answer *found)
         (Py_ssize_t)(2 * found->span_count * sizeof *found->spans));
 }
 
-/* Copy plan and costs to aligned blocks and validate them; else an exception. */
+/* Copy plan and costs to aligned blocks and validate them; sets an exception if that fails. */
 static bool taken(const Py_buffer *plan, const Py_buffer *costs, int32_t **numbers_of,
                   double **costs_of)
 {
@@ -97,9 +97,9 @@ static bool taken(const Py_buffer *plan, const Py_buffer *costs, int32_t **numbe
     return state == PLAN_GOOD;
 }
 
-/* search(plan, costs, goes_on, counts, most_states, most_bytes, proper_only): as zones.h says.
- * Gives state, ending, loop, improper, visited, stored, discrete states, most bytes in use, path and
- * parts and spans as bytes. */
+/* search(plan, costs, goes_on, counts, most_states, most_bytes, proper_only), as described in zones.h.
+ * Returns state, ending, loop, improper, visited, stored, discrete states, peak of bytes in use, and as
+ * bytes path, parts and spans. */
 static PyObject *zones_search(PyObject *module, PyObject *args)
 {
     callbacks c = {NULL, NULL, NULL};

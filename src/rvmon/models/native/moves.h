@@ -1,8 +1,8 @@
-/* The moves from a discrete state, without regard to clocks: sets of edges that are taken together.
+/* The moves from a discrete state, ignoring clocks: sets of edges that are taken together.
  *
- * All guards are evaluated before a move; the sender's updates come first, then those of receivers in the
- * order of the automata; while some location is committed, a move has to leave a committed one; a
- * broadcast includes every automaton that can receive; a move is blocked by those of higher priority. */
+ * All guards are evaluated before a move. The sender is updated first, then the receivers in the order of
+ * the automata. While some location is committed, a move must leave a committed one. A broadcast includes
+ * every automaton that can receive. A move is blocked by possible moves of higher priority. */
 #ifndef RVMON_ZONES_MOVES_H
 #define RVMON_ZONES_MOVES_H
 
@@ -61,7 +61,7 @@ static bool urgent_edge_waits(engine *h, const int32_t *edge, const spot *here)
     return false;
 }
 
-/* Whether time may pass: nothing is committed or urgent. */
+/* Whether time may pass: no location is committed or urgent, and no urgent channel can be used. */
 static bool may_delay(engine *h, const spot *here)
 {
     int a;
@@ -82,7 +82,7 @@ static bool may_delay(engine *h, const spot *here)
     return true;
 }
 
-/* The number of a discrete state with a mark, new or known; NONE without memory. */
+/* The index of a discrete state with a mark, new or known; NONE without memory. */
 static uint32_t state_of(engine *h, const spot *here, uint32_t mark)
 {
     uint32_t *at;
@@ -94,7 +94,7 @@ static uint32_t state_of(engine *h, const spot *here, uint32_t mark)
     return *at;
 }
 
-/* Collect the edges that may receive, in groups by automaton; returns the number of groups. */
+/* Collect the edges that may receive, grouped by automaton; returns the number of groups. */
 static int receivers(engine *h, walk *w, int32_t sender)
 {
     const int32_t *s = edge_at(h, sender);
@@ -133,7 +133,7 @@ static int ways(const engine *h, const walk *w, int g)
     return w->first[g + 1] - w->first[g] + 1;
 }
 
-/* Enumerate a broadcast: the sender with each choice of edges of all automata that can receive. */
+/* Enumerate a broadcast: the sender with each choice of edges of all possible receivers. */
 static bool broadcast(engine *h, walk *w, int32_t sender, bool committed, sink take)
 {
     const int groups = receivers(h, w, sender);
@@ -199,7 +199,8 @@ static bool pairs(engine *h, walk *w, int32_t sender, bool committed, sink take)
     return true;
 }
 
-/* Call `take` with all moves from the source of a walk, broadcasts last, until it returns false. */
+/* Call `take` with all moves from the source of a walk, broadcasts last, until it returns false. Watching
+ * edges are no moves of their own. */
 static bool each_way(engine *h, walk *w, sink take)
 {
     bool committed = false;
@@ -240,7 +241,7 @@ static bool each_way(engine *h, walk *w, sink take)
     return true;
 }
 
-/* The same without moves that one of higher priority blocks. */
+/* The same, without moves that are blocked by one of higher priority. */
 static bool each_move(engine *h, walk *w, sink take)
 {
     drop_denials(&w->blockers);

@@ -1,4 +1,4 @@
-/* The search in bounds of 32 bits, and the choice between both searches. */
+/* The search with bounds of 32 bits, and the choice between both searches. */
 #include "whole.h"
 
 answer search_narrow(const int32_t *plan, const double *costs, const caller *from)

@@ -1,6 +1,7 @@
 /* Nested path formulas: the valuations of each discrete state that satisfy them, computed backwards
- * through delays and moves to a fixed point. A row of the tree is computed after the rows it refers to; a
- * row with a bound measures time by the timer, which is set to 0 first and projected away afterwards.
+ * through delays and moves up to a fixed point. A row of the tree is computed after the rows that it
+ * refers to. A row with a bound measures time by the timer, which starts at 0 and is projected away
+ * afterwards.
  *
  * Source: Henzinger, Nicollin, Sifakis, Yovine, Symbolic Model Checking for Real-Time Systems, 1994;
  * Bouyer et al., Model Checking Real-Time Systems, 2018, section 3 (backward analysis ends). */
@@ -16,7 +17,7 @@ static const int32_t *tree_row(const engine *h, int32_t row)
     return plan_rows(h->plan, AT_TREE) + (ptrdiff_t)TREE_SIZE * row;
 }
 
-/* Empty unions for all states; earlier ones are freed. */
+/* Empty the unions of all states in a table, which is allocated if it is new. */
 static federation *clear_table(engine *h, int32_t t)
 {
     uint32_t s;
@@ -69,7 +70,7 @@ static void satisfy(engine *h, int32_t row, uint32_t s, federation *out)
     empty(h, &b);
 }
 
-/* Add the valuations from which a delay leads into a zone, and mark the state for the next round. */
+/* Add the valuations from which a delay leads into a zone; new ones are queued for the next round. */
 static void note_reaching(engine *h, uint32_t s, const bound *z, const federation *bad,
                           federation *found)
 {
@@ -86,7 +87,7 @@ static void note_reaching(engine *h, uint32_t s, const bound *z, const federatio
     empty(h, &more);
 }
 
-/* The valuations from which some run satisfies `left until right`, within the bound. */
+/* The valuations from which some run satisfies `left until right`, within the bound if there is one. */
 static void solve_until(engine *h, const int32_t *r, federation *found, federation *bad)
 {
     bound *z = h->between; /* unused in this kind of search */
@@ -129,8 +130,8 @@ static void solve_until(engine *h, const int32_t *r, federation *found, federati
     }
 }
 
-/* The valuations from which the next move, now or after a delay, can lead to where a row holds, or
- * anywhere. */
+/* Add the valuations from which the next move, now or after a delay, can lead to where a row holds, or
+ * anywhere (row < 0). */
 static void solve_next(engine *h, int32_t row, uint32_t s, federation *out)
 {
     federation there = {0, 0, NULL};
@@ -157,7 +158,7 @@ static void solve_next(engine *h, int32_t row, uint32_t s, federation *out)
     empty(h, &there);
 }
 
-/* The valuations from which a run can stay without a move: time is unbounded, or gets stuck. */
+/* Add the valuations from which a run can stay without a move: time is unbounded, or stops. */
 static void add_ends(engine *h, uint32_t s, const federation *outside, federation *out)
 {
     walk *w = &h->look;
@@ -184,8 +185,8 @@ static void add_ends(engine *h, uint32_t s, const federation *outside, federatio
     empty(h, &alive);
 }
 
-/* Reduce a state's valuations to those from which a run ends there or leads to valuations that are left;
- * whether any were removed. */
+/* Reduce the valuations of a state to those from which a run ends there, or leads to valuations that are
+ * still in `stays`; returns whether any were removed. */
 static bool shrink(engine *h, uint32_t s, const federation *outside, const federation *ends,
                    federation *stays)
 {
@@ -213,7 +214,8 @@ static bool shrink(engine *h, uint32_t s, const federation *outside, const feder
     return less;
 }
 
-/* The valuations from which some run stays where a row holds, for ever or until the bound is over. */
+/* The valuations from which some run stays where a row holds, forever or until the bound is over: the
+ * greatest fixed point, from all valuations in which the row holds. */
 static void solve_stay(engine *h, const int32_t *r, federation *stays, federation *outside,
                        federation *ends)
 {
@@ -254,7 +256,7 @@ static void solve_stay(engine *h, const int32_t *r, federation *stays, federatio
     }
 }
 
-/* Project away the timer, from where it is 0. */
+/* Project away the timer, from valuations in which it is 0. */
 static void forget_timer(engine *h, federation *f)
 {
     uint32_t k;

@@ -1,12 +1,12 @@
-/* Reconstructs the path of a search: steps are found again by their numbers. */
+/* Reconstructs the path of a search. Nodes keep only the number of a step, which is enumerated again. */
 #ifndef RVMON_ZONES_PATHS_H
 #define RVMON_ZONES_PATHS_H
 
 #include "search.h"
 
 /* Visit a symbolic state inside, and all that crossings lead to, as long as the visitor returns true. A
- * run is in a convex piece for one stretch of time, so crossings never return to a piece. They are in
- * `crossings`, as pairs of a piece and a number. */
+ * run is in a convex piece for one stretch of time, so crossings never return to a piece. `crossings` has
+ * the current ones, as pairs of a piece and a number. */
 typedef bool (*visitor)(engine *h, const bound *z, int k, bool delays);
 
 static bool each_stand(engine *h, const bound *z, int k, bool delays, int level, visitor seen)
@@ -71,8 +71,8 @@ static int tell_crossings(engine *h, const numbers *crossings)
     return (int)(crossings->count / 2);
 }
 
-/* Append the steps from one node to another by a link; returns their number. The search must not have
- * ended, to reconstruct them. */
+/* Append the steps from one node to another by a link; returns their number. The state of the search must
+ * be running for that. */
 static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
 {
     walk *w = &h->out;
@@ -101,7 +101,7 @@ static int tell_link(engine *h, uint32_t from, uint32_t to, uint32_t link)
     return steps;
 }
 
-/* Append the steps from the start to a node, along its parents; returns their number. */
+/* Append the steps from the start to a node along its parents; returns their number. */
 static int tell_path(engine *h, uint32_t n)
 {
     numbers way = {NULL, 0, 0};

@@ -1,4 +1,4 @@
-/* Validates a plan before anything runs: all references, and the stacks of programs. */
+/* Validates a plan before a search: all references, and the stacks of its programs. */
 #include "code_check.h"
 
 #include <stdlib.h>
@@ -122,7 +122,7 @@ static bool places_fit(const checker *c)
     return true;
 }
 
-/* Priorities of all automata, of no channel and of all channels, of which two can be added. */
+/* Priorities of all automata, of steps without channel and of all channels; any two can be added. */
 static bool ranks_fit(const checker *c)
 {
     const int32_t count = rows(c, AT_RANKS);
@@ -141,7 +141,7 @@ static bool ranks_fit(const checker *c)
     return (count == 0) || (count > rows(c, AT_AUTOMATA));
 }
 
-/* Rows of the tree refer to rows before them, plain ones to alternatives. */
+/* Rows of the tree refer to earlier rows, plain ones to alternatives. */
 static bool tree_fits(const checker *c)
 {
     const int32_t *row = plan_rows(c->plan, AT_TREE);
@@ -165,7 +165,7 @@ static bool tree_fits(const checker *c)
     return true;
 }
 
-/* An automaton whose states are the pieces inside. */
+/* The automaton has the pieces inside as states. */
 static bool ways_fit(const checker *c)
 {
     const int32_t *row = plan_rows(c->plan, AT_WAYS);

@@ -1,5 +1,5 @@
-/* Programs of a plan, and the bounds of its atoms. Overflow, a bad index, a value out of range,
- * division by zero, a shift by no number of bits and a loop without end fail. */
+/* Evaluates programs of a plan, and the bounds of its atoms. Overflow, an index or value out of range,
+ * division by zero, a shift by a bad number of bits and an endless loop are failures. */
 #ifndef RVMON_ZONES_PROGRAMS_H
 #define RVMON_ZONES_PROGRAMS_H
 
@@ -8,7 +8,7 @@
 
 static bool is_time(engine *h, int64_t number);
 
-/* Set a variable, if the value is in its range. */
+/* Set a variable if the value is in its range; a bool takes any value as its truth. */
 static bool set_variable(const engine *h, int32_t *values, int64_t at, int64_t x)
 {
     const int32_t *variable = h->variables + (ptrdiff_t)at * 4;
@@ -20,7 +20,7 @@ static bool set_variable(const engine *h, int32_t *values, int64_t at, int64_t x
     return true;
 }
 
-/* The index of the reset of a clock; their number if there is none. */
+/* The index of the reset of a clock in the current move; the number of resets if there is none. */
 static int reset_of(const walk *w, int32_t clock)
 {
     int j = 0;
@@ -30,7 +30,7 @@ static int reset_of(const walk *w, int32_t clock)
     return j;
 }
 
-/* Add a reset of a clock. */
+/* Add a reset of a clock to the move whose updates run. */
 static bool set_clock(engine *h, int32_t clock, int64_t x)
 {
     walk *w = h->sets;
@@ -51,12 +51,13 @@ static void copy_spot(const engine *h, const spot *to, const spot *from)
     (void)memcpy(to->values, from->values, (size_t)h->variable_count * sizeof *to->values);
 }
 
+/* Run the program at `at` and return its value; if it has none, set `failed`. */
 static int64_t compute(engine *h, int32_t at, const spot *here)
 {
     const int32_t *code = h->code;
     int32_t *values = here->values;
     int64_t stack[STACK + 1];
-    int64_t *s = stack; /* the first is never used */
+    int64_t *s = stack; /* the top; the first entry is never used */
     for (;;) {
         const int32_t op = code[at++];
         bool good = true;
@@ -132,7 +133,7 @@ static int64_t compute(engine *h, int32_t at, const spot *here)
             s -= 2;
             break;
         case OP_CLOCK:
-            good = set_clock(h, code[at++], *s--) || !runs(h);
+            good = set_clock(h, code[at++], *s--) || !runs(h); /* too large: ends this search, no failure */
             break;
         case OP_CALL:
             *++s = compute(h, code[at++], here);
@@ -170,7 +171,7 @@ static bool holds(engine *h, int32_t program, const spot *here)
     return (program < 0) || (evaluate(h, program, here) != 0);
 }
 
-/* Check a number of time units: a negative one fails, a large one needs the search in 64 bits. */
+/* Check a number of time units: a negative one is a failure, a large one needs the search in 64 bits. */
 static bool is_time(engine *h, int64_t number)
 {
     if ((number < 0) || (number >= INT32_MAX)) {
@@ -184,7 +185,7 @@ static bool is_time(engine *h, int64_t number)
     return true;
 }
 
-/* Evaluate an atom to a bound; false if it compares with no time. */
+/* Evaluate an atom to a bound; false if its number is no time. */
 static bool atom_at(engine *h, int32_t k, const spot *here, cut *to)
 {
     const int32_t *atom = h->atoms + (ptrdiff_t)ATOM_SIZE * k;
@@ -291,7 +292,7 @@ static bool settle(engine *h, bound *z, const spot *here, bool delays)
     return cut_invariant(h, z, here);
 }
 
-/* The clock limits of the present locations, and the clocks that have any. */
+/* The limits of clocks in the current locations, and the clocks that have any. */
 static void find_limits(engine *h, const spot *here)
 {
     int a;
@@ -313,7 +314,7 @@ static void find_limits(engine *h, const spot *here)
             *to = (row[LIMIT_NUMBER] > *to) ? row[LIMIT_NUMBER] : *to;
         }
     }
-    if (h->policy == POLICY_FASTEST) { /* a later zone never subsumes an earlier one */
+    if (h->policy == POLICY_FASTEST) { /* a later zone must not subsume an earlier one */
         h->upper[h->timer] = h->safe / 2;
     }
     if (h->phase != 0 && (h->timer != 0)) {

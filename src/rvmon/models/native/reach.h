@@ -1,13 +1,13 @@
-/* The passed list with its subsumption, and the goals of a search. */
+/* The list of visited zones with its subsumption, and the goals of a search. */
 #ifndef RVMON_ZONES_REACH_H
 #define RVMON_ZONES_REACH_H
 
 #include "moves.h"
 
-/* --- subsumption of zones up to aLU -------------------------------------------------------------
+/* --- subsumption of zones with respect to the abstraction aLU -----------------------------------
  * Source: Herbreteau, Srivathsan, Walukiewicz, Better Abstractions for Timed Automata, LICS 2012. */
 
-/* The entries that a zone must have at least to subsume z; returns their number. */
+/* The least values that entries of a zone need to subsume z; returns their number. */
 static int make_test(engine *h, const bound *z)
 {
     const int d = h->dim;
@@ -33,6 +33,7 @@ static int make_test(engine *h, const bound *z)
     return n;
 }
 
+/* Whether a zone subsumes z: the same test for a single zone. */
 static bool subsumes(const engine *h, const bound *large, const bound *z)
 {
     const int d = h->dim;
@@ -56,7 +57,7 @@ static bool subsumes(const engine *h, const bound *large, const bound *z)
     return true;
 }
 
-/* Store z unless a zone of its state subsumes it; returns its node, the given or a new one, or NONE. */
+/* Store z unless a zone of its state subsumes it; returns its node (the given or a new one), or NONE. */
 static uint32_t keep(engine *h, uint32_t state, uint32_t n, const bound *z, const spot *here)
 {
     const bool best = h->policy != POLICY_SHORTEST;
@@ -73,7 +74,7 @@ static uint32_t keep(engine *h, uint32_t state, uint32_t n, const bound *z, cons
         while ((i < tests) && (old[h->test_entries[i]] >= h->test_least[i])) {
             i++;
         }
-        if (i == tests) { /* moved to the front: it is likely to subsume the next one, too */
+        if (i == tests) { /* move it to the front: it is likely to subsume the next zone, too */
             *at = h->nodes[k].next;
             h->nodes[k].next = h->heads[state];
             h->heads[state] = k;
@@ -105,7 +106,7 @@ static uint32_t keep(engine *h, uint32_t state, uint32_t n, const bound *z, cons
 
 /* --- deadlocks ---------------------------------------------------------------------------------- */
 
-/* The valuations from which a move can be taken, now or after a delay. */
+/* Add the valuations from which a move can be taken, now or after a delay, to `alive`. */
 static bool note_alive(engine *h, walk *w, const int32_t *edges, int n)
 {
     bound *z = w->zone;
@@ -117,7 +118,7 @@ static bool note_alive(engine *h, walk *w, const int32_t *edges, int n)
     if (!cut_guards(h, w, z, edges, n) || !cut_invariant(h, z, &w->here)) {
         return runs(h) && !h->failed;
     }
-    if (!apply(h, w, edges, n)) { /* a move whose update fails can be taken: no deadlock */
+    if (!apply(h, w, edges, n)) { /* a move whose update fails can still be taken: no deadlock */
         if (!h->failed) {
             return false;
         }
@@ -142,7 +143,7 @@ static bool note_alive(engine *h, walk *w, const int32_t *edges, int n)
     return fits(h, z) && push_zone(h, &h->alive, z) && runs(h);
 }
 
-/* Compute the part of a zone from which no edge can ever be taken, as `dead`; false if that failed. */
+/* Compute the part of a zone from which no edge can ever be taken, in `dead`; false if that failed. */
 static bool find_dead(engine *h, const bound *z, const spot *here)
 {
     walk *w = &h->look;
@@ -156,13 +157,14 @@ static bool find_dead(engine *h, const bound *z, const spot *here)
 
 /* --- goals --------------------------------------------------------------------------------------- */
 
+/* The least value of the timer; slightly more if it is not attained. */
 static double price_of(const engine *h, const bound *z)
 {
     const bound low = z[h->timer * h->dim];
     return (double)(-(low >> 1)) + (((low & 1) != 0) ? 0.0 : 0x1p-20);
 }
 
-/* The least price of the parts at the goal; that part is moved to the front. */
+/* The least price of the parts at the goal; the cheapest part is moved to the front. */
 static double cheapest(engine *h)
 {
     bound *first = h->parts.zones;
@@ -175,7 +177,7 @@ static double cheapest(engine *h)
     return price_of(h, first);
 }
 
-/* Intersect a zone with the alternatives of a section, as `parts`; false if nothing is left. */
+/* Intersect a zone with the alternatives of a section, in `parts`; false if nothing is left. */
 static bool meets_rows(engine *h, const bound *z, int section, const spot *here)
 {
     const int32_t *row = plan_rows(h->plan, section);
@@ -202,7 +204,7 @@ static bool meets_rows(engine *h, const bound *z, int section, const spot *here)
     return h->parts.count > 0;
 }
 
-/* The same for goals that hold at deadlocks (AT_INSIDE), and for those that hold elsewhere (AT_GOAL). */
+/* The same for goals in states with a deadlock (AT_INSIDE) and in states without (AT_GOAL). */
 static bool meets_at_deadlock(engine *h, const bound *z, const spot *here)
 {
     const int sections[2] = {AT_INSIDE, AT_GOAL};
@@ -226,7 +228,7 @@ static bool meets_at_deadlock(engine *h, const bound *z, const spot *here)
         }
     }
     if (some[1]) {
-        swap(&h->dead, &h->alive); /* now `alive` has the dead part */
+        swap(&h->dead, &h->alive); /* now `alive` is the dead part */
         h->dead.count = 0;
         if (!push_zone(h, &h->dead, z) || !subtract_all(h, &h->dead, &h->alive)) {
             return false;
@@ -242,7 +244,7 @@ static bool meets_at_deadlock(engine *h, const bound *z, const spot *here)
 
 static bool meets_nested(engine *h, const bound *z, const spot *here);
 
-/* Whether a zone meets the goal; where, as `parts`. */
+/* Whether a zone meets the goal; the valuations that do are in `parts`. */
 static bool is_goal(engine *h, const bound *z, const spot *here)
 {
     h->parts.count = 0;

@@ -1,12 +1,13 @@
-/* Accepted runs with finitely many moves: they idle for ever, or get stuck. */
+/* Accepted runs with finitely many moves, which end idle or stuck. */
 #ifndef RVMON_ZONES_REST_H
 #define RVMON_ZONES_REST_H
 
 #include "stay.h"
 
+/* Flags of edges, besides the acceptance sets: it is a move; a unit of time has passed. */
 #define MOVES ((uint32_t)1 << 29)
 #define TICKS ((uint32_t)1 << 30)
-#define CLOSED UINT32_MAX
+#define CLOSED UINT32_MAX /* the rank of nodes in components that were left */
 
 static const int32_t *way_of(const engine *h, int k)
 {
@@ -18,13 +19,13 @@ static int32_t arc_at(const engine *h, int32_t a)
     return plan_rows(h->plan, AT_ARCS)[a];
 }
 
-/* The flags that an accepting component needs. */
+/* The flags that an accepting component must have. */
 static uint32_t wanted_flags(const engine *h)
 {
     return (((uint32_t)1 << h->plan[HEAD_SETS]) - 1) | MOVES | ((h->timer != 0) ? TICKS : 0);
 }
 
-/* Find the pieces from which the automaton accepts if only the allowed pieces hold for ever. */
+/* Find the pieces from which the automaton accepts if only the allowed pieces hold forever. */
 static void find_rest(engine *h)
 {
     const int32_t n = h->inside_count;
@@ -35,7 +36,7 @@ static void find_rest(engine *h)
         uint32_t met = 0;
         int side;
         int32_t k;
-        /* forward and backward reachability from r, to a fixed point */
+        /* forward and backward reachability from r, each to a fixed point */
         for (side = 0; side < 2; side++) {
             uint8_t *found = side ? h->rest_back : h->rest_on;
             bool changed = true;
@@ -73,7 +74,7 @@ static void find_rest(engine *h)
     }
 }
 
-/* Whether the automaton accepts from a piece on if only the allowed pieces hold for ever. */
+/* The same as a test of one piece; the result is kept until `allowed` changes. */
 static bool rests(engine *h, int k)
 {
     const size_t n = (size_t)h->inside_count;
@@ -85,7 +86,7 @@ static bool rests(engine *h, int k)
     return (h->allowed[k] != 0) && (h->rest_good[k] != 0);
 }
 
-/* Whether a piece holds when time stops; no atom may divide the zone. */
+/* Whether a piece holds when time stops. No atom may divide the zone in that respect. */
 static bool holds_last(engine *h, const bound *z, int k, bool delays)
 {
     const int32_t *piece = piece_at(h, k);
@@ -101,8 +102,8 @@ static bool holds_last(engine *h, const bound *z, int k, bool delays)
     return true;
 }
 
-/* Whether an accepted run gets stuck in piece k; where, as `parts`. The zone is split by all atoms, so
- * that in each part time stops in the same way. */
+/* Whether an accepted run gets stuck in piece k; the valuations are in `parts`. The zone is split by all
+ * atoms, so that the same pieces hold in the end for all valuations of a part. */
 static bool look_for_stuck(engine *h, const bound *z, int k, bool delays)
 {
     walk *w = &h->out;
@@ -150,7 +151,7 @@ static bool look_for_stuck(engine *h, const bound *z, int k, bool delays)
     return found;
 }
 
-/* Whether an accepted run can end at a node: it idles for ever, or is stuck. */
+/* Whether an accepted run can end at a node: idle forever, or stuck. */
 static bool ends_here(engine *h, uint32_t n)
 {
     const bound *z = zone_of(h, n);

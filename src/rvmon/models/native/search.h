@@ -17,7 +17,7 @@ static double cost_of(const engine *h, const bound *z, const int32_t *edges, int
     return cost;
 }
 
-/* Widen the range of the last clock of the network at the present location of the watcher. */
+/* Extend the range of the last clock of the network at the current location of the watcher. */
 static void note_span(engine *h, const bound *z, const spot *here)
 {
     const int32_t clock = h->plan[HEAD_CLOCKS];
@@ -30,7 +30,7 @@ static void note_span(engine *h, const bound *z, const spot *here)
 
 static void enter_way(engine *h, const bound *z, const spot *here);
 
-/* Store a zone reached in a discrete state whose data satisfy the invariants. */
+/* Store a zone reached in a discrete state whose data satisfy the invariant, as the kind of search needs. */
 static void arrive(engine *h, bound *z, const spot *here,
                    const int32_t *edges, int count)
 {
@@ -96,7 +96,7 @@ static void note_step(engine *h, const int32_t *edges, int n)
     h->step_edge_count = n;
 }
 
-/* Take a move of the walk `out`. */
+/* Take a move of the walk `out`: store the zone after it. */
 static bool take(engine *h, walk *w, const int32_t *edges, int n)
 {
     const uint32_t ordinal = w->ordinal++;
@@ -119,7 +119,7 @@ static bool take(engine *h, walk *w, const int32_t *edges, int n)
     return runs(h) && !h->failed;
 }
 
-/* Reconstruct the move with the wanted number. */
+/* Stop at the move with the wanted number, and note its edges and the negated bounds of its blockers. */
 static bool match(engine *h, walk *w, const int32_t *edges, int n)
 {
     uint32_t k;
@@ -136,7 +136,7 @@ static bool match(engine *h, walk *w, const int32_t *edges, int n)
     return false;
 }
 
-/* Expand a node on the way to the goal. */
+/* Expand a node on the way to the goal: add its successors. */
 static void expand(engine *h, uint32_t n)
 {
     walk *w = &h->out;
@@ -147,7 +147,8 @@ static void expand(engine *h, uint32_t n)
     (void)each_move(h, w, take);
 }
 
-/* The successors in a search for a late response: inside crossings and moves, before moves and triggers. */
+/* Expand a node of a search for a late response: inside by crossings and moves, before it by moves and by
+ * marks where the goal holds. */
 static void expand_late(engine *h, uint32_t n)
 {
     walk *w = &h->out;
@@ -195,7 +196,8 @@ static void expand_late(engine *h, uint32_t n)
     h->phase = 0;
 }
 
-/* A step of a best-first search. */
+/* A step of a best-first search. A node that meets the goal returns to the heap with the price of the
+ * goal, and ends the search when it is the best. */
 static void step_best(engine *h)
 {
     walk *w = &h->out;

@@ -4,7 +4,7 @@
 
 #include "programs.h"
 
-/* Pack a discrete state; `mark` is what a search distinguishes besides, e.g. the piece. */
+/* Pack a discrete state; `mark` is what the search distinguishes in addition, such as the piece. */
 static void pack(const engine *h, const spot *here, uint32_t mark,
                  uint32_t *to)
 {
@@ -50,7 +50,7 @@ static uint32_t hash_of(const void *data, size_t words)
     return (uint32_t)(x ^ x >> 29);
 }
 
-/* Make room in a table of so many entries for one more; false without memory. */
+/* Make room for one more entry in a table of `count`, which stays half empty; false without memory. */
 static bool widen(engine *h, table *t, uint32_t count, uint32_t (*hash)(const engine *, uint32_t))
 {
     table wide = {NULL, 0};
@@ -83,7 +83,7 @@ static uint32_t hash_state(const engine *h, uint32_t state)
     return hash_of(h->bits + (size_t)state * h->words, h->words);
 }
 
-/* The slot of the packed state in the table, or the empty one for it; NULL without memory. */
+/* The slot of a packed state in the table, or the empty slot for it; NULL without memory. */
 static uint32_t *find_state(engine *h, const uint32_t *packed)
 {
     const size_t bytes = h->words * sizeof *packed;
@@ -126,7 +126,7 @@ static bound *zone_of(const engine *h, uint32_t n)
     return zone_at(h, h->nodes[n].zone);
 }
 
-/* A slot for a zone; free slots hold the number of the next free one. NONE without memory. */
+/* A slot for a zone, or NONE without memory. Free slots hold the index of the next free one. */
 static uint32_t new_slot(engine *h)
 {
     uint32_t slot = h->freed;
@@ -158,7 +158,7 @@ static void drop_zone(engine *h, uint32_t n)
     h->nodes[n].zone = NONE;
 }
 
-/* A new symbolic state, child of the one being expanded; NONE without memory or if its numbers are too
+/* A new symbolic state, a child of the one being expanded; NONE without memory or if its numbers are too
  * large. */
 static uint32_t new_node(engine *h, uint32_t state, const bound *z)
 {
@@ -213,7 +213,7 @@ static void swap(federation *a, federation *b)
     *b = was;
 }
 
-/* Subtract a zone from a union, using `rest`. */
+/* Subtract a zone from a union: split each zone along the bounds of the other into disjoint parts. */
 static bool subtract(engine *h, federation *from, const bound *other)
 {
     const int d = h->dim;
@@ -261,6 +261,7 @@ static bool subtract_all(engine *h, federation *f, const federation *others)
     return true;
 }
 
+/* Append a node to the queue. When the array is full, consumed entries are dropped if they fill half. */
 static bool wait_for(engine *h, uint32_t n)
 {
     if ((h->queue_end == h->queue_room) && (h->queue_head > h->queue_room / 2)) {

@@ -1,4 +1,4 @@
-/* Depth-first search for runs that stay inside for ever: by idling, in a deadlock, or in a loop.
+/* Depth-first search for runs that stay inside forever: idle, in a deadlock, or in a loop.
  *
  * Source: Alur, Courcoubetis, Dill, Model-Checking in Dense Real-Time, 1993 (runs and loops). */
 #ifndef RVMON_ZONES_STAY_H
@@ -8,7 +8,7 @@
 
 enum { NEW, ON_THE_WAY, DONE };
 
-/* The valuations from which an atom (an upper bound: its negation) holds when time stops. */
+/* The valuations from which an atom (for an upper bound: its negation) can hold when time stops. */
 static bool reaches_atom(engine *h, bound *to, int32_t k, bool delays, bool *upper)
 {
     walk *w = &h->out;
@@ -27,7 +27,7 @@ static bool reaches_atom(engine *h, bound *to, int32_t k, bool delays, bool *upp
     return true;
 }
 
-/* The part of a zone from which no edge can be taken and time stops before the piece ends, as `dead`. */
+/* The part of a zone from which no edge can be taken, and time stops before the piece ends, in `dead`. */
 static bool find_stuck(engine *h, const bound *z, int k, bool delays)
 {
     const walk *w = &h->out;
@@ -49,7 +49,7 @@ static bool find_stuck(engine *h, const bound *z, int k, bool delays)
     return h->dead.count > 0;
 }
 
-/* Whether a run can end here: idle for ever, which ends the search, or stuck. */
+/* Whether a run can end here: idle forever, which ends the search, or stuck. Returns whether to continue. */
 static bool look_for_end(engine *h, const bound *z, int k, bool delays)
 {
     const walk *w = &h->out;
@@ -88,7 +88,7 @@ static bool moves_here(engine *h, const bound *z, int k, bool delays)
     return each_move(h, &h->out, take);
 }
 
-/* The steps to the last frame, and the index at which a loop back to a node starts. */
+/* Append the steps to the last frame, and set the index of the loop if it goes back to a node. */
 static void tell_way(engine *h, uint32_t back)
 {
     const uint32_t first = h->frames[0].node;
@@ -113,7 +113,7 @@ static void tell_way(engine *h, uint32_t back)
     }
 }
 
-/* Whether time passes without bound on the given loop, which starts at a node: 1 or 0; -1 if the
+/* Ask the caller whether time diverges on the current loop, which starts at a node: 1 or 0; -1 if the
  * search ended. */
 static int ask_counts(engine *h, uint32_t n)
 {
@@ -137,7 +137,7 @@ static int ask_counts(engine *h, uint32_t n)
     return counts;
 }
 
-/* A loop back to a node on the stack: found, if time may pass on it as asked. */
+/* Handle a loop back to a node on the stack; found, if time diverges on it or need not. */
 static void close_loop(engine *h, successor to)
 {
     int counts;
@@ -157,7 +157,7 @@ static void close_loop(engine *h, successor to)
     }
 }
 
-/* Enter a node for the first time; found if a run can end there. */
+/* Enter a new node; found if a run can end there. */
 static void stay_at(engine *h, successor at)
 {
     const uint32_t state = h->nodes[at.node].state;
@@ -196,7 +196,7 @@ static void stay_at(engine *h, successor at)
     h->frames[h->frame_count - 1].end = h->successor_count;
 }
 
-/* The depth-first search, with callbacks for each successor met and for each node left. */
+/* The depth-first search, with callbacks for each successor and for each node that is left. */
 static void go_deep(engine *h, void (*seen)(engine *, successor), void (*left)(engine *, uint32_t))
 {
     frame stem = {NONE, 0, 0, h->successor_count};
@@ -228,7 +228,7 @@ static void leave_stay(engine *h, uint32_t n)
     h->colours[n] = DONE;
 }
 
-/* Search from the zone in `out`, with the discrete state in its target. */
+/* Search from the zone of `out`, in its target state. */
 static void stay_from(engine *h, uint32_t stem, uint32_t link)
 {
     h->phase = 1;
@@ -241,7 +241,7 @@ static void stay_from(engine *h, uint32_t stem, uint32_t link)
     go_deep(h, meet_stay, leave_stay);
 }
 
-/* Search from all pending triggers, where the goal holds. */
+/* Search from all pending triggers: from where the goal holds in them. */
 static void stay_after(engine *h)
 {
     walk *w = &h->out;
@@ -251,7 +251,7 @@ static void stay_after(engine *h)
         int32_t k;
         for (k = 0; (k < h->goal_count) && runs(h) && !h->failed; k++) {
             if (h->nodes[from].zone == NONE) {
-                break; /* a larger zone triggers, too */
+                break; /* a larger zone replaced it, which triggers as well */
             }
             unpack(h, h->nodes[from].state, &w->there);
             copy_zone(h, w->zone, zone_of(h, from));

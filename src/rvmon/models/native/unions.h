@@ -1,4 +1,4 @@
-/* Unions of zones, as sets of valuations of a discrete state; their time predecessors.
+/* Unions of zones as sets of valuations of a discrete state, and their time predecessors.
  *
  * Source: Cassez, David, Fleury, Larsen, Lime, Efficient On-the-Fly Algorithms for the Analysis of
  * Timed Games, 2005 (delays that avoid a zone). */
@@ -7,8 +7,8 @@
 
 #include "search.h"
 
-/* Add a zone to a union unless one there includes it, and remove those that it includes; whether it was
- * added. */
+/* Add a zone to a union unless one of its zones includes it, and remove those that it includes; returns
+ * whether it was added. */
 static bool join(engine *h, federation *f, const bound *z)
 {
     uint32_t i;
@@ -54,7 +54,7 @@ static void meet(engine *h, federation *out, const federation *a, const federati
     }
 }
 
-/* The valuations that the invariant of a state allows, as a union of one zone or none. */
+/* Add the valuations that the invariant of a state allows: one zone, or none. */
 static void everywhere(engine *h, uint32_t s, federation *out)
 {
     walk *w = &h->look;
@@ -65,7 +65,7 @@ static void everywhere(engine *h, uint32_t s, federation *out)
     }
 }
 
-/* Add the valuations from which a delay leads into a zone without passing through the bad ones. */
+/* Add the valuations from which a delay leads into a zone without passing through `bad`. */
 static void add_earlier(engine *h, uint32_t s, const bound *z, const federation *bad,
                         federation *out)
 {
@@ -86,10 +86,11 @@ static void add_earlier(engine *h, uint32_t s, const bound *z, const federation 
             copy_zone(h, h->copy, z);
             before(h->copy, h->dim);
             if (!cut_zone(h, h->copy, nth(h, bad, k))) {
-                continue; /* it is not on the way */
+                continue; /* not on the way to the zone */
             }
             copy_zone(h, past, nth(h, bad, k));
             before(past, h->dim);
+            /* Those with the bad zone ahead remain only if they reach a part of the target before it. */
             some.count = 0;
             copy_zone(h, h->copy, z);
             if (cut_zone(h, h->copy, past) && push_zone(h, &some, h->copy)) {
@@ -112,7 +113,7 @@ static void add_earlier(engine *h, uint32_t s, const bound *z, const federation 
     empty(h, &both);
 }
 
-/* The weakest precondition of a zone for setting a clock to a number; false if it is empty. */
+/* The weakest precondition of a zone for setting clock c to n; false if it is empty. */
 static bool undo(bound *z, int d, int c, bound n)
 {
     int j;

@@ -1,5 +1,5 @@
-/* The effect of a move, and its blockers: receivers that it leaves out, and moves of higher priority. Of
- * each blocker some bound must fail, so a move has one variant for each choice of these bounds. */
+/* The effect of a move, and its blockers: receivers that it leaves out, and moves of higher priority. At
+ * least one bound of each blocker must fail, so a move has one variant per choice of these bounds. */
 #ifndef RVMON_ZONES_VARIANTS_H
 #define RVMON_ZONES_VARIANTS_H
 
@@ -12,7 +12,7 @@ static bool is_watcher(const engine *h, int automaton)
     return (h->plan[HEAD_WATCHED] != 0) && (automaton == h->automaton_count - 1);
 }
 
-/* Apply the updates of a move to its source: `target`, `changed` and `resets`. */
+/* Apply the updates of a move to its source, which gives its target and resets. */
 static bool apply(engine *h, walk *w, const int32_t *edges, int n)
 {
     const spot changing = {w->here.places, w->there.values};
@@ -78,7 +78,7 @@ static void drop_denials(denials *from)
     from->atom_count = 0;
 }
 
-/* A blocker of the present move, by its index in `against`; receivers left out come first. */
+/* A blocker of the current move by its index; receivers left out come first. */
 static const denial *denied_by(const walk *w, uint32_t k, const cut **atoms)
 {
     const uint32_t skipped = w->skipped.count;
@@ -88,7 +88,7 @@ static const denial *denied_by(const walk *w, uint32_t k, const cut **atoms)
     return row;
 }
 
-/* The bound of a blocker that fails in the present variant. */
+/* The negated bound of a blocker that fails in the current variant. */
 static cut failing(const walk *w, uint32_t k)
 {
     const cut *atoms;
@@ -96,7 +96,7 @@ static cut failing(const walk *w, uint32_t k)
     return opposite(atoms[w->skip[k]]);
 }
 
-/* Intersect a zone with the guards of a move, and with a failing bound of each blocker. */
+/* Intersect a zone with the guards of a move, and with the negated bound of each blocker. */
 static bool cut_guards(engine *h, const walk *w, bound *z, const int32_t *edges, int n)
 {
     uint32_t k;
@@ -117,7 +117,7 @@ static bool cut_guards(engine *h, const walk *w, bound *z, const int32_t *edges,
 
 /* --- priorities ---------------------------------------------------------------------------------- */
 
-/* The priority of a move: by its channel, then by the highest of its automata. */
+/* The priority of a move: its channel decides, then the highest of its automata. */
 static int32_t rank_of(engine *h, const walk *w, const int32_t *edges, int n)
 {
     const int32_t *ranks = plan_rows(h->plan, AT_RANKS);
@@ -142,8 +142,8 @@ static int32_t rank_of(engine *h, const walk *w, const int32_t *edges, int n)
     return ranks[h->automaton_count + 1 + channel] + own;
 }
 
-/* The weakest precondition of a move for the invariant of its target, as upper bounds; returns their
- * number, -1 if it cannot hold or failed. */
+/* The weakest precondition of a move for the invariant of its target, as upper bounds in `tightest`;
+ * returns their number, or -1 if it cannot hold or failed. */
 static int invariant_behind(engine *h, const walk *w)
 {
     const int bounds = invariant_of(h, &w->there);
@@ -161,7 +161,8 @@ static int invariant_behind(engine *h, const walk *w)
     return (bounds < 0) ? -1 : n;
 }
 
-/* Add those bounds that the source does not imply; false if the invariant cannot hold, or failed. */
+/* Add those bounds of the target's invariant that the source does not imply; false if the invariant cannot
+ * hold, or failed. */
 static bool deny_invariant(engine *h, walk *w)
 {
     const int bounds = invariant_behind(h, w);
@@ -216,7 +217,7 @@ static bool is_same(const walk *w, const denial *one, const denial *other)
                == 0);
 }
 
-/* Collect the blockers of higher priority of a move, each once; false if one blocks it always. */
+/* Collect the distinct blockers of higher priority of a move; false if one of them always blocks it. */
 static bool find_blockers(engine *h, walk *w, const int32_t *edges, int n)
 {
     const bool waits = (w->blocker_count > 0) && !is_watcher(h, edge_at(h, edges[0])[EDGE_AUTOMATON]);
@@ -247,7 +248,7 @@ static bool find_blockers(engine *h, walk *w, const int32_t *edges, int n)
 
 /* --- the watcher --------------------------------------------------------------------------------- */
 
-/* Join a move with each edge of the watcher that can watch it; moves of the watcher itself stay alone. */
+/* Join a move with each edge of the watcher that allows it. Moves of the watcher itself stay alone. */
 static bool each_watched(engine *h, walk *w, const int32_t *edges, int n, sink take)
 {
     const search_state before = h->state;
@@ -281,7 +282,7 @@ static bool each_watched(engine *h, walk *w, const int32_t *edges, int n, sink t
     return !h->failed;
 }
 
-/* Take a move in all its variants. */
+/* Call `take` with all variants of a move. */
 static bool each_variant(engine *h, walk *w, const int32_t *edges, int n, sink take)
 {
     int64_t i = 0;

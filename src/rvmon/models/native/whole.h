@@ -1,11 +1,11 @@
-/* A search from start to answer. */
+/* A search from its start to its answer. */
 #ifndef RVMON_ZONES_WHOLE_H
 #define RVMON_ZONES_WHOLE_H
 
 #include "nested.h"
 #include "linear.h"
 
-/* Lay out locations and variables in packed states. */
+/* Assign bits of packed states to locations and variables. */
 static bool lay_out(engine *h)
 {
     const int n = h->automaton_count + h->variable_count;
@@ -34,7 +34,7 @@ static bool lay_out(engine *h)
         h->fields[i].low = place ? 0 : v[0];
         used += bits;
     }
-    h->words = word + 2; /* the last is the mark */
+    h->words = word + 2; /* the last word is the mark */
     return true;
 }
 
@@ -59,7 +59,7 @@ static void make_walk(engine *h, walk *w)
     w->watching = block(h, (size_t)h->edge_count, sizeof *w->watching);
 }
 
-/* No location of the watcher was met: empty ranges. */
+/* Start with empty ranges for all locations of the watcher. */
 static void make_spans(engine *h)
 {
     const int32_t places = h->automata[3 * (h->automaton_count - 1) + 1];
@@ -70,7 +70,7 @@ static void make_spans(engine *h)
     }
 }
 
-/* Allocate what a search needs from the start; false without memory. */
+/* Allocate what every search needs; false without memory. */
 static bool make_engine(engine *h, const int32_t *plan, const double *costs, const caller *from)
 {
     size_t d;
@@ -158,7 +158,7 @@ static void begin(engine *h)
     }
 }
 
-/* Whether all numbers that clocks are compared with are small enough for these bounds. */
+/* Whether all numbers that clocks are compared with fit these bounds. */
 static bool limits_fit(const engine *h)
 {
     const int sections[2] = {AT_LIMITS, AT_EXTRA};
@@ -241,10 +241,10 @@ static void run(engine *h)
     }
 }
 
-/* The path to the result, or to the failure including the move that failed. */
+/* Append the path to the result, or to the failure including the move that failed. */
 static void tell_end(engine *h)
 {
-    /* Once memory is out, a failure may be due to that. */
+    /* Once memory has run out, a failure may be a consequence of that. */
     const bool fails = h->failed && (runs(h) || (h->state == SEARCH_FOUND));
     const search_state ended = fails ? SEARCH_FAILED : h->state;
     const int32_t failed = h->step_edge_count;

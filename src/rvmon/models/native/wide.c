@@ -1,4 +1,4 @@
-/* The search in bounds of 64 bits, for numbers that are too large for 32. */
+/* The search with bounds of 64 bits, for numbers too large for 32. */
 #define WIDE
 #include "whole.h"
 
