@@ -1,10 +1,11 @@
-"""Work for many tasks: processes that never outlive who began them, results that outlive all.
+"""Execution of many tasks: worker processes, external commands, journals and shards.
 
-`parallel.execute` shares tasks among processes, or the workers of a scheduler of Dask; nothing else
-starts any for Python's work. `journal` keeps results as they come, so that work which was ended
-goes on; a `Shard` is a share of the work for one of several machines, none of which knows of
-another: begun without a shard where all their journals are, work finds in them what was done.
-`run_command` runs a program; `interrupted_by_sigterm` has all of them cleaned up.
+`parallel.execute` distributes tasks over processes or over the workers of a Dask scheduler; no
+other module starts Python processes. No process outlives the one that started it. `journal` writes
+results to disk as they come, so that interrupted work can be resumed. A `Shard` is a share of the
+work for one of several machines, which need not know each other; a final run without a shard, in a
+folder that contains all their journals, takes the results from these. `run_command` runs a program.
+`interrupted_by_sigterm` cleans up after SIGTERM, too.
 """
 
 from __future__ import annotations
@@ -22,15 +23,15 @@ if TYPE_CHECKING:
 
 
 class Ended(NamedTuple):
-    """The end of a task's process that did not finish."""
+    """How the process of an unfinished task ended."""
 
-    timed_out: bool  # whether it was stopped here, as the task took too long
-    why: str  # for people
-    seconds: float  # wall time that the task had taken
+    timed_out: bool  # whether it was killed because the task exceeded its timeout
+    why: str  # the cause, for people
+    seconds: float  # wall time from the start of the task
 
 
 class Work(NamedTuple):
-    """The tasks, and the words for their progress; see `parallel.execute`."""
+    """Arguments of `parallel.execute`; see there."""
 
     tasks: Iterable[Any]
     begin: Callable[[], Callable[[Any], Any]]
@@ -41,9 +42,9 @@ class Work(NamedTuple):
 
 @contextmanager
 def interrupted_by_sigterm() -> Iterator[None]:
-    """A request to end interrupts as Ctrl-C does: what was begun is ended, and cleaned up.
+    """Within the block, SIGTERM raises KeyboardInterrupt as Ctrl-C does, so that cleanup runs.
 
-    Only the main thread can say so.
+    Outside the main thread, where Python cannot set signal handlers, it does nothing.
     """
     if threading.current_thread() is not threading.main_thread():
         yield
@@ -59,7 +60,7 @@ _Task = TypeVar("_Task")
 
 
 class Shard(NamedTuple):
-    """One of several shares that are as large as each other."""
+    """One of `total` shares of equal size, numbered from 1."""
 
     number: int
     total: int
@@ -68,7 +69,7 @@ class Shard(NamedTuple):
         return f"{self.number}/{self.total}"
 
     def of(self, tasks: Sequence[_Task]) -> list[_Task]:
-        """The tasks of this share; all shares together have each task once.
+        """The tasks of this share; each task belongs to exactly one share.
 
         >>> [Shard(number, 2).of("abcde") for number in (1, 2)]
         [['a', 'c', 'e'], ['b', 'd']]
@@ -76,7 +77,7 @@ class Shard(NamedTuple):
         return list(tasks[self.number - 1 :: self.total])
 
     def name(self, path: Path) -> Path:
-        """The file of this shard in place of the file `path` of the whole.
+        """The file that this shard writes instead of `path`, the file of the whole work.
 
         >>> Shard(2, 4).name(Path("out/verdicts.csv")).name
         'verdicts.shard-2-of-4.csv'
@@ -85,7 +86,7 @@ class Shard(NamedTuple):
 
 
 def finished_shards(path: Path) -> list[Path]:
-    """The files of all finished shards in place of a file, by name.
+    """The existing files of shards of the file `path`, sorted by name.
 
     Raises:
         OSError: the folder cannot be read.
@@ -111,21 +112,21 @@ code=$?
 kill -9 $!
 exit $code
 """
-"""Run a command; when standard input ends before, kill it and all that it began."""
+"""Shell script: run a command; if standard input closes before it ends, kill the process group."""
 
 
 def run_command(words: Sequence[str], **options: Any) -> subprocess.CompletedProcess[str]:
-    r"""Run a command to its end; one that is not over when this process ends, ends with it.
+    r"""Run a command to its end; if this process ends first, the command is killed.
 
     Args:
-        words: the command. It has no standard input.
+        words: the command and its arguments. Its standard input is empty.
         options: for `subprocess.run`.
 
     Returns:
-        Its exit code, 128 and the signal's number if one ended it, and what it printed.
+        Its exit code and output; the exit code is 128 plus the signal number if a signal ended it.
 
     Raises:
-        OSError: it cannot be run.
+        OSError: the command cannot be run.
         subprocess.TimeoutExpired: it took longer than the option `timeout` allows.
 
     >>> run_command(["echo", "hello"]).stdout
@@ -136,8 +137,8 @@ def run_command(words: Sequence[str], **options: Any) -> subprocess.CompletedPro
     options = {"capture_output": True, "encoding": "utf-8", "errors": "replace", **options}
     if os.name != "posix":
         return subprocess.run(words, stdin=subprocess.DEVNULL, check=False, **options)  # noqa: S603 - words, no shell
-    # The system closes the pipe however this process ends, also by SIGKILL; then `read` returns,
-    # and the shell kills its process group, which the new session makes its own.
+    # However this process ends, also by SIGKILL, the system closes the pipe. Then `read` returns
+    # and the shell kills its process group, which contains nothing else due to the new session.
     watched, held = os.pipe()
     shell = ["/bin/sh", "-c", _WATCHED, "sh", *words]
     try:

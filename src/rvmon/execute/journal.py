@@ -1,7 +1,7 @@
-"""Results on the disk as they come, so that work which was ended in its midst goes on from there.
+"""Journals: results written to disk as they come, so that interrupted work can be resumed.
 
-A journal is a file of lines, each an entry behind its checksum. Whatever ends the process that adds
-to it, the entries before are whole; what is torn or damaged ends what is read.
+A journal is a file with one entry per line, preceded by its checksum. Whatever ends the process
+that writes it, all earlier entries are intact; reading stops at a truncated or damaged line.
 
 >>> from tempfile import TemporaryDirectory
 >>> with TemporaryDirectory() as folder:
@@ -29,13 +29,13 @@ from rvmon.files import contents, place_whole
 
 
 def entries(path: Path, *, all_of_them: bool = False) -> list[bytes] | None:
-    """The entries of a journal, up to the first that is not whole; `None` if there is no file.
+    """The entries of a journal before the first damaged one; `None` if there is no file.
 
-    With `all_of_them`, an entry that is not whole may only be the last, which was torn.
+    With `all_of_them`, only the last entry may be damaged, as a killed writer truncates it.
 
     Raises:
-        OSError: it cannot be read.
-        ValueError: another one is damaged.
+        OSError: the file cannot be read.
+        ValueError: with `all_of_them`, an entry before the last is damaged.
     """
     try:
         lines = path.read_bytes().splitlines(keepends=True)
@@ -53,26 +53,26 @@ def entries(path: Path, *, all_of_them: bool = False) -> list[bytes] | None:
 
 
 def begin(path: Path, first: Iterable[bytes]) -> None:
-    """Write a journal of these entries; a file that is there goes.
+    """Write a new journal with these entries; an existing file is replaced.
 
     Raises:
-        OSError: it cannot be written; nothing has changed.
+        OSError: the file cannot be written; nothing has changed.
     """
     place_whole(path, b"".join(map(_line, first)))
 
 
 def add(path: Path, entry: bytes) -> None:
-    """Add an entry, a line without its end: from now on it stays, also if the process is killed.
+    """Append an entry, which contains no line end; it survives a kill of this process.
 
     Raises:
-        OSError: it cannot be written; nothing has changed.
+        OSError: the file cannot be written; nothing has changed.
     """
-    # Without a buffer: a killed process leaves the whole entry, or a torn last line that its
-    # checksum tells.
+    # Without a buffer, a killed process leaves either the whole entry or a truncated last line,
+    # which does not match its checksum.
     with path.open("ab", buffering=0) as file:
         end, rest = file.tell(), _line(entry)
         try:
-            while rest:  # what a full disk has room for is written, and only the rest refused
+            while rest:  # a nearly full disk takes a part first and raises only for the rest
                 rest = rest[file.write(rest) :]
         except OSError:
             file.truncate(end)
@@ -80,28 +80,28 @@ def add(path: Path, entry: bytes) -> None:
 
 
 class Journal(Struct, frozen=True):
-    """Work that goes on from where it was ended."""
+    """The journal of resumable work."""
 
-    path: Path  # of the journal that is added to
-    shards: Sequence[Path] = ()  # journals of shards, from which something is known
+    path: Path  # the journal to which entries are appended
+    shards: Sequence[Path] = ()  # journals of shards from which results were taken
 
     def keep(self, entry: object) -> None:
-        """Write down what was done, as JSON: it stays, whatever ends this process.
+        """Append a result as JSON; it survives whatever ends this process.
 
         Raises:
-            OSError: it cannot be written.
+            OSError: the file cannot be written.
         """
         add(self.path, msgspec.json.encode(entry))
 
     def remove(self) -> None:
-        """Delete the files, as all is done and written."""
+        """Delete the files; to be called when all results are in their final place."""
         for path in (self.path, *self.shards):
             path.unlink(missing_ok=True)
 
 
 def checksum(*inputs: object) -> str:
-    """A checksum of what results depend on, rvmon and Python included."""
-    # Another rvmon or Python may give other results: its journal must not be gone on with.
+    """A checksum of all that results depend on: `inputs`, the sources of rvmon, and Python."""
+    # Another rvmon or Python may give other results, so it must not continue this journal.
     own = list(contents(Path(__file__).parents[1]))
     return hashlib.sha256(json.dumps([*inputs, own, sys.version]).encode()).hexdigest()
 

@@ -1,7 +1,7 @@
-"""`parallel.execute` on the workers of a scheduler of Dask, wherever these are.
+"""`parallel.execute` on the workers of a Dask scheduler.
 
-A worker that is lost costs nothing but time: Dask gives what it had to another. Each does one task
-at a time, however many threads it has.
+A lost worker costs only time, because Dask gives its tasks to another. Each worker does one task at
+a time, however many threads it has.
 """
 
 from __future__ import annotations
@@ -24,26 +24,26 @@ from rvmon.execute import Ended, Work
 from rvmon.execute.journal import checksum
 from rvmon.execute.worker import answer, packed_error
 
-CONNECT_S = 10  # seconds in which a scheduler has to answer
-NO_WORKERS_S = 60.0  # seconds for which one waits for a worker where there is none
-LEFT_S = 5.0  # seconds after its time in which a worker ends by itself that was not begun anew
-_POLL_S = 0.5  # seconds after which one looks again for what takes too long
+CONNECT_S = 10  # seconds within which a scheduler has to answer
+NO_WORKERS_S = 60.0  # seconds to wait for a first worker
+LEFT_S = 5.0  # seconds after a task's timeout until its worker exits unless it was restarted
+_POLL_S = 0.5  # seconds between two checks for tasks that exceed their timeout
 
 
 def execute_on_dask(work: Work, address: str) -> Iterator[Any]:
-    """Do tasks as `parallel.execute` does; what is said there of processes is of workers here.
+    """Do tasks as `parallel.execute` does, with Dask workers instead of processes.
 
     Args:
-        work: the tasks; `instead` gives the result of a task whose worker was lost again
-            and again, or took too long.
+        work: the tasks; `instead` gives the result of a task whose workers were lost repeatedly, or
+            which exceeded its timeout.
         address: of the scheduler, such as `tcp://10.0.0.5:8786`.
 
     Raises:
-        WorkerLostError: there is no worker; or those that had a task were lost, and there is no
-            `instead`.
+        WorkerLostError: there is no worker; or the workers of a task were lost repeatedly, and
+            there is no `instead`.
         RvmonError: Dask is not installed, no scheduler answers, a worker has another rvmon, or a
             task cannot be pickled.
-        Exception: what `begin` or a task raised.
+        Exception: whatever `begin` or a task raised.
     """
     with needed("Dask", "distributed"):
         import cloudpickle
@@ -61,25 +61,25 @@ def execute_on_dask(work: Work, address: str) -> Iterator[Any]:
 
 
 class _Pool:
-    """The tasks given to workers, and their results; see `parallel`."""
+    """The tasks submitted to workers, and their results; see `parallel`."""
 
     def __init__(self, client: Any, begin: bytes, work: Work) -> None:
         self._client = client
         self._work = work
         self._name = f"rvmon-{uuid.uuid4().hex}"
-        # A task rather than data that is handed out: it is done again where its worker is lost.
+        # A task rather than scattered data, because Dask repeats a task whose worker is lost.
         self._begin = client.submit(bytes, begin, key=f"{self._name}-begin")
         self._tasks: dict[Any, tuple[int, bytes]] = {}
         self._begun: dict[int, tuple[float, str]] = {}
         self._finished: SimpleQueue[Any] = SimpleQueue()
         self._suspects: deque[tuple[int, bytes]] = deque()
-        """Tasks whose workers were lost again and again; each is tried once more, alone."""
+        """Tasks whose workers were lost repeatedly; each is tried once more while no other runs."""
         self._alone: int | None = None
         self._done: dict[int, tuple[bool, bytes]] = {}
         client.subscribe_topic(self._name, self._note)
 
     def results(self) -> Iterator[Any]:
-        """The results in order."""
+        """The results in the order of the tasks."""
         left = self._packed(self._work.tasks)
         number = 0
         seen = time.monotonic()
@@ -110,7 +110,7 @@ class _Pool:
                 time.sleep(_POLL_S)
 
     def _packed(self, tasks: Iterable[Any]) -> Iterator[tuple[int, bytes]]:
-        """Tasks by number; what cannot be taken, or pickled, is raised in its turn."""
+        """The tasks, numbered and pickled; an exception is kept as the result of its task."""
         import cloudpickle
 
         number = 0
@@ -129,14 +129,14 @@ class _Pool:
         future.add_done_callback(self._finished.put)
 
     def _note(self, event: tuple[float, tuple[int, str]]) -> None:
-        """A worker begins a task: take down when, and which worker."""
+        """Handle the event that a worker starts a task: remember the time and the worker."""
         number, worker = event[1]
         self._begun[number] = (time.monotonic(), worker)
 
     def _take(self, future: Any) -> None:
         from distributed import CancelledError, KilledWorker
 
-        if future not in self._tasks:  # given up before
+        if future not in self._tasks:  # cancelled by `_end_late`
             return
         number, task = self._tasks.pop(future)
         try:
@@ -144,24 +144,26 @@ class _Pool:
         except (KilledWorker, CancelledError):
             if number == self._alone:
                 self._lose(number, task, "the workers that had it were lost", timed_out=False)
-            else:  # it may have waited, or its result, where another task was done
+            # The task may have been waiting, or its result stored, on a worker that another task
+            # brought down. So it is no culprit until it is lost when run alone.
+            else:
                 self._suspects.append((number, task))
         self._begun.pop(number, None)
 
     def _end_late(self) -> None:
-        """Begin those workers anew whose tasks take too long."""
+        """Restart the workers whose tasks exceed their timeout."""
         if self._work.timeout_s is None:
             return
         for future, (number, task) in [*self._tasks.items()]:
             since, worker = self._begun.get(number, (time.monotonic(), ""))
             if time.monotonic() - since <= self._work.timeout_s or future.done():
                 continue
-            if worker not in self._client.nthreads():  # lost: the task waits for another
+            if worker not in self._client.nthreads():  # lost: the task waits for another worker
                 del self._begun[number]
                 continue
             del self._tasks[future]
             future.cancel(force=True)
-            with suppress(KeyError):  # Dask's, of a worker that was lost just now
+            with suppress(KeyError):  # raised by Dask if the worker was lost just now
                 self._client.restart_workers([worker], raise_for_error=False)
             self._lose(
                 number, task, f"it took more than {self._work.timeout_s:g} s", timed_out=True
@@ -178,11 +180,11 @@ class _Pool:
         self._done[number] = (False, pickle.dumps(result))
 
 
-program = cache(checksum)  # a checksum of the program: only results of equal programs can be mixed
+program = cache(checksum)  # checksum of rvmon and Python, which must be equal on all workers
 
 _ONE_AT_A_TIME = threading.Lock()
 _WORK: dict[str, Callable[[Any], Any]] = {}
-"""In a worker: what does tasks, by the name of the work; the last one."""
+"""In a worker: the function that does tasks, by the name of the work; only the latest is kept."""
 
 
 def _do(
@@ -194,7 +196,7 @@ def _do(
     begin: bytes,
     task: bytes,
 ) -> tuple[bool, bytes]:
-    """Do a task in a worker, in the folder of who has the work if there is one; say when."""
+    """Do a task in a worker, in the client's folder if it exists here; report the start."""
     from distributed import get_worker
 
     late = threading.Timer((timeout_s or 0.0) + LEFT_S, os._exit, [1])

@@ -1,4 +1,4 @@
-"""One function done on many tasks, in this process or in several; the results keep their order."""
+"""One function applied to many tasks, in this process or several; results keep their order."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ if TYPE_CHECKING:
 _Task = TypeVar("_Task")
 _Result = TypeVar("_Result")
 
-MOST_TASKS = 256  # tasks that a worker is given at a time, at most
-BEGIN_S = 60.0  # seconds that a worker may take to begin, beside those for a task
+MOST_TASKS = 256  # the most tasks of a chunk
+BEGIN_S = 60.0  # seconds that a worker may take to start, in addition to the timeout of a task
 
 
 def execute(
@@ -41,33 +41,33 @@ def execute(
     timeout_s: float | None = None,
     fresh: bool = False,
 ) -> Generator[_Result, None, None]:
-    """Do tasks, shared among processes; the results come in the order of the tasks.
+    """Do tasks in several processes; results come in the order of the tasks.
 
-    The processes are begun, by the thread that asks for them, for the first result. They end with
-    the last result, with the iterator, by an interrupt, and with this process, however it ends.
-    Tasks go to them in chunks: of so many as take about 0.1 s, so that a task which takes longer
-    holds up no others, but for the results of its chunk; of few where few are left, so that all
-    processes end together.
+    Worker processes start when the first result is requested, in the requesting thread. They end
+    with the last result, when the generator is closed, by an interrupt, and with this process,
+    however it ends. Workers get their tasks in chunks. A chunk holds about 0.1 s of work, so one
+    slow task delays only the results of its own chunk. Chunks shrink when few tasks are left, so
+    that all workers finish at about the same time.
 
     Args:
-        tasks: taken from as processes have time; for several processes what can be pickled.
-        begin: called once in each process, before its first task; what it returns does a task.
-            Where processes are not forked, it is pickled, once for each.
-        jobs: processes at most; 1: this process does all, unless `instead` is given. Or the address
-            of a scheduler of Dask, whose workers do all.
+        tasks: consumed as workers become free; with several processes they must be picklable.
+        begin: called once in each process before its first task; it returns the function that does
+            a task. Where processes are not forked, it is pickled once per process.
+        jobs: the most processes; with 1, this process does all tasks, unless `instead` is given. Or
+            the address of a Dask scheduler, whose workers do all tasks.
         what: the word for a task in messages.
-        instead: the result of a task whose process was ended; the other tasks are done all the
-            same, by other processes.
-        timeout_s: with `instead`, seconds after which the process of a task is ended; that it
-            begins may take a minute more.
-        fresh: with several processes or `instead`, each task has a process of its own.
+        instead: gives the result of a task whose process was killed; further processes do the
+            remaining tasks.
+        timeout_s: with `instead`, seconds after which the process of a task is killed; the start of
+            the process may take a minute more.
+        fresh: with several processes or `instead`, start a new process for each task.
 
     Raises:
-        WorkerLostError: a process was ended from outside, and there is no `instead`; the task that
-            it had is named.
-        RvmonError: a task cannot be pickled, or no process be begun.
-        Exception: what `begin`, a task, or taking the next of `tasks` raised. As for the others,
-            the results of all tasks before have been given out.
+        WorkerLostError: a process was killed from outside and there is no `instead`; the message
+            names its task.
+        RvmonError: a task cannot be pickled, or no process can be started.
+        Exception: whatever `begin`, a task, or the iterator of `tasks` raised. Any of these errors
+            is raised after the results of all earlier tasks.
 
     >>> list(execute([1, 2, 3], lambda: abs, jobs=1))
     [1, 2, 3]
@@ -91,24 +91,25 @@ def execute(
 
 
 class _Worker(Struct, eq=False):
-    """A process that works, seen from here."""
+    """A worker process, as its parent sees it."""
 
-    process: BaseProcess  # itself
-    connection: Connection  # to it
-    # how many tasks it has begun in all, and when the last, on the monotonic clock
+    process: BaseProcess
+    connection: Connection
+    # number of tasks it has started in all, and the time of the last start (monotonic clock)
     begun: Sequence[float]
-    tasks: list[tuple[int, bytes]] = field(default_factory=list)  # numbers, ascending, and pickles
-    answered: int = 0  # tasks before these
-    size: int = 1  # tasks of its next chunk
-    since: float = 0.0  # when it was given these, on the monotonic clock
+    # the tasks of its present chunk: number, ascending, and pickle
+    tasks: list[tuple[int, bytes]] = field(default_factory=list)
+    answered: int = 0  # number of tasks answered in earlier chunks
+    size: int = 1  # size of its next chunk
+    since: float = 0.0  # time when it got the present chunk (monotonic clock)
 
     def task_s(self) -> float:
-        """Seconds for which it has had the task that it does, or is to begin with."""
+        """Seconds since it started its present task, or got the chunk if it has not started."""
         return time.monotonic() - max(self.since, self.begun[1])
 
 
 class _Pool:
-    """Workers, what they have, and what they have done; `execute` says what the arguments are."""
+    """The workers, their tasks and their results; arguments as for `execute`."""
 
     def __init__(self, work: Work, jobs: int, fresh: bool) -> None:
         import multiprocessing
@@ -123,8 +124,8 @@ class _Pool:
         self._done: dict[int, bytes | Exception] = {}
 
     def end(self) -> None:
-        """End all processes at once, whatever they do."""
-        # All are killed before any is waited for, so that they end together.
+        """Kill all processes, whatever they are doing."""
+        # Kill all before waiting for any, so that they end concurrently.
         for worker in self._workers:
             worker.process.kill()
             worker.connection.close()
@@ -132,7 +133,7 @@ class _Pool:
             worker.process.join()
 
     def results(self) -> Iterator[Any]:
-        """The results in order."""
+        """The results in the order of the tasks."""
         from multiprocessing.connection import wait
 
         number = 0
@@ -157,7 +158,7 @@ class _Pool:
                 self._end_if_late(busy[connection])
 
     def _share(self) -> None:
-        """Give tasks to all workers that have none; if there are more, to further ones."""
+        """Give tasks to all idle workers, then start further workers while tasks are left."""
         resting = [worker for worker in self._workers if not worker.tasks]
         while resting or len(self._workers) < self._jobs:
             size = min(resting[-1].size, self._share_of_rest()) if resting else 1
@@ -167,11 +168,11 @@ class _Pool:
             worker = resting.pop() if resting else self._begun()
             worker.tasks = chunk
             worker.since = time.monotonic()
-            with suppress(OSError):  # it was ended: no answer will say so
+            with suppress(OSError):  # the worker was killed: `_take` will notice
                 worker.connection.send([task for _, task in chunk])
 
     def _share_of_rest(self) -> int:
-        """The most tasks of a chunk: half of what each worker would get of those that are left."""
+        """The most tasks of a chunk: half of a worker's equal share of the remaining tasks."""
         unknown = 2 * self._jobs * MOST_TASKS
         left = len(self._returned) + length_hint(self._tasks, unknown)
         return max(1, left // (2 * self._jobs))
@@ -179,7 +180,8 @@ class _Pool:
     def _begun(self) -> _Worker:
         from rvmon.execute.worker import serve
 
-        # A signal at the death of the parent comes when its thread ends; the main one is the last.
+        # Linux sends the parent-death signal when the thread that started the process ends, so it
+        # can only be used from the main thread, which ends last.
         forked = self._context.get_start_method() != "forkserver"
         is_main = threading.current_thread() is threading.main_thread()
         parent = os.getpid() if forked and is_main else None
@@ -198,9 +200,9 @@ class _Pool:
         return self._workers[-1]
 
     def _left(self) -> Iterator[tuple[int, bytes]]:
-        """The tasks that no worker has, ascending."""
-        # Those of lost workers first, the lowest number first: results come in order, and wait for
-        # it.
+        """The tasks that no worker has, in ascending order of number."""
+        # First the tasks that workers gave back: their numbers are lower, and the results, which
+        # come in order, wait for the lowest.
         while self._returned:
             yield heappop(self._returned)
         try:
@@ -208,7 +210,7 @@ class _Pool:
                 packed = self._packed(task)
                 self._taken += 1
                 yield self._taken - 1, packed
-        except Exception as error:  # noqa: BLE001 - raised in its turn
+        except Exception as error:  # noqa: BLE001 - raised after the results of earlier tasks
             self._fail(self._taken, error)
 
     def _packed(self, task: Any) -> bytes:
@@ -221,7 +223,7 @@ class _Pool:
             ) from None
 
     def _take(self, worker: _Worker) -> None:
-        """Take the answers of a worker, or that there will be none."""
+        """Receive the answers of a worker, or find that it was killed."""
         try:
             answers = worker.connection.recv()
         except (EOFError, OSError):
@@ -234,6 +236,8 @@ class _Pool:
             else:
                 self._done[number] = result
         worker.answered += done
+        # A worker answers after about 0.1 s. If it did only a part of the chunk, that part is the
+        # right size for the next one.
         worker.size = done if done < len(worker.tasks) else min(2 * done, MOST_TASKS)
         self._give_back(worker, worker.tasks[done:])
         if self._fresh:
@@ -241,13 +245,13 @@ class _Pool:
             self._dismiss(worker)
 
     def _patience(self, busy: Iterable[_Worker]) -> float | None:
-        """Seconds until the first task may have taken too long, whenever it is begun."""
+        """Seconds until a timeout can expire, also that of a task that starts meanwhile."""
         if self._work.timeout_s is None:
             return None
         return max(0.0, min(self._work.timeout_s, *map(self._left_s, busy)))
 
     def _left_s(self, worker: _Worker) -> float:
-        """Seconds that a worker's task may still take."""
+        """Seconds until the timeout of a worker's task."""
         if self._work.timeout_s is None:
             return inf
         begun = worker.begun[0]
@@ -255,20 +259,20 @@ class _Pool:
         return most - worker.task_s()
 
     def _end_if_late(self, worker: _Worker) -> None:
-        """End a worker whose task takes too long, unless its answer has just come."""
+        """Kill a worker whose task exceeds its timeout, unless its answer has just arrived."""
         if self._left_s(worker) <= 0 and not worker.connection.poll():
             worker.process.kill()
             self._lose(worker, timed_out=True)
 
     def _lose(self, worker: _Worker, *, timed_out: bool) -> None:
-        """Do without a worker that was ended, and without a result of the task that it did."""
+        """Remove a killed worker; its present task fails, its other tasks are given back."""
         seconds = worker.task_s()
         self._dismiss(worker)
         begun = int(worker.begun[0])
-        if begun and begun == worker.answered:  # it was ended while it waited: no task is to blame
+        if begun and begun == worker.answered:  # killed while idle: no task is to blame
             self._give_back(worker, worker.tasks)
             return
-        # It did the tasks before, but nobody will get its answers: they are done once more.
+        # The answers to earlier tasks of the chunk are lost, so these are done again.
         number, task = worker.tasks.pop(max(0, begun - worker.answered - 1))
         self._give_back(worker, worker.tasks)
         if self._work.instead is None:
@@ -298,7 +302,7 @@ class _Pool:
         worker.tasks = []
 
     def _fail(self, number: int, error: Exception) -> None:
-        """A task has no result: what comes behind it is not begun."""
+        """Record the error of a task; no further tasks are started."""
         self._done[number] = error
         self._tasks = iter(())
 
@@ -316,9 +320,9 @@ def _end_of(process: BaseProcess) -> str:
 
 @contextmanager
 def _without_interrupts() -> Iterator[None]:
-    """Processes that are begun here ignore Ctrl-C from their first instruction on: it waits.
+    """Block interrupts, so that a process started here is never interrupted before it ignores them.
 
-    It reaches all processes of a terminal, and this one decides.
+    Ctrl-C reaches all processes of a terminal; only the parent is to react to it.
     """
     if not hasattr(signal, "pthread_sigmask"):
         yield

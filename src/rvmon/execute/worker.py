@@ -1,4 +1,4 @@
-"""The far side of `parallel.execute`: a process that does tasks for the one that began it."""
+"""The worker side of `parallel.execute`: a process that does tasks for its parent."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from typing import Any
 from rvmon.errors import RvmonError
 
 CHUNK_S = 0.1
-"""Seconds after which a worker asks for tasks anew: what is left of a chunk may go to another."""
+"""Seconds after which a worker answers; the rest of its chunk may then go to another worker."""
 
 _PR_SET_PDEATHSIG = 1
 
@@ -31,23 +31,23 @@ def serve(
     parent: int | None,
     begun: MutableSequence[float],
 ) -> None:
-    """Do the tasks that come, until the other end of the connection is closed.
+    """Do the tasks that arrive, until the parent closes the connection.
 
-    What comes are lists of pickled tasks. A list goes back for each: of those tasks that were done
-    in `CHUNK_S`, up to one that failed, whether each failed, and its pickled result or error. One
-    message for each task would wake the other process, and interrupt this one, hundreds of times a
-    second.
+    Each message is a chunk: a list of pickled tasks. Its answer is a list with, for each task done
+    within `CHUNK_S` up to the first that failed, whether it failed and its pickled result or error.
+    With one message per task, the parent would wake up, and interrupt this process, hundreds of
+    times a second.
 
     Args:
-        connection: to who gives out the tasks.
-        other: its other end, which only that process is to hold.
-        begin: makes, before the first task, what does them.
-        parent: the process whose death Linux is to report; `None`: nobody's.
-        begun: for the other process to read if this one is lost: how many tasks were begun in all,
-            and when the last, on the monotonic clock.
+        connection: to the parent.
+        other: the parent's end of the connection, which is closed here.
+        begin: called before the first task; returns the function that does a task.
+        parent: id of the process whose death kills this one on Linux; `None`: no process.
+        begun: shared memory that the parent reads if this process is lost: the number of tasks
+            started in all, and the time of the last start on the monotonic clock.
     """
     other.close()
-    gc.freeze()  # what a fork has of its parent is not looked through, and so not copied
+    gc.freeze()  # otherwise the collector would write to inherited objects and copy their pages
     _leave_signals(parent)
     chunks: SimpleQueue[list[bytes]] = SimpleQueue()
     threading.Thread(target=_receive, args=(connection, chunks), daemon=True).start()
@@ -61,7 +61,7 @@ def serve(
         begun[0] += 1
         return work
 
-    with suppress(OSError):  # nobody takes an answer any more
+    with suppress(OSError):  # the parent has closed the connection
         while True:
             answers = []
             end = time.monotonic() + CHUNK_S
@@ -74,19 +74,19 @@ def serve(
 
 
 def answer(work: Callable[[], Callable[[Any], Any]], task: bytes) -> tuple[bool, bytes]:
-    """Do a task.
+    """Do a pickled task with the function that `work` returns.
 
     Returns:
         Whether it failed, and its result or error, pickled.
     """
     try:
         return False, pickle.dumps(work()(pickle.loads(task)))  # noqa: S301 - from the parent
-    except Exception as error:  # noqa: BLE001 - raised where the result is asked for
+    except Exception as error:  # noqa: BLE001 - raised in the parent
         return True, packed_error(error)
 
 
 def _leave_signals(parent: int | None) -> None:
-    """The parent is interrupted as well as this process, and decides; that it dies is heeded."""
+    """Ignore Ctrl-C, which the parent handles; end by SIGTERM and, on Linux, with the parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     if hasattr(signal, "pthread_sigmask"):
@@ -94,14 +94,15 @@ def _leave_signals(parent: int | None) -> None:
     if parent is not None and sys.platform == "linux":
         import ctypes
 
-        # A signal reaches also a worker that holds Python's lock for long.
+        # `_receive` notices a closed connection, but not while C code holds the GIL for long; a
+        # signal always works.
         ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL, 0, 0, 0)
-        if os.getppid() != parent:  # it died before
+        if os.getppid() != parent:  # the parent died before the call
             os._exit(1)
 
 
 def _receive(connection: Connection, chunks: SimpleQueue[list[bytes]]) -> None:
-    """Take in what comes while this process works; it ends with whoever began it."""
+    """Receive chunks in a thread; exit at once when the parent closes the connection."""
     try:
         while True:
             chunks.put(connection.recv())
@@ -110,13 +111,13 @@ def _receive(connection: Connection, chunks: SimpleQueue[list[bytes]]) -> None:
 
 
 def packed_error(error: Exception) -> bytes:
-    """An error that can be read elsewhere; what nobody expected says where it happened."""
+    """A pickle of an error that another process can load; an unexpected one notes its traceback."""
     if not isinstance(error, RvmonError):
         error.add_note(traceback.format_exc())
     try:
         packed = pickle.dumps(error)
         pickle.loads(packed)  # noqa: S301 - just made
-    except Exception:  # noqa: BLE001 - of whatever kind others' errors are
+    except Exception:  # noqa: BLE001 - pickling a foreign exception may raise anything
         name = "" if isinstance(error, RvmonError) else f"{type(error).__name__}: "
         return pickle.dumps(RvmonError(f"{name}{error}"))
     return packed

@@ -1,4 +1,4 @@
-"""Monitors of robots that are running: clocks, timers, bounded queues, threads and tasks.
+"""Monitoring of running robots: clocks, timers, bounded queues, threads and tasks.
 
 `driver` passes samples of any number of robots to their monitors and advances their time; it starts
 no thread and never sleeps. `runners` call it, in a thread of its own or in an event loop. Adapters

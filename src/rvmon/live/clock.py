@@ -14,8 +14,8 @@ FAR_NS = 365 * 86_400 * TICKS_PER_SECOND
 """Stamps farther than this from the clock belong to another epoch."""
 
 _AHEAD_NS = 10 * TICKS_PER_SECOND
-"""Stamps farther than this ahead of a wall clock are refused: once taken, they would make all
-samples late until the clock has caught up."""
+"""Stamps farther than this ahead of a wall clock are refused: if accepted, they would make all
+later samples late until the clock has caught up."""
 
 Change = Callable[[int, int], None]
 """Called with the instants, ns, before and after a clock was set."""
@@ -25,7 +25,7 @@ class Clock(Protocol):
     """A source of time for a driver; thread-safe."""
 
     def now_ns(self) -> int:
-        """The present instant, ns."""
+        """The current instant, ns."""
         ...
 
     def seconds_until(self, t_ns: int) -> float | None:
@@ -82,10 +82,10 @@ class SimulatedClock:
         return self._now
 
     def set_ns(self, t_ns: int) -> None:
-        """Set the clock; also backwards, as when a simulation restarts.
+        """Set the clock, also backwards, as when a simulation restarts.
 
         Raises:
-            TraceError: `t_ns` is no instant.
+            TraceError: `t_ns` is not an instant.
         """
         with self._lock:
             before, self._now = self._now, whole_ticks(t_ns)
@@ -94,7 +94,7 @@ class SimulatedClock:
             callback(before, self._now)
 
     def seconds_until(self, t_ns: int) -> float | None:
-        """0 if the instant has come, else `None`."""
+        """0 if the clock has reached the instant, else `None`."""
         return 0.0 if t_ns <= self._now else None
 
     def on_change(self, callback: Change) -> None:
@@ -103,10 +103,10 @@ class SimulatedClock:
 
 
 def refuse_far(t_ns: int, now_ns: int) -> None:
-    """Refuse a stamp of another epoch than a wall clock, or too far ahead of it.
+    """Refuse a stamp that has another epoch than a wall clock or is too far ahead of it.
 
     Raises:
-        TraceError: it is one of these.
+        TraceError: the stamp is refused.
     """
     if not now_ns - FAR_NS < t_ns < now_ns + _AHEAD_NS:
         far = "years from" if abs(t_ns - now_ns) > FAR_NS else "ahead of"

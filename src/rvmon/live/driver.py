@@ -27,16 +27,16 @@ if TYPE_CHECKING:
 _log = logging.getLogger("rvmon.live")
 _input_log = logging.getLogger("rvmon.live.input")
 
-_BATCH = 1_000  # the most entries judged in one call of `work`: for so long `status` may wait
-_PATIENCE_NS = 2_000_000  # time is advanced after so long a silence: a next sample does it anyway
+_BATCH = 1_000  # the most entries judged in one call of `work`; `status` may wait that long
+_PATIENCE_NS = 2_000_000  # silence after which time is advanced; until then a sample may do it
 
 
 class Driver:
-    r"""Judges samples of any number of robots, as they are offered and as time passes.
+    r"""Judges samples of any number of robots as they are offered and as time passes.
 
-    `offer` may be called from any thread. The caller that drives it calls `work` whenever `wake`
-    was called, and after the seconds that `work` returned. No input stops it: a sample that a
-    monitor refuses is counted, logged to `rvmon.live.input`, and its names become unknown.
+    `offer` may be called from any thread. The owner of the driver calls `work` whenever `wake` was
+    called, and after the seconds that `work` returned. No input stops the driver: a sample that a
+    monitor refuses is counted and logged to `rvmon.live.input`, and its names become unknown.
 
     Args:
         spec: the specification for each robot.
@@ -44,11 +44,13 @@ class Driver:
         only: ids of the requirements; default all.
         sources: the names that can arrive; default all.
         keep: the most records kept per requirement and verdict; `None`: all.
-        lag_ns: the longest delay of samples with their own stamps, which are put in order within
-            it; all is decided that much later. Default: the `max delay` of the specification, or 0.
-        room: the most samples in the queue. For a sample that finds it full, signals are unknown
-            until their next value and events at its instant, so that no verdict relies on it.
-        most_robots: the most robots; samples of further ones are refused.
+        lag_ns: the longest delay of samples with their own stamps. Samples within it are sorted,
+            and all decisions come that much later. Default: the `max delay` of the specification,
+            or 0.
+        room: the most samples in the queue. A sample that finds it full is lost: its signals become
+            unknown until their next value, and its events are unknown at its instant, so that no
+            verdict relies on them.
+        most_robots: the most robots; samples of further robots are refused.
         on_judged: called with each attempt that passes or fails.
         on_failure: called with each attempt that fails.
         on_report: called with the name of the robot and the report of each run that ends.
@@ -59,7 +61,7 @@ class Driver:
         most_robots, turned_away: the limit, and whether a robot was refused by it.
 
     Raises:
-        RvmonError: `room`, `most_robots` or `keep` is no count, or a callback is no function.
+        RvmonError: `room`, `most_robots` or `keep` is not a count, or a callback not a function.
         UnknownNameError: `only` or `sources` has an unknown name.
 
     >>> from rvmon import loads
@@ -116,9 +118,9 @@ class Driver:
         self._clock.on_change(self._clock_was_set)
 
     def _watching(self, spec: Spec) -> tuple[Watch, int]:
-        """The watch of a specification, and the lag, ns; raises as the constructor does."""
+        """The watch of a specification, and the lag in ns; errors as for the constructor."""
         lag = (spec.checked.max_delay or 0) if self._asked_lag is None else self._asked_lag
-        # Stamps that were not assigned here may be equal, so their samples have to be merged.
+        # Stamps from elsewhere may be equal; the samples of equal stamps have to be merged.
         settle = "now" if self._runs_by_itself and not lag else "next"
         watch = Watch(spec, with_delay(spec, lag), self._only, self._sources, settle, self._keep)
         watch.monitor()
@@ -126,7 +128,7 @@ class Driver:
 
     @property
     def spec(self) -> Spec:
-        """The present specification."""
+        """The current specification."""
         return self._watch.spec
 
     def offer(
@@ -137,16 +139,16 @@ class Driver:
         Args:
             values: the updates and occurrences, as for `Monitor.step`.
             robot: the name of the robot.
-            t_ns: its stamp, ns; default the present time.
-            wait: whether to block while the queue is full; for readers of files or pipes, in
-                another thread than the one that calls `work`.
+            t_ns: its stamp, ns; default the current time.
+            wait: whether to block while the queue is full; for readers of files or pipes, which
+                must not run in the thread that calls `work`.
 
         Returns:
             Whether it was queued; if not, the queue is full or there are too many robots, and the
             sample is lost.
 
         Raises:
-            TraceError: `values` is no mapping, or the stamp is invalid or of another epoch.
+            TraceError: `values` is not a mapping, or the stamp is invalid or of another epoch.
             RvmonError: the driver was closed.
         """
         if not isinstance(values, Mapping):
@@ -165,7 +167,7 @@ class Driver:
                 return False
             if t_ns is None:
                 t_ns = max(self._clock.now_ns(), self._stamped)
-                self._stamped = t_ns + self._runs_by_itself  # by a wall clock all stamps differ
+                self._stamped = t_ns + self._runs_by_itself  # a wall clock gives distinct stamps
             was_empty = not len(self._waiting)
             is_queued = self._waiting.put(Offered(robot, t_ns, kept))
         if was_empty:  # otherwise a woken worker takes this sample, too
@@ -187,9 +189,9 @@ class Driver:
             names: signals and events; `None`: all.
             robot: the robot; `None`: every known robot.
             since_ns: the last instant at which updates were sure to arrive, ns; default now. The
-                outage is wider by the lag, as with `max delay`.
-            is_over: whether the outage has ended by now; else `found` ends it.
-            why: a phrase for the input health; use the same for all losses of one kind.
+                lag widens the outage, as `max delay` does.
+            is_over: whether the outage has ended by now; otherwise `found` ends it.
+            why: a phrase for the input health; the same for all losses of one kind.
 
         Raises:
             UnknownNameError: a name is not declared.
@@ -197,7 +199,7 @@ class Driver:
         self._report(OutageReport.LOST, names, robot, why, since_ns, is_over=is_over)
 
     def found(self, names: Iterable[str] | None = None, *, robot: str | None = None) -> None:
-        """Report that the outage of names ends now; otherwise as `lose`."""
+        """Report that the outage of names ends now; arguments as for `lose`."""
         self._report(OutageReport.FOUND, names, robot, "")
 
     def miss(
@@ -240,10 +242,10 @@ class Driver:
         return False
 
     def replace_spec(self, spec: Spec) -> None:
-        """Judge later samples by another specification; each robot begins a new run.
+        """Judge later samples by another specification; each robot starts a new run.
 
         Raises:
-            UnknownNameError: it lacks a name of `only` or `sources`; the present one stays.
+            UnknownNameError: it lacks a name of `only` or `sources`; the current one stays.
         """
         with self._driving():
             watching, former = self._watching(spec), self._watch
@@ -251,7 +253,7 @@ class Driver:
                 entries = self._waiting.take(len(self._waiting))
                 self._watch, self._lag = watching
                 self._has_room.notify_all()
-            for entry in entries:  # offered before: the previous specification judges them
+            for entry in entries:  # offered before, so the previous specification judges them
                 self._take(entry, former)
             for robot in self._robots.values():
                 robot.end()
@@ -262,7 +264,7 @@ class Driver:
 
         Args:
             most_open: the most records of open attempts per robot, the oldest of each requirement
-                first, as each takes a tenth of a millisecond; default all.
+                first; default all. A record takes a tenth of a millisecond.
         """
         with self._working:
             now = self._clock.now_ns()
@@ -270,16 +272,17 @@ class Driver:
 
     @property
     def now_ns(self) -> int:
-        """The present instant, ns, by the clock of this driver."""
+        """The current instant, ns, by the clock of this driver."""
         return self._clock.now_ns()
 
     @property
     def waiting(self) -> int:
-        """The number of samples that wait to be judged."""
+        """The number of entries in the queue: samples, losses and reports on outages."""
         return len(self._waiting)
 
     def _clock_was_set(self, before: int, now: int) -> None:
-        if now < before or now - before > FAR_NS:  # years: a clock that began at 0 was set
+        # A jump by years means that a clock which started at 0 was set to the time of day.
+        if now < before or now - before > FAR_NS:
             with self._lock:
                 self._stamped = now
                 way = f"back by {format_ticks(before - now)}" if now < before else "on by years"
@@ -290,7 +293,7 @@ class Driver:
         """Judge queued samples, and advance time.
 
         Returns:
-            The seconds after which to call it again unless `wake` is called before; `None`: only
+            The seconds after which to call it again, unless `wake` is called earlier; `None`: only
             after `wake`.
         """
         with self._driving():
@@ -298,7 +301,7 @@ class Driver:
 
     @contextmanager
     def _driving(self) -> Iterator[None]:
-        """Exclusive use of the monitors; refused to callbacks, which run in mid-step."""
+        """Exclusive use of the monitors; refuses callbacks, which run in the middle of a step."""
         with self._working:
             if self._is_working:
                 raise RvmonError("a callback cannot drive, close or replace what calls it")
@@ -313,7 +316,7 @@ class Driver:
             entries = self._waiting.take(_BATCH)
             more = len(self._waiting) > 0
             now = self._clock.now_ns()
-            if not more:  # samples offered from now on get no earlier stamp
+            if not more:  # samples offered from now on get no earlier stamp than `now`
                 self._stamped = max(self._stamped, now)
             self._has_room.notify_all()
         for entry in entries:
@@ -348,11 +351,11 @@ class Driver:
         for t, name in self._timers.take_due(now):
             robot = self._robots[name]
             quiet = (t if robot.last is None else robot.last) + self._lag + self._patience
-            if quiet > now:  # samples keep arriving, and they advance time
+            if quiet > now:  # a sample arrived since, which has advanced time
                 self._timers.set(name, quiet)
                 continue
             robot.pass_to(now - self._lag)
-            if (due := robot.due) is not None:  # later than now, or it would be due for ever
+            if (due := robot.due) is not None:  # at least `now + 1`, or this loop would not end
                 self._timers.set(name, max(due + self._lag, now + 1))
         first = self._timers.first
         return None if first is None else self._clock.seconds_until(first)

@@ -1,4 +1,4 @@
-"""A monitor whose run survives the end of its process, however it ends."""
+"""A monitor whose run survives any end of its process."""
 
 from __future__ import annotations
 
@@ -23,11 +23,12 @@ Report = Callable[[int, "Attempt"], object]
 class DurableMonitor:
     r"""A monitor that continues where it was when its process was killed.
 
-    Its file has a snapshot and the samples since then (a write-ahead log): a sample is written
-    before it is judged. So each verdict is reported at least once; those reported shortly before
-    the end are reported again under the same number, by which a reader recognises repetitions.
+    Its file contains a snapshot and the samples since then (a write-ahead log): each sample is
+    written before it is judged. So every verdict is reported at least once. Verdicts reported
+    shortly before a kill are reported again under the same number, so that a reader recognises
+    repetitions.
 
-    Writes are not synced: a loss of power may lose the latest samples.
+    Writes are not synced, so a loss of power may lose the latest samples.
 
     Args:
         spec: the specification.
@@ -35,17 +36,17 @@ class DurableMonitor:
         report: called with the number, from 1, and the record of each attempt that passes or fails.
             An exception propagates from the deciding call; the verdict counts as reported.
         every: the number of samples after which a new snapshot is written.
-        **options: as for `Spec.monitor`, for a new run; a continued one keeps its options.
+        **options: as for `Spec.monitor`, for a new run; a continued run keeps its options.
 
     Attributes:
         monitor: the monitor; only to be queried.
-        taken: the number of samples since the run began, with refused and lost ones: a source that
-            can be read again is to be resumed after these.
-        mark: a count and a checksum for the caller, stored with snapshots, to recognise the
-            source.
+        taken: the number of samples since the run started, including refused and lost ones; a
+            source that can be read again is to be resumed after these.
+        mark: a count and a checksum with which the caller can recognise the source; stored with
+            snapshots.
 
     Raises:
-        SnapshotError: the file has no run, or one of another specification or version.
+        SnapshotError: the file contains no run, or one of another specification or version.
         OSError: the file cannot be read or written.
 
     >>> from tempfile import TemporaryDirectory
@@ -82,10 +83,11 @@ class DurableMonitor:
 
     def _found(self) -> list[bytes] | None:
         if self._path.exists() and not (self._path.is_file() or self._path.is_dir()):
-            raise SnapshotError(f"{self._path} is no regular file: name one")  # it may never end
+            # Reading a pipe or device might never end.
+            raise SnapshotError(f"{self._path} is no regular file: name one")
         try:
             return entries(self._path, all_of_them=True)
-        except ValueError as error:  # the entries after a damaged one cannot be judged without it
+        except ValueError as error:  # later samples cannot be judged without the damaged one
             raise SnapshotError(
                 f"{self._path}: {error}, and not the last one: name another file, or delete this "
                 "one to start again"
@@ -113,7 +115,7 @@ class DurableMonitor:
             t, values = json.loads(line)
         except (ValueError, TypeError, RecursionError):
             raise SnapshotError(f"{self._path}: its content is no sample") from None
-        with suppress(TraceError):  # it was refused then, too
+        with suppress(TraceError):  # the sample was refused in the first run, too
             self._judge(t, values)
 
     def _judge(self, t: int | None, values: Mapping[str, Any] | None) -> None:
@@ -161,7 +163,7 @@ class DurableMonitor:
         """Judge a sample, as `Monitor.step_ns` does; verdicts are reported.
 
         Raises:
-            TraceError: the monitor refuses it; its names are unknown at its instant.
+            TraceError: the monitor refuses the sample; its names are unknown at its instant.
             OSError: the file cannot be written; nothing was judged.
         """
         self._keep(whole_ticks(t_ns), dict(values))
@@ -179,7 +181,8 @@ class DurableMonitor:
             line = json.dumps([t, values], default=_plain).encode()
         except (TypeError, ValueError, RecursionError) as error:
             raise TraceError(f"a sample that cannot be kept: {error}") from None
-        if self._kept >= self._every:  # before it is judged: a failure to write changes nothing
+        # Write before judging, so that a failure to write changes nothing.
+        if self._kept >= self._every:
             self.save()
         add(self._path, line)
         self._kept += 1

@@ -1,6 +1,6 @@
-"""Calls of functions as events of a robot.
+"""Function calls as events of a robot.
 
-Monitoring never makes a call fail: an event that cannot be offered is logged.
+Monitoring never makes a call fail: an event that the driver refuses is logged.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ def as_event(
 ) -> Callable[[Callable[_P, _R]], Callable[_P, _R]]:
     """A decorator: each call of the function is an occurrence of an event.
 
-    For a coroutine or generator, the event occurs when it begins to run.
+    For a coroutine or generator, the event occurs when it starts to run.
 
     Args:
         driver: receives the events.
         event: occurs when the function is called.
-        ended: occurs when it has returned, or a coroutine or generator has ended; not if it raises
+        ended: occurs when the function returns or the coroutine or generator ends; not if it raises
             or is abandoned.
         payload: computes the fields of both events from the arguments of a call; if it raises, the
             event is unknown at that instant.
@@ -71,7 +71,7 @@ def as_event(
             if payload is not None:
                 try:
                     value = dict(payload(*args, **kwargs))
-                except Exception as error:  # noqa: BLE001 - it is not the call that has failed
+                except Exception as error:  # noqa: BLE001 - `payload` must not fail the call
                     _log.warning("the payload of %s is unknown: %r", name, error)
                     value = None
             try:

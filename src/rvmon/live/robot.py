@@ -40,7 +40,7 @@ class Judgement:
     attempt: Attempt
 
     def to_dict(self) -> dict[str, Any]:
-        """As plain values, for JSON and messages: instants in ns, and in seconds of its run."""
+        """Plain values for JSON and messages; instants in ns, and in s since the run's origin."""
         attempt = self.attempt
         return {
             "robot": self.robot,
@@ -61,10 +61,10 @@ class Judgement:
 
 @dataclass(frozen=True, slots=True)
 class Watch:
-    """The options by which robots are monitored."""
+    """The options with which robots are monitored."""
 
     spec: Spec  # the specification
-    judging: Spec  # the same, whose `max delay` is the lag if that is longer
+    judging: Spec  # the specification with a `max delay` of at least the lag
     only: Sequence[str] | None  # ids of the requirements; `None`: all
     sources: Sequence[str] | None  # the names that can arrive; `None`: all
     settle: str  # as for `Spec.monitor`
@@ -76,7 +76,7 @@ class Watch:
         return requirements_asked(self.spec.checked, self.only) or tuple(self.spec.requirements)
 
     def monitor(self) -> Monitor:
-        """A new monitor for a run."""
+        """Create a monitor for a run."""
         return self.judging.monitor(
             only=self.only, sources=self.sources, settle=self.settle, keep=self.keep
         )
@@ -95,12 +95,13 @@ class Status:
 
     Attributes:
         robot: its name; "" if there is only one.
-        run: the number of the present run, from 1.
+        run: the number of the current run, from 1.
         since: the instant of its first sample, ns; `None` before it.
-        now: the present instant, ns.
+        now: the current instant, ns.
         verdicts: by requirement, the verdict so far over all runs.
         counts: by requirement and verdict, the number of attempts so far.
-        open_counts: by requirement, the number of open attempts; those without any may be absent.
+        open_counts: by requirement, the number of open attempts; requirements without any may be
+            absent.
         open: the records of open attempts: all, or as many as requested.
         samples: the number of samples judged, over all runs.
         lost: the number of samples lost or refused.
@@ -121,13 +122,13 @@ class Status:
 
 
 class Robot:
-    """One robot: consecutive runs, each with a monitor of its own.
+    """One robot and its consecutive runs, each with its own monitor.
 
     Args:
         name: the name of the robot.
         watch: the options of its monitors.
         judged: called with each decided attempt; must not raise.
-        ended: called with the name and the report of each run that ended; must not raise.
+        ended: called with the name and the report of each run that ends; must not raise.
     """
 
     KEPT_REPORTS = 10
@@ -140,8 +141,8 @@ class Robot:
         ended: Callable[[str, Report], None],
     ) -> None:
         self.name = name
-        self.run = 0  # the number of the present run, from 1
-        # of the latest runs that have ended
+        self.run = 0  # the number of the current run, from 1
+        # the reports of the latest runs that have ended
         self.reports: deque[Report] = deque(maxlen=self.KEPT_REPORTS)
         self._judged = judged
         self._ended = ended
@@ -151,7 +152,7 @@ class Robot:
         self.begin(watch)
 
     def begin(self, watch: Watch) -> None:
-        """Begin anew: verdicts and counts of earlier runs are discarded."""
+        """Start anew: verdicts and counts of earlier runs are discarded."""
         self._before: dict[str, set[Verdict]] = {name: set() for name in watch.ids}
         self._counts: Counter[tuple[str, Verdict]] = Counter()
         self._begin(watch)
@@ -173,13 +174,13 @@ class Robot:
         self._judged(Judgement(self.name, self.run, attempt))
 
     def restart(self, kind: HealthKind, why: str) -> None:
-        """End the present run where it is, with a health entry, and begin another."""
+        """End the current run at its present instant, with a health entry, and start another."""
         self._why = Health(kind, "samples", 1, self.floor, self._watch.ids, why)
         self.end()
         self._begin(self._watch)
 
     def end(self) -> Report:
-        """End the present run where it is; returns its report."""
+        """End the current run at its present instant; returns its report."""
         report = self._monitor.finish_ns()
         if self._why is not None:
             report = replace(report, health=(*report.health, self._why))
@@ -197,7 +198,7 @@ class Robot:
             values: as for `Monitor.step_ns`.
 
         Returns:
-            Why it was refused, so that its names are unknown at its instant; "" if it was taken.
+            Why it was refused, which makes its names unknown at its instant; "" if it was accepted.
         """
         self._lose_again(t)
         is_too_late = self._monitor.is_too_late(t)
@@ -208,7 +209,7 @@ class Robot:
             self._lost += 1
             names = self._declared(values)
             if isinstance(error, TimeOrderError):
-                # Without `_come_to`, as time is already later.
+                # No `_come_to`: the current instant is already later.
                 self._monitor.late_ns(names, t)
             else:
                 self._monitor.lose_ns(names, t, t, why="refused")
@@ -223,7 +224,7 @@ class Robot:
         return ""
 
     def drop(self, dropped: Dropped) -> None:
-        """Report an outage for samples that found the queue full."""
+        """Tell the monitor of the outage that dropped samples are."""
         self._lost += dropped.count
         self._lose_again(dropped.first)
         why = "came faster than they were evaluated"
@@ -232,8 +233,8 @@ class Robot:
         self._come_to(dropped.last)
 
     def hear(self, gap: Gap) -> None:
-        """Take a report on an outage."""
-        # It may have names of a specification that was replaced since.
+        """Pass a report on an outage to the monitor."""
+        # It may contain names of a specification that was replaced since.
         names = None if gap.names is None else self._declared(gap.names)
         if gap.kind is OutageReport.FOUND:
             self._down = (
@@ -264,7 +265,7 @@ class Robot:
         return [name for name in names if name in checked.signals or name in checked.events]
 
     def _come_to(self, t: int) -> None:
-        """Advance the bookkeeping to the instant of a sample, or of a lost one."""
+        """Advance the bookkeeping to the instant of a sample or of a loss."""
         self.last = t if self.last is None else max(self.last, t)
         self._since = t if self._since is None else self._since
         self._is_held_back = self._watch.settle == "next"
@@ -272,7 +273,7 @@ class Robot:
         self.floor = floor if self.floor is None else max(self.floor, floor)
 
     def pass_to(self, t: int) -> None:
-        """Note that no sample before `t` (ns) will come."""
+        """Tell the monitor that no sample before `t` (ns) will come."""
         if self.floor is not None and t > self.floor:
             self._monitor.advance_ns(t)
             self.floor = t
@@ -286,7 +287,7 @@ class Robot:
         return self._monitor.next_due
 
     def status(self, t: int, most: int | None) -> Status:
-        """Its status at `t` (ns), with at most `most` records of open attempts."""
+        """The status at `t` (ns), with at most `most` records of open attempts."""
         now = self._monitor.verdicts
         counts, records = self._monitor.open_counts(most)
         return Status(

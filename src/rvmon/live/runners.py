@@ -1,4 +1,4 @@
-"""Runners of a driver: a thread of its own, or an event loop."""
+"""Drivers that run themselves: in their own thread, or in an event loop."""
 
 from __future__ import annotations
 
@@ -60,8 +60,9 @@ class Live(Driver):
                     return
 
     def close(self) -> dict[str, tuple[Report, ...]]:
-        """As `Driver.close`; it also joins the thread."""
-        if current_thread() is not self._thread:  # a callback is refused below
+        """Close the driver, as `Driver.close` does, and join the thread."""
+        # In a callback, the thread cannot join itself; `Driver.close` refuses that call.
+        if current_thread() is not self._thread:
             with self._changed:
                 self._stops = True
                 self._changed.notify()
@@ -77,7 +78,7 @@ class Live(Driver):
 
 
 class LiveTasks(Driver):
-    r"""A driver run by the running event loop, within `async with`.
+    r"""A driver that runs in the current event loop, within `async with`.
 
     Callbacks are called in the loop; `offer` may be called from any thread.
 

@@ -71,8 +71,9 @@ Entry = Offered | Dropped | Gap | NewRun
 class Waiting:
     """A bounded queue of samples; a sample that finds it full is counted as dropped.
 
-    Drops keep their place in the queue: there is one `Dropped` for all samples of a robot between
-    two that were queued, so that there are at most twice `room` entries. Not thread-safe.
+    Drops keep their place in the queue. One `Dropped` stands for all samples of a robot dropped
+    between two queued ones, so that samples and drops are at most `room` plus the number of robots.
+    Not thread-safe.
     """
 
     def __init__(self, room: int) -> None:
@@ -111,7 +112,7 @@ class Waiting:
         self._entries.append(gap)
 
     def put_new_run(self, why: str) -> None:
-        """Queue the begin of new runs, regardless of `room`."""
+        """Queue the start of new runs, regardless of `room`."""
         self._losing.clear()
         self._entries.append(NewRun(why))
 
@@ -119,7 +120,7 @@ class Waiting:
         """Remove the oldest entries, at most `most`."""
         taken = [self._entries.popleft() for _ in range(min(most, len(self._entries)))]
         for dropped in taken:
-            # The entry is taken now, so further losses need a new one.
+            # The entry has left the queue, so further losses need a new one.
             if isinstance(dropped, Dropped) and self._losing.get(dropped.robot) is dropped:
                 del self._losing[dropped.robot]
         return taken
