@@ -1,6 +1,6 @@
 """Coverage as data: models of items with goals, hits, and records of tests.
 
-The other modules find hits, store them in databases, and answer questions about them.
+The other modules collect hits, store them in databases, and analyse them.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 STATES = "states"
 TRANSITIONS = "transitions"
 PAIRS = "pairs of transitions"
-"""Names of the groups of a system's own states; items of the last two are states with arrows."""
+"""Names of the groups for a system's states; items of the last two are states joined by arrows."""
 
 
 class Subject(StrEnum):
@@ -45,7 +45,7 @@ class Item(Struct, frozen=True):
 
     name: str  # unique in its group
     kind: BinKind = BinKind.GOAL  # goal, ignored, or illegal (a hit is an error)
-    goal: int = 1  # the hits it needs
+    goal: int = 1  # the number of hits it needs
     text: str = ""  # a description: a condition, a line of code; "" if the name suffices
 
 
@@ -56,8 +56,8 @@ class Group(Struct, frozen=True):
     subject: Subject  # the kind of its items
     items: Mapping[str, Item]  # by name, in order
     weight: int = 1  # its weight in the total; with 0 it is shown, but not counted
-    # of a cross, the bins of each of its coverpoints, by the coverpoint's name; its items are named
-    # by `combination`
+    # For a cross: the bins of each of its coverpoints, by the coverpoint's name. The items of a
+    # cross are named by `combination`.
     axes: Mapping[str, Sequence[str]] = field(default_factory=dict)
     title: str = ""  # a description, such as the text of a requirement
 
@@ -114,7 +114,7 @@ def model_of(groups: Sequence[Group]) -> Model:
 
 
 def without(model: Model, items: Collection[tuple[str, str]]) -> Model:
-    """The model with some items, by group and name, ignored.
+    """The model with some items ignored, which are given by group and name.
 
     >>> gaze = group_of("gaze", Subject.COVERPOINT, [Item("yes"), Item("no")])
     >>> without(model_of([gaze]), [("gaze", "no")]).groups["gaze"].items["no"].kind.value
@@ -135,12 +135,12 @@ class Hit(Struct, frozen=True):
     first: int | None = None  # the instant of the first hit, ticks, if known
 
     def __reduce__(self) -> tuple[type[Hit], tuple[int, int | None]]:
-        # Compact pickles: thousands of tests send a hundred hits each between processes.
+        # A compact pickle: thousands of tests send a hundred hits each between processes.
         return Hit, (self.count, self.first)
 
 
 Hits = Mapping[str, Mapping[str, Hit]]
-"""By group and item; items without hits are left out. All groups and items must be in the model."""
+"""Hits by group and item, without items that were not hit. All must be in the model."""
 
 
 class Score(Struct, frozen=True):
@@ -174,7 +174,7 @@ def count_of(hits: Hits, group: str, item: str) -> int:
 
 
 def score(hits: Hits, group: Group) -> Score:
-    """The coverage of a group; ignored and illegal items are no goals."""
+    """The coverage of a group; ignored and illegal items are not goals."""
     wanted = [item for item in group.items.values() if item.kind is BinKind.GOAL]
     covered = sum(count_of(hits, group.name, item.name) >= item.goal for item in wanted)
     return Score(len(wanted), covered)
@@ -192,8 +192,8 @@ def share(hits: Hits, model: Model) -> float:
 def weighted(scores: Iterable[tuple[Group, Score]]) -> float:
     """The mean over subjects of the weighted means of their groups, rounded once.
 
-    So a cross counts the same, however many requirements there are. Groups without goals or weight
-    are left out.
+    So a cross counts the same regardless of the number of requirements. Groups without goals or
+    weight are left out.
 
     >>> from rvmon.coverage import Subject
     >>> rest = [(Group(f"R{place}", Subject.REQUIREMENT, {}), Score(4, 4)) for place in range(99)]
@@ -224,7 +224,7 @@ def illegal(hits: Hits, model: Model) -> list[IllegalHit]:
 
 
 def covered_groups(hits: Hits, model: Model) -> tuple[CoveredGroup, ...]:
-    """The coverage of one run, per group, with items that were not hit."""
+    """The coverage of one run by group, including items that were not hit."""
     found = []
     for group in model.groups.values():
         own = hits.get(group.name, {})
@@ -253,21 +253,18 @@ class TestRecord(Struct, frozen=True):
 
     name: str  # its display name; need not be unique
     campaign: str = ""  # the name of its campaign
-    # the strategy that generated it; "" for none, as of a recording from the field
-    strategy: str = ""
+    strategy: str = ""  # that generated it; "" if none did, as for a recording from the field
     recording: str = ""  # path of the recording; "" if it was not kept
     seed: int | None = None  # the seed to replay it with
     system: str = ""  # the system under test, such as a robot and its version
     verdicts: Mapping[str, Verdict] = field(default_factory=dict)  # by requirement
     ending: Ending = Ending.COMPLETED  # of the test
     error: str = ""  # the error, if it did not complete
-    number: int = 0  # its position in the campaign; equal ones are ordered by `when`
+    number: int = 0  # its position in the campaign; ties are ordered by `when`
     seconds: float = 0.0  # its duration in seconds
-    # the instant of recording, ns since 1970 UTC; `None`: when it is written
-    when: int | None = None
-    # the requirements known to fail, each with the reason
-    expected: Mapping[str, str] = field(default_factory=dict)
-    origin: int = 0  # the first instant of its run, ticks, which is shown as 0 s
+    when: int | None = None  # time of recording, ns since 1970 UTC; `None`: when it is stored
+    expected: Mapping[str, str] = field(default_factory=dict)  # known failures, each with a reason
+    origin: int = 0  # the first instant of its run in ticks, which is shown as 0 s
 
     @property
     def failed(self) -> tuple[str, ...]:
@@ -287,8 +284,8 @@ class TestRecord(Struct, frozen=True):
 class Row(Struct, frozen=True, eq=False):
     """The hits of a test, as parallel columns."""
 
-    items: NDArray[np.int32]  # int32[n], the items hit, as indices of `Coverage.items`, ascending
-    counts: NDArray[np.int64]  # int64[n], the number of hits, at least 1
+    items: NDArray[np.int32]  # int32[n], the hit items as indices of `Coverage.items`, ascending
+    counts: NDArray[np.int64]  # int64[n], numbers of hits, at least 1
     firsts: NDArray[np.int64]  # int64[n], instants of the first hits in ticks, or `UNKNOWN`
 
 
@@ -309,10 +306,10 @@ class Coverage(Struct, frozen=True):
     model: Model  # the model
     items: Sequence[tuple[str, str]]  # names of group and item, in the order of the model
     entries: Sequence[Entry]  # the tests, in the order of their campaigns
-    # by group and item, reasons why it is not covered
+    # Reasons why items are not covered, by group and item.
     reasons: Mapping[tuple[str, str], Sequence[str]] = field(default_factory=dict)
-    # by group and item, reasons why it cannot be hit; it is then no goal, and a hit contradicts the
-    # reason
+    # Reasons why items cannot be hit, by group and item. Such an item is not a goal, and a hit
+    # contradicts the reason.
     unreachable: Mapping[tuple[str, str], Sequence[str]] = field(default_factory=dict)
 
     @property

@@ -18,8 +18,8 @@ from rvmon.verdicts import Verdict
 class Goals(Struct, frozen=True, eq=False):
     """The goals of all items, as arrays by item."""
 
-    goal: NDArray[np.int64]  # the hits it needs
-    wanted: NDArray[np.bool_]  # whether it is a reachable goal, so that it counts
+    goal: NDArray[np.int64]  # the number of hits it needs
+    wanted: NDArray[np.bool_]  # whether it is a reachable goal and so counts
     unreachable: NDArray[np.bool_]  # whether it is a goal that cannot be hit
     illegal: NDArray[np.bool_]  # whether a hit is an error
     group: NDArray[np.int64]  # the index of its group in the model
@@ -48,7 +48,7 @@ class VerdictChange(Struct, frozen=True):
     test: str  # the name of the test
     requirement: str  # the id of the requirement
     before: Verdict | None  # the earlier verdict; `None` if it was not judged
-    after: Verdict | None  # the later verdict; likewise
+    after: Verdict | None  # the later verdict; `None` if it was not judged
 
 
 class Comparison(Struct, frozen=True):
@@ -110,7 +110,7 @@ class Answers:
 
     @cached_property
     def scores(self) -> Mapping[str, Score]:
-        """By group, its coverage."""
+        """The coverage of each group, by its name."""
         return self._scores(self.covered)
 
     @cached_property
@@ -175,7 +175,7 @@ class Answers:
         return unique
 
     def hitters(self, most: int) -> dict[int, list[int]]:
-        """By item, the first tests that hit it, at most `most`."""
+        """The first `most` tests that hit each item, by item."""
         tests: dict[int, list[int]] = {}
         counts = np.zeros(len(self.coverage.items), np.int64)
         for place, entry in enumerate(self.coverage.entries):
@@ -234,7 +234,7 @@ def compare(before: Coverage, after: Coverage) -> Comparison:
 
 
 def _state(coverage: Coverage) -> tuple[dict[Names, bool], list[Names], float]:
-    """By goal, whether it is covered; the illegal items hit; the covered share."""
+    """Whether each goal is covered; the illegal items that were hit; the covered share."""
     answers = Answers(coverage)
     covered = {
         coverage.items[place]: bool(answers.covered[place])

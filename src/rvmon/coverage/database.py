@@ -34,7 +34,7 @@ class Database:
     again. Calls wait for other processes that write.
 
     Args:
-        connection: to its tables.
+        connection: from `connect`.
         path: of its file; `None` if it is in memory.
     """
 
@@ -48,8 +48,8 @@ class Database:
         """Open a file for writing; it is created if it does not exist.
 
         Raises:
-            CoverageError: it is no coverage database, is damaged, of another version, or cannot be
-                written.
+            CoverageError: the file is not a coverage database, is damaged, has another version, or
+                cannot be written.
         """
         return cls(connect(path, create=True), path)
 
@@ -97,7 +97,7 @@ class Database:
             self._explain(self._with([(group, item)]), {(group, item): [reason]})
 
     def exclude(self, group: str, item: str, reason: str) -> None:
-        """Declare an item unreachable, with a reason: it is then no goal.
+        """Declare an item unreachable, with a reason, so that it is not a goal.
 
         Raises:
             CoverageError: there is no such item, or the file cannot be written.
@@ -201,8 +201,8 @@ def read(paths: Sequence[str | Path]) -> Coverage:
         paths: at least one; the files are not changed.
 
     Raises:
-        CoverageError: a file is no coverage database, is damaged, of another version, or its model
-            contradicts another one.
+        CoverageError: a file is not a coverage database, is damaged, has another version, or its
+            model contradicts another one.
     """
     if len(paths) == 1:
         with Database(connect(paths[0], create=False), paths[0]) as database:
@@ -212,7 +212,7 @@ def read(paths: Sequence[str | Path]) -> Coverage:
 
 
 def merge(paths: Iterable[str | Path], out: str | Path) -> None:
-    """Merge some files into another one; its own contents stay.
+    """Merge some files into another one, which keeps its own contents.
 
     Raises:
         CoverageError: as `read`, or the file cannot be written; nothing is written then.
@@ -243,9 +243,9 @@ class _Items:
             for group in model_from(stored).groups.values()
             for item in group.items
         ]
-        # by names of group and item, the index in that order
+        # The index of each item in that order, by names of group and item.
         self.places = {names: place for place, names in enumerate(named)}
-        # by index, the id in the table
+        # The ids in the table, by index.
         self.ids: NDArray[np.int64] = np.array(
             [stored[group].items[item].id for group, item in named], np.int64
         )

@@ -1,4 +1,4 @@
-"""The file of a coverage database: its tables, opening it, and the errors."""
+"""The file of a coverage database: its tables, how it is opened, and its errors."""
 
 from __future__ import annotations
 
@@ -39,15 +39,15 @@ _LONGEST = 100_000_000  # the most bytes of a text, or of the hits of one test, 
 
 
 def connect(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
-    """Open a database of coverage.
+    """Open a coverage database.
 
     Args:
         path: of the file; `None`: in memory.
-        create: create it if it does not exist, and open it for writing; else read-only.
+        create: open it for writing, and create it if it does not exist; otherwise read-only.
 
     Raises:
-        CoverageError: it does not exist, is no coverage database, is damaged, of another version,
-            or cannot be opened.
+        CoverageError: it does not exist, is not a coverage database, is damaged, has another
+            version, or cannot be opened.
     """
     if path is not None:
         _refuse(Path(path), create=create)
@@ -93,9 +93,9 @@ def readable_errors(path: str | Path | None) -> Iterator[None]:
 def transaction(
     database: sqlite3.Connection, path: str | Path | None, *, writes: bool = True
 ) -> Iterator[None]:
-    """A transaction: all writes within it or none, or reads of one consistent state.
+    """A transaction: it makes all its writes or none, or reads one consistent state.
 
-    Other writers wait for one that writes.
+    Other writers wait until a writing transaction ends.
     """
     with readable_errors(path):
         database.execute("BEGIN IMMEDIATE" if writes else "BEGIN")
@@ -114,7 +114,7 @@ def name_of(path: str | Path | None) -> str:
 
 
 def damaged(path: str | Path | None, what: str) -> CoverageError:
-    """The error that a file has contents rvmon cannot have written."""
+    """The error for a file with contents that rvmon cannot have written."""
     return CoverageError(f"error: {name_of(path)} is damaged: {what}: {_ANEW}")
 
 
@@ -170,7 +170,7 @@ def _opened(path: str | Path | None, *, create: bool) -> sqlite3.Connection:
         alone = not os.access(whole.parent, os.W_OK) and not Path(f"{whole}-wal").exists()
         mode = "rwc" if create else "ro&immutable=1" if alone else "rw"
         address = f"{whole.as_uri()}?mode={mode}"
-    # Without an isolation level Python begins no transactions of its own: see `transaction`.
+    # Without an isolation level, Python starts no transactions of its own: see `transaction`.
     database = sqlite3.connect(address, uri=True, timeout=PATIENCE_S, isolation_level=None)
     try:
         database.setlimit(sqlite3.SQLITE_LIMIT_LENGTH, _LONGEST)
@@ -212,7 +212,7 @@ def _check(database: sqlite3.Connection, path: str | Path | None) -> None:
 
 
 def _is_new(database: sqlite3.Connection) -> bool:
-    """Whether nothing was written yet."""
+    """Whether nothing has been written yet."""
     return (
         _pragma(database, "application_id") == 0
         and _pragma(database, "user_version") == 0

@@ -1,4 +1,4 @@
-"""Variants of requirements without one operand, to find whether the operand was decisive."""
+"""Variants of requirements without one operand, to find out whether the operand was decisive."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def _without_one(formula: Formula) -> Iterator[tuple[Formula, Formula, _Change]]
 
 
 def _rest(formula: Binary, side: str) -> Formula:
-    """A binary formula without one side: the other side, or its negation for `a -> b` without b."""
+    """A binary formula without one side: the other side; for `a -> b` without b, `not a`."""
     if side == "left":
         return formula.right
     if formula.op is BinaryOp.IMPLIES:

@@ -21,7 +21,7 @@ _PART = re.compile(r"(?:^| × )(?:`([^`]*)`|([^`×]*?))(?= × |$)")
 def nearest_tests(
     goals: Iterable[Goal], tests: Sequence[tuple[str, Hits]], model: Model
 ) -> dict[Goal, str]:
-    """By item, the test that came nearest (the first of equals); absent if none came near."""
+    """The test that came nearest to each item (the first of equals); absent if none came near."""
     names = {}
     for goal in goals:
         near, name = max(
@@ -37,9 +37,9 @@ def nearest_tests(
 def nearness(goal: Goal, hits: Hits, model: Model) -> float:
     """The share of the preconditions of an item that a test met, from 0 to 1.
 
-    For a combination of bins, the most bins in common with one that was hit; for a transition,
-    whether its source was reached; for a statement or branch, how near to its line the test came;
-    for anything else, the share of its group that was hit.
+    For a combination of bins, this is the largest share of bins in common with a combination that
+    was hit; for a transition, whether its source was reached; for a statement or branch, how near
+    to its line the test came; for anything else, the share of its group that was hit.
     """
     group = model.groups[goal[0]]
     seen = hits.get(group.name, {})
@@ -64,13 +64,13 @@ def cross_parts(name: str) -> list[str]:
 
 
 def _in_common(bins: Sequence[str], seen: Iterable[str]) -> int:
-    """The most bins that a combination of some names shares with others."""
+    """The most bins that a combination shares with any of those in `seen`."""
     met = (sum(map(eq, bins, cross_parts(name))) for name in seen)
     return max(met, default=0)
 
 
 def _near_transition(goal: Goal, hits: Hits) -> float:
-    """Nearness to a transition, or to a pair of transitions: whether its prefix was taken."""
+    """Nearness to a transition: whether its source was reached; to a pair: how much was taken."""
     names = goal[1].split(_ARROW)
     way = names[:-1]
     if goal[0].startswith("`"):  # an automaton's edge: its locations are a group of their own
@@ -81,13 +81,13 @@ def _near_transition(goal: Goal, hits: Hits) -> float:
     gone = hits.get(TRANSITIONS, {})
     first, second = (_ARROW.join(pair) for pair in pairwise(names))
     met = (first in gone) + (second in gone)
-    # Self-transitions of the middle state separate the two: the fewer, the nearer.
+    # Self-transitions of the middle state separate the two, so fewer of them are nearer.
     again = gone.get(_ARROW.join((names[1], names[1])))
     return (met + 1 / (1 + (again.count if again else 0))) / 3
 
 
 def _near_code(goal: Goal, hits: Hits) -> float:
-    """Nearness to a line: 1 if it ran (a branch), else by distance to the last line that ran."""
+    """Nearness to a line: 1 if it ran (a branch), else by the distance from the last that ran."""
     block = goal[0].partition(" of ")[2]
     lines = {int(line) for line in hits.get(f"statements of {block}", {})}
     line = int(goal[1].partition(_ARROW)[0])
@@ -105,8 +105,8 @@ class Hole(Struct, frozen=True):
     """An uncovered item in words."""
 
     what: str  # the item
-    why: str  # the reason why it is not covered, as far as the hits of all tests show
-    needs: str  # the condition that would cover it
+    why: str  # why it is not covered, as far as the hits of all tests show
+    needs: str  # what would cover it
     nearest: str = ""  # the nearest test; "" if none came near
 
     def __str__(self) -> str:
@@ -116,7 +116,7 @@ class Hole(Struct, frozen=True):
 
 
 def hole_of(goal: Goal, model: Model, hits: Hits, nearest: str = "") -> Hole:
-    """Explain a hole: an item that has not reached its goal, by the hits of all tests together.
+    """Explain a hole, an item with fewer hits than its goal, from the hits of all tests together.
 
     >>> from rvmon.coverage import Item, group_of, model_of
     >>> from rvmon.coverage import Hit

@@ -1,6 +1,6 @@
-"""Counts the hits of coverpoints, crosses, requirements and cover goals, by runs of the core.
+"""Count the hits of coverpoints, crosses, requirements and cover goals, with runs of the core.
 
-It runs beside monitors and never affects verdicts.
+These runs are separate from those of monitors and never affect verdicts.
 """
 
 from __future__ import annotations
@@ -63,12 +63,12 @@ class Bins:
         watches: list[Watch] = []
 
         def watch(formula: Formula) -> int:
-            # Unborn counts as FALSE.
+            # A bin whose formula is unborn is not hit.
             watches.append(Watch(reader.four(formula).read(FALSE), is_pulse(formula)))
             return len(watches) - 1
 
         axes = {
-            # The start is read before the bins add their watches: arguments are evaluated in order.
+            # Arguments are evaluated in order: the start is read before the bins add their watches.
             name: range(len(watches), 1 + [watch(bin_.formula) for bin_ in point.bins][-1])
             for name, point in points.items()
         }
@@ -150,7 +150,7 @@ class SpecCoverage:
     @cached_property
     def requirements(self) -> WatchedRequirements:
         """Its requirements and cover goals."""
-        # Imported on use: a run that adds to no database asks for bins alone.
+        # Imported here, as a run that does not write a database needs only the bins.
         from rvmon.coverage.requirements import WatchedRequirements
 
         return WatchedRequirements(self._compiled)
@@ -208,13 +208,14 @@ class SpecCoverage:
         return run.finish()
 
     def run(self, source: Source, *, requirements: bool = True) -> CoverageRun:
-        """A run over the pieces of a recording, which are given to it; `requirements`: as above."""
+        """A run that takes the pieces of a recording; `requirements` is as for `monitor`."""
         return CoverageRun(self, source, requirements=requirements)
 
     def planned(self, *, requirements: bool) -> Mapping[CompiledSpec, PlannedCore]:
-        """The plans of the runs; the strictest in validating samples first, the bins last.
+        """The plans of the runs, the bins last.
 
-        So a sample that the first run accepts is accepted by all.
+        The first is the strictest in validating samples, so that a sample which it accepts is
+        accepted by all.
         """
         plans = dict(self.requirements.planned) if requirements else {}
         if self.bins.groups:
@@ -240,12 +241,12 @@ class CoverageRun:
         self._runs = [RecordingRun(model.spec, core, source, finds=False) for core in plans]
 
     def take(self, piece: Batch | Sample) -> None:
-        """Take the next piece; none lies behind the end."""
+        """Take the next piece of the source, which yields none after its end."""
         for run in self._runs:
             run.take(piece)
 
     def finish(self) -> Hits:
-        """The hits, where the recording ends."""
+        """End the run at the end of the recording, and return all hits."""
         for run in self._runs:
             run.finish()
         cores = [run.core for run in self._runs]
@@ -260,7 +261,7 @@ class CoverageMonitor:
     """
 
     def __init__(self, model: SpecCoverage, options: Options, *, requirements: bool) -> None:
-        # Also where there is nothing to watch, and so no run that would refuse it.
+        # Checked here, as there may be nothing to watch, and so no run that would check it.
         refuse_settle(options.settle)
         self._model = model
         self._requirements = requirements
@@ -295,7 +296,7 @@ class CoverageMonitor:
 
     @property
     def hits(self) -> Hits:
-        """The bins and combinations hit so far; hits of requirements are known at the end."""
+        """The hits of bins and combinations so far; those of requirements are known at the end."""
         return self._model.hits([run.core for run in self._runs], requirements=False)
 
     def finish(self, t: float | None = None) -> Hits:
@@ -303,7 +304,7 @@ class CoverageMonitor:
         return self.finish_ns(None if t is None else ticks_of_seconds(t))
 
     def finish_ns(self, t_ns: int | None = None) -> Hits:
-        """End the run, at `t_ns` if that is later than everything so far; returns all hits."""
+        """End the run, at `t_ns` if that is later than everything so far, and return all hits."""
         for run in self._runs:
             run.finish_ns(t_ns)
         cores = [run.core for run in self._runs]

@@ -27,9 +27,9 @@ def smallest(
 ) -> Smallest:
     """A smallest set of tests that reaches the same goals as all tests: a set multicover problem.
 
-    Branch and bound, branching over the tests that hit the scarcest item. The lower bound adds up
-    items of which no test hits two. If the search exceeds its limit, the best set so far is
-    returned with the lower bound at the root.
+    It is found by branch and bound, branching over the tests that hit the scarcest item. The lower
+    bound adds up items of which no test hits two. If the search exceeds its limit, the best set so
+    far is returned with the lower bound at the root.
 
     Args:
         rows: per test, its hits by item.
@@ -73,7 +73,7 @@ def smallest(
 def _undominated(
     rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]
 ) -> dict[int, dict[int, int]]:
-    """The tests without dominated ones: another test alone brings their items to the goals."""
+    """The tests without dominated ones, all of whose items another test alone brings to goals."""
     kept: dict[int, dict[int, int]] = {}
     seen: set[frozenset[int]] = set()
     for place, row in rows.items():
@@ -98,7 +98,7 @@ def _undominated(
 
 
 def _scarce(rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]) -> dict[int, int]:
-    """The items without dominated ones: those hit by every test that hits a scarcer item."""
+    """The items without dominated ones, which are hit by all tests that hit some scarcer item."""
     hitters = _hitters(rows)
     kept: dict[int, int] = {}
     for item in sorted(needed, key=lambda one: (hitters[one].bit_count(), one)):
@@ -110,7 +110,7 @@ def _scarce(rows: Mapping[int, dict[int, int]], needed: Mapping[int, int]) -> di
 
 
 def _hitters(rows: Mapping[int, dict[int, int]]) -> dict[int, int]:
-    """By item, the set of tests that hit it, as bits of an integer."""
+    """The set of tests that hit each item, as bits of an integer."""
     hitters: dict[int, int] = {}
     for place, row in rows.items():
         for item in row:
@@ -137,7 +137,7 @@ class _Search:
         return self._left <= 0
 
     def greedy(self, needed: Mapping[int, int]) -> None:
-        """The initial solution: repeatedly the test that adds most."""
+        """Find the initial solution by repeatedly taking the test that adds most."""
         while needed:
             gains = {
                 place: _gain(row, needed)
@@ -149,7 +149,10 @@ class _Search:
             needed = _without(needed, self._rows[place])
 
     def bound(self, needed: Mapping[int, int], refused: int) -> int:
-        """A lower bound on further tests: the sum over items of which no test hits two."""
+        """A lower bound on further tests: the sum over items of which no test hits two.
+
+        `refused` is a set of tests that are not used.
+        """
         used, count = 0, 0
         for item in sorted(needed, key=lambda one: (self._hitters[one] & ~refused).bit_count()):
             hitters = self._hitters[item] & ~refused
@@ -209,8 +212,8 @@ def fewest(answers: Answers) -> Smallest:
 def ranking(answers: Answers, places: Collection[int] | None = None) -> list[Step]:
     """A greedy order of tests that reaches the coverage of all.
 
-    At every step the test is taken with the largest gain towards reachable goals, weighted as in
-    the total. Gains are submodular, they only shrink: so they are re-evaluated lazily.
+    Each step takes the test with the largest gain towards reachable goals, weighted as in the
+    total. As gains are submodular, they only shrink, so they are re-evaluated lazily.
 
     Args:
         answers: about the tests.

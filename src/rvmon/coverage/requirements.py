@@ -27,8 +27,8 @@ from rvmon.verdicts.attempt import DECISIONS, VERDICTS, Decision
 from rvmon.verdicts.report import Report
 
 Passages = Mapping[tuple[int, int], Hit]
-"""By source and target location of an automaton, the passages of attempts; the initial location to
-itself counts attempts that began."""
+"""Passages of attempts, by source and target location of an automaton. A passage from the initial
+location to itself is an attempt that began."""
 
 _OPEN = DECISIONS.index(Decision.OPEN)
 
@@ -42,7 +42,7 @@ class Judged(NamedTuple):
 
 
 def attempts_of(ids: Sequence[str], run: native.Monitor) -> dict[str, list[Judged]]:
-    """By requirement, its attempts except those in doubt."""
+    """The attempts of each requirement, by its id, except those in doubt."""
     attempts: dict[str, list[Judged]] = {name: [] for name in ids}
     records = np.frombuffer(run.records()[0], RECORD)
     records = records[records["in_doubt"] == 0]
@@ -56,7 +56,7 @@ def attempts_of(ids: Sequence[str], run: native.Monitor) -> dict[str, list[Judge
 
 
 def passages_of(ids: Sequence[str], run: native.Monitor) -> dict[str, Passages]:
-    """By requirement, the passages of its attempts through its automaton."""
+    """The passages of attempts through the automaton of each requirement, by its id."""
     passages: dict[str, Passages] = {}
     for number, name in enumerate(ids):
         locations, counted = run.passages(number)
@@ -69,7 +69,7 @@ def passages_of(ids: Sequence[str], run: native.Monitor) -> dict[str, Passages]:
 
 
 def goals_as_requirements(spec: CheckedSpec) -> CheckedSpec:
-    """A specification whose requirements are the cover goals of another; samples in order only."""
+    """A specification whose requirements are the cover goals of another, for samples in order."""
     requirements = {
         name: Requirement(
             name, Mode.UPON, rv.BoundAtom(rv.Bound.START), cover.formula, span=cover.span
@@ -82,7 +82,7 @@ def goals_as_requirements(spec: CheckedSpec) -> CheckedSpec:
 
 
 def goal_verdicts(report: Report) -> Mapping[str, Verdict]:
-    """By cover goal, `P` if the run shows it, `I` if it was still possible at the end, else `NT`.
+    """The verdict on each cover goal: `P` if the run shows it, `I` if it still might, else `NT`.
 
     No single run fails a goal.
     """
@@ -106,7 +106,7 @@ MOST_LOCATIONS = 50  # the size of the largest automata that become coverage gro
 
 
 def _item(name: str, text: str = "", *, by_failure: bool = False) -> Item:
-    """An item; one that only a failing run can hit is no goal."""
+    """An item; it is not a goal if only a failing run can hit it."""
     fails = by_failure or name in (AFTER, FAILURE) or name.endswith(edge_name(("", FAILURE)))
     return Item(name, BinKind.IGNORE if fails else BinKind.GOAL, text=text)
 
@@ -122,7 +122,7 @@ def edges_of(name: str) -> str:
 
 
 def decides(part: str) -> str:
-    """The name of the item for a decisive operand: without it, an attempt would end otherwise."""
+    """The name of the item for a decisive operand, without which an attempt ends differently."""
     return f"`{part}` decides"
 
 
@@ -257,7 +257,7 @@ def _instant(attempt: Judged) -> int:
 
 
 def _hit(item: str, instants: Iterable[int]) -> dict[str, Hit]:
-    """The hits of an item at some instants; empty without any."""
+    """The hits of an item at some instants; empty if there are none."""
     hit_instants = [*instants]
     return {item: Hit(len(hit_instants), min(hit_instants))} if hit_instants else {}
 
@@ -283,7 +283,7 @@ def _of_attempts(attempts: Sequence[Judged], deadline: int | None) -> Iterator[t
 
 
 def _apart(originals: Iterable[Judged], variants: Iterable[Judged]) -> list[int]:
-    """The instants of attempts in which two requirements differ in existence or decision."""
+    """The instants of attempts that only one of two requirements has, or that they decide apart."""
     first, second = (
         {
             (judged.triggered, judged.decided, judged.verdict): _instant(judged)
@@ -304,8 +304,8 @@ def _passages(
 ) -> Iterator[tuple[str, Mapping[str, Hit]]]:
     """The hits of the locations and edges of an automaton.
 
-    A location counts the larger number of entering and leaving attempts: the entry may have been
-    unknown.
+    A location counts the larger of the numbers of attempts that enter and that leave it, as an
+    entry may have been unknown.
     """
     names = {place.location: place.name for place in graph.places}
     drawn = {(edge.source, edge.target) for edge in graph.edges if edge.source != edge.target}

@@ -1,4 +1,4 @@
-"""Writes and reads the model of a coverage database: its groups and items."""
+"""Write and read the model of a coverage database: its groups and items."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ class StoredGroup(Struct, frozen=True):
     """A group with its position in its model.
 
     Positions make merging commutative: each part of the merged model gets the least of its
-    positions, in whatever order models are merged.
+    positions, regardless of the order in which models are merged.
     """
 
     subject: Subject
@@ -112,7 +112,13 @@ def read_groups(database: sqlite3.Connection, path: str | Path | None) -> Stored
 def write_groups(
     database: sqlite3.Connection, path: str | Path | None, known: Stored, more: Stored
 ) -> None:
-    """Add groups and items to those known, within a transaction; `path` is where they come from.
+    """Add groups and items to the known ones; call it within a transaction.
+
+    Args:
+        database: the database to write.
+        path: the file that `more` comes from, for errors.
+        known: the groups in the database.
+        more: the groups to add.
 
     Raises:
         CoverageError: a group or item contradicts a known one, or a number is invalid; nothing is

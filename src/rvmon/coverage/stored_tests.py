@@ -1,4 +1,4 @@
-"""Writes and reads the tests of a coverage database, with their hits."""
+"""Write and read the tests of a coverage database, with their hits."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _WRITE = (
     "WHERE (excluded.recorded, excluded.number, excluded.seconds, excluded.recording) "
     "< (recorded, number, seconds, recording)"
 )
-"""Of tests with equal digest, the earliest record is kept."""
+"""The earliest of several records of a test, which have equal digests, is kept."""
 
 _READ = f"SELECT {_COLUMNS} FROM tests"  # noqa: S608 - our words
 
@@ -43,7 +43,7 @@ def entry_of(test: TestRecord, hits: Hits, places: Mapping[tuple[str, str], int]
     """A test with its hits as an entry.
 
     Raises:
-        CoverageError: it hit an item that is not in the model, or a number is invalid.
+        CoverageError: the test hit an item that is not in the model, or a number is invalid.
     """
     flat = sorted(
         (group, item, hit.count, hit.first)
@@ -70,7 +70,13 @@ def entry_of(test: TestRecord, hits: Hits, places: Mapping[tuple[str, str], int]
 def write_entries(
     database: sqlite3.Connection, entries: Iterable[Entry], ids: NDArray[np.int64]
 ) -> None:
-    """Write tests; those already stored are not added again."""
+    """Write tests; those already stored are not added again.
+
+    Args:
+        database: the database.
+        entries: the tests.
+        ids: ids of the items in the table, by index in the model.
+    """
     database.executemany(_WRITE, (_stored(entry, ids) for entry in entries))
 
 
@@ -87,7 +93,12 @@ def _stored(entry: Entry, ids: NDArray[np.int64]) -> tuple[object, ...]:
 def read_entries(
     database: sqlite3.Connection, path: str | Path | None, ids: NDArray[np.int64]
 ) -> list[Entry]:
-    """The tests in the order of their campaigns; `ids`: of the items, in the order of the model.
+    """The tests, in the order of their campaigns.
+
+    Args:
+        database: the database.
+        path: its file, for errors.
+        ids: ids of the items in the table, by index in the model.
 
     Raises:
         CoverageError: the contents are damaged.
@@ -130,7 +141,7 @@ def _seed(test: TestRecord) -> str | None:
 
 
 def _storable(test: TestRecord) -> TestRecord:
-    """The record as it can be stored: with the present time by default, and valid text only."""
+    """The record in a form that can be stored: with the current time by default, and valid text."""
     return replace(
         test,
         **{name: _text(getattr(test, name)) for name in _TEXTS},
