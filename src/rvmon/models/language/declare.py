@@ -213,7 +213,7 @@ def _initial(
     if parts is None:
         assert not isinstance(written, syntax.Values), "it would have parts"
         value = resolver.constant(written, scope, real=kind.base is BaseType.DOUBLE)
-        check_range(value, kind, written.span)
+        symbols.check_range(value, kind, written.span)
         return value
     return tuple(_initial(*part, scope, resolver) for part in parts)
 
@@ -229,14 +229,8 @@ def _copied(symbol: sc.Symbol, kind: sc.ResolvedType, span: Span) -> sc.Constant
         return tuple(_copied(own, field, span) for (_, own), (_, field) in pairs)
     match symbol:
         case sc.ConstantSymbol(value) if not kind.fields:
-            check_range(value, kind, span)
+            symbols.check_range(value, kind, span)
             return value
         case _:
             fix = "name a constant array or record of the same type, or write {a, b, …}"
             raise model_error("TA004", "these are not the values of a constant", span, fix)
-
-
-def check_range(value: int, kind: sc.ResolvedType, span: Span) -> None:
-    """Refuse a constant outside the range of its type."""
-    if kind.base in (BaseType.INT, BaseType.BOOL) and not kind.low <= value <= kind.high:
-        raise model_error("TA007", f"{value} is outside [{kind.low}, {kind.high}]", span)

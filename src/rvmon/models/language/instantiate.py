@@ -10,7 +10,7 @@ from rvmon.models import model_error, unknown
 from rvmon.models import network as nta
 from rvmon.models.language import automaton_syntax, symbols, syntax
 from rvmon.models.language.automaton_syntax import Document
-from rvmon.models.language.declare import Findings, Parts, check_range
+from rvmon.models.language.declare import Findings, Parts
 from rvmon.models.language.operations import binary, refuse_clocks
 from rvmon.models.language.resolve import Resolver
 from rvmon.models.language.statements import is_price, updates_of
@@ -132,11 +132,12 @@ def _argument(
 ) -> sc.Symbol:
     """The symbol of an argument. Its type is resolved in scope `own`, its expression in `scope`."""
     kind = resolver.typed(parameter, own)
-    is_number = kind.base in (BaseType.INT, BaseType.BOOL) and not kind.extents
+    is_number = kind.placed_as is BaseType.INT and not (kind.extents or kind.fields)
     if is_number and not parameter.reference:
-        value = resolver.constant(written, scope)
-        check_range(value, kind, written.span)
-        return sc.ConstantSymbol(value)
+        real = kind.base is BaseType.DOUBLE
+        value = resolver.constant(written, scope, real=real)
+        symbols.check_range(value, kind, written.span)
+        return sc.ConstantSymbol(value, real)
     symbol = resolver.symbol(written, scope)
     match symbol:
         case sc.PlacedSymbol(place, slot):

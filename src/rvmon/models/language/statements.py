@@ -150,8 +150,10 @@ class Bodies:
             raise model_error("TA004", "a clock or channel in a function", item.span, fix)
         initial = item.initial
         if kind.const and initial is not None and not (kind.extents or kind.fields):
-            value = self._single(initial, scope)
+            real = kind.base is ex.BaseType.DOUBLE
+            value = fitted(self._single(initial, scope), real, initial.span)
             if isinstance(value, ex.Constant):
+                symbols.check_range(value.value, kind, initial.span)
                 scope.symbols[item.name] = sc.ConstantSymbol(value.value)
                 return []
         name = f"{self.text.name}.{item.name}"

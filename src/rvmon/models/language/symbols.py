@@ -124,6 +124,12 @@ def check_size(elements: int, span: Span) -> None:
         raise model_error("TA019", f"an array of more than {MAX_VALUES:,} elements", span)
 
 
+def check_range(value: int, kind: sc.ResolvedType, span: Span) -> None:
+    """Refuse a constant outside the range of its type."""
+    if kind.base in (ex.BaseType.INT, ex.BaseType.BOOL) and not kind.low <= value <= kind.high:
+        raise model_error("TA007", f"{value} is outside [{kind.low}, {kind.high}]", span)
+
+
 def values_of(kind: sc.ResolvedType, span: Span) -> range:
     """All values of a finite type."""
     if kind.base not in (ex.BaseType.INT, ex.BaseType.BOOL):

@@ -70,6 +70,7 @@ def test_what_functions_compute(functions, update, holds):
         ("S f() { return t; }", "f()", "TA016"),
         ("void f() { clock y; }", "f()", "TA004"),
         ("void f() { int[0,1] k; int[0,1] k; }", "f()", "TA003"),
+        ("void f() { const int[0,3] k = 7; v = k; }", "f()", "TA007"),
         ("int[0,9] f() { return missing; }", "v = f() + f()", "TA002"),
         ("", "t = a", "TA004"),
         ("", "t.r = 1", "TA002"),

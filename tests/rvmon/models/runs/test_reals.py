@@ -91,6 +91,23 @@ def test_operators(term, expected):
     assert float(rows[0][0]) == pytest.approx(expected)
 
 
+@pytest.mark.parametrize("value", ["3", "WHOLE", "2.5 + 0.5"])
+@pytest.mark.parametrize(
+    "automaton",
+    [
+        "double half() { const double own = VALUE; return own / 2; }\n"
+        "automaton B { location l invariant x <= 0 location m start l edge l -> m do d = half() }",
+        "automaton B(const double own) { location l invariant x <= 0 location m start l "
+        "edge l -> m do d = own / 2 }\nb = B(VALUE)\nsystem b",
+        "automaton B(double own) { location l invariant x <= 0 location m start l "
+        "edge l -> m do d = own / 2 }\nb = B(VALUE)\nsystem b",
+    ],
+)
+def test_a_double_set_to_an_integer_divides_as_a_double(automaton, value):
+    text = "const int WHOLE = 3\ndouble d\nclock x\n" + automaton.replace("VALUE", value)
+    assert float(values("d", text)[1][-1][0]) == 1.5
+
+
 @pytest.mark.parametrize(
     "update", ["last = 1 / (last - last)", "last = sqrt(-last)", "last = exp(1000 * last)"]
 )
