@@ -48,37 +48,37 @@ _LINES = {
     ("input", "output"): "role `input` (environment) or `output` (system)",
     ("stale after",): "A signal that is `stale after D` is unknown when its last update is longer "
     "ago than D.",
-    ("ignore NaN",): "`updated`, `age`, `rate`, `changed` and staleness go by the good values "
-    "alone.",
+    ("ignore NaN",): "`updated`, `age`, `rate`, `changed` and staleness consider only the known "
+    "values.",
     (
         "upon",
         "then",
     ): "`upon θ then ψ`: ψ is required each time θ becomes true; of an event: each time it occurs",
     ("now",): "`now` is the time since the first instant, compared with a duration",
-    ("if", "else"): "`if φ then x else y` is a number, or a formula",
+    ("if", "else"): "`if φ then x else y` is a number or a formula",
     ("whenever",): "`whenever θ then ψ`: ψ is required at every instant at which θ holds",
     ("monitor as response",): "`monitor as response within D`: derived from the requirement's "
     "`property E<> (…)`: upon its `input` part, its `output` part is required within D",
-    ("monitor as written",): "`monitor as written`: the requirement's `property` itself, on every "
-    "run",
+    ("monitor as written",): "`monitor as written`: checks the requirement's `property` itself on "
+    "every run",
     ("monitor as cover",): "`monitor as cover`: the requirement's `property E<> …` is a goal that "
     "some run should show",
     ("source", "rationale", "severity", "tags"): '`source "…"`, `rationale "…"`, `severity high`, '
     "`tags a, b`: shown in tables",
-    ("let",): "`let v = expression`: the value at the trigger, for the consequent",
+    ("let",): "`let v = expression`: v is the value at the trigger, for use in the consequent",
     ("for each",): "`for each x in event.field`: one instance of the requirement for each value",
     ("at end",): "`at end: strict`: the policy for attempts that are undecided at the end",
     ("in at least", "in at most", "of runs"): _RUNS,
     ("scope", "before", "after", "between"): "`scope before (r)`, `scope after (q)`, `scope "
     "between (q) and (r)`, `scope after (q) until (r)`",
-    ("start", "end"): "`start` is the first instant; `end` stands alone as a trigger",
+    ("start", "end"): "`start` is the first instant. `end` can only be a trigger by itself",
     ("within", "for"): "`within D φ`, `for D φ`: `F[0, D]`, `G[0, D]`: φ at some instant, at all "
     "of the next D",
     ("immediately",): "`immediately φ`: φ itself, said on purpose",
     ("inf",): "`[1 s, inf)` (or `∞`)",
     ("AG", "AF", "AX", "EG", "EF", "EX"): "Properties are CTL: `AG AF AX EG EF EX A[φ U ψ] "
     "E[φ U ψ]`",
-    ("goal",): "`goal` the hits that each needs (default: 1)",
+    ("goal",): "`goal` the hits that each bin needs (default: 1)",
     ("weight",): "`weight` the weight of a coverpoint or cross in the total",
     ("ignore", "illegal"): "ignored and illegal combinations",
 }
