@@ -24,7 +24,7 @@ from rvmon.verdicts.report import Report, report_of
 
 
 class HasChecked(Protocol):
-    """A public specification (`rvmon.Spec`): it has the checked one."""
+    """A public specification (`rvmon.Spec`), which has the checked one."""
 
     @property
     def checked(self) -> CheckedSpec:
@@ -43,10 +43,10 @@ def evaluate(
     """Judge a trace by the definitions of the semantics.
 
     Args:
-        spec: checked, or the public `Spec`.
+        spec: the checked specification, or the public `Spec`.
         samples: a trace, or samples or pairs `(ticks, values)` with strictly increasing times.
-        end: the instant given to `finish`, ticks; default the trace's own, if it has one.
-        advances: the instants given to `advance`, ticks, in an order that fits the samples.
+        end: the instant passed to `finish`, ticks; default the trace's own end, if it has one.
+        advances: the instants passed to `advance`, ticks, in an order that fits the samples.
         names: the names that have a source; default the trace's own, else all.
         outages: the outages, in any order.
 
@@ -54,8 +54,8 @@ def evaluate(
         The report, without reasons.
 
     Raises:
-        TimeOrderError: the times do not increase.
-        TraceError: the trace is too long to be laid out tick by tick; a sample holds a name
+        TimeOrderError: the times do not increase strictly.
+        TraceError: the trace is too long to be laid out tick by tick; or a sample holds a name
             without a source, or two payloads of an event while some requirement has no `for each`.
 
     Cost: unbounded, on purpose; some milliseconds for a dozen samples within forty ticks.
@@ -73,11 +73,11 @@ def evaluate(
 
 
 def judge_views(spec: CheckedSpec, word: Word, samples: Sequence[Sample]) -> dict[str, Followings]:
-    """The attempts of each requirement on a word, judged.
+    """Judge the attempts of each requirement on a word.
 
     Raises:
         TraceError: two payloads of an event while some requirement has no `for each`.
-        RvmonError: a requirement's `pulse` is not what its trigger's syntax says.
+        RvmonError: the `pulse` of a requirement disagrees with the syntax of its trigger.
     """
     _refuse_double_payloads(spec.requirements.values(), samples)
     return {name: follow(requirement, word) for name, requirement in spec.requirements.items()}
@@ -100,7 +100,7 @@ def report_on(
 
 
 def _record(followed: Followed, origin: int) -> Attempt | None:
-    """The record of an attempt; `None` for an attempt in doubt whose obligation was met."""
+    """The record of an attempt; `None` for an attempt in doubt whose obligation is met."""
     start = followed.start
     requirement = start.view.requirement
     triggered = start.triggered

@@ -1,6 +1,6 @@
-"""Hypothesis strategies for random specifications and traces, which shrink.
+"""Hypothesis strategies for random specifications and traces that shrink.
 
-Needs `hypothesis`, which rvmon does not install.
+They need `hypothesis`, which rvmon does not install.
 """
 
 from __future__ import annotations
@@ -58,11 +58,11 @@ def specs(draw: st.DrawFn, profile: Profile = _ANY_SPEC) -> CheckedSpec:
 
 @st.composite
 def traces(draw: st.DrawFn, spec: CheckedSpec, profile: TraceProfile = _ANY_TRACE) -> Case:
-    """Traces for a given specification, biased to its bounds and thresholds.
+    """Traces for a given specification, biased towards its bounds and thresholds.
 
     Args:
         draw: given by Hypothesis.
-        spec: the checked specification (`Spec.checked`); for the oracle its bounds should be a few
+        spec: the checked specification (`Spec.checked`); for the oracle, its bounds should be a few
             ticks.
         profile: the limits of the traces.
     """
@@ -85,6 +85,6 @@ def cases(
 
 
 def _noted(case: Case) -> Case:
-    """The case; a failing test shows it as text."""
+    """The case itself, which a failing test shows as text."""
     note(show_case(case))
     return case

@@ -1,6 +1,6 @@
 """Random formulas, specifications and traces, biased towards cases that monitors get wrong.
 
-This module has the random choices, and the names that random specifications declare.
+This module makes the random choices, and has the names that random specifications declare.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ class Rng(Protocol):
     """A source of integers; `random.Random` is one."""
 
     def randint(self, a: int, b: int, /) -> int:
-        """An integer from `a` to `b`, both included; `a` is the simplest."""
+        """An integer from `a` to `b`, both included; shrinking leads to `a`."""
 
 
 def chance(rng: Rng, percent: int) -> bool:
-    """True with a probability in per cent; false is the simplest."""
+    """True with a probability of `percent`; false is the simplest."""
     return rng.randint(1, 100) > 100 - percent
 
 
@@ -42,7 +42,7 @@ def weighted(rng: Rng, options: Sequence[tuple[int, T]]) -> T:
 
 
 def drawn(rng: Rng, *ways: tuple[int, Callable[[], T]]) -> T:
-    """What one of several functions makes, chosen in proportion to their weights."""
+    """The result of one of several functions, chosen in proportion to their weights."""
     return weighted(rng, ways)()
 
 
@@ -65,7 +65,7 @@ WIDE = (-(2**63), -(2**53) - 1, 0, 2**53, 2**53 + 1, 2**62, 2**63 - 1)
 def signals(
     stale: Mapping[str, int] | None = None, ignoring: Container[str] = ()
 ) -> dict[str, Signal]:
-    """The declared signals; some `stale after` so many ticks, some `ignore NaN`."""
+    """The declared signals; `stale` gives some a time limit in ticks, `ignoring` ignore NaN."""
     kinds = {
         **dict.fromkeys(BOOLS, Type(Kind.BOOL)),
         **dict(zip(NUMBERS, (Type(Kind.REAL), Type(Kind.INT)), strict=True)),

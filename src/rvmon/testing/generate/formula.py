@@ -42,7 +42,7 @@ _LIKELY: dict[rv.UnaryOp | rv.BinaryOp, int] = {
     rv.BinaryOp.UNTIL: 4, rv.BinaryOp.IMPLIES: 3, rv.UnaryOp.EVENTUALLY: 3, rv.UnaryOp.ALWAYS: 3,
     rv.UnaryOp.ONCE: 3, rv.UnaryOp.HISTORICALLY: 3,
 }  # fmt: skip
-"""The weight of an operator among those of its kind; default 2."""
+"""The weights of operators among those of their kind; default 2."""
 
 _STEPS = (rv.UnaryOp.NOT, rv.UnaryOp.NEXT, rv.UnaryOp.PREVIOUS)
 
@@ -53,7 +53,7 @@ def _unary_of(tense: Tense) -> tuple[tuple[int, rv.UnaryOp], ...]:
 
 
 def consequent(rng: draw.Rng, shape: numbers.Shape, depth: int) -> rv.Formula:
-    """A random formula, mostly with a future operator at its top."""
+    """A random formula, usually with a future operator at its top."""
     if shape.future and draw.chance(rng, 50):
         if draw.chance(rng, 50):
             return _future_unary(rng, shape, depth)

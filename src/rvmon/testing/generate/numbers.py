@@ -41,7 +41,7 @@ class Shape:
         numbers: whether comparisons and probes may occur.
         events: whether events may be read.
         captured: names of captured numbers that may be read.
-        wide: whether whole numbers reach the ends of 64 bits; then nothing is computed with them.
+        wide: whether whole numbers reach the ends of 64 bits; then no arithmetic is done with them.
         constants: the weight of constants among propositions; the others together have about 100.
         longest: the greatest bound of an interval, ticks.
         amounts: the weight of measures of windows; the other formulas together have about 120.
@@ -69,7 +69,7 @@ _UNITS = {
     **dict.fromkeys((UnitRule.TO_ANGLE, UnitRule.DIRECTION, UnitRule.TURN), _RADIAN),
     UnitRule.PLACES: rv.Literal(1, "m"),
 }
-"""The unit of the result of an operation, if it has one."""
+"""The unit of the result of operations that have one."""
 _CALCULATING = tuple(op for op in NumericOp if op is not NumericOp.BIT)
 _CHOOSING = (NumericOp.MIN, NumericOp.MAX)
 """The operations that return one of their operands, so that whole numbers stay within 64 bits."""
@@ -113,7 +113,7 @@ def arithmetic(rng: Rng, shape: Shape) -> rv.Numeric:
 
 
 def _with_units(op: NumericOp, args: list[rv.Numeric]) -> rv.Numeric:
-    """An operation on numbers without units; its arguments get the units that it requires."""
+    """An operation on numbers without units, whose arguments get the units that it requires."""
     rule = op.entry.unit
     if rule is UnitRule.BITS:
         args = [arg if isinstance(arg, rv.Literal) else rv.SignalValue(NUMBERS[1]) for arg in args]
@@ -132,7 +132,7 @@ def field_value(rng: Rng) -> rv.Numeric:
 
 
 def input_number(rng: Rng, shape: Shape) -> rv.Numeric:
-    """A random number to read: of a signal, a field, or captured."""
+    """A random number to read: a signal, a field, or a captured value."""
     if shape.events and chance(rng, 15):
         return field_value(rng)
     if shape.captured and chance(rng, 20):
@@ -149,7 +149,7 @@ def probe(rng: Rng, shape: Shape) -> rv.Formula:
 
 
 Draw = Callable[[Rng, Shape], rv.Formula]
-"""Draws an operand."""
+"""A function that draws an operand."""
 
 
 def late(rng: Rng, shape: Shape) -> rv.Formula:
@@ -164,7 +164,7 @@ def late(rng: Rng, shape: Shape) -> rv.Formula:
 
 
 ALONE = tuple(measured for measured in rv.Measured if not measured.recalls)
-"""The measures that can be compared with a limit alone."""
+"""The measures that can be compared with a limit by themselves."""
 EXPRESSION = "expression"
 """The form of windows within numeric expressions."""
 
@@ -220,7 +220,7 @@ def _compared(rng: Rng, shape: Shape, draw: Draw, mode: str) -> rv.Formula:
 def number_of_windows(
     rng: Rng, shape: Shape, draw: Draw, most: int = 2, mode: str = ""
 ) -> rv.Numeric:
-    """An expression of windows, signals and constants; in `time held` none changes between samples.
+    """An expression of windows, signals and constants; in held time it changes only at samples.
 
     Args:
         rng: see `random_spec`.
@@ -257,7 +257,7 @@ _JOINING = (
 def _window(
     rng: Rng, shape: Shape, draw: Draw, measured: rv.Measured, mode: str, *, settled: bool = False
 ) -> rv.WindowValue:
-    """A window; `settled`: in `time held`, one that changes only at samples."""
+    """A window; `settled`: one that in held time changes only at samples."""
     if settled and measured.of_time:
         measured = rv.Measured.COUNT
     window = None if chance(rng, 15) else rng.randint(1, shape.longest)
@@ -287,7 +287,7 @@ def _window(
         if settled and measured is rv.Measured.MEAN:
             fields = True
         if measured is rv.Measured.VARIANCE and not shape.step:
-            fields = True  # of a held number it changes along a curve: the language refuses it
+            fields = True  # for a held number it changes along a curve: the language refuses it
         number = field_value(rng) if fields else _held(rng, plain)
         if measured is rv.Measured.INTEGRAL and chance(rng, 10):
             number = rv.Literal(1)
@@ -306,7 +306,7 @@ def _window(
 
 
 def _held(rng: Rng, shape: Shape) -> rv.Numeric:
-    """A held number; the language requires that it reads more than captured values."""
+    """A held number that reads more than captured values, as the language requires."""
     number = arithmetic(rng, shape) if chance(rng, 30) else input_number(rng, shape)
     return number if any(names_in(number)) else rv.SignalValue(pick(rng, NUMBERS))
 

@@ -34,17 +34,17 @@ class Profile:
         time: the time model; `None`: any.
         depth: the greatest depth of a consequent.
         requirements: the greatest number of requirements.
-        many: the per cent of specifications with 8 to 14 requirements; half of these only read
+        many: the percentage of specifications with 8 to 14 requirements; half of these only read
             truth values and their past, so that plans share subformulas.
-        crowded: the per cent of specifications with 20 to 26 requirements.
-        wide: the per cent of specifications whose whole numbers reach the ends of 64 bits; these
-            are compared, but not computed with.
+        crowded: the percentage of specifications with 20 to 26 requirements.
+        wide: the percentage of specifications whose whole numbers reach the ends of 64 bits; such
+            numbers are compared, but no arithmetic is done with them.
         numbers: whether comparisons and probes may occur.
         constants: the weight of constants among propositions; the others together have about 100.
         amounts: the weight of measures of windows; the other formulas together have about 120.
-        form: the only measure, at least once in each specification: a name (`mean`), or
-            `expression` for several; after `last` (updates), `since` (the trigger) or `each`
-            (several occurrences) it is measured over these.
+        form: the only measure, which occurs at least once in each specification: a name (`mean`),
+            or `expression` for several. A prefix says what it is measured over: `last` (the last
+            updates), `since` (since the trigger) or `each` (several occurrences).
         past: whether past operators may occur.
         future: whether future operators may occur.
         events: whether events may be read.
@@ -153,7 +153,7 @@ def _requirement(rng: Rng, profile: Profile, time: spec.TimeModel, name: str) ->
 
 
 def _law(rng: Rng, profile: Profile, time: spec.TimeModel, name: str) -> spec.Requirement:
-    """`always φ` over truth values and their past."""
+    """A requirement `always φ` over truth values and their past."""
     shape = Shape(time is not spec.TimeModel.HELD, future=False, numbers=False, events=False)
     lasting = formula(rng, shape, min(profile.depth, 3))
     start = rv.BoundAtom(rv.Bound.START)
@@ -170,7 +170,7 @@ def _captures(rng: Rng, profile: Profile, time: spec.TimeModel) -> tuple[spec.Ca
         simple: tuple[rv.Numeric, ...] = (rv.SignalValue("x"), rv.FieldValue(CARRIER, FIELD))
         value = arithmetic(rng, earlier) if chance(rng, 25) else pick(rng, simple)
         if profile.amounts and not profile.wide and chance(rng, 40):
-            # The language admits no `let` in a window, only its expression.
+            # In a window the language allows no captured value of a `let`, only an expression.
             held = Shape(step=time is not spec.TimeModel.HELD, longest=4)
             value = number_of_windows(
                 rng, held, lambda rng, below: formula(rng, replace(below, past=profile.past), 1)

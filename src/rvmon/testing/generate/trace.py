@@ -1,4 +1,4 @@
-"""Test cases: a specification with a trace, random and biased to its bounds and thresholds."""
+"""Random test cases: a specification, and a trace biased towards its bounds and thresholds."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Case:
 
 
 def show_case(case: Case) -> str:
-    """The specification as `.rv` text, then the calls of the monitor, a line each."""
+    """The specification as `.rv` text, then the calls of the monitor, one per line."""
     lines = [show_spec(case.spec), ""]
     if case.names is not None:
         lines.append(f"sources: {', '.join(sorted(case.names)) or 'none'}")
@@ -101,15 +101,15 @@ class TraceProfile:
 
     Attributes:
         samples: the greatest number of samples.
-        fewest: the least number of samples, if the span allows.
-        span: the ticks from the first to the last sample, about.
-        long: the per cent of traces that may be three times as long; their signals come later and
-            are updated less often.
-        sparse: the per cent of traces with some dozens of samples of few names, some of them far
+        fewest: the least number of samples, if the span allows it.
+        span: roughly the ticks from the first to the last sample.
+        long: the percentage of traces that may be three times as long, with signals that start
+            later and are updated less often.
+        sparse: the percentage of traces with some dozens of samples, of few names and partly far
             apart.
-        unknowns: whether values may be `None` or NaN and sources absent.
+        unknowns: whether values may be `None` or NaN, and sources absent.
         advances: whether `advance` is called.
-        outages: the per cent of traces with outages.
+        outages: the percentage of traces with outages.
     """
 
     samples: int = 12
@@ -125,12 +125,12 @@ class TraceProfile:
 def random_trace(rng: Rng, spec: specification.CheckedSpec, profile: TraceProfile) -> Case:
     """A random trace for a specification, with `advance`, `finish`, sources and outages.
 
-    Gaps between samples are often a bound of the specification, or one tick longer; numbers are its
-    literals and their neighbours.
+    Gaps between samples are often a bound of the specification, or one tick longer. Numbers are the
+    literals of the specification and their neighbours.
 
     Args:
         rng: `random.Random` with a seed, or one that draws from Hypothesis.
-        spec: any specification; for the oracle its bounds should be a few ticks.
+        spec: any specification; for the oracle, its bounds should be a few ticks.
         profile: the limits.
     """
     gaps = _gaps(spec)
@@ -138,7 +138,7 @@ def random_trace(rng: Rng, spec: specification.CheckedSpec, profile: TraceProfil
     names = None
     if profile.unknowns and chance(rng, 8):
         names = frozenset(name for name in (*spec.signals, *spec.events) if not chance(rng, 20))
-    # Some sensors fail often: then earlier values matter, above all to instances that begin later.
+    # With sensors that fail often, earlier values matter, above all to instances that start later.
     often = 40 if any(requirement.for_each for requirement in spec.requirements.values()) else 25
     unknown = (30 if chance(rng, often) else 5) if profile.unknowns else 0
     longer = 3 if profile.long and chance(rng, profile.long) else 1
@@ -170,7 +170,7 @@ def random_trace(rng: Rng, spec: specification.CheckedSpec, profile: TraceProfil
 
 
 def _outage(rng: Rng, spec: specification.CheckedSpec, read: Sequence[int]) -> Outage:
-    """A random outage of one or more ticks and some names, often from or up to a sample.
+    """A random outage of some names for one or more ticks, often from or up to a sample.
 
     It may lie before or after all samples.
     """
@@ -190,7 +190,7 @@ def _gap(rng: Rng, gaps: Sequence[int]) -> int:
 
 
 def _gaps(spec: specification.CheckedSpec) -> list[int]:
-    """One tick; and each bound and staleness of the specification, exactly and one tick more."""
+    """One tick; and each bound and stale limit of the specification, exactly and one tick more."""
     gaps = {1}
     for window in _intervals(spec):
         for bound in (window.low, window.high):
@@ -212,7 +212,7 @@ def _intervals(spec: specification.CheckedSpec) -> list[Interval]:
 
 
 def _numbers(spec: specification.CheckedSpec) -> list[int | float]:
-    """The literals of all comparisons with their neighbours, and a few small numbers."""
+    """The literals of all comparisons and their neighbours, and a few small numbers."""
     found: set[int | float] = {0, 1}
     for requirement in spec.requirements.values():
         for part in (requirement.trigger, requirement.consequent):
@@ -230,9 +230,9 @@ def _several(spec: specification.CheckedSpec) -> frozenset[str]:
 
 @dataclass(frozen=True, slots=True)
 class _Values:
-    """Draws the values of a sample; `unknown` per cent of them are unknown.
+    """Draws the values of samples, of which `unknown` per cent are unknown.
 
-    A signal has no update, or only unknown ones, before the sample whose number `late` gives; from
+    A signal has no update, or only unknown ones, before the sample whose number `late` gives. From
     then on `often` per cent of the samples update it. In `sparse` traces events are rare.
     """
 

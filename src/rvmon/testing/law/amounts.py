@@ -39,7 +39,7 @@ class Member:
     """A member of a window."""
 
     value: int | float | None  # its number; `None` if unknown
-    sure: bool  # whether it surely is a member
+    sure: bool  # whether it certainly is a member
     size: int  # the number of positions, or ticks, that it stands for
 
 
@@ -52,9 +52,9 @@ class Past:
     state: State
 
     def truth(self, formula: rv.Amount, i: int) -> Truth:
-        """Whether the measure of the window of a position reaches the limit.
+        """Whether the measure of the window at a position reaches its limit.
 
-        UNBORN if the limit is, or if the measure is undefined without a signal that is unborn.
+        UNBORN if the limit is unborn, or if the measure is undefined because a signal is unborn.
         """
         known = formula.known and self.state(formula.known, i)
         if known is Truth.UNBORN or not self.is_born(formula.of, i):
@@ -106,7 +106,7 @@ class Past:
                 return expression
 
     def is_born(self, window: rv.WindowValue, i: int) -> bool:
-        """Whether the signals of a window have values; for `ago`, whether they had them D ago."""
+        """Whether the signals of a window have had values; for `ago`, whether they had D ago."""
         if window.value is None or window.measured not in _OF_SOME:
             return True
         letter = self.letters[i] if window.measured is not rv.Measured.AGO else self._ago(window, i)
@@ -120,7 +120,7 @@ class Past:
     def amount(self, window: rv.WindowValue, i: int) -> int | float | None:
         """The value of a window, rounded once; `None` if it is not certain.
 
-        Counts are whole numbers; so are measures of whole numbers that need no division.
+        Counts are whole numbers, and so are measures of whole numbers that need no division.
         """
         if window.measured is rv.Measured.AGO:
             letter = self._ago(window, i)
@@ -144,20 +144,20 @@ class Past:
         return finite(number(window.value, letter, {}, self.captured))
 
     def members(self, window: rv.WindowValue, i: int) -> list[Member] | None:
-        """The members of the window of a position; `None` if it is unknown which these are."""
+        """The members of the window at a position; `None` if it is unknown which they are."""
         return self.last(window, i) if window.most else [*self.window(window, i)]
 
     def window(self, formula: rv.WindowValue, i: int) -> Iterator[Member]:
-        """The members of a window of duration, the oldest first."""
+        """The members of a window over a duration, the oldest first."""
         for k in range(self.begin(formula, i), i + 1):
             if size := _size(self.letters, k, i, formula):
                 for value, sure in self.at(formula, k):
                     yield Member(value, sure, size)
 
     def begin(self, formula: rv.WindowValue, i: int) -> int:
-        """The first position of a window that starts at a captured instant; else the first of all.
+        """The first position of a window that starts at a captured instant; otherwise 0.
 
-        Possible positions before that instant are no members.
+        Possible positions before that instant are not members.
         """
         since = self.letters[i].since
         left = getattr(formula.operand, "left", formula.operand)
@@ -171,7 +171,7 @@ class Past:
         )
 
     def last(self, formula: rv.WindowValue, i: int) -> list[Member] | None:
-        """The members of a window of the last N; `None` if it is unknown which these are."""
+        """The members of a window over the last N; `None` if it is unknown which they are."""
         found: list[Member] = []
         for k in range(i, -1, -1):
             there = self.state(formula.operand, k)
@@ -186,10 +186,10 @@ class Past:
         return found[::-1]
 
     def at(self, formula: rv.WindowValue, k: int) -> Iterator[tuple[int | float | None, bool]]:
-        """The members at a position: the number of each, and whether it surely is a member.
+        """The members at a position: the number of each, and whether it certainly is a member.
 
-        A condition that is constantly false has no member with a number, even at a possible
-        position, where it is UNKNOWN as every formula.
+        A condition that is constantly false has no member with a number, not even at a possible
+        position, where it is UNKNOWN like every formula.
         """
         there = self.state(formula.operand, k)
         never = formula.value is not None and constant_value(formula.operand) is Truth.FALSE
@@ -234,7 +234,7 @@ class Past:
 
 
 def finite(value: Scalar) -> int | float | None:
-    """A finite number as it is; `None` for anything else."""
+    """The value if it is a finite number; `None` otherwise."""
     if value is None or isinstance(value, str) or not math.isfinite(value):
         return None
     return value
@@ -273,7 +273,7 @@ def ends_of(window: rv.WindowValue, members: Sequence[Member]) -> Ends | None:
 def _of_sure(
     measured: rv.Measured, numbers: Sequence[tuple[Fraction, bool, int]]
 ) -> Fraction | None:
-    """A measure of sure members with known numbers; `None` if there are none."""
+    """A measure of certain members with known numbers; `None` if there are none."""
     count = sum(size for _, _, size in numbers)
     if count == 0:
         return None
@@ -293,7 +293,7 @@ def _of_sure(
 
 
 def _size(letters: Sequence[Letter], k: int, i: int, formula: rv.WindowValue) -> int:
-    """The number of positions, or ticks, that position `k` contributes to the window of `i`."""
+    """The number of positions, or of ticks, that position `k` contributes to the window at `i`."""
     begin = letters[k].instant
     first = begin if formula.window is None else max(begin, letters[i].instant - formula.window)
     if not formula.measured.of_time:

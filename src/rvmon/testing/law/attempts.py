@@ -55,14 +55,14 @@ def is_pulse(formula: rv.Formula, *, negated: bool = False) -> bool:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Start:
-    """The beginning of an attempt."""
+    """The start of an attempt."""
 
     view: View  # the requirement, or the instance of it, on the trace
     position: int  # the position of the trigger; for an attempt in doubt, the first possible one
     # the positions at which the consequent is required; of a `whenever`, those of its episode
     positions: Sequence[int]
     captured: Mapping[str, Scalar]  # values of `let` and `for each`
-    blurred: int | None  # the position from which on the values of its `let` are unknown
+    blurred: int | None  # the position from which on its `let` values are unknown
     stop: int | None = None  # the first position after its episode; `None` if it is not over
     # the first of its positions at which the trigger is TRUE; `None` if it is in doubt
     sure: int | None = None
@@ -79,7 +79,7 @@ class Start:
 
     @property
     def may_be_over(self) -> bool:
-        """Whether it is an episode that reached the end of the trace, but may have ended before."""
+        """Whether it is an episode that lasts to the end of the trace but may have ended before."""
         if self.view.requirement.mode is Mode.UPON or self.stop is not None:
             return False
         return any(self.view.trigger[k] is law.Truth.UNKNOWN for k in self.positions)
@@ -95,9 +95,9 @@ class View:
     """A requirement, or an instance of it, on a word, with the truth of its formulas there.
 
     Args:
-        requirement: as checked.
+        requirement: the checked requirement.
         word: the trace, with the occurrences of this instance.
-        captured: the value of its `for each`.
+        captured: the value of its `for each`, by name.
         first: the first position at which an attempt can start.
         doubted: whether the instance may not exist.
     """
@@ -149,7 +149,7 @@ class View:
         return law.conjunction([now, law.negation(self.trigger[k - 1]) if k else law.Truth.TRUE])
 
     def stretch(self, k: int) -> tuple[Sequence[int], int | None]:
-        """The positions from `k` on up to the first where the trigger is FALSE, and that one."""
+        """The positions from `k` on at which the trigger is not FALSE, and the first after them."""
         later = (j for j in range(k, len(self.trigger)) if self.trigger[j] is law.Truth.FALSE)
         stop = next(later, None)
         return range(k, len(self.trigger) if stop is None else stop), stop
@@ -165,7 +165,7 @@ class View:
         return Start(self, position, positions, captured, blurred, stop, self.first_true(known))
 
     def first_true(self, positions: Iterable[int]) -> int | None:
-        """The first of some positions at which the trigger is surely TRUE, or `None`."""
+        """The first of some positions at which the trigger is certainly TRUE, or `None`."""
         if self.doubted:
             return None
         return next((k for k in positions if self.trigger[k] is law.Truth.TRUE), None)
@@ -210,7 +210,7 @@ class Readings:
         self._made: dict[tuple[object, ...], Truths] = {}
 
     def reach(self, reached: int) -> None:
-        """Evaluate on the prefix known at an instant; instants must not decrease."""
+        """Evaluate on the prefix known at the instant `reached`; instants must not decrease."""
         self._reached = reached
         for truths in self._made.values():
             truths.reach(reached)
@@ -290,9 +290,9 @@ def starts_upon(view: View) -> list[Start]:
 
 
 def views(requirement: Requirement, word: law.Word) -> list[View]:
-    """The instances of a requirement on a word: one per value of `for each`, else one.
+    """The instances of a requirement on a word: one per value of `for each`, otherwise one.
 
-    The first one is for occurrences whose value is unknown; it may not exist.
+    The first instance of a `for each` is for occurrences with an unknown value; it may not exist.
 
     Source: SEMANTICS, section 3 (Doubt); decision record 1 (`for each`).
     """
@@ -332,7 +332,7 @@ def _only(letter: law.Letter, field: rv.FieldValue, value: Scalar) -> law.Letter
         for occurrence in whole.occurrences
         if (found := _field(occurrence.payload, field)) is None or found == value
     )
-    # Apart from lost occurrences, those for other values are no updates of this one.
+    # Apart from lost occurrences, occurrences for other values do not update this instance.
     updated = (
         whole.updated if len(kept) > whole.lost else law.Truth.UNKNOWN if kept else law.Truth.FALSE
     )

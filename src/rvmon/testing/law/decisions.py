@@ -27,14 +27,14 @@ from rvmon.testing.law.word import Truth, Word
 class Followed:
     """An attempt, and the first instant at which a prefix of the trace decides it."""
 
-    start: Start  # the beginning of the attempt
+    start: Start
     # instant (ticks) and truth; `None` if no prefix decides it
     decided: tuple[int, Truth] | None = None
-    # its number among the attempts whose trigger was TRUE, in the order of the first instants at
-    # which it was; 0 for an attempt in doubt
+    # its number among the attempts whose trigger was TRUE somewhere, in the order of the first such
+    # positions; 0 for an attempt in doubt
     number: int = 0
     # its number among the attempts whose trigger was not TRUE at their start, in the order of
-    # starts; 0 for the others
+    # starts; 0 for all others
     doubtful_number: int = 0
 
 
@@ -53,7 +53,7 @@ def follow(requirement: Requirement, word: Word) -> Followings:
     """The attempts of a requirement on a word.
 
     Raises:
-        RvmonError: the requirement's `pulse` is not what its trigger's syntax says.
+        RvmonError: the requirement's `pulse` disagrees with the syntax of its trigger.
 
     Source: SEMANTICS, section 3; decision records 1 (Triggers, `whenever`, `for each`) and 4.
     """
@@ -92,7 +92,7 @@ def _followed(view: View) -> list[Followed]:
 
 
 def _decide(attempts: Iterable[Followed], view: View, reached: int) -> None:
-    """Record the attempts that the prefix known at an instant decides."""
+    """Record the decisions of attempts that the prefix known at an instant decides."""
     for attempt in attempts:
         if attempt.decided is None and attempt.start.triggered <= reached:
             truth = obligation(attempt.start, view.readings())
@@ -137,13 +137,13 @@ _UNTILS = {UnaryOp.EVENTUALLY, BinaryOp.UNTIL, BinaryOp.STRONG_RELEASE}
 
 
 def opened_at_once(formula: Formula, *, positive: bool = True) -> Formula:
-    """The formula with the windows of all obligations to last opened at once.
+    """The formula with the windows of all `G` and `R` opened at once: their lower bounds become 0.
 
-    In negation normal form these are the windows of `G` and `R`: their lower bounds become 0.
+    In negation normal form, that is, so under a negation the windows of `F` and `U` are opened.
 
     Args:
         formula: a consequent or a part of one, without future operators below past ones.
-        positive: whether an even number of negations stands above it.
+        positive: whether the formula is under an even number of negations.
 
     Source: SEMANTICS, section 3 (After a failure).
     """

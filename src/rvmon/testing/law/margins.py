@@ -1,8 +1,8 @@
 """The robustness of attempts, computed from its definition.
 
 Every position is explicit, and every operator is a minimum of maxima over positions. Each figure is
-an interval, as unknown input and all input after the end may be anything. Possible positions cut a
-trace into pieces: outside the piece in which an attempt begins, input may be anything, too.
+an interval, as unknown input and all input after the end may be anything. Possible positions divide
+a trace into pieces: outside the piece in which an attempt starts, input may be anything, too.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def margins(
 
     Args:
         followings: the attempts by requirement.
-        recorded: the attempts with a record; others are left out.
+        recorded: the attempts with a record; all others are left out.
         time: the time model.
 
     Returns:
@@ -51,7 +51,7 @@ def margins(
 
 
 def _piece(word: Word, position: int) -> tuple[Word, int]:
-    """The piece of sure positions around a position: the word up to its end, and its first one."""
+    """The piece of certain positions around one: the word up to its end, and its first position."""
     letters = word.letters
     last = next((k for k in range(position, len(letters)) if not letters[k].sure), None)
     first = next((k + 1 for k in reversed(range(position)) if not letters[k].sure), 0)

@@ -21,7 +21,7 @@ def compare(
 ) -> word.Truth:
     """The truth of a comparison; over fields of an event `e` it means `e and comparison`.
 
-    With several occurrences (or pairs of occurrences of two events), one has to satisfy it.
+    Of several occurrences (or pairs of occurrences of two events), one has to satisfy it.
 
     Source: SEMANTICS, section 1 (Unknown, Birth).
     """
@@ -55,7 +55,7 @@ def compare_at(
 
 
 def is_born(comparison: rv.Compare, letter: word.Letter) -> bool:
-    """Whether all signals of a comparison have had the values that it reads."""
+    """Whether all signals of a comparison have had the values or updates that it reads."""
     return all(
         letter.signals[part.name].moved
         if isinstance(part, rv.UpdateValue)
@@ -227,7 +227,7 @@ def _of_reals(op: NumericOp, x: float, y: float = 0.0, *more: float) -> float:
         case NumericOp.POW:
             return math.pow(x, y)
         case NumericOp.ATAN2:
-            return math.atan2(x + 0.0, y + 0.0)  # a 0 has no sign
+            return math.atan2(x + 0.0, y + 0.0)  # `-0.0 + 0.0` is 0.0: zeros have no sign here
         case NumericOp.ANGLE_BETWEEN:
             between = math.remainder(y - x, more[0])
             return -between if between * 2 == -more[0] else between

@@ -1,7 +1,7 @@
-"""What each operator means, whether its operands are truths or margins.
+"""The meaning of each operator, whether its operands are truths or margins.
 
-The meaning is written here as SEMANTICS gives it, and not taken from the table of operators
-(`rvmon.language.checked.operators`), so that errors of the table are found.
+It is written as SEMANTICS gives it and not taken from the table of operators
+(`rvmon.language.checked.operators`), so that errors in the table are found.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Operators(ABC, Generic[V]):
 
     @abstractmethod
     def of_truth(self, truth: Truth) -> V:
-        """The value of a formula of which only the truth counts."""
+        """The value of a formula of which only the truth matters."""
 
     @abstractmethod
     def negation(self, value: V, /) -> V:
@@ -72,24 +72,25 @@ class Operators(ABC, Generic[V]):
     def since(
         self, left: At[V], right: At[V], i: int, interval: Interval, *, can_be_unborn: bool
     ) -> V:
-        """Some position of the window had `right`, and all after it, up to `i`, have `left`.
+        """Whether `right` held at a position of the window, and `left` at all later ones up to `i`.
 
         Positions at which an operand is unborn are skipped; if `right` is unborn throughout the
-        window, so is the whole. If it can be unborn and is nowhere TRUE or FALSE there, the whole
-        is UNKNOWN even where `left` is FALSE: a value lost in an outage may have been unborn, too.
+        window, so is the result. If `right` can be unborn and is nowhere TRUE or FALSE in the
+        window, the result is UNKNOWN even if `left` is FALSE: a value lost in an outage may have
+        been unborn, too.
         """
 
     @abstractmethod
     def held(self, operand: At[V], i: int, interval: Interval, *, can_be_unborn: bool) -> V:
-        """All positions of the window had the operand, and the whole window lies after its birth.
+        """Whether the operand held at all positions of the window, and was born before the window.
 
-        Where the operand is UNKNOWN it may be unborn, so that shows no birth.
+        Where the operand is UNKNOWN it may be unborn, so an UNKNOWN value shows no birth.
         """
 
     def operator(self, formula: Unary | Binary, i: int, sub: Sub[V], *, positive: bool = True) -> V:
         """The value of an operator from the values of its operands.
 
-        `positive` tells whether an even number of negations stands above it.
+        `positive`: whether the operator is under an even number of negations.
         """
         if isinstance(formula, Unary):
             return self._unary(formula, i, sub, positive)
@@ -192,7 +193,7 @@ class Operators(ABC, Generic[V]):
         return (k for k in range(i + 1) if is_within(now - self._letters[k].instant, interval))
 
     def _lasted(self, i: int, duration: int) -> Truth:
-        """Whether the trace began at least so many ticks before a position."""
+        """Whether the trace started at least `duration` ticks before a position."""
         starts = [self._letters[k] for k in self._window(i, Interval(duration, None))]
         if any(letter.sure for letter in starts):
             return Truth.TRUE
@@ -205,9 +206,9 @@ class Operators(ABC, Generic[V]):
         return lambda k: self.negation(operand(k))
 
     def _lasting(self, part: Formula, operand: At[V]) -> At[V]:
-        """An operand that has to last up to some position; a constant lasts without any position.
+        """An operand that has to last up to some position; a constant needs no positions for that.
 
-        So `true U φ` equals `F φ` also across possible positions, at which every formula is
+        So `true U φ` equals `F φ` across possible positions, too, at which every formula is
         unknown.
         """
         constant = constant_value(part)
@@ -242,7 +243,7 @@ class Operators(ABC, Generic[V]):
         return self.of_truth(rest if positive else negation(rest))
 
     def _until(self, left: At[V], right: At[V], i: int, interval: Interval, positive: bool) -> V:
-        """`left U right`: in negation normal form an `R` if it stands below a negation."""
+        """`left U right`: in negation normal form an `R` if it is under a negation."""
         rest = self._other_rest() if positive else negation(self._rest_of_release(i, interval))
         return self._some(left, right, i, interval, rest)
 
@@ -253,9 +254,9 @@ class Operators(ABC, Generic[V]):
         return self.negation(self._some(*others, i, interval, negation(rest)))
 
     def _some(self, left: At[V], right: At[V], i: int, interval: Interval, rest: Truth) -> V:
-        """Some position of the window has `right`, and all before it, from `i` on, have `left`.
+        """Whether `right` holds at some position of the window, and `left` from `i` on before it.
 
-        As long as the window is not over, that position may be yet to come: then `rest` counts.
+        As long as the window is not over, that position may still come; then `rest` counts.
         """
         now = self._letters[i].instant
         value, so_far = self._false, self._true
@@ -270,7 +271,7 @@ class Operators(ABC, Generic[V]):
 
 
 class Sub(Protocol[V_co]):
-    """Gives the value of an operand at a position; `same`: no negation stands above it."""
+    """A function for the value of an operand at a position; `same`: it is not negated."""
 
     def __call__(self, part: Formula, k: int, same: bool = True, /) -> V_co:
         """Evaluate the operand."""

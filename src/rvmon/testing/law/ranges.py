@@ -25,13 +25,13 @@ from rvmon.testing.law.word import (
 from rvmon.trace.sample import Payload, Scalar
 
 Range = tuple[float, float]
-"""Least and greatest value."""
+"""The least and greatest value."""
 
 TOP: Range = (math.inf, math.inf)
 BOTTOM: Range = (-math.inf, -math.inf)
 ANY: Range = (-math.inf, math.inf)
 AS_UNBORN = (BOTTOM, ANY, TOP)
-"""The ranges of what is UNBORN, read as FALSE, as UNKNOWN, and as TRUE."""
+"""The ranges of an UNBORN formula, read as FALSE, as UNKNOWN, and as TRUE."""
 OF_TRUTH = {Truth.FALSE: BOTTOM, Truth.UNKNOWN: ANY, Truth.TRUE: TOP}
 
 
@@ -66,11 +66,12 @@ class Margins(Operators[Margin]):
 
     Args:
         word: the trace.
-        captured: values of `let` and `for each`.
-        first: the first sure position; before it, letters may be anything; 0: nothing is before it.
+        captured: the values of `let` and `for each`.
+        first: the first certain position, before which letters may be anything; 0 if there is no
+            position before it.
         rest: the assumption about pending operators.
-        held: whether time is held: then measures that change between samples have no distance.
-        favour: whether an unborn proposition counts as met; else it is UNKNOWN.
+        held: whether time is held; then measures that change between samples have no distance.
+        favour: whether an unborn proposition counts as met; otherwise it is UNKNOWN.
 
     Source: SEMANTICS, sections 1 (Birth), 2 and 5; decision record 4.
     """
@@ -210,7 +211,7 @@ class Margins(Operators[Margin]):
         return _of_window(value, {value.state for value in values}, can_be_unborn)
 
     def _reaches_out(self, i: int, window: rv.Interval) -> bool:
-        """Whether a window of the past extends before the first sure position."""
+        """Whether a window of the past extends before the first certain position."""
         if self._first == 0:
             return False
         outside = self._letters[i].instant - self._letters[self._first - 1].instant
@@ -218,18 +219,18 @@ class Margins(Operators[Margin]):
 
 
 def _always(value: Range, state: Truth = Truth.UNKNOWN) -> Margin:
-    """A range, however UNBORN is read."""
+    """A range that is the same however UNBORN is read."""
     return Margin(state, (value, value, value))
 
 
 def _is_unborn(left: Margin, right: Margin) -> bool:
-    """Whether one of two operands is unborn, and the other one surely known or unborn, too."""
+    """Whether one of two operands is unborn, and neither is UNKNOWN."""
     states = left.state, right.state
     return Truth.UNBORN in states and Truth.UNKNOWN not in states
 
 
 def _unless_unborn(value: Range, state: Truth) -> Margin:
-    """A range, raised to that of UNBORN if that is the state."""
+    """A range, raised to the ranges of UNBORN if the state is UNBORN."""
     if state is not Truth.UNBORN:
         return _always(value, state)
     of_false, unknown, of_true = (most([value, unborn]) for unborn in AS_UNBORN)
@@ -237,7 +238,7 @@ def _unless_unborn(value: Range, state: Truth) -> Margin:
 
 
 def _of_window(value: Range, states: Set[Truth], can_be_unborn: bool) -> Margin:
-    """A range, or that of UNBORN if the sought operand may be unborn throughout the window."""
+    """A range, raised if the sought operand is or may be unborn throughout the window."""
     if can_be_unborn and Truth.UNKNOWN in states and not states & {Truth.TRUE, Truth.FALSE}:
         return _always(most([value, ANY]))
     return _unless_unborn(value, Truth.UNBORN if states == {Truth.UNBORN} else Truth.UNKNOWN)

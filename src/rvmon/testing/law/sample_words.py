@@ -13,7 +13,7 @@ from rvmon.testing.law.numbers import at_edge, known_scalar
 from rvmon.trace.sample import Payload, Sample, Value
 
 MOST_TICKS = 1_000_000
-"""The longest trace; as every tick is a position here, tests count time in nanoseconds."""
+"""The longest trace in ticks. Every tick is a position here, so tests use times of few ticks."""
 
 
 def word_of(
@@ -28,15 +28,15 @@ def word_of(
     """Lay out a trace position by position.
 
     Args:
-        spec: gives the time model and the names.
-        samples: with strictly increasing times.
+        spec: the specification, for its time model and names.
+        samples: the samples, with strictly increasing times.
         end: the argument of `finish`, ticks.
         advances: the arguments of `advance`, ticks; assumed to fit the samples.
         names: the names that have a source; `None`: all.
         outages: the outages, in any order.
 
     Raises:
-        TimeOrderError: the times do not increase.
+        TimeOrderError: the times do not increase strictly.
         TraceError: the trace is too long to be laid out tick by tick, or a sample holds a name
             without a source.
 
@@ -52,7 +52,7 @@ def word_of(
     samples = without_ignored(spec, samples)
     begun = samples[0].t if samples else None
     first = min([*(outage.first for outage in outages), *_given(begun)])
-    # `advance` settles all ticks before it, but in sampled time, where it adds no position.
+    # `advance` makes all ticks before it known, except in sampled time, where it adds no position.
     settled = [] if spec.time is TimeModel.SAMPLED else [t - 1 for t in advances]
     known_to = max([*stamps, *settled, *_given(end)])
     reached = max(reached, known_to + 1)
@@ -79,9 +79,9 @@ def word_of(
 
 
 def without_ignored(spec: CheckedSpec, samples: Sequence[Sample]) -> Sequence[Sample]:
-    """The samples, without NaN and null of signals that ignore them.
+    """The samples without the NaN and null values of signals that ignore them.
 
-    A sample with nothing else stays a sample, and so a position of sampled time.
+    A sample with nothing else is kept, as it is a position of sampled time.
     """
 
     def counts(name: str, value: Value) -> bool:
@@ -120,13 +120,13 @@ def _positions(
 def _is_sure(
     spec: CheckedSpec, instant: int, begun: int | None, outages: Iterable[law.Outage]
 ) -> bool:
-    """Whether an instant is surely a position; where it may be none, every formula is unknown.
+    """Whether an instant is certainly a position; if it may not be one, every formula is unknown.
 
     `begun` is the instant of the first sample that was read.
 
-    In an outage of sampled time no tick surely is, even if a sample was read there: `next` and
-    `previous` cannot know which position is the neighbour. In the other time models the trace may
-    have begun in an outage, so no position before the first sample that was read is sure.
+    In an outage of sampled time no tick is certainly a position, even if a sample was read there:
+    `next` and `previous` cannot know which position is the neighbour. In the other time models the
+    trace may have started in an outage, so no position before the first sample read is certain.
     """
     if spec.time is TimeModel.SAMPLED:
         return not any(outage.covers(instant) for outage in outages)
@@ -155,7 +155,7 @@ class _Entry:
 
     t: int
     value: Value  # the new value; `None` for lost updates
-    since: int  # the instant from which on it counts; for lost updates the first of the outage
+    since: int  # the instant from which on it counts: for lost updates, the start of the outage
     lost: bool = False  # whether it stands for all updates lost in an outage
 
 
@@ -164,7 +164,7 @@ class _History:
     """The history of a name up to a position."""
 
     entries: Sequence[_Entry]  # its updates, in order
-    outages: Sequence[law.Outage]  # its outages that have begun
+    outages: Sequence[law.Outage]  # its outages that have started
     before: int | None  # the previous position; updates after it belong to this one
     instant: int  # the instant of this position
     has_source: bool  # whether the name can be updated at all
@@ -184,7 +184,7 @@ class _History:
 
     @property
     def is_touched(self) -> bool:
-        """Whether updates of this position may have been lost."""
+        """Whether updates that belong to this position may have been lost."""
         return any(outage.touches(self.before, self.instant) for outage in self.outages)
 
     def is_new(self, entry: _Entry) -> bool:
@@ -195,10 +195,10 @@ class _History:
 def _history_of(
     name: str, samples: Sequence[Sample], outages: Sequence[law.Outage], *, has_source: bool
 ) -> _History:
-    """All updates of a name; lost ones come before one that was read with the same stamp.
+    """All updates of a name; a lost one comes before one that was read with the same stamp.
 
     Raises:
-        TraceError: it is updated without having a source.
+        TraceError: the name is updated although it has no source.
     """
     read = [sample for sample in samples if name in sample.values]
     if read and not has_source:
@@ -275,7 +275,7 @@ def _updated(history: _History) -> law.Truth:
 
 
 def _changed(history: _History, updates: Sequence[law.Update]) -> law.Truth:
-    """Whether an update to another value belongs to it."""
+    """Whether an update to another value belongs to this position."""
     if history.is_within:
         return law.Truth.UNKNOWN
     pairs = zip(pairwise(updates), history.entries[1:], strict=True)

@@ -56,7 +56,7 @@ def speaks_of_future(formula: rv.Formula) -> bool:
 
 
 def looks_back_at_future(formula: rv.Formula) -> bool:
-    """Whether a future operator stands below a past operator."""
+    """Whether a future operator occurs below a past operator."""
     return any(
         isinstance(part, rv.Unary | rv.Binary)
         and part.op not in _BOOLEAN | _FUTURE
@@ -66,7 +66,7 @@ def looks_back_at_future(formula: rv.Formula) -> bool:
 
 
 def is_composed(formula: rv.Formula) -> TypeGuard[rv.Unary | rv.Binary]:
-    """Whether a formula is a Boolean combination, or has a future operator: no proposition."""
+    """Whether a formula is not a proposition: a Boolean combination, or with future operators."""
     if isinstance(formula, rv.Unary | rv.Binary):
         return formula.op in _BOOLEAN or speaks_of_future(formula)
     return False
@@ -87,7 +87,7 @@ def numerics(formula: rv.Formula) -> Iterator[rv.Numeric]:
 
 
 def by_and_or(formula: rv.Binary) -> rv.Binary:
-    """`->`, `<->` and `xor` by conjunction, disjunction and negation; else the formula itself."""
+    """Rewrite `->`, `<->` and `xor` with `and`, `or` and `not`; other formulas are unchanged."""
     left, right = formula.left, formula.right
     no_left, no_right = rv.Unary(rv.UnaryOp.NOT, left), rv.Unary(rv.UnaryOp.NOT, right)
     match formula.op:
@@ -104,7 +104,7 @@ def by_and_or(formula: rv.Binary) -> rv.Binary:
 
 
 def constant_value(formula: rv.Formula) -> Truth:
-    """The truth of a formula if it is the same for all values of its propositions; else UNKNOWN."""
+    """The truth of a formula if its constants alone decide it; else UNKNOWN."""
     match formula:
         case rv.Constant(value=value):
             return truth_of(value)

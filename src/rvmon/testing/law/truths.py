@@ -34,9 +34,9 @@ class Truths(Operators[Truth]):
 
     Args:
         word: the trace.
-        captured: values of `let` and `for each`.
+        captured: the values of `let` and `for each`.
         rest: the assumption about pending operators.
-        favour: whether an unborn proposition counts as met; else it is UNKNOWN.
+        favour: whether an unborn proposition counts as met; otherwise it is UNKNOWN.
 
     Source: SEMANTICS, sections 1 (Birth) and 2; decision record 4.
     """
@@ -82,7 +82,7 @@ class Truths(Operators[Truth]):
         Args:
             formula: any formula.
             i: the position.
-            positive: whether an even number of negations stands above the formula; it decides how
+            positive: whether the formula is under an even number of negations, which decides how
                 pending operators and unborn propositions count.
         """
         if not self._letters[i].sure:
@@ -158,7 +158,7 @@ class Truths(Operators[Truth]):
         return past.settled(expression, i) if self._letters[i].sure else UNKNOWN
 
     def _passed(self, formula: rv.Passed, i: int) -> Truth:
-        """Whether enough time has passed; UNKNOWN if that depends on when the trace began."""
+        """Whether enough time has passed; UNKNOWN if that depends on when the trace started."""
         after = number(formula.after, self._letters[i], {}, self._captured)
         since = 0 if formula.since is None else self._captured[formula.since]
         if not isinstance(after, int | float) or not isinstance(since, int):

@@ -1,7 +1,4 @@
-"""A trace as a word: a letter per position, with everything that propositions can read there.
-
-In an outage, a source may have sent anything.
-"""
+"""A trace as a word: one letter per position, with everything that propositions can read there."""
 
 from __future__ import annotations
 
@@ -15,14 +12,14 @@ from rvmon.trace.sample import Payload, Scalar
 
 @dataclass(frozen=True, slots=True)
 class Outage:
-    """An outage: any number of updates of some names may have been lost.
+    """An outage, in which any number of updates of some names may have been lost.
 
-    The trace extends to its last instant, as time passed all the same. If a source is lost for
-    good, its last instant is the latest that time is known to have reached.
+    The trace extends to the last instant of an outage, as time passed all the same. If a source is
+    lost for good, the last instant is the latest that time is known to have reached.
 
     Attributes:
-        names: the signals and events that may have been updated; may be empty: in sampled time a
-            line without updates is a position, too.
+        names: the signals and events that may have been updated. It may be empty, as in sampled
+            time a sample without updates is a position, too.
         first: its first instant, ticks.
         last: its last instant, ticks; not before the first.
 
@@ -48,8 +45,8 @@ class Outage:
     def hides(self, instant: int) -> bool:
         """Whether a lost update may have come after the one that was read at an instant.
 
-        An update with the last stamp ended the outage, so nothing was lost after it. An outage of a
-        single instant is different: its updates may have come before or after the one read.
+        An update at the last instant ended the outage, so nothing was lost after it. In an outage
+        of a single instant, updates may have been lost before or after the one that was read.
         """
         return self.covers(instant) and not self.first < instant == self.last
 
@@ -67,7 +64,7 @@ class Truth(IntEnum):
 _NEGATION = (Truth.TRUE, Truth.UNKNOWN, Truth.FALSE, Truth.UNBORN)
 _FALSE_FIRST = (0, 1, 3, 2)
 _TRUE_FIRST = (3, 1, 0, 2)
-"""By truth, its rank in a conjunction and in a disjunction: the value of least rank wins."""
+"""The rank of each truth in a conjunction, above in a disjunction: the least rank wins."""
 
 
 def negation(value: Truth) -> Truth:
@@ -135,11 +132,11 @@ class SignalState:
     Attributes:
         value: the held value; `None` if unknown for any reason.
         updated: whether an update belongs to this position; UNKNOWN for a name without a source.
-        changed: whether an update to another value belongs to it.
+        changed: whether an update to another value belongs to this position.
         last: the last update so far.
-        before: the update before that.
+        before: the update before `last`.
         born: whether an update has brought a known value so far, or may have in an outage.
-        moved: whether another update came after that one, or may have in an outage.
+        moved: whether a further update has come since, or may have in an outage.
         lost: whether the value is unknown because of an outage.
     """
 
@@ -155,7 +152,7 @@ class SignalState:
 
 @dataclass(frozen=True, slots=True)
 class Occurrence:
-    """An occurrence of an event at a position, with its payload; UNKNOWN if it may not be there."""
+    """An occurrence of an event at a position, and its payload; UNKNOWN if it is uncertain."""
 
     truth: Truth
     payload: Payload
@@ -167,8 +164,8 @@ class EventState:
 
     Attributes:
         updated: whether the event was reported, as occurring or as not occurring.
-        occurrences: the certain and the possible ones.
-        lost: the number of occurrences that stand for lost ones.
+        occurrences: the certain and the possible occurrences.
+        lost: how many of them stand for occurrences that may have been lost.
     """
 
     updated: Truth = Truth.FALSE
@@ -181,11 +178,11 @@ class Letter:
     """A position: its instant and the state of every declared name.
 
     Attributes:
-        instant: ticks.
-        signals: the state of each.
-        events: the state of each.
-        sure: whether the position exists; in an outage of sampled time, and before the first
-            sample that was read, it may not.
+        instant: its instant, ticks.
+        signals: the state of each signal.
+        events: the state of each event.
+        sure: whether the position certainly exists. In an outage of sampled time, and before the
+            first sample that was read, it may not.
         since: the instant of the first position, ticks; `None` if unknown.
     """
 
@@ -215,7 +212,7 @@ class Rest(Enum):
     """Assumptions about pending operators, beyond the known positions."""
 
     UNKNOWN = auto()
-    """None: the truth after a prefix."""
+    """No assumption: the truth after a prefix."""
 
     END = auto()
     """The trace has ended: an unbounded `always` whose window has opened counts as TRUE."""
