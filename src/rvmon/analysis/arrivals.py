@@ -1,4 +1,4 @@
-"""When what a missed deadline awaited came after all, found as a recording goes by."""
+"""Finds late responses while a recording is read: when they came after a missed deadline."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ if TYPE_CHECKING:
 
 Key = tuple[str, int]  # the requirement and number of an attempt
 
-_FEW = 256  # samples that are looked through at once: mostly what was awaited comes soon
+_FEW = 256  # samples evaluated at once; few, because a late response mostly comes soon
 
 
 class Arrivals:
-    """Looks out for what was awaited, from the deadline on and no further than until it came.
+    """Looks for awaited responses in a recording, from the deadline until they come.
 
-    A look begins at any instant, with the last update of each signal before it: so it takes only
-    formulas of the moment, see `is_of_moment`. A recording with outages is none for it.
+    A search may start at any instant, from the last update of each signal. So only formulas
+    without memory are searched for, see `is_of_moment`. Recordings with outages are not supported.
     """
 
     def __init__(self, spec: CheckedSpec, names: frozenset[str] | None) -> None:
-        # by attempt the instant, ticks; `None`: it did not come so far
+        # by attempt, the instant of the response, ticks; `None` if it has not come so far
         self.found: dict[Key, int | None] = {}
         self._spec = spec
         self._names = names
-        # by requirement and text of what awaits, the text of what is awaited
+        # by requirement and text of the awaiting subformula, the text of the awaited one
         self._awaited: dict[str, dict[str, str]] = {}
         awaited: dict[str, formulas.Formula] = {}
         for name, requirement in spec.requirements.items():
@@ -55,10 +55,11 @@ class Arrivals:
         self._since: int | None = None
 
     def ask(self, attempt: Attempt) -> None:
-        """Look out for what a failed attempt awaited, from its deadline on, if it awaited anything.
+        """Start to look for the response that a failed attempt awaited, from its deadline on.
 
-        Where that is in what was taken, or what it awaited is none for this, `found` lacks it; so
-        it does for an instance of `for each`, and where values were captured.
+        `found` gets an entry for the attempt, `None` if it awaited nothing. It gets none, and the
+        recording has to be searched again, if the deadline lies in pieces already taken, if the
+        formula is not `is_of_moment`, or if the requirement captures values.
         """
         if attempt.requirement not in self._awaited:
             return
@@ -74,7 +75,7 @@ class Arrivals:
             insort(self._open.setdefault(text, []), (deadline, key), key=lambda wait: wait[0])
 
     def take(self, pieces: Sequence[Batch | Sample], until: int) -> None:
-        """Take the next pieces of the recording, which tell all up to an instant (ticks)."""
+        """Take the next pieces of the recording, which is then complete up to `until` (ticks)."""
         place = 0
         while self._open:
             at = min(waits[0][0] for waits in self._open.values())
@@ -93,7 +94,7 @@ class Arrivals:
         self._since = until
 
     def _look(self, pieces: Sequence[Batch | Sample], at: int, until: int) -> None:
-        """Look through pieces, of which the first may begin before an instant, behind that."""
+        """Search pieces for responses after `at`; the first piece may start before it."""
         ahead = self._before(at, pieces[0] if pieces else None)
         for piece in pieces:
             if isinstance(piece, Sample):
@@ -108,7 +109,7 @@ class Arrivals:
             self._answer(text, truths[text], at, seen.positions)
 
     def _answer(self, text: str, truth: Truth, at: int, positions: Positions) -> None:
-        """Note what came of a formula that was true then."""
+        """Record the responses for the attempts that wait for a formula."""
         waits = self._open[text]
         answered = 0
         for deadline, key in waits:
@@ -122,7 +123,7 @@ class Arrivals:
             del self._open[text]
 
     def _before(self, at: int, piece: Batch | Sample | None) -> list[Batch | Sample]:
-        """Samples with the last update of each signal up to an instant, and one at that."""
+        """Samples with the last update of each signal up to an instant, and a sample there."""
         found: dict[int, dict[str, Value]] = {}
         for name, (t, value) in self._updates.until(at, piece).items():
             found.setdefault(t, {})[name] = value
@@ -131,7 +132,7 @@ class Arrivals:
 
 
 def _portion(pieces: Sequence[Batch | Sample], place: int) -> int:
-    """The end of a batch, or of a few samples, from a place on: samples are gone through singly."""
+    """The end of the portion from `place` on that is searched next: a batch, or a few samples."""
     stop = place
     while stop < min(place + _FEW, len(pieces)) and isinstance(pieces[stop], Sample):
         stop += 1
@@ -139,9 +140,9 @@ def _portion(pieces: Sequence[Batch | Sample], place: int) -> int:
 
 
 def is_of_moment(formula: formulas.Formula, time: TimeModel) -> bool:
-    """Whether its truth follows from the last update of each signal, and what comes at an instant.
+    """Whether the truth of a formula depends only on the last updates and the present sample.
 
-    In clocked time an event counts at a later instant.
+    In clocked time events are excluded, because they count at a later instant.
     """
     return all(
         _is_of_moment(part) and (time is not TimeModel.CLOCKED or not _is_momentary(part))

@@ -1,7 +1,7 @@
-"""The combinations of truth values that inputs can bring about, over-approximated.
+"""An over-approximation of the combinations of truth values that inputs can cause.
 
 The value of a formula at one instant depends on *sources*: names, each with a few cases that its
-comparisons distinguish, and subformulas with memory or complex comparisons, which are taken as
+comparisons distinguish, and subformulas with memory or complex comparisons, which are treated as
 free. Formulas without a common source are combined freely; others are joined on the cases of their
 common sources.
 """
@@ -27,7 +27,7 @@ from rvmon.logic.state_formula import TRUE, Elapsed, Lapsed, Leaf, State, StateO
 from rvmon.logic.state_graph import captured_names, names_of
 
 MOST_COMBINATIONS = 1 << 12
-"""The most combinations of one group of formulas, or of all; beyond it nothing is decided."""
+"""The most combinations of a group of formulas, or of all groups; with more, nothing is decided."""
 
 T = TypeVar("T", bound=Hashable)
 Truths = tuple[bool, ...]
@@ -37,8 +37,10 @@ Source = str | State
 def combinations_of(spec: CheckedSpec, states: Sequence[State]) -> frozenset[Truths] | None:
     """The combinations of truth values that state formulas can have at one instant.
 
-    Operators with memory, and comparisons other than of a name with a constant, are taken as free,
-    so a combination that is not in the result is impossible.
+    Operators with memory, and comparisons other than of a name with a constant, are treated as
+    free. So a combination outside the result is impossible.
+
+    `None` if there are too many combinations.
     """
     table = Letters(spec).table(states, lambda truths: truths)
     return None if table is None else frozenset(table.rows.values())
@@ -55,7 +57,7 @@ class Table(Struct, Generic[T], frozen=True):
 
 
 class Letters:
-    """The possible values of groups of formulas of one specification, alone and jointly."""
+    """Computes the possible values of groups of formulas, alone and jointly."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec
@@ -135,7 +137,7 @@ class Letters:
 
 
 Relation = tuple[tuple[Source, ...], dict[tuple[int, ...], set[T]]]
-"""Sources, and by their cases what groups of formulas can be."""
+"""A tuple of sources, and the possible values of groups by the cases of these sources."""
 
 
 def _projected(table: Table[T], shared: Mapping[Source, Mapping[State, Truths]]) -> Relation[T]:
@@ -163,9 +165,9 @@ def _join(
 ) -> Relation[tuple[T, ...]]:
     """Join one more group on the shared sources; only sources read by later groups are kept.
 
-    A hash join with projection, as in bucket elimination. Dropping a source that no later group
-    reads loses nothing, as later joins do not depend on its case; keeping all would multiply the
-    rows with every group.
+    This is a hash join with projection, as in bucket elimination. A source that no later group
+    reads can be dropped, as later joins do not depend on its case. If all sources were kept, each
+    group would multiply the number of rows.
     """
     (live, relation), (sources, rows) = earlier, group
     ours = [place for place, source in enumerate(live) if source in sources]
@@ -212,12 +214,12 @@ def _nodes(states: Iterable[State]) -> list[State]:
 
 
 def _is_free(node: State) -> bool:
-    """Whether a node is a leaf, has memory, or compares measured windows."""
+    """Whether a node is a leaf, has memory, or compares measured windows; it is not split."""
     return node.op not in (StateOp.NOT, StateOp.AND, StateOp.OR, StateOp.SURE)
 
 
 def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
-    """Whether trying values of its names shows all truth values of a leaf."""
+    """Whether all truth values of a leaf are found by trying values of its names."""
     match leaf:
         case Constant() | SignalAtom() | EventAtom() | Lapsed() | Elapsed(duration=0):
             return True
@@ -231,7 +233,7 @@ def _is_plain(leaf: Leaf, spec: CheckedSpec) -> bool:
 def _is_steady(name: str, spec: CheckedSpec) -> bool:
     """Whether the values tried for a name cover all cases at one position.
 
-    Not so for events with several fields, nor where several payloads may share a position.
+    They do not for events with several fields, or if several payloads may share a position.
     """
     if name in spec.signals:
         return True

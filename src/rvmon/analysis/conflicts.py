@@ -11,14 +11,14 @@ from msgspec import Struct
 from rvmon.analysis.product import Together
 from rvmon.analysis.vacuity import Subject
 
-MOST_OFFSETS = 12  # the most distances between the triggers of two requirements that are examined
+MOST_OFFSETS = 12  # the most distances examined between the triggers of two requirements
 MOST_ALWAYS = 4  # the most `always` requirements that are added to a pair
 
 LARGEST_GROUP = 6
 """The size of the groups tried first: if all of a group can hold, so can every subset."""
 
 LARGEST_SET = 5  # the size of the largest sets that are examined one by one
-MOST_SETS = 2000  # if there are more sets of one size above three, that size is skipped
+MOST_SETS = 2000  # sizes above three with more sets than this are skipped
 
 
 class Member(Struct, frozen=True):
@@ -29,27 +29,27 @@ class Member(Struct, frozen=True):
 
 
 class Conflict(Struct, frozen=True):
-    """Requirements that cannot all hold."""
+    """A minimal set of requirements that cannot all hold."""
 
-    ids: tuple[str, ...]  # a minimal set; a requirement that is triggered twice occurs twice
-    offsets: tuple[int, ...]  # for each, the ticks from the first trigger to its own
+    ids: tuple[str, ...]  # a requirement that is triggered twice occurs twice
+    offsets: tuple[int, ...]  # for each id, the ticks from the first trigger to its own
 
 
 class Implication(Struct, frozen=True):
-    """A requirement that fails only where one of `by` fails; `by` is minimal."""
+    """A requirement that fails only where one of `by`, a minimal set, fails."""
 
     implied: str
     by: tuple[str, ...]
 
 
 class ConflictSearch:
-    """Searches for conflicts among requirements each of which can pass by itself."""
+    """Searches for conflicts among requirements that can each pass alone."""
 
     def __init__(self, together: Together, subjects: Sequence[Subject], deadline: float) -> None:
         self.together = together
         self.subjects = subjects
         self.deadline = deadline
-        self.conflicts: list[Conflict] = []  # found so far; none contains another one
+        self.conflicts: list[Conflict] = []  # found so far; no conflict contains another one
         self.sets_undecided = 0  # the number of larger sets examined but not decided
         # all sets of up to this size were examined; `None` if those of any size were
         self.whole_sets: int | None = 2
@@ -68,13 +68,13 @@ class ConflictSearch:
 
     @property
     def pairs_undecided(self) -> int:
-        """The number of these not decided, or not reached before the deadline."""
+        """The number of these pairs that were not decided, or not reached before the deadline."""
         return len(self._open)
 
     def run(self) -> None:
         """Examine pairs triggered at once, groups, triples, pairs apart in time, larger sets."""
-        # Cheap questions first: pairs that never start together, conflicts, and satisfiable groups
-        # answer most of the later questions.
+        # Cheap questions come first: pairs that never start together, conflicts, and satisfiable
+        # groups answer most of the later questions.
         decided = set()
         for pair in self._pairs:
             if not self._is_late() and self._pair_at_once(*pair) is not None:
@@ -94,13 +94,13 @@ class ConflictSearch:
         return time.monotonic() > self.deadline
 
     def _can_hold(self, members: Sequence[Member]) -> bool | None:
-        """Whether all can pass, triggered at their offsets; `None` if not decided."""
+        """Whether all members can pass if triggered at their offsets; `None` if not decided."""
         subjects = [member.subject for member in members]
         offsets = [member.offset for member in members]
         return self.together.can_reach(subjects, offsets, range(len(members)))
 
     def _pair_at_once(self, subject: Subject, other: Subject) -> bool | None:
-        """Whether two can pass, triggered at one instant; a conflict is recorded."""
+        """Whether two can pass if triggered at one instant; a conflict is recorded."""
         if self.together.can_start([subject, other]) is False:
             self._apart.add(frozenset((subject, other)))
             return True
@@ -110,7 +110,7 @@ class ConflictSearch:
         return holds
 
     def _to_be_set_apart(self) -> Iterator[tuple[Subject, Subject]]:
-        """Pairs to be examined with time between their triggers.
+        """The pairs to be examined with time between their triggers, in order.
 
         First each requirement with itself, then pairs that read a common name, then pairs
         connected by an `always` requirement that shares a name with both.
@@ -125,7 +125,7 @@ class ConflictSearch:
                 yield subject, other
 
     def _pair_apart(self, subject: Subject, other: Subject) -> None:
-        """Examine two, or one that is triggered twice, at several distances of the triggers."""
+        """Examine two requirements, or one triggered twice, at several distances of triggers."""
         orders = [(subject, other)] if subject is other else [(subject, other), (other, subject)]
         for first, second in orders:
             if second.starts_late and not first.is_always:
@@ -134,7 +134,7 @@ class ConflictSearch:
                         return
 
     def _apart_by(self, first: Subject, second: Subject, offset: int) -> bool:
-        """Whether two at this distance conflict, alone or with `always` requirements."""
+        """Whether two at this distance have a new conflict, alone or with `always` requirements."""
         names = first.names | second.names
         always = [
             Member(subject)
@@ -143,8 +143,8 @@ class ConflictSearch:
         ]
         members = [Member(first), Member(second, offset), *always[:MOST_ALWAYS]]
         holds = self._can_hold(members)
-        # The product was too large; requirements that conflict without the `always` ones conflict
-        # with them, too.
+        # The product was too large. Try without the `always` requirements: a conflict of fewer
+        # requirements is one of all.
         if holds is None:
             members = members[:2]
             holds = self._can_hold(members)
@@ -160,9 +160,10 @@ class ConflictSearch:
         return [Member(member.subject, member.offset - start) for member in members]
 
     def _keep(self, members: Sequence[Member]) -> bool:
-        """Record a conflict; returns whether it was.
+        """Record a conflict; returns whether it was recorded.
 
-        Not if it contains a known one, nor if some member cannot pass among the triggers alone.
+        It is not if it contains a known conflict, or if the triggers alone prevent some member
+        from passing.
         """
         group = frozenset(member.subject for member in members)
         if any(bad <= group for bad in self._bad):
@@ -180,9 +181,9 @@ class ConflictSearch:
     # Sets of more than two, triggered at one instant.
 
     def _groups(self) -> None:
-        """Find groups that can hold as a whole, to settle all their subsets with one query.
+        """Find groups that can hold as a whole, which settles all their subsets with one query.
 
-        Each starts from one requirement, adds related ones, and shrinks until it can hold.
+        Each group starts from one requirement, adds related ones, and shrinks until it can hold.
         """
         for subject in self.subjects:
             if self._is_late():
@@ -197,7 +198,11 @@ class ConflictSearch:
                 group.pop()
 
     def _fits(self, group: Collection[Subject], other: Subject) -> bool:
-        """Whether one more shares a name with a member, can start with all, conflicts with none."""
+        """Whether a group can take one more requirement.
+
+        It must share a name with a member, and bring neither a known conflict nor a pair that never
+        starts together.
+        """
         near = (frozenset((subject, other)) in self._near for subject in group)
         together = frozenset((*group, other))
         return other not in group and any(near) and not self._is_hopeless(together)
@@ -211,9 +216,11 @@ class ConflictSearch:
         return any(group <= known for known in self._fine)
 
     def _sets_of(self, size: int, level: Sequence[frozenset[Subject]]) -> list[frozenset[Subject]]:
-        """Examine the sets of one size, extensions of those one smaller (`level`); returns them.
+        """Examine the sets of one size, which extend those of the previous size (`level`).
 
-        Empty if there are none, or if the sets of the previous size were not all examined.
+        Returns:
+            The sets; empty if there are none, or if not all sets of the previous or of this size
+            were examined.
         """
         if self.whole_sets != size - 1:
             return []
@@ -252,7 +259,7 @@ class ConflictSearch:
 
 
 def _offsets(first: Subject, second: Subject) -> list[int]:
-    """Distances (ticks) at which bounds of the two meet, within a tick; round ones first."""
+    """Distances (ticks) at which bounds of the two coincide, within a tick; round ones first."""
     theirs = {0, *_cuts(second)}
     distances = {a - b + step for a in _cuts(first) for b in theirs for step in (-1, 0, 1)}
     later = (at for at in distances if at > 0)
@@ -263,7 +270,7 @@ def _cuts(subject: Subject) -> set[int]:
     return set() if subject.automaton is None else subject.automaton.cuts
 
 
-MOST_OTHERS = 5  # the most requirements tried together as implying another
+MOST_OTHERS = 5  # the most requirements that are tried together as premises of an implication
 
 
 def implications_among(
@@ -275,16 +282,15 @@ def implications_among(
 ) -> tuple[list[Implication], bool]:
     """The requirements that one or several others imply, each with a minimal set of these.
 
-    Only of `falling`, which can fail, that is asked. Conflicts would imply anything, so they are
-    excluded.
+    Only requirements in `falling`, which can fail, are tested. Sets with a conflict are excluded
+    as premises, because they would imply anything.
 
     Returns:
-        The implications, and whether all requirements were tested. Of requirements that imply each
+        The implications, and whether all requirements were tested. If requirements imply each
         other, the later ones are reported as implied.
     """
     implications: list[Implication] = []
-    # An implied requirement is not used as a premise: of two equivalent ones, each would drop the
-    # other.
+    # An implied requirement is not used as a premise, or two equivalent ones would both be dropped.
     dropped: set[str] = set()
     bad = [frozenset(conflict.ids) for conflict in conflicts]
     for implied in reversed(falling):
@@ -307,7 +313,7 @@ def implications_among(
 
 
 def starts_with(together: Together, other: Subject, implied: Subject) -> bool:
-    """Whether an attempt of `other` starts, or is open, wherever one of `implied` starts."""
+    """Whether an attempt of `other` starts or is open wherever one of `implied` starts."""
     ours, theirs = implied.requirement, other.requirement
     if theirs.captured or ours.captured:
         return False
@@ -339,7 +345,7 @@ def _by_several(
 
 
 def _implies(together: Together, by: Sequence[Subject], implied: Subject) -> bool:
-    """Whether `implied` cannot fail if all of `by` pass, and all of them can pass together."""
+    """Whether `implied` cannot fail if all of `by` pass, and all can pass together."""
     group, places = [*by, implied], range(len(by) + 1)
     if together.can_reach(group, [0] * len(group), places[:-1], places[-1:]) is not False:
         return False

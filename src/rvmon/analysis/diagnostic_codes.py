@@ -1,4 +1,4 @@
-"""All diagnostic codes, of specifications, their analysis and models, with their pages."""
+"""All diagnostic codes, with their pages: those of specifications, of analysis and of models."""
 
 from __future__ import annotations
 
@@ -31,7 +31,11 @@ def every_rule() -> Mapping[str, Rule]:
 
 
 def page_of(code: str) -> str:
-    """The page of a code, or of a name (of specifications before models), as Markdown."""
+    """The page of a code or name as Markdown; names of specifications precede those of models.
+
+    Raises:
+        UnknownNameError: there is no such diagnostic.
+    """
     rules = every_rule()
     named = {rules[known].name: rules[known] for known in sorted(rules, reverse=True)}
     rule = rules.get(code.upper()) or named.get(code.lower())
@@ -44,7 +48,7 @@ def page_of(code: str) -> str:
 
 @cache
 def every_page() -> Mapping[str, str]:
-    """The page of every code as Markdown: `pages` has a file per family, a section per code."""
+    """The page of every code as Markdown; the folder `pages` has a section per code."""
     folder = resources.files("rvmon.analysis") / "pages"
     text = "\n".join(file.read_text("utf-8") for file in folder.iterdir())
     pages = re.split(r"^(?=# (?:RV|TA)\d{3} )", text, flags=re.MULTILINE)[1:]
@@ -52,7 +56,7 @@ def every_page() -> Mapping[str, str]:
 
 
 def code_list() -> str:
-    """All codes with their names, a line each."""
+    """All codes with their names, one per line."""
     return "".join(f"{rule.code}  {rule.name}\n" for rule in every_rule().values())
 
 

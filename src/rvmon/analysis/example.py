@@ -1,4 +1,4 @@
-"""Example timelines, and the step between their samples."""
+"""Example timelines, and the default step between their samples."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from rvmon.verdicts.attempt import Attempt
 class Example(Struct, frozen=True):
     """A short run with its verdicts."""
 
-    samples: tuple[Sample, ...]  # the samples, in order of time
+    samples: tuple[Sample, ...]  # in order of time
     end: int  # the end of the trace, ticks
     verdicts: Mapping[str, Verdict]  # by requirement
-    attempts: Sequence[Attempt]  # all attempts of the run
+    attempts: Sequence[Attempt]
 
 
 class Budget(Struct, frozen=True):
@@ -29,15 +29,14 @@ class Budget(Struct, frozen=True):
 
     runs: int = 4000  # the most runs judged
     samples: int = 6  # the most samples of one run
-    # default distance of two samples, ticks; `None`: small relative to the durations of the
-    # requirements
+    # the default distance of two samples, ticks; `None`: see `small_step`
     step: int | None = None
 
 
 class Found(Struct, frozen=True):
     """The result of a search for examples."""
 
-    # by kind, the example with the fewest samples, then the earliest end
+    # by kind, the example with the fewest samples; among these, the one that ends first
     examples: Mapping[str, Example]
     runs: int  # the number of runs judged
     exhausted: bool  # whether the whole search space was examined
@@ -65,7 +64,7 @@ def small_step(spec: CheckedSpec, requirements: Iterable[Requirement]) -> int:
 
 
 def _rounded_down(ticks: int) -> int:
-    """The greatest of 1, 2, 5, 10, 20, … that is at most `ticks`, at least 1."""
+    """The greatest of 1, 2, 5, 10, 20, … that is at most `ticks`, but at least 1."""
     scale = 1
     while scale * 10 <= ticks:
         scale *= 10

@@ -1,4 +1,4 @@
-"""All analyses of a specification, and their results as diagnostics."""
+"""Runs all analyses of a specification and reports the results as diagnostics."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Examination(Struct, frozen=True):
     # ids for which it was not decided whether they can trigger, fail and pass
     undecided: tuple[str, ...]
     pairs: int  # the number of pairs that read a common name
-    pairs_undecided: int  # the number of these not decided, or not reached within the budget
+    pairs_undecided: int  # the number of these pairs not decided, or not reached in time
     sets_undecided: int  # the number of larger sets examined but not decided
     # all sets of up to this size were examined; `None` if those of any size were
     whole_sets: int | None
@@ -36,7 +36,7 @@ class Examination(Struct, frozen=True):
 
 
 def examine(spec: CheckedSpec, subjects: Sequence[Subject], seconds: float) -> Examination:
-    """Analyse requirements: each alone, then pairs, then larger sets, as far as seconds reach."""
+    """Analyse requirements alone, then in pairs, then in larger sets, until the time is used up."""
     deadline = time.monotonic() + seconds
     results: dict[str, Possible] = {}
     for subject in subjects:
@@ -50,7 +50,7 @@ def examine(spec: CheckedSpec, subjects: Sequence[Subject], seconds: float) -> E
         if (one := results.get(subject.id)) is None
         or (one.trigger is not False and None in (one.trigger, one.fail, one.pass_))
     )
-    # A requirement that cannot pass would conflict with all others, and imply them.
+    # A requirement that cannot pass is left out: it would conflict with all others, and imply them.
     sound = [subject for subject in subjects if _is_sound(subject, results)]
     together = Together(spec)
     search = ConflictSearch(together, sound, deadline)
@@ -71,7 +71,7 @@ def examine(spec: CheckedSpec, subjects: Sequence[Subject], seconds: float) -> E
 
 
 def _is_sound(subject: Subject, results: Mapping[str, Possible]) -> bool:
-    """Whether a requirement can trigger and pass by itself, as far as is known."""
+    """Whether a requirement has an automaton and, as far as known, can trigger and pass alone."""
     result = results.get(subject.id)
     if result is None or subject.trigger is None or subject.automaton is None:
         return False

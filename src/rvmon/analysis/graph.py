@@ -1,4 +1,4 @@
-"""An automaton as a readable graph: places, and edges with conditions in words."""
+"""Turns an automaton into a readable graph: places, and edges with conditions in words."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ANY = -1
 
 
 def cubes_of(vectors: Iterable[Cube], never: Collection[Cube] = ()) -> tuple[Cube, ...]:
-    """Prime cubes that cover the vectors, chosen greedily; `never`: these may be covered or not.
+    """Prime cubes that cover the vectors; those in `never` do not occur and may be covered or not.
 
     Source: Quine 1952, McCluskey 1956; the choice of primes is greedy.
 
@@ -66,7 +66,7 @@ def _covers(cube: Cube, vector: Cube) -> bool:
 
 
 MOST_PROPOSITIONS = 8
-"""The most propositions for which conditions are spelled out; beyond it they are counted."""
+"""The most propositions for which conditions are spelled out; of more, cases are counted."""
 
 CLOCKS = "xyzuvwabcd"
 
@@ -151,7 +151,7 @@ def _obligation(compiled: CompiledRequirement, node: Core) -> str:
 
 
 def always(requirement: Requirement) -> bool:
-    """Whether it is required at every instant."""
+    """Whether the consequent is required at every instant."""
     return isinstance(requirement.trigger, Constant) and requirement.trigger.value
 
 
@@ -168,7 +168,7 @@ class _Reader:
         self.first, self.later = inputs_of(compiled, spec, self.letters)
 
     def edges(self, index: int) -> Iterator[tuple[int, str, str, str]]:
-        """The edges of a location: target, condition on the input, guard, clocks that are set."""
+        """The edges of a location: target, condition on the input, guard, and clock assignments."""
         automaton = self.automaton
         cuts = automaton.locations[index].cuts
         can_be = self.first if index == automaton.initial else self.later
@@ -232,7 +232,7 @@ def inputs_of(
 
 
 def proposition_texts(compiled: CompiledRequirement) -> dict[State, str]:
-    """By proposition, its text in the language."""
+    """The text of each proposition in the language."""
     texts: dict[State, str] = {}
     requirement = compiled.requirement
     for node, origin in compiled.obligation.origins.items():
@@ -253,7 +253,7 @@ def proposition_texts(compiled: CompiledRequirement) -> dict[State, str]:
 
 
 def _bracketed(text: str) -> str:
-    """An operand of a conjunction, in brackets if it has a connective of its own."""
+    """An operand of a conjunction, in brackets if it contains a connective."""
     loose = any(f" {word} " in text for word in ("or", "and", "->", "<->", "xor"))
     return f"({text})" if loose and not text.startswith(("not (", "(")) else text
 
@@ -284,7 +284,7 @@ def _between(clock: str, span: Sequence[int], cuts: tuple[int, ...]) -> str:
 
 
 def _least(clock: str, low: int) -> str:
-    """The guard of ages from `low` on; one tick above a round duration is written as `>` that."""
+    """The guard for ages from `low` on; a tick above a round duration is written as `>` of it."""
     if len(format_duration(low - 1)) < len(format_duration(low)):
         return f"{clock} > {format_duration(low - 1)}"
     return f"{clock} ≥ {format_duration(low)}"
@@ -305,7 +305,7 @@ ENDS = {"P": "✓ P", "F": "✗ F"}
 
 
 def graph_lines(graph: Graph) -> list[str]:
-    """The graph as text: each place with its residual, and its outgoing edges below it."""
+    """The graph as lines of text: each place with its residual, and below it its edges."""
     lines: list[str] = []
     for place in graph.places:
         edges = [edge for edge in graph.edges if edge.source == place.name]

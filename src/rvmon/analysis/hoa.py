@@ -1,4 +1,4 @@
-"""Requirements as automata: in the Hanoi Omega-Automata format, as DOT, as data.
+"""Exports the automata of requirements: in the Hanoi Omega-Automata format, as DOT, as data.
 
 Source: Babiak et al., The Hanoi Omega-Automata Format, CAV 2015; version 1.
 """
@@ -29,17 +29,20 @@ from rvmon.version import __version__
 
 MOST_PROPOSITIONS = 12
 
-START = -1  # the state at the trigger, as long as it is none of the others
+START = -1  # the state at the trigger, unless it equals another state
 Edges = Mapping[Cube, int]  # the target of each possible letter
 
 
 def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
-    """The least LTL3 monitor of a requirement.
+    """The minimal LTL3 monitor of a requirement, in HOA.
 
-    A word begins at the position of the trigger. State `P` is entered when every continuation
-    fulfils what is required, `F` when none does; the automaton accepts the words that come to `P`.
-    Letters that inputs cannot bring about lead anywhere: no label speaks of them, nor is a
-    proposition listed that none of the others needs.
+    A word starts at the position of the trigger. State `P` is entered as soon as every continuation
+    satisfies the requirement, `F` as soon as none does; the automaton accepts the words that reach
+    `P`. The targets of letters that inputs cannot cause are chosen freely, so that labels become
+    short; propositions that no label needs are not listed.
+
+    Raises:
+        RvmonError: the requirement has no automaton, has clocks, or reads too many propositions.
     """
     name, automaton = compiled.requirement.id, _automaton_of(compiled)
     if automaton.clocks:
@@ -54,7 +57,7 @@ def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
             "fill pages; write `--to json`"
         )
     first, later = inputs_of(compiled, spec, letters)
-    # Where the trigger cannot be, a word begins with any letter.
+    # If the trigger is impossible, a word may start with any letter.
     states = _Machine(compiled, automaton, letters, later).least(first or later)
     propositions = automaton.alphabet.propositions
     shown = [(word, [*_disjoint(edges, range(len(propositions)))]) for word, edges in states]
@@ -88,7 +91,7 @@ def hoa(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
 
 
 class _Machine:
-    """A requirement's automaton that says `P` or `F` as soon as every continuation agrees.
+    """An automaton that gives the verdict `P` or `F` as soon as all continuations agree.
 
     Source: Bauer, Leucker and Schallhart, Runtime verification for LTL and TLTL, ACM TOSEM 20(4),
     2011, section 3.
@@ -111,7 +114,7 @@ class _Machine:
             for index, word in ahead.items():
                 self.words[index] = word
         for index, word in enumerate(self.words):
-            # A verdict is final: all later letters lead back to the same state.
+            # A verdict is final, so all letters lead back to the same state.
             if word != "?":
                 self.edges[index] = dict.fromkeys(can_be, index)
 
@@ -127,14 +130,14 @@ class _Machine:
         }
 
     def _ahead(self, index: int, edges: Edges) -> str:
-        """`P` or `F` if every letter leads there and nobody has said so yet; else nothing."""
+        """`P` or `F` if an undecided state moves to it with every letter; else ""."""
         words = {self.words[target] for target in edges.values()}
         return words.pop() if self.words[index] == "?" and words in ({"P"}, {"F"}) else ""
 
     def least(self, first: Set[Cube]) -> list[tuple[str, Edges]]:
-        """The states that are reached, that at the trigger first: what is said there, its edges.
+        """The reachable states of the minimal automaton: the verdict and the edges of each.
 
-        Of letters that cannot be nothing is asked.
+        The state at the trigger comes first; only letters in `first` are possible there.
         """
         edges_of = self.edges
         blocks = refined(self.words, lambda at, of: tuple(of[to] for to in edges_of[at].values()))
@@ -148,14 +151,14 @@ class _Machine:
         }
         states[START] = word, edges
         order = [*dict.fromkeys(edges.values())]
-        for block in order:  # it grows on the way
+        for block in order:  # the list grows during the loop
             order += [to for to in dict.fromkeys(states[block][1].values()) if to not in order]
         alike = (
             block
             for block in order
             if states[block][0] == word and edges.items() <= states[block][1].items()
         )
-        begin = next(alike, START)  # at the trigger it may be as it is later
+        begin = next(alike, START)  # an equal later state can serve as the state at the trigger
         number = {block: n for n, block in enumerate(dict.fromkeys((begin, *order)))}
         return [(states[block][0], _renamed(states[block][1], number)) for block in number]
 
@@ -165,9 +168,11 @@ def _renamed(edges: Edges, names: Sequence[int] | Mapping[int, int]) -> Edges:
 
 
 def _disjoint(edges: Edges, places: Sequence[int]) -> Iterator[tuple[Cube, int]]:
-    """Targets with conditions of which one always holds; each proposition once, if it matters.
+    """Conditions for the targets, exactly one of which holds for each letter.
 
-    Source: don't-cares of diagrams after Coudert and Madre 1990; here the first that serves.
+    They are made by a split on one proposition after the other, without those that do not matter.
+
+    Source: don't-cares of diagrams after Coudert and Madre 1990; here the first match is taken.
     """
     if len({*edges.values()}) == 1:
         yield (ANY,) * len(next(iter(edges))), next(iter(edges.values()))
@@ -198,7 +203,7 @@ def automaton_dot(compiled: CompiledRequirement, spec: CheckedSpec) -> str:
 
 
 def automaton_json(compiled: CompiledRequirement, spec: CheckedSpec) -> dict[str, object]:
-    """Locations with what is required there, edges with their conditions; ages in ticks."""
+    """The automaton as data: locations with obligations, edges with conditions; ages in ticks."""
     requirement, automaton = compiled.requirement, _automaton_of(compiled)
     graph = graph_of(compiled, automaton, spec)
     locations = [

@@ -1,4 +1,4 @@
-"""Responses that came after their deadline."""
+"""Finds responses that came after their deadline."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 
 def awaitable(requirement: Requirement) -> dict[str, Formula]:
-    """By text of each subformula of the consequent that awaits something, what that is.
+    """The operand awaited by each `eventually` and `until` of the consequent, by their text.
 
-    What has future operators itself is left out.
+    Operands that have future operators themselves are left out.
     """
     found: dict[str, Formula] = {}
     for _, formula in subformulas(requirement.consequent, 0):
@@ -37,7 +37,7 @@ def awaitable(requirement: Requirement) -> dict[str, Formula]:
 
 
 def missed(attempt: Attempt) -> str:
-    """The text of the subformula of which the window closed; empty if it did not fail so."""
+    """The text of the subformula whose deadline was missed; empty if the cause was another one."""
     blame = attempt.blame
     if blame is None or blame.window[1] is None or attempt.decided is None:
         return ""
@@ -45,7 +45,10 @@ def missed(attempt: Attempt) -> str:
 
 
 def waits_of(requirement: Requirement, attempts: Iterable[Attempt]) -> dict[int, Question]:
-    """By number of the attempt, what it awaited when its window closed; see `awaitable`."""
+    """By number of the attempt, a question for the formula it awaited when its window closed.
+
+    Only attempts that missed the deadline of an `awaitable` subformula have one.
+    """
     formulas = awaitable(requirement)
     return {
         attempt.number: Question((formula,), requirement.for_each, attempt.captured)
@@ -57,7 +60,7 @@ def waits_of(requirement: Requirement, attempts: Iterable[Attempt]) -> dict[int,
 def late_in(
     attempts: Iterable[Attempt], waits: Mapping[int, Question], seen: RecordedTruths
 ) -> dict[int, int]:
-    """By number of the attempt, the instant (ticks) after the deadline when the response came.
+    """By number of the attempt, the instant (ticks) after the deadline at which the response came.
 
     Attempts that missed no deadline, and those whose response never came, are left out.
     """

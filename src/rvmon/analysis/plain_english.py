@@ -1,4 +1,4 @@
-"""Requirements in plain English, and facts on how they are judged."""
+"""Words requirements in plain English, and lists facts on how they are judged."""
 
 from __future__ import annotations
 
@@ -197,7 +197,7 @@ class _Parts(dict[str, str]):
 
 
 def _age(interval: formulas.Interval | None) -> str:
-    """The length of a window [0, D], by which `once updated(x)` is an age; else ""."""
+    """The length of a window [0, D], as in the formula of an age; "" for any other window."""
     if interval is None or interval.low or interval.high is None:
         return ""
     return format_duration(interval.high)
@@ -211,7 +211,7 @@ def _begins(operand: formulas.Formula, positive: bool) -> str:
 
 _EVER = ("always from then on", "at some time"), ("all the time so far", "at some time so far")
 _WITHIN = ("for", "within"), ("all the time in the last", "at some time in the last")
-"""Windows without bounds, and with an upper one: of `G` and `F`, then of `H` and `O`."""
+"""Windows without bounds, and with an upper bound: of `G` and `F`, then of `H` and `O`."""
 
 
 def _window(interval: formulas.Interval, *, some: bool, past: bool) -> str:
@@ -228,7 +228,7 @@ def _window(interval: formulas.Interval, *, some: bool, past: bool) -> str:
 
 
 def _clause(formula: formulas.Formula, positive: bool) -> str:
-    """A formula inside another one: in brackets unless it is a simple clause."""
+    """A formula inside another one, in brackets unless it is a simple clause."""
     text = in_words(formula, positive=positive)
     inner = formula
     while isinstance(inner, formulas.Unary) and inner.op is formulas.UnaryOp.NOT:
@@ -243,7 +243,7 @@ Facts = dict[str, str]
 
 
 def facts_of(compiled: CompiledRequirement) -> Facts:
-    """Facts on how a requirement is judged, one line per heading; empty ones are left out."""
+    """Facts on how a requirement is judged, by heading; empty facts are left out."""
     machine = machine_of(planned_rule(compiled), compiled.gap)
     automaton = compiled.automaton if isinstance(machine, Automaton) else None
     chained = not isinstance(machine, Automaton) and machine[1] is not None

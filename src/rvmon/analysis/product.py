@@ -1,9 +1,9 @@
 """The product of several requirements' automata: whether attempts of all can pass together.
 
-The time since the first trigger is divided into cells by the bounds of all windows. Of each clock
-the cell in which it was started is known, and so its age up to the widths of two cells. This is an
-over-approximation: a cell allows any number of steps, and clocks started in one cell are not
-compared. So a negative answer is a proof.
+The time since the first trigger is divided into cells by the bounds of all windows. For each clock
+the search knows the cell in which it was started, and so its age up to the widths of two cells.
+This is an over-approximation: a cell allows any number of steps, and clocks started in the same
+cell are not compared. So a negative answer is a proof.
 """
 
 from __future__ import annotations
@@ -19,21 +19,21 @@ from rvmon.language.checked.specification import CheckedSpec, EndPolicy, TimeMod
 from rvmon.logic.automaton import FAILED, NOW, PASSED, Automaton, row_of
 from rvmon.logic.clock_regions import region_bounds
 
-MOST_STATES = 4000  # the most states of a search; beyond it nothing is decided
+MOST_STATES = 4000  # the most states of a search; with more, nothing is decided
 FOREVER = 1 << 63
 
 Spot = tuple[int, Regions, tuple[int, ...]]
-"""The state of one attempt: location, least regions of its clocks, cells where these started."""
+"""The state of one attempt: location, least regions of its clocks, cells in which they started."""
 
 State = tuple[int, tuple[Spot | None, ...]]
 """The present cell, and the state of each attempt; `None` before its trigger."""
 
 Letter = tuple[tuple[int, bool], ...]
-"""A joint letter: per requirement, the class of letters, and whether its trigger is true."""
+"""A joint letter: per requirement, the class of the letter, and whether its trigger is true."""
 
 
 class Together:
-    """Reachability queries on products of requirements of one specification; cached."""
+    """Answers reachability queries on products of requirements; caches letters."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self.spec = spec
@@ -54,7 +54,7 @@ class Together:
         return self._letters.table([*propositions, *trigger], _view(subject))
 
     def can_start(self, subjects: Sequence[Subject]) -> bool | None:
-        """Whether the triggers of all can be true at one instant; `None` if not decided."""
+        """Whether all triggers can be true at one instant; `None` if not decided."""
         letters = self.letters(subjects)
         if letters is None:
             return None
@@ -67,9 +67,16 @@ class Together:
         well: Collection[int],
         failed: Collection[int] = (),
     ) -> bool | None:
-        """Whether attempts can end so that some pass and some fail, by their indices.
+        """Whether a run exists in which some attempts pass and some fail.
 
-        `False` is sure; `None`: the search had to end.
+        Args:
+            subjects: the requirements, each with one attempt.
+            offsets: the ticks from the first trigger to the trigger of each attempt.
+            well: the indices of the attempts that must pass.
+            failed: the indices of the attempts that must fail.
+
+        Returns:
+            `False` is certain, `True` is not; `None` if the search was given up.
 
         Source: emptiness of a product of timed automata, after Alur and Dill 1994.
         """
@@ -93,7 +100,7 @@ class Together:
 
 
 def _view(subject: Subject) -> Callable[[Truths], tuple[int, bool]]:
-    """The view of a requirement's valuation: class of the letter, and whether it triggers."""
+    """Maps a valuation of a requirement to the class of its letter, and whether it triggers."""
     automaton, triggered = _automaton(subject), subject.trigger is not None
 
     def view(truths: Truths) -> tuple[int, bool]:
@@ -124,7 +131,7 @@ class _Search:
         self.offsets = offsets
         self.letters = letters
         self.automata = [_automaton(subject) for subject in subjects]
-        # The instant of the first trigger is a cell of its own.
+        # 0 and 1 make the instant of the first trigger a cell of its own.
         cuts = {0, 1}
         for automaton, offset in zip(self.automata, offsets, strict=True):
             cuts |= {offset, offset + 1} | {offset + cut for cut in _cuts(automaton)}
@@ -152,7 +159,7 @@ class _Search:
                         yield later, chosen
 
     def _classes_at(self, cell: int) -> frozenset[tuple[int, ...]]:
-        """The joint classes possible in a cell: requirements that start there are triggered."""
+        """The possible joint classes of a cell, in which requirements that start are triggered."""
         starting = [i for i, at in enumerate(self.offsets) if at == self.starts[cell]]
         return frozenset(
             tuple(class_ for class_, _ in letter)
@@ -174,7 +181,8 @@ class _Search:
         first = cell if width > 1 else cell + 1
         if self.dense:
             return range(first, min(cell + 1, last) + 1)
-        # A run may have no sample in a cell, unless a requirement is triggered in it.
+        # A run may have no sample in a cell, so the step may skip cells, but not one in which a
+        # requirement is triggered.
         ends = [i for i, at in enumerate(self.starts) if at in self.offsets and i > cell]
         return range(first, min([*ends, last]) + 1)
 
@@ -201,7 +209,7 @@ class _Search:
                 yield automaton.targets[edge], kept, tuple(since)
 
     def _regions(self, index: int, spot: Spot, cell: int) -> Iterator[Regions]:
-        """The regions in which an attempt's clocks can be in a cell."""
+        """The possible regions of an attempt's clocks in a cell."""
         location, regions, began = spot
         cuts = self.automata[index].locations[location].cuts
         ranges = []
@@ -241,7 +249,7 @@ class _Search:
 
 
 def _cuts(automaton: Automaton) -> set[int]:
-    """The ages at which windows open and end; also their sums, if clocks are restarted."""
+    """The ages at which windows open and close; also their sums, if clocks are restarted."""
     cuts = automaton.cuts
     row = automaton.bases[automaton.initial] * automaton.classes
     first = set(automaton.edges[row : row + automaton.classes])
@@ -251,7 +259,7 @@ def _cuts(automaton: Automaton) -> set[int]:
 
 
 def _after_edge(automaton: Automaton, location: int, regions: Regions, edge: int) -> Regions:
-    """The least possible regions after an edge, by the cuts of the target location."""
+    """The least possible regions after an edge, relative to the cuts of the target location."""
     ours = automaton.locations[location].cuts
     theirs = automaton.locations[automaton.targets[edge]].cuts
     least = []

@@ -1,6 +1,6 @@
-"""Representative samples: values of the inputs that the formulas can distinguish.
+"""Chooses representative samples: values of the inputs that formulas can distinguish.
 
-For comparisons these are the values at, between and beyond the roots of both sides.
+For a comparison these are values at, between and beyond the points where both sides are equal.
 """
 
 from __future__ import annotations
@@ -51,11 +51,11 @@ LARGEST = 1e15  # roots of greater magnitude are dismissed as artefacts of round
 def turning_values(
     variable: Variable, comparisons: Iterable[Compare], *, whole: bool
 ) -> list[float]:
-    """Values at, between and beyond those at which a comparison turns, greatest first.
+    """Values at, between and beyond the values at which comparisons change, greatest first.
 
     Args:
-        variable: a signal or field; other variables of a comparison are taken to be 0.
-        comparisons: the comparisons that may read it.
+        variable: a signal or field; other variables of a comparison are set to 0.
+        comparisons: the comparisons; those that do not read the variable are ignored.
         whole: whether its values are integers.
 
     >>> from rvmon.language.checked.formula import CompareOp
@@ -78,13 +78,13 @@ def turning_values(
 
 
 def is_solved(comparison: Compare) -> bool:
-    """Whether `turning_values` of its only variable are sure to show all its truth values."""
+    """Whether `turning_values` of its only variable certainly cause all its truth values."""
     sides = {type(comparison.left), type(comparison.right)}
     return Literal in sides and not sides.isdisjoint((SignalValue, FieldValue))
 
 
 def _stride(value: float) -> float:
-    """A visible step away from a value: between a tenth of it and all of it."""
+    """A visible step away from a value: between a tenth of the value and the value itself."""
     return 1.0 if value == 0 else 10.0 ** math.floor(math.log10(abs(value)))
 
 
@@ -100,7 +100,7 @@ def _reads(leaf: Compare, variable: Variable) -> bool:
 
 
 def _is(part: Numeric, variable: Variable | WindowValue) -> bool:
-    """Whether a part has the value of the variable: an update is what the signal then has."""
+    """Whether a part reads the variable; a function of the updates of a signal reads the signal."""
     if isinstance(part, UpdateValue) and isinstance(variable, SignalValue):
         return part.name == variable.name
     return part == variable
@@ -111,7 +111,7 @@ def _adds(window: WindowValue, variable: Variable) -> bool:
 
 
 def _turning(leaf: Compare, variable: Variable) -> Iterator[float]:
-    """The values at which a comparison turns; in a window, if all its members have the value."""
+    """The values at which a comparison changes; in a window, all members have the value."""
     yield from _roots(leaf, variable)
     for window in windows_in(leaf.left, leaf.right):
         if window.value is not None and _adds(window, variable):
@@ -121,14 +121,14 @@ def _turning(leaf: Compare, variable: Variable) -> Iterator[float]:
 
 
 def _full(window: WindowValue, comes_to: float) -> float:
-    """The value of all members of a window with a given result; of a variance, of every other."""
+    """The value of all members of a window with a given result; for a variance, of every second."""
     if window.measured.of_time:
         return comes_to * TICKS_PER_SECOND / (window.window or TICKS_PER_SECOND)
     return 2 * abs(comes_to) ** 0.5 if window.measured is Measured.VARIANCE else comes_to
 
 
 def _roots(leaf: Compare, variable: Variable | WindowValue) -> Iterator[float]:
-    """The values at which both sides are equal; exact if they are linear on each side of 0."""
+    """The values at which both sides are equal; exact if they are linear below and above 0."""
     for first, second in ((1.0, 2.0), (-1.0, -2.0)):
         one, two = _difference(leaf, variable, first), _difference(leaf, variable, second)
         if one is None or two is None or one == two:
@@ -146,7 +146,7 @@ def _difference(leaf: Compare, variable: Variable | WindowValue, value: float) -
 
 
 def _with(numeric: Numeric, variable: Variable | WindowValue, value: float) -> Scalar:
-    """The value of an expression with the variable at `value` and all others at 0, if any."""
+    """The value of an expression with the variable at `value` and all others at 0."""
     match numeric:
         case Literal(value=constant):
             return constant
@@ -161,9 +161,9 @@ def _with(numeric: Numeric, variable: Variable | WindowValue, value: float) -> S
 def truths_tried(
     spec: CheckedSpec, leaves: Sequence[Leaf], tried: Sequence[Mapping[str, Value]]
 ) -> list[tuple[int, ...]]:
-    r"""Per valuation of `tried`, the truth value of each leaf.
+    r"""The truth value of each leaf, for each valuation of `tried`.
 
-    The leaves read present values only, and each valuation has all names that they read.
+    Leaves must read present values only, and each valuation must have all names that they read.
 
     Cost: one pass in C.
 
@@ -176,7 +176,7 @@ def truths_tried(
     if not leaves or not tried:
         return [()] * len(tried)
     names = frozenset().union(*map(names_of, leaves))
-    spec = structs.replace(  # a plan takes all names of its specification, read or not
+    spec = structs.replace(  # a plan includes all names of its specification, even if not read
         spec,
         signals={name: one for name, one in spec.signals.items() if name in names},
         events={name: one for name, one in spec.events.items() if name in names},
@@ -205,11 +205,11 @@ MOST_VALUATIONS = 240
 """The most valuations kept; those with the fewest or the most departures come first."""
 
 MOST_TRIED = 20 * MOST_VALUATIONS
-MOST_PAYLOADS = 24
+MOST_PAYLOADS = 24  # the most payloads tried for an event with several fields
 
 
 class Silence(Enum):
-    """Stands for a name that a sample does not update."""
+    """The marker of a name that a sample does not update."""
 
     SILENT = "silent"
 
@@ -217,16 +217,16 @@ class Silence(Enum):
 T = TypeVar("T")
 SILENT = Silence.SILENT
 Valuation = Mapping[str, Value | Silence]
-"""By name read, its value in a sample; of an event `False` if it does not occur."""
+"""The value of each read name in a sample; `False` for an event that does not occur."""
 
 
 class Choices(Struct, frozen=True):
-    """The samples to choose from at every instant."""
+    """The samples to choose from at each instant."""
 
     names: tuple[str, ...]  # the signals and events that are read
-    # pairwise distinguished by some formula, those nearest the defaults first
+    # each two are distinguished by some formula; ordered as by `_defaults_first`
     valuations: tuple[Valuation, ...]
-    remembered: frozenset[str]  # the signals of which updates matter, not only values
+    remembered: frozenset[str]  # the signals whose updates matter, not only their values
     complete: bool  # whether no combination was left out
 
 
@@ -237,7 +237,7 @@ def choices_of(
     captured: Sequence[Numeric] = (),
     windows: Sequence[Compare] = (),
 ) -> Choices:
-    """The samples worth trying; with comparisons of `windows`, they never count as complete."""
+    """The samples worth trying; they are never complete if there are comparisons of `windows`."""
     names = tuple(name for name in (*spec.signals, *spec.events) if name in read)
     remembered = frozenset(_remembered(spec, leaves)) & spec.signals.keys() & {*names}
     options = _Options(spec, leaves, captured, remembered, windows)
@@ -258,7 +258,7 @@ def choices_of(
 
 
 def values_of(spec: CheckedSpec, leaves: Sequence[Leaf], name: str) -> list[Value | Silence]:
-    """The values of a name that some leaf distinguishes; of an event `False` for no occurrence."""
+    """The values of a name that some leaf distinguishes; `False`: an event does not occur."""
     return _Options(spec, leaves, (), frozenset()).of(name)
 
 
@@ -288,7 +288,8 @@ class _Options:
         self.leaves = leaves
         self.remembered = remembered
         self.compared = [leaf for leaf in leaves if isinstance(leaf, Compare)] + [*windows]
-        # A comparison with a captured value turns where the captured expression equals it.
+        # A comparison with a captured value changes where the captured expression equals the other
+        # side, so the expression is put in the place of the value.
         self.compared += [
             Compare(leaf.op, numeric, leaf.right) for leaf in self.compared for numeric in captured
         ]
@@ -323,7 +324,7 @@ class _Options:
                 assert_never(type_.kind)
 
     def _labels(self, variable: Variable, labels: Sequence[str]) -> list[str]:
-        """The labels compared with, after one that is not; all, if signals are compared."""
+        """One label that no comparison names, then the named ones; all if signals are compared."""
         sides = [
             (leaf.left, leaf.right) for leaf in self.compared if variable in (leaf.left, leaf.right)
         ]
@@ -337,7 +338,7 @@ class _Options:
 
 
 def _defaults_first(options: Sequence[Sequence[T]]) -> Iterator[tuple[T, ...]]:
-    """All combinations, by number of departures from the first options: 0, n, 1, n − 1 etc."""
+    """All combinations, ordered by departures from the first options: 0, n, 1, n − 1 and so on."""
     low, high = 0, len(options)
     while low <= high:
         yield from _departing(options, low)
@@ -358,7 +359,7 @@ def _departing(options: Sequence[Sequence[T]], count: int) -> Iterator[tuple[T, 
 
 
 class _Seen:
-    """Equivalence keys of valuations that no formula distinguishes."""
+    """Makes keys of valuations: equal for valuations that no formula distinguishes."""
 
     def __init__(
         self, spec: CheckedSpec, leaves: Iterable[Leaf], remembered: frozenset[str]
@@ -374,7 +375,7 @@ class _Seen:
                 self.plain.append(leaf)
 
     def keys(self, valuations: Sequence[Valuation]) -> Iterator[tuple[object, ...]]:
-        """The keys of some valuations."""
+        """The keys of valuations, in order."""
         spoken = [
             {name: value for name, value in valuation.items() if not isinstance(value, Silence)}
             for valuation in valuations

@@ -1,4 +1,4 @@
-"""Shortest example timelines of requirements and conflicts, and the analysis as a whole.
+"""Finds shortest example timelines of requirements and conflicts; runs the whole analysis.
 
 Examples are found by best-first search over relevant samples, instants and values.
 """
@@ -36,10 +36,10 @@ NEVER = (1 << 63) - 1  # later than any instant
 
 
 class Played(Struct, frozen=True):
-    """A short run, judged."""
+    """A short run with its verdicts."""
 
-    example: Example  # the run, if it ends here
-    # a key that is equal for runs with the same future, as far as the search looks
+    example: Example  # the run with its verdicts if it ends here
+    # a key: runs with equal keys have the same future, as far as the search looks
     situation: bytes
     cut: int  # the next instant after its end at which time alone may decide something, ticks
 
@@ -59,7 +59,11 @@ class Player:
         self._run = self._planned.monitor(frozenset())
 
     def play(self, samples: Sequence[Sample], end: int) -> Played:
-        """Judge a short run of one sample at least, which ends at an instant (ticks)."""
+        """Judge a short run of at least one sample that ends at `end` (ticks).
+
+        Raises:
+            ValueError: the core refuses a sample.
+        """
         run = self._run
         run.reset()
         for sample in samples:
@@ -75,19 +79,22 @@ class Player:
 
 
 Goal = Callable[[Example], str | None]
-"""Classifies an example into one of the wanted kinds; `None` if it is of no interest."""
+"""Assigns an example to one of the wanted kinds; `None` if it is of no interest."""
 
 _PATIENCE = 6
-"""The number of waits between two samples that are free; each further one counts as a sample."""
+"""The number of free waits after a sample; each further wait counts as a sample."""
 
 
 def verdict_of(name: str) -> Goal:
-    """The goal that finds an example for each verdict of a requirement."""
+    """The goal of finding an example for each verdict of a requirement."""
     return lambda example: example.verdicts[name].value
 
 
 def difference_of(first: str, second: str) -> Goal:
-    """The goal that finds examples on which two requirements have different verdicts."""
+    """The goal of finding examples on which two requirements have different verdicts.
+
+    The kind is `hard` if one of them fails, else `soft`.
+    """
 
     def differs(example: Example) -> str | None:
         verdicts = example.verdicts[first], example.verdicts[second]
@@ -104,13 +111,13 @@ class _Node(Struct, frozen=True):
     samples: tuple[Sample, ...]  # the samples so far
     end: int  # the end of the run, ticks
     held: int  # the place of the current values in `_Search.held`
-    stir: int  # the number of occurrences and of values other than false; quieter runs go first
+    stir: int  # the number of occurrences and of values other than false; quieter runs come first
     at_cut: bool = False  # whether it waits at its end, after the last sample
     waits: int = 0  # the number of waits since the last sample
 
     @property
     def effort(self) -> int:
-        """The number of samples; many waits count too, or endless waiting would come first."""
+        """The number of samples, plus waits beyond a few: else endless waiting would come first."""
         return len(self.samples) + max(0, self.waits - _PATIENCE)
 
 
@@ -123,11 +130,11 @@ def shortest_examples(
 ) -> Found:
     """Look for the shortest example of each kind.
 
-    Runs are judged by the core itself, so an example is right by construction. They are tried by
-    number of samples, then by end; where waiting leads to ever new situations, each wait beyond a
-    few counts as a sample. A sample takes one of the valuations that the formulas distinguish, a
-    short step after the last one, or within a tick of an instant at which a window opens or
-    closes.
+    Runs are judged by the core itself, so an example is right by construction. They are tried in
+    order of the number of samples, then of the end. As waiting may lead to ever new situations,
+    each wait beyond a few counts as a sample. A sample has one of the valuations that the formulas
+    distinguish. It comes a short step after the last one, or within a tick of an instant at which
+    a window opens or closes.
 
     Cost: about 25 microseconds per run.
     """
@@ -142,7 +149,7 @@ def shortest_examples(
     runs = 0
 
     def add(nodes: Iterator[_Node], order: int) -> None:
-        """Queue the next of runs that follow each other by effort, end and stir."""
+        """Queue the next of several runs that are in order of effort, end and stir."""
         for node in nodes:
             heappush(heap, (node.effort, node.end, node.stir, order, node, nodes))
             return
@@ -151,7 +158,7 @@ def shortest_examples(
         add(iter((first,)), next(number))
     while heap and missing and runs < budget.runs:
         *_, order, node, nodes = heappop(heap)
-        # The next of these runs is queued only now, as most are never examined.
+        # The successor of a run is queued only when the run is taken, as most are never examined.
         add(nodes, order)
         played = player.play(node.samples, node.end)
         runs += 1
@@ -162,7 +169,7 @@ def shortest_examples(
         if (played.situation, node.at_cut) in seen:
             continue
         seen.add((played.situation, node.at_cut))
-        # Their verdicts are final: no later sample changes one.
+        # If all have failed, no later sample changes a verdict.
         if all(verdict is Verdict.FAIL for verdict in played.example.verdicts.values()):
             continue
         for further in search.after(node, played.cut):
@@ -199,7 +206,7 @@ class _Search:
                     defaults.setdefault(name, value)
         tried: set[int] = set()
         for valuation in self.choices.valuations:
-            # At the first sample silent names get a default, lest few valuations remain.
+            # In the first sample silent names get a default, or few valuations would remain.
             whole = {
                 n: defaults[n] if v is SILENT else v for n, v in valuation.items() if n in defaults
             }
@@ -210,12 +217,12 @@ class _Search:
                 yield _Node((Sample(0, changes),), 0, number, _stir(changes))
 
     def after(self, node: _Node, cut: int) -> Iterator[Iterator[_Node]]:
-        """The runs that go on from one, by a sample and by waiting, each kind in order."""
+        """The continuations of a run by a sample and by waiting, each kind in order."""
         end = node.end
         if len(node.samples) < self.most:
             yield self._sampled(node, end + (self.gap if node.at_cut else self.step))
-        # Wait to just before and just after the instant at which a window opens or closes; if that
-        # is the next position, a step passes it.
+        # Wait until just before and just after the instant at which a window opens or closes. If
+        # that is the next position, pass it by a step.
         soon = cut - end <= self.gap and not node.at_cut
         for t in {end + self.step} if soon else {cut - 1, cut}:
             if end < t < TIME_LIMIT:
@@ -230,7 +237,7 @@ class _Search:
             yield _Node((*node.samples, Sample(t, changes)), t, number, node.stir + stir)
 
     def _sorted(self, place: int) -> list[tuple[int, dict[str, Value], Valuation]]:
-        """The possible samples where these values are held, those with the fewest changes first."""
+        """The possible samples while the values at `place` are held, the fewest changes first."""
         held = self.held[place]
         brought = ((self._changes(one, held), one) for one in self.choices.valuations)
         samples = [(_stir(changes), changes, one) for changes, one in brought if changes]
@@ -284,14 +291,14 @@ _OPEN, _MET = "open", "met"
 class Analysis(Struct, frozen=True):
     """The result of an analysis."""
 
-    findings: tuple[Diagnostic, ...]  # as diagnostics
-    examination: Examination  # the same as data, with counts of undecided questions
+    findings: tuple[Diagnostic, ...]
+    examination: Examination  # the findings as data, with counts of undecided questions
     # for the first conflicts, the shortest run that triggers their requirements
     timelines: tuple[tuple[Conflict, Example], ...]
 
 
 def analyse(compiled: CompiledSpec, *, seconds: float = 8.0, timelines: int = 3) -> Analysis:
-    """Analyse a specification."""
+    """Analyse a specification for up to `seconds`, with timelines for the first conflicts."""
     subjects = [
         Subject(one.requirement, one.obligation.trigger, one.automaton, one.reads)
         for one in compiled.requirements.values()

@@ -1,4 +1,4 @@
-"""The truth of each subformula over time, and triggers that came near."""
+"""Explains attempts by the truth of each subformula, and finds near misses of triggers."""
 
 from __future__ import annotations
 
@@ -41,16 +41,16 @@ class PartTruth(Struct, frozen=True):
 
     depth: int  # its nesting depth; 0 for the trigger and the consequent
     text: str  # as in the specification
-    part: str  # `trigger` or `required`
+    part: str  # the part to which it belongs, `trigger` or `required`
     true: tuple[tuple[int, int], ...]  # closed intervals of ticks at which it is true
     # the positions at which it is false; elsewhere it is unknown
     false: tuple[tuple[int, int], ...]
 
 
 class Breakdown(Struct, frozen=True):
-    """The dissection of an attempt."""
+    """An attempt explained by the truth of its subformulas."""
 
-    attempt: Attempt  # its record
+    attempt: Attempt
     start: int  # first tick shown
     end: int  # last tick shown
     # the instant (ticks) of a response after the deadline; `None` if there was none
@@ -60,7 +60,7 @@ class Breakdown(Struct, frozen=True):
 
 
 AROUND = 0.15
-"""The margin shown before the trigger and after the decision, relative to the time between."""
+"""The margin shown before the trigger and after the decision, relative to the time between them."""
 
 
 def dissect(
@@ -70,7 +70,7 @@ def dissect(
     attempt: Attempt,
     names: frozenset[str] | None = None,
 ) -> Breakdown:
-    """Dissect an attempt on a recording that ends at an instant (ticks).
+    """Break down an attempt on a recording that ends at `end` (ticks).
 
     Source: SEMANTICS 2; Kleene's value by a pessimistic and an optimistic reading (SEMANTICS 1).
     """
@@ -109,17 +109,17 @@ def part_truths_of(
 class _Part(Struct, frozen=True):
     """An operand of a trigger."""
 
-    formula: formulas.Formula  # itself
-    text: str  # as in the specification
+    formula: formulas.Formula
+    text: str  # the formula as text
     place: int  # its place among all operands of the trigger
     reads: frozenset[str]  # the signals that it reads
 
 
 class _Miss(Struct, frozen=True):
-    """The moment at which most parts of a conjunction were true."""
+    """The instant at which most operands of a conjunction were true."""
 
     there: tuple[_Part, ...]  # the operands that were true
-    missing: tuple[_Part, ...]  # the others
+    missing: tuple[_Part, ...]  # the operands that were not
     at: int | None  # the first such instant, ticks; `None` if no operand was ever true
 
 
@@ -130,13 +130,16 @@ def why_not_triggered(
     end: int,
     names: frozenset[str] | None = None,
 ) -> str:
-    """One sentence: the parts that the trigger lacked when it came nearest; "" if none applies."""
+    """One sentence on the operands that were missing when the trigger was nearest to being true.
+
+    "" for triggers that are not explained: `end`, and those of `for each`.
+    """
     trigger = TriggerParts(spec, requirement)
     return trigger.miss_in(look_through(spec, [trigger.question], samples, end, names))
 
 
 class TriggerParts:
-    """The parts of a trigger, by which it is said why it did not come; of any recording."""
+    """Splits a trigger into operands, to explain why it never came in a recording."""
 
     def __init__(self, spec: CheckedSpec, requirement: Requirement) -> None:
         options = [
@@ -144,7 +147,7 @@ class TriggerParts:
             for part in dict.fromkeys(rewrite.chain(requirement.trigger, formulas.BinaryOp.OR))
             if requirement.for_each is None
         ]
-        # asks for the operands; for none of `for each`, which is not explained
+        # asks for all operands; without any for `for each`, which is not explained
         self.question = Question(tuple(dict.fromkeys(chain(*options))))
         parts = {}
         operands = zip(self.question.formulas, self.question.texts, strict=True)
@@ -155,7 +158,7 @@ class TriggerParts:
         self._is_told = requirement.for_each is None and not is_end(requirement.trigger)
 
     def miss_in(self, seen: RecordedTruths) -> str:
-        """As `why_not_triggered`, from the truths of the question over a recording."""
+        """The sentence of `why_not_triggered`, from the truths of `question` over a recording."""
         if seen.begin is None:
             return "the recording has no sample"
         if not self._is_told:
@@ -169,7 +172,7 @@ class TriggerParts:
 
 
 class Looking:
-    """The plans by which recordings are searched for subformulas, made once per specification."""
+    """Caches what is needed to search recordings for subformulas of a specification."""
 
     def __init__(self, spec: CheckedSpec) -> None:
         self._spec = spec
@@ -177,7 +180,7 @@ class Looking:
         self.plans: Plans = {}  # for `look_through`
 
     def trigger(self, requirement: str) -> TriggerParts:
-        """The parts of the trigger of a requirement, given by its id."""
+        """The operands of the trigger of a requirement, given by its id."""
         if requirement not in self._triggers:
             owner = self._spec.requirements[requirement]
             self._triggers[requirement] = TriggerParts(self._spec, owner)
@@ -200,7 +203,7 @@ def _miss(parts: tuple[_Part, ...], truths: Sequence[Truth]) -> _Miss:
 
 
 def _sentence(miss: _Miss, truths: Sequence[Truth], origin: int) -> str:
-    """The sentence if some operand was true, or none is missing."""
+    """The sentence for a trigger of which some operand was once true, or none is missing."""
     at = miss.at
     if at is None or not miss.missing:
         when = "" if at is None else f" at {format_instant(at, origin)}"
@@ -217,7 +220,7 @@ def _sentence(miss: _Miss, truths: Sequence[Truth], origin: int) -> str:
 def _apart(
     parts: tuple[_Part, ...], truths: Sequence[Truth], seen: RecordedTruths
 ) -> Iterator[str]:
-    """The clauses if no operand was ever true, with those on signals without a value."""
+    """The clauses for a trigger of which no operand was ever true."""
     valueless = _without_values(parts, seen)
     groups: dict[str, list[_Part]] = {}
     for part in parts:
@@ -240,7 +243,7 @@ def _apart(
 
 
 def _without_values(parts: Sequence[_Part], seen: RecordedTruths) -> Mapping[str, str]:
-    """The signals without any value that the operands read, each with the clause for it."""
+    """The signals that operands read and that never had a value, each with its clause."""
     if not seen.valueless:
         return {}
     lacking = {name for part in parts for name in part.reads} & seen.valueless

@@ -29,11 +29,14 @@ if TYPE_CHECKING:
     from rvmon.recordings.batch import Batch
 
     Positions = range | NDArray[np.int64] | None
-    """Instants of positions, ascending; `None` where every tick is one."""
+    """The instants of positions, ascending; `None` if every tick is a position."""
 
 
 class Truth(Struct, frozen=True):
-    """The ticks at which a formula is TRUE, and those at which it is FALSE."""
+    """The ticks at which a formula is TRUE, and those at which it is FALSE.
+
+    Both are closed intervals int64[n, 2] as in `rvmon.analysis.interval_sets`.
+    """
 
     true: NDArray[np.int64]
     false: NDArray[np.int64]
@@ -49,29 +52,29 @@ class Question(Struct, frozen=True, dict=True):
 
     @cached_property
     def whose(self) -> tuple[object, ...]:
-        """The key of questions that can be evaluated in one run."""
+        """A key: questions with equal keys can be evaluated in one run."""
         return self.for_each, *self.captured.items()
 
     @property
     def names(self) -> frozenset[str]:
-        """The signals and events that are read."""
+        """The signals and events that the formulas read."""
         read = {name for formula in self.formulas for name in names_read(formula)}
         return frozenset(read if self.for_each is None else {*read, self.for_each.value.event})
 
     @cached_property
     def texts(self) -> tuple[str, ...]:
-        """The formulas in words of the language: those of one text are evaluated once."""
+        """The texts of the formulas; formulas with equal texts are evaluated once."""
         return tuple(map(format_formula, self.formulas))
 
 
 class RecordedTruths(Struct, frozen=True):
     """The truths of formulas over a recording; after its end they are unknown.
 
-    In clocked and sampled time, a truth value is extended from its position to the next.
+    In clocked and sampled time, a truth value lasts from its position until the next one.
     """
 
     names: frozenset[str] | None  # the signals and events that had a source; `None`: all
-    begin: int | None  # the instant of the first sample, ticks; `None`: there is none
+    begin: int | None  # the instant of the first sample, ticks; `None` if there is no sample
     end: int  # the last instant, ticks
     positions: Positions  # the positions of the recording
     valueless: frozenset[str]  # the signals that never had a value
@@ -94,8 +97,8 @@ def look_through(
 ) -> RecordedTruths:
     """Evaluate formulas over a recording, which is read once.
 
-    Plans of calls with other recordings are taken from `plans`, and new ones added. A
-    `HeldRecording` has outages of its own.
+    Plans of earlier calls are taken from `plans`, and new ones are added. If `pieces` is a
+    `HeldRecording`, its own outages replace `outages`.
 
     Cost: one pass in C for each `Question.whose`. Memory is linear in the number of changes of
     truth values, in sampled time in the number of samples.
@@ -137,7 +140,7 @@ class _Plan:
         self, spec: CheckedSpec, question: Question, formulas: Mapping[str, Formula]
     ) -> None:
         lowering = Lowering(Factory(), spec.period, False)
-        # by text; `None` for the formula `end`, which is not known before the end
+        # by text; `None` for the formula `end`, which is unknown throughout the recording
         self.cores = {
             text: None if is_end(formula) else lowering.core(formula, True)
             for text, formula in formulas.items()
@@ -149,7 +152,7 @@ class _Plan:
 
 
 Plans = dict[tuple[str, ...], _Plan]
-"""Plans by the texts of their formulas; only of formulas without captured values."""
+"""Plans by the texts of their formulas; only for formulas without captured values."""
 
 
 class _Group:
@@ -179,7 +182,7 @@ class _Group:
         return self._run is not None
 
     def take(self, piece: Batch | Sample, samples: Sequence[Sample]) -> None:
-        """Take the next piece; an instance takes it as `samples`, filtered by its key."""
+        """Take the next piece; an instance of `for each` takes its `samples`, filtered by key."""
         if self._run is None:
             return
         each = self._question.for_each
@@ -238,7 +241,7 @@ class _Ticks:
         self.end = end
 
     def spans(self, ranges: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The ticks of ranges of positions, each up to the tick before the next position."""
+        """The ticks of ranges of positions; each lasts until the tick before the next position."""
         if not len(ranges):
             return ranges
         if self._positions is not None:
@@ -269,7 +272,7 @@ def _at(positions: range | NDArray[np.int64], places: NDArray[np.int64]) -> NDAr
 def _of_instance(
     each: ForEach, captured: Mapping[str, Scalar], samples: Iterable[Sample]
 ) -> Iterator[Sample]:
-    """The samples for one instance: occurrences of its event with another key are removed.
+    """The samples for one instance, without occurrences of its event that have another key.
 
     An occurrence with an unknown key is an unknown occurrence for every instance.
     """
@@ -292,14 +295,14 @@ def _of_instance(
 
 
 def _reported(seen: Sequence[Payload | None]) -> Value:
-    """Occurrences as the value of a sample; an unknown one among others has unknown fields."""
+    """Occurrences as a value in a sample; an unknown one beside others has unknown fields."""
     if all(payload is None for payload in seen):
         return None
     return tuple({} if one is None else one for one in seen)
 
 
 def subformulas(formula: Formula, depth: int) -> Iterator[tuple[int, Formula]]:
-    """A formula and its subformulas with their depths; the negation of an atom is not split."""
+    """A formula and its subformulas with their depths; a negated atom is not split."""
     yield depth, formula
     match formula:
         case (

@@ -25,8 +25,8 @@ class Subject(Struct, frozen=True, eq=False):
     """A requirement to be analysed."""
 
     requirement: Requirement  # as checked
-    trigger: State | None  # starts an attempt; `None` if it is the end of the trace
-    automaton: Automaton | None  # the automaton of the requirement; `None` if it does not close
+    trigger: State | None  # starts an attempt; `None` if the end of the trace does
+    automaton: Automaton | None  # `None` if the requirement has none
     names: frozenset[str]  # the signals and events that it reads
 
     @property
@@ -36,14 +36,14 @@ class Subject(Struct, frozen=True, eq=False):
 
     @property
     def is_always(self) -> bool:
-        """Whether it is `whenever true`, so that an attempt is open at every instant."""
+        """Whether its trigger is `whenever true`, so that an attempt is open at every instant."""
         trigger = self.requirement.trigger
         always = isinstance(trigger, Constant) and trigger.value
         return always and self.requirement.mode is Mode.WHENEVER
 
     @property
     def starts_late(self) -> bool:
-        """Whether an attempt can start at another instant than the first."""
+        """Whether an attempt can start after the first instant."""
         return not self.is_always and not isinstance(self.requirement.trigger, BoundAtom)
 
     @property
@@ -53,7 +53,7 @@ class Subject(Struct, frozen=True, eq=False):
 
 
 class Possible(Struct, frozen=True):
-    """The possible behaviour of a requirement; `False` is proved, `None` was not decided."""
+    """What a requirement can do: `False` is proved, `None` means not decided."""
 
     trigger: bool | None = None  # whether an attempt can start
     fail: bool | None = None  # whether one can fail
@@ -65,10 +65,11 @@ def possible(
 ) -> Possible:
     """The possible behaviour of a requirement, by reachability on its automaton.
 
-    Without a `trigger` it is the end of the trace, without an `automaton` that does not close.
+    `trigger` is `None` if the end of the trace is the trigger, `automaton` is `None` if there is
+    none.
 
-    An over-approximation: past operators and complex comparisons are taken as free propositions,
-    and the order in which ages cross their bounds is free.
+    The search over-approximates: past operators and complex comparisons are treated as free
+    propositions, and ages may cross their bounds in any order.
 
     Source: AUTOMATA 2, regions after Alur and Dill 1994.
     """
@@ -84,7 +85,7 @@ def possible(
     if not first:
         return Possible(trigger=False)
     # The exploration covers every run, and perhaps more. So "cannot fail" is proved and becomes a
-    # finding; "can fail" is not proved, and is not reported.
+    # finding, while "can fail" is not proved and not reported.
     width = len(propositions)
     reach = _Reach(automaton, spec.gap)
     reach.run(
@@ -99,7 +100,7 @@ def possible(
 
 
 def automaton_letter(automaton: Automaton, truths: Iterable[bool]) -> int:
-    """The class of the letter with these truth values, all of them known."""
+    """The class of the letter with these truth values, all of which are known."""
     weights = automaton.alphabet.pessimistic
     letter = sum(
         digits[TRUE] if truth else digits[FALSE]
@@ -111,7 +112,7 @@ def automaton_letter(automaton: Automaton, truths: Iterable[bool]) -> int:
 class _Reach:
     """The reachable rows of an automaton.
 
-    The age of a clock just started is known exactly; of the others only the region.
+    The age of a clock that was just started is known exactly; of other clocks only the region is.
     """
 
     def __init__(self, automaton: Automaton, gap: int | None) -> None:
@@ -122,7 +123,7 @@ class _Reach:
         self.passed = False  # whether one can pass
 
     def run(self, first: set[int], letters: set[int]) -> None:
-        """Explore from the trigger, by the classes of letters possible there, and anywhere."""
+        """Explore from the trigger, with letter classes `first` there and `letters` afterwards."""
         waiting = list(self._step(self.automaton.initial, (), first))
         seen = set(waiting)
         while waiting:
@@ -182,7 +183,7 @@ class _Reach:
         ours: tuple[tuple[int, ...], ...],
         cuts: tuple[int, ...],
     ) -> Iterable[int]:
-        """The possible regions of a clock after an edge, by the cuts of the target."""
+        """The possible regions of a clock after an edge, relative to the cuts of the target."""
         if source == NOW:
             return (_STARTED,)
         return regions_between(cuts, *region_bounds(ours[source], regions[source]))

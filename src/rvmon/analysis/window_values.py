@@ -38,8 +38,8 @@ Asked = tuple[int, WindowValue]  # an instant in ticks, and the window to be eva
 def windows_blamed(spec: CheckedSpec, requirement: Requirement, blame: Blame) -> list[WindowValue]:
     """The windows of the blamed subformula whose values are worth showing.
 
-    None in a requirement with `for each` or `let`; none in held time that changes between samples,
-    as it fails exactly when it reaches its limit.
+    There are none for a requirement with `for each` or `let`. In held time, windows that move
+    between samples are left out, because they fail exactly when they reach their limit.
     """
     if requirement.captured:
         return []
@@ -61,7 +61,7 @@ def windows_blamed(spec: CheckedSpec, requirement: Requirement, blame: Blame) ->
 
 
 def unit_of(spec: CheckedSpec, window: WindowValue) -> str | None:
-    """The unit of a window's value; "" if it has none, `None` if it is not known."""
+    """The unit of a window's value; "" for none, `None` if it is not known."""
     match window.measured.dimension, window.value:
         case Dimension.PLAIN, _:
             return ""
@@ -87,7 +87,7 @@ class WindowValues:
             str(place): _captured_at(str(place), t - origin, window)
             for place, (t, window) in enumerate(asked)
         }
-        # The samples of a recording are in order: `max delay` would only hold them back.
+        # The samples of a recording are in order, so `max delay` would only hold them back.
         captured = replace(
             spec, requirements=requirements, properties={}, covers={}, max_delay=None
         )

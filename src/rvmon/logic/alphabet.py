@@ -68,9 +68,9 @@ class Alphabet(Struct, frozen=True):
 
 
 def alphabet_of(formula: Core) -> Alphabet:
-    """The least alphabet for a formula.
+    """The smallest alphabet for a formula.
 
-    A proposition read in one sense only needs two digits, unknown or not.
+    A proposition that is read in one sense only needs just two digits, even if it may be unknown.
     """
     senses: dict[State, set[Sense]] = {}
     for literal in literals(formula):
@@ -111,7 +111,7 @@ def _digits(
 
 
 Tree = int | tuple[int, tuple["Tree", ...]]
-"""A class; or the stride of a digit, and a tree for each value of it."""
+"""A class, or the stride of a digit with a tree for each value of the digit."""
 
 
 class LetterDiagram(Struct, frozen=True, eq=False):
@@ -146,17 +146,17 @@ LetterClasses: TypeAlias = "array[int] | LetterDiagram"  # the class of each let
 
 
 def joined(stride: int, children: tuple[Tree, ...]) -> Tree:
-    """A decision, or its only outcome."""
+    """A decision between subtrees, or the subtree if all are the same."""
     first = children[0]
     return first if all(child == first for child in children[1:]) else (stride, children)
 
 
 Edge = tuple[int, tuple[int, ...]]  # target location and the sources of its clocks
-MOST_TABLED = 1 << 16  # letters of which the classes stand in a table; of more, in a diagram
+MOST_TABLED = 1 << 16  # the most letters whose classes are kept in a table instead of a diagram
 
 
 class Node(Struct, frozen=True, eq=False):
-    """A decision; equal ones are the same object."""
+    """A decision, or a leaf; equal nodes are the same object."""
 
     level: int  # the proposition decided on, by its place in the alphabet; −1 for a leaf
     children: tuple[Node, ...] = ()  # per digit of that proposition
@@ -164,11 +164,11 @@ class Node(Struct, frozen=True, eq=False):
 
 
 Choice = tuple[int, frozenset[Atom], list[frozenset[Atom]]]
-"""A proposition by its place in the alphabet, its literals, and those that are true per digit."""
+"""The place of a proposition in the alphabet, its literals, and per digit the true ones."""
 
 
 class Diagrams:
-    """All diagrams of one construction; the last proposition of the alphabet is decided first."""
+    """Makes the diagrams of a construction; the alphabet's last proposition is decided first."""
 
     def __init__(self, alphabet: Alphabet) -> None:
         self.alphabet = alphabet
@@ -178,7 +178,7 @@ class Diagrams:
     def of(self, opened: Residual, leaf: Callable[[Residual], Edge]) -> Node:
         """The diagram of a residual in which literals are still open atoms.
 
-        `leaf` gives the edge of a residual without literals.
+        `leaf` returns the edge of a residual without literals.
         """
         atoms = frozenset[Atom]().union(*opened)
         read = frozenset(atom for atom in atoms if isinstance(atom[0], Literal))
@@ -226,7 +226,7 @@ class Diagrams:
         product = _Product(self.alphabet, limit)
         diagram = LetterDiagram(product.tree(tuple(roots)))
         found: LetterClasses = diagram
-        # The core looks the class up at each change of a proposition: one load where a table fits.
+        # The core looks up a class at each change of a proposition; with a table that is one load.
         if self.alphabet.size <= MOST_TABLED:
             found = array("H", map(diagram.__getitem__, range(self.alphabet.size)))
         edges = [

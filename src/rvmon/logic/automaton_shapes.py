@@ -3,9 +3,9 @@
 Locations with different residuals stay apart, so that a run can be explained by its location.
 
 An automaton depends on the order of the bounds, and on their distances only where these are small:
-an age that `construct` meets is 0 or a bound, plus one tick per step taken after it. So bounds that
-lie far apart are replaced by evenly spaced ones in the same order, and put back afterwards. Without
-that, hundreds of requirements with deadlines of their own take seven times as long to compile.
+an age that `construct` meets is 0 or a bound, plus one tick per step after it. So bounds that lie
+far apart are replaced by evenly spaced ones in the same order, and put back afterwards. Without
+this, hundreds of requirements with different deadlines take seven times as long to compile.
 """
 
 from __future__ import annotations
@@ -41,8 +41,8 @@ class Shapes:
     def reduced(self, required: mtl.Next, alphabet: Alphabet, budget: Budget) -> Automaton | None:
         """The automaton of a formula; `None` if the formula looks back or does not close.
 
-        Of formulas that differ in propositions only, the automaton has the alphabet and residuals
-        of whichever came first; `residuals` translates them.
+        Formulas that differ only in propositions share an automaton, which has the alphabet and
+        residuals of the first of them; `residuals` translates these.
         """
         return self._found(required, alphabet, budget)[0]
 
@@ -52,7 +52,7 @@ class Shapes:
         """The residual of each location of a formula's automaton, over its own propositions.
 
         Raises:
-            ValueError: `reduced` gives no automaton for it.
+            ValueError: the formula has no automaton.
         """
         automaton, nodes = self._found(required, alphabet, budget)
         if automaton is None:
@@ -69,7 +69,8 @@ class Shapes:
         bounds = sorted({bound for node in nodes for bound in _bounds(node)})
         stand_ins = _stand_ins(bounds)
         shape = (budget, *_description(nodes, alphabet, stand_ins))
-        # Two levels: automata per shape, which cost the most, and per shape and bounds, put back.
+        # Two caches: automata per shape, which are expensive, and per shape and bounds, after the
+        # bounds were put back.
         key = (shape, *bounds)
         if key not in self._automata:
             made = self._made(shape, nodes, stand_ins, alphabet, budget)
@@ -88,13 +89,13 @@ class Shapes:
             others = _with_bounds(nodes, stand_ins)
             made, steps = _constructed(others, alphabet, budget)
             is_same = all(old == new for old, new in stand_ins.items())
-            # Clocks differ in age by a tick each: the oldest may lead by the number of clocks.
-            # The stand-ins are far apart; so must the ages met be, or a bound was reached by
-            # counting ticks.
+            # The automaton is valid for all bounds of the shape only if no age came near the next
+            # stand-in by counting ticks. Clocks differ in age by at least a tick each, so the
+            # oldest may lead by as many ticks as there are clocks.
             is_general = is_same or steps + budget.clocks < _APART
             self._shapes[shape] = (made, others) if is_general else None
         found = self._shapes[shape]
-        if found is None:  # the distances of its bounds matter after all
+        if found is None:  # the distances between its bounds matter after all
             return _constructed(nodes, alphabet, budget)[0]
         automaton, others = found
         if automaton is None:

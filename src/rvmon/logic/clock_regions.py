@@ -14,7 +14,7 @@ NEVER = 1 << 62  # no bound
 _NARROW = 8  # regions with fewer ages keep exact ages; in wider ones only differences are kept
 
 Ages = tuple[tuple[int, ...], ...]
-"""A closed difference bound matrix: entry (i, j) is the most by which clock i is older than j.
+"""A closed difference bound matrix: entry (i, j) bounds by how much clock i is older than clock j.
 Clock 0 is the reference clock of age 0; the real clocks are numbered from 1."""
 
 Cuts = Sequence[Sequence[int]]  # per clock, the ages, ascending, at which it enters its next region
@@ -65,8 +65,8 @@ def within(ages: Ages, intervals: Sequence[tuple[int, int]]) -> Ages | None:
 
 def _bind(found: list[list[int]], one: int, other: int, bound: int) -> None:
     """Tighten one bound and close the matrix again."""
-    # Only paths through the tightened bound can have become shorter, so n² steps close the matrix
-    # again, not n³.
+    # Only paths through the tightened bound can have become shorter, so n² steps suffice to close
+    # the matrix again, instead of n³.
     behind = [(place, most) for place, most in enumerate(found[other]) if most < NEVER]
     for row in found:
         if row[one] < NEVER:
@@ -91,7 +91,7 @@ def after(ages: Ages, longest: int) -> Ages:
 
 def with_new_clock(ages: Ages) -> Ages:
     """The zone with one more clock, the last, of age 0."""
-    # The new clock is as old as the reference clock: its row and column are copies of those of 0.
+    # The new clock is as old as the reference clock 0, so it has the same row and column.
     rows = [(*row, row[0]) for row in ages]
     return (*rows, rows[0])
 
@@ -113,8 +113,7 @@ def widened(ages: Ages, cuts: Cuts, *, differences: bool) -> Ages:
         low, high = bounds(ages, clock)
         least, greatest = region_bounds(own, bisect_right(own, low))
         place = clock + 1
-        # Beyond its last cut the age of a clock decides nothing any more, and neither does its
-        # difference from others.
+        # Beyond its last cut neither the age of a clock nor its difference from others matters.
         if not differences or greatest == NEVER:
             apart.append(place)
         if _is_wide(least, greatest, low) or (low < high and not differences):
@@ -137,7 +136,7 @@ def _is_wide(least: int, greatest: int, age: int) -> bool:
 
 
 def alike(age: int, cuts: Sequence[int]) -> int:
-    """A number that all ages of an only clock share whose points are widened to the same zone.
+    """A key of the age of a single clock: equal for ages that `widened` puts in the same zone.
 
     >>> [alike(age, [20]) for age in (0, 7, 18, 19, 20, 99)] == [0, 0, 0, -20, 1, 1]
     True

@@ -1,4 +1,4 @@
-"""From a formula to its automaton: all locations that are reached, in all regions of ages."""
+"""Constructs the automaton of a formula by exploring its locations and their age regions."""
 
 from __future__ import annotations
 
@@ -33,8 +33,8 @@ def construct(
 ) -> Automaton:
     """Build the automaton of a formula.
 
-    `required` is `X` of what an attempt requires, as it starts before the trigger's position;
-    `ages`, if given, collects the clock ages (ticks) with which locations were explored.
+    `required` is `X` of the required formula, because an attempt starts before the position of its
+    trigger. `ages`, if given, collects the clock ages (ticks) with which locations were explored.
 
     Raises:
         DoesNotCloseError: the budget was exceeded.
@@ -60,7 +60,7 @@ class _Construction:
         self.todo: list[int] = []
 
     def run(self, required: Temporal) -> Automaton:
-        # First, as FAILED and PASSED are the locations 0 and 1 of every automaton.
+        # These two come first, as FAILED and PASSED are locations 0 and 1 of every automaton.
         for residual in (FAILS, HOLDS):
             self.enter(residual, ())
         initial = self.enter(frozenset([frozenset([(required, NO_CLOCK)])]), ())
@@ -87,15 +87,15 @@ class _Construction:
         least = tuple(map(min, known, ages))
         if least != known:
             self.youngest[index] = least
-            # To be explored again: with smaller ages more of its regions can be reached.
+            # Explore it again: with smaller ages more of its regions can be reached.
             if index not in self.todo:
                 self.todo.append(index)
         return index
 
     def explore(self, index: int) -> None:
         location = self.locations[index]
-        # Between two cuts no window opens or is over, so one vector of ages stands for its region.
-        # It has to be the least one: from it the targets are entered with their least ages.
+        # Between two cuts no window opens or closes, so one vector of ages represents its region.
+        # It has to be the least one, so that the targets are entered with their least ages.
         for regions in product(*(range(len(cuts) + 1) for cuts in location.cuts)):
             row = (index, regions)
             ages = _least_ages(location.cuts, regions, self.youngest[index])

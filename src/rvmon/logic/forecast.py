@@ -62,14 +62,17 @@ class Forecaster:
         self._may_hold = lru_cache(_MOST_KNOWN)(_may_hold)
 
     def of(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
-        """The value of a residual under all continuations; `None`: they differ, or are too many."""
+        """The value of a residual under all continuations.
+
+        `None` if continuations differ, or if the search was given up.
+        """
         if residual in (HOLDS, FAILS):
             return residual == HOLDS
         if len(residual) > MOST_CLAUSES:
             return None
         unit = gap or 1
         cuts = self._cuts(residual, unit)
-        # Ages of an only clock that are alike certainly have the same future.
+        # With a single clock, ages with the same `alike` key have the same future.
         is_one = len(ages) == len(cuts) == 1
         key = residual, alike(ages[0] // unit, cuts[0]) if is_one else tuple(ages), gap
         if key not in self._values:
@@ -79,8 +82,8 @@ class Forecaster:
         return self._values[key]
 
     def _found(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool | None:
-        # Certain to be false: nothing satisfies it. Certain to be true: nothing satisfies its
-        # negation. Each is a question of emptiness.
+        # It is certainly false if no continuation satisfies it, and certainly true if none
+        # satisfies its negation. Both are tests of emptiness.
         if not self.admits(self.duals.affirmed(residual), ages, gap):
             return False
         try:
@@ -90,9 +93,9 @@ class Forecaster:
         return None if self.admits(denied, ages, gap) else True
 
     def admits(self, residual: Residual, ages: Sequence[int], gap: int | None) -> bool:
-        """Whether a continuation may satisfy a residual; true also if the search is given up.
+        """Whether a continuation may satisfy a residual; also true if the search was given up.
 
-        Arguments as of `of`.
+        The arguments are those of `of`.
         """
         if len(residual) > MOST_CLAUSES:
             return True
@@ -101,12 +104,12 @@ class Forecaster:
 
 
 MOST_TRIED = 200
-"""The most combinations of clock regions tried in one search, long clauses counted extra."""
+"""The most combinations of clock regions tried in one search; long clauses count as several."""
 
-_MOST_APART = 100  # the same when differences of clocks are kept, which distinguishes more states
+_MOST_APART = 100  # the same if differences of clocks are kept, which distinguishes more states
 
 _FEW_ATOMS = 8
-"""A step of a clause with `n` times this many atoms counts `n`² more: progression is quadratic."""
+"""A step of a clause with n times this many atoms counts n² more, as progression is quadratic."""
 
 MOST_OF_A_STEP = 100  # the most clauses of one step of a clause
 
@@ -126,7 +129,7 @@ class _State(Struct, frozen=True):
 
 
 class _Move(Struct, frozen=True):
-    """An edge of the search; `fair` unless the oldest clock stays in a bounded region."""
+    """An edge of the search; not `fair` if the oldest clock stays in a bounded region."""
 
     source: int
     target: int
@@ -134,14 +137,15 @@ class _Move(Struct, frozen=True):
 
 
 Start = tuple[_State, ...]
-"""One state per clause of a residual; a continuation has to satisfy one of them."""
+"""One state per clause of a residual; a continuation has to satisfy at least one of them."""
 
 
 def start_of(residual: Residual, ages: Sequence[int], gap: int | None) -> Start | None:
-    """The start states of a search, a key for residuals of equal future; `None` if it is true.
+    """The start states of a search; `None` if the residual is true.
 
-    The residual is over known propositions, as `rvmon.logic.progress.Duals` makes them; ages of its
-    clocks and `gap` (`None`: it varies) are in ticks.
+    Residuals with equal start states have equal futures. The residual is over known propositions,
+    as `rvmon.logic.progress.Duals` makes them. The ages of its clocks and `gap` (`None`: it varies)
+    are in ticks.
     """
     if any(not clause for clause in residual):
         return None
@@ -154,10 +158,10 @@ def _may_hold(start: Start, gap: int | None) -> bool:
     """Whether some infinite continuation satisfies one of the states of `start_of` for the gap.
 
     False is exact. True may be wrong for bounded windows, because in wide regions ages are
-    over-approximated by their differences, and where the search is too large.
+    over-approximated by their differences, and if the search is too large.
     """
-    # Exact differences tell more empty languages, but distinguish more states: only where that
-    # search grows too large, the coarser one.
+    # Exact differences recognise more empty languages but distinguish more states. The coarser
+    # search is used only if the exact one grows too large.
     for differences in (True, False):
         with suppress(TooLargeError):
             return _Search(gap, differences=differences).run(start)
@@ -214,8 +218,8 @@ class _Search:
                 reached = step(state.residual, in_ticks, _left_open, MOST_OF_A_STEP)
             except TooManyClausesError:
                 raise TooLargeError from None
-            # A cycle in which the oldest clock stays below a cut for ever takes no time: no real
-            # word.
+            # In a cycle in which the oldest clock stays below a cut for ever, no time passes, so it
+            # is not a word.
             waits = bool(cuts) and bisect_right(cuts[0], shown[0]) < len(cuts[0])
             for clause in reached:
                 pending = _without_literals(clause)
@@ -246,7 +250,7 @@ class _Search:
     def has_accepting_cycle(self, moves: Sequence[_Move]) -> bool:
         """Whether some fair cycle postpones no unbounded `U` for ever.
 
-        Per strongly connected component: a promise kept by all its moves is postponed for ever.
+        In a strongly connected component, a `U` that all moves carry on is postponed for ever.
         """
         promised = [_promises(state) for state in self.states]
         if any(m.fair and m.source == m.target and not promised[m.target] for m in moves):
@@ -279,7 +283,7 @@ def _left_open(literal: Literal) -> Residual:
 
 
 def _without_literals(clause: Clause) -> Clause | None:
-    """The clause without its literals; `None` if no letter satisfies these.
+    """The clause without its literals; `None` if no letter satisfies them.
 
     `Elapsed(0)` is always true here: a continuation has no outages, so its positions exist.
     """

@@ -31,7 +31,8 @@ class Sense(StrEnum):
     TRUE = "is true"
     FALSE = "is false"
     KNOWN_FALSE = "is known to be false"
-    """Two-valued: false of an unknown proposition, in the pessimistic and the optimistic run."""
+    """Two-valued: for an unknown proposition it is false in both the pessimistic and the optimistic
+    run."""
 
 
 class Constant(Struct, frozen=True, eq=False):
@@ -71,7 +72,7 @@ class Next(Struct, frozen=True, eq=False):
 
 
 class Until(Struct, frozen=True, eq=False):
-    """`left U[low, high] right`; `opened` is what remains inside the window: the same, `low` 0."""
+    """`left U[low, high] right`; `opened` is the same with `low` 0, used once the window opens."""
 
     id: int
     left: Core
@@ -82,7 +83,7 @@ class Until(Struct, frozen=True, eq=False):
 
 
 class Release(Struct, frozen=True, eq=False):
-    """`left R[low, high] right`; `opened` is what remains inside the window: the same, `low` 0."""
+    """`left R[low, high] right`; `opened` is the same with `low` 0, used once the window opens."""
 
     id: int
     left: Core
@@ -104,7 +105,7 @@ class Since(Struct, frozen=True, eq=False):
 
 
 class Previous(Struct, frozen=True, eq=False):
-    """The operand at the position before; at the first one `first`."""
+    """The operand at the previous position; at the first position, the constant `first`."""
 
     id: int
     operand: Core
@@ -133,7 +134,7 @@ def parts_of(node: Core) -> tuple[Core, ...]:
 
 
 def nodes_of(formula: Core) -> Iterator[Core]:
-    """A formula and its subformulas, each once, operators before operands."""
+    """A formula and its subformulas, each once, starting with the whole."""
     seen = {formula}
     stack = [formula]
     while stack:
@@ -219,7 +220,7 @@ class Factory:
         return self._state(op, tuple(found)) if more else first
 
     def previous(self, arg: State) -> State:
-        """`arg` at the position before; false at the first."""
+        """`arg` at the previous position; false at the first."""
         return self._state(StateOp.PREVIOUS, (arg,))
 
     def since(self, left: State, right: State, low: int, high: int | None) -> State:
@@ -229,13 +230,13 @@ class Factory:
     def amount(self, amount: Amount, *args: State) -> State:
         """A measured window compared with a limit; `args` are its operands, members first.
 
-        It is not folded where the members are constant: an outage still makes it unknown.
+        A window with constant members is not folded, because an outage still makes it unknown.
         """
         own = replace(amount, of=self._emptied(amount.of, args), known=None, span=None)
         return self._state(StateOp.AMOUNT, args, amount=without_spans(own))
 
     def window(self, window: WindowValue, *args: State) -> State:
-        """The numeric value of a window, TRUE where that is known."""
+        """The numeric value of a window; as a state it is TRUE where the value is known."""
         return self._state(StateOp.AMOUNT, args, amount=window)
 
     def _emptied(self, window: WindowValue, args: Sequence[State]) -> WindowValue:
@@ -336,7 +337,7 @@ class Factory:
         return self._core(Previous, operand, first)
 
     def rebuilt(self, node: Core, of: Callable[[Core], Core], *, positive: bool = True) -> Core:
-        """A formula, or its dual, with what `of` makes of its operands; a literal has none."""
+        """A formula, or its dual, with its operands mapped by `of`; not for literals."""
         match node:
             case Constant(value=value):
                 return self.constant(value is positive)
@@ -359,7 +360,7 @@ class Factory:
 
 
 def _operands(parts: Iterable[Sequence[N]], unit: N, zero: N) -> list[N]:
-    """The operands of a lattice, each once, in order of `id`: at least one."""
+    """The operands of a lattice operator, flattened, each once, in order of `id`; at least one."""
     flat = dict.fromkeys(chain.from_iterable(parts))
     flat.pop(unit, None)
     return [zero] if zero in flat else sorted(flat, key=lambda node: node.id) or [unit]

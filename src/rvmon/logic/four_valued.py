@@ -17,8 +17,8 @@ class Four:
     """A formula with four values.
 
     Args:
-        read: from FALSE, UNKNOWN or TRUE, the three-valued formula that has this value where the
-            four-valued one is unborn.
+        read: for FALSE, UNKNOWN or TRUE, returns the three-valued formula that has this value where
+            the four-valued one is unborn.
         born_late: whether it is unborn at some position.
         stays_born: whether it is never unborn again once it was born.
         unborn: two-valued, TRUE where it is unborn; by default derived from `read`.

@@ -30,8 +30,7 @@ class Obligation(Struct, frozen=True):
     # the formula an attempt must satisfy from its trigger on; of an episode, over all its positions
     required: mtl.Core
     origins: Mapping[mtl.Core, Origin]  # the source of each part of `required`, for explanations
-    # of an episode, FALSE where it is over; with captured values, also where these are no longer
-    # certain
+    # of an episode, FALSE where it is over, and where its captured values are no longer certain
     running: State | None = None
     # of an episode, FALSE where the consequent fails at once: after a failure the episode resumes,
     # as a new attempt, at the next position where this is not FALSE. `None` if it never resumes,
@@ -39,13 +38,13 @@ class Obligation(Struct, frozen=True):
     again: State | None = None
     # of an episode, TRUE while some signal of its consequent had no value yet
     unborn: State | None = None
-    # TRUE once the trigger was TRUE or FALSE at some position; `None`: not asked
+    # TRUE once the trigger was TRUE or FALSE at some position; `None` if that is not tracked
     determined: State | None = None
     # the obligation of attempts in doubt, as an episode whose trigger is UNKNOWN wherever a trigger
     # may be hidden; `None` for episodes and `upon end`
     hidden: Obligation | None = None
     doubted: Obligation | None = None  # the same for an instance of `for each` that may not exist
-    # of an episode with captured values, UNKNOWN where another one may have begun
+    # of an episode with captured values, UNKNOWN where another episode may have started
     doubt: State | None = None
     # TRUE where the windows captured by `let` have known values
     captures_known: tuple[State, ...] = ()
@@ -61,9 +60,9 @@ def lower(
 ) -> Obligation:
     """Lower a requirement to its obligation.
 
-    The period is the D of `sampled every D`, ticks: past intervals are cut to its multiples;
-    `measured` as of `rvmon.logic.three_valued.Reader`; `sampled`: whether only samples are
-    positions.
+    `period` is the D of `sampled every D`, in ticks: past intervals are cut to its multiples.
+    `measured` is explained at `rvmon.logic.three_valued.Reader`. `sampled` says whether only
+    samples are positions.
 
     Raises:
         UnmonitorableError: the trigger has a future operator.

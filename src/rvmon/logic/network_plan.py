@@ -49,7 +49,7 @@ class Sweep(Struct, frozen=True):
     right: int  # place of the right operand
     future: bool  # whether it is `until`, not `since`
     dual: bool  # whether operands and result are negated (`release`, or the dual of `since`)
-    kept: bool  # whether it counts as true at the end of the trace (an unbounded `R`)
+    kept: bool  # whether it is true at the end of the trace if undecided (an unbounded `R`)
 
 
 class Shift(Struct, frozen=True):
@@ -90,7 +90,7 @@ def operands_of(node: Node) -> tuple[int, ...]:
 
 
 def plan_of(required: mtl.Core, gap: int | None) -> NetworkPlan:
-    """The network of one formula; `gap`: ticks between positions, `None` if these are samples."""
+    """The network of one formula; `gap`: ticks between positions, `None` in sampled time."""
     return plan_of_all([required], gap)
 
 
@@ -159,7 +159,7 @@ class _Planning:
         return self.add(Shift(nearest, offset, 0))
 
     def _windowed(self, core: mtl.Until | mtl.Release | mtl.Since) -> int:
-        """The identity that the module states, part by part; offsets of the past are negative."""
+        """The parts of the identity in the module's docstring; offsets of the past are negative."""
         future = not isinstance(core, mtl.Since)
         every = core.dual if isinstance(core, mtl.Since) else isinstance(core, mtl.Release)
         low = -(-core.low // self.gap)

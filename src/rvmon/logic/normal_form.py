@@ -1,6 +1,6 @@
 """Lowers formulas to core formulas: X, U and R over propositions of past and present.
 
-`expanded` goes on to split those propositions, down to literals over single leaves.
+`expanded` then splits these propositions further, into literals over single leaves.
 """
 
 from __future__ import annotations
@@ -112,11 +112,11 @@ class Lowering:
             case rv.Binary(op=rv.BinaryOp.SINCE, left=left, right=right, interval=interval):
                 ends = (self.core(left, positive), self.core(right, positive))
                 return self._since(*ends, interval, not positive)
+            # For robustness `held` keeps a test of its own for the elapsed time: the trace may have
+            # started before an outage, across which nothing else is measured.
             case rv.Unary(
                 op=rv.UnaryOp.HELD, operand=operand, interval=rv.Interval() as window
-            ) if (
-                self._measured
-            ):  # the trace may have begun before an outage, beyond which nothing else is measured
+            ) if self._measured:
                 whole = rv.Unary(rv.UnaryOp.HISTORICALLY, operand, window)
                 self._made_up[id(whole)] = whole
                 begun = self.factory.leaf(Elapsed(window.high or 0))
@@ -166,14 +166,15 @@ class Lowering:
         return make(left, right, low, high)
 
     def required(self, operand: mtl.Core) -> mtl.Core:
-        """An operand as required at later positions, which an outage of sampled time may lack."""
+        """An operand as required at a later position, which may not exist in an outage."""
         return self._if_position_exists(operand) if self._may_lack_position else operand
 
     def _if_position_exists(self, operand: mtl.Core) -> mtl.Core:
-        """`operand`, but unknown where there may be no position; literals are so already."""
+        """`operand`, but unknown where there may be no position; literals already are."""
         factory = self.factory
+        # Robustness is only computed where positions surely exist.
         if isinstance(operand, mtl.Literal) or self._measured:
-            return operand  # what is measured is where there surely are positions
+            return operand
         exists = factory.leaf(Elapsed(0))  # true; unknown where there may be no position
         whole = factory.all_of([factory.literal(exists, mtl.Sense.TRUE), operand])
         made = factory.any_of([whole, factory.literal(exists, mtl.Sense.FALSE)])
@@ -189,7 +190,8 @@ class Lowering:
         All operands without future operators are joined into a single proposition.
         """
         factory = self.factory
-        # One proposition for all of them: each proposition multiplies the letters of the automaton.
+        # They share one proposition, because each proposition multiplies the letters of the
+        # automaton.
         present = [(f, sign) for f, sign in args if not has_future(f)]
         parts = [self.core(f, sign) for f, sign in args if has_future(f)]
         if present or further:
@@ -296,7 +298,7 @@ def _tests_unknown(state: State) -> bool:
         args.issuperset(one.args if one.op is StateOp.AND else (one,))
         for one in denied
         if one.op is not StateOp.LEAF
-        # An atom may also be conjoined with its negation by the author of a specification; only
-        # a test of this module reads both with the same value before the birth of the signals.
+        # The author of a specification may also conjoin an atom with its negation. Only a test of
+        # ours reads both with the same value before the birth of the signals.
         or (isinstance(one.leaf, rv.Compare) and (one.unborn != UNKNOWN or reads_fields(one.leaf)))
     )

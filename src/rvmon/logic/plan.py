@@ -27,7 +27,7 @@ class PlannedRule(Struct, frozen=True, eq=False):
     required: Core  # the formula an attempt must satisfy
     alphabet: Alphabet  # of `required`
     automaton: Automaton | None  # judges the attempts; `None` if a network does
-    # whether its open attempts may come to ever more states of the automaton
+    # whether the number of different states of its open attempts may grow without bound
     scatters: bool = False
     # of a `whenever`, not FALSE where an episode resumes after a failure; `None` if it never
     # resumes, or the requirement is no `whenever`
@@ -44,9 +44,9 @@ class PlannedRule(Struct, frozen=True, eq=False):
     doubted: PlannedRule | None = None  # the same as `hidden`, for an instance that may not exist
     running: State | None = None  # of an episode with captured values, FALSE where it is over
     # of attempts with captured values, UNKNOWN where another attempt, with other values, may have
-    # begun; `None` if that cannot be
+    # started; `None` if that is impossible
     blurs: State | None = None
-    # whether, in an instance with an unknown key, one may have begun anywhere
+    # whether, in an instance with an unknown key, another attempt may have started anywhere
     blurs_anywhere: bool = False
     asked: tuple[State, ...] = ()  # further state formulas whose values are needed
     captures_known: tuple[State, ...] = ()  # TRUE where the numbers captured from windows are known
@@ -80,18 +80,18 @@ class Uses(Struct, frozen=True, eq=False):
 
     # whether the last two updates are read (`prev`, `delta`, `rate`, `changed`)
     history: bool = False
-    marked: bool = False  # whether the fact of an update is read (`updated`, `changed`)
+    marked: bool = False  # whether it is read that there was an update (`updated`, `changed`)
 
 
 class Watch(NamedTuple):
-    """A formula counted for coverage: a bin, or an occasion at which bins are sampled."""
+    """A formula counted for coverage: a bin, or an occasion to sample bins."""
 
     state: State
     is_pulse: bool
 
 
 class WatchGroup(Struct, frozen=True):
-    """A coverpoint, or a cross of several; an item is a combination of one watch of each axis."""
+    """A coverpoint or a cross; an item is a combination of one watch from each axis."""
 
     # ranges of watch numbers; items are numbered with the last axis fastest
     axes: tuple[range, ...]
@@ -106,13 +106,13 @@ class WatchGroup(Struct, frozen=True):
 class Plan(Struct, frozen=True, eq=False):
     """Some requirements of a specification, for one run of the core."""
 
-    spec: CheckedSpec  # gives names, types and the time model
+    spec: CheckedSpec  # for names, types and the time model
     rules: tuple[PlannedRule, ...]  # in the order of the file
     graph: Graph  # their state formulas, shared
     gap: int | None  # ticks between two positions; `None` if only samples are positions
     signals: tuple[str, ...]  # all names of the specification; the index of a name is its number
     events: tuple[str, ...]  # the same
-    uses: Mapping[str, Uses]  # by name, for the names that this plan reads, also to capture values
+    uses: Mapping[str, Uses]  # by name, for all names that are read, also for captured values
     units: tuple[Plan, ...] = ()  # one plan for each requirement with captured values
     # all rules, with those of the units, in the order of the file
     asked: tuple[PlannedRule, ...] = ()
@@ -120,7 +120,7 @@ class Plan(Struct, frozen=True, eq=False):
     # the bins of coverage, and the occasions at which they are sampled
     watches: tuple[Watch, ...] = ()
     groups: tuple[WatchGroup, ...] = ()  # the coverpoints and crosses over them
-    # captured values that are known already; `None` is unknown
+    # captured values that are constants of this plan; `None` is unknown
     constants: Mapping[str, Scalar] = field(default_factory=dict)
 
     @property
@@ -141,18 +141,19 @@ class Plan(Struct, frozen=True, eq=False):
 
 
 def plan_of(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
-    """The plan of requirements in one part: state formulas shared, uses of the input collected."""
+    """The plan of requirements as one unit, with shared state formulas."""
     states = (state for rule in rules for state in rule.states)
     captured = [capture.value for rule in rules for capture in rule.requirement.captures]
     return replace(_shared(spec, states, captured), rules=tuple(rules), asked=tuple(rules))
 
 
 def plan_in_units(spec: CheckedSpec, rules: Sequence[PlannedRule]) -> Plan:
-    """As `plan_of`, with a unit for each requirement with captured values.
+    """As `plan_of`, with a unit of its own for each requirement with captured values.
 
     Each attempt or instance of a unit is a run of its own.
     """
-    # What captures nothing is valued once for all; each attempt of a unit has its own valuation.
+    # State formulas of rules without captures are evaluated once for all attempts. In a unit each
+    # attempt evaluates its own.
     shared = plan_of(spec, [rule for rule in rules if not rule.captured])
     units = tuple(plan_of(spec, [rule]) for rule in rules if rule.captured)
     return replace(shared, units=units, asked=tuple(rules))
@@ -177,7 +178,7 @@ def plan_of_watches(
 def _shared(
     spec: CheckedSpec, states: Iterable[State], captured: Iterable[rv.Numeric] = ()
 ) -> Plan:
-    """A plan with the graph of state formulas, and nothing judged or counted yet."""
+    """A plan with only the graph of the state formulas, without rules or watches."""
     graph = graph_of(states)
     names = (tuple(spec.signals), tuple(spec.events))
     return Plan(spec, (), graph, spec.gap, *names, _uses_of(graph, captured))
@@ -187,7 +188,7 @@ def _uses_of(graph: Graph, captured: Iterable[rv.Numeric]) -> dict[str, Uses]:
     """By name, the uses of signals and events; `captured` are the expressions of `let`."""
     amounts = (node.amount for node in graph.nodes)
     windows = (amount.value for amount in amounts if isinstance(amount, rv.WindowValue))
-    # The value of a window is no leaf of the graph.
+    # The number that a window measures is not a leaf of the graph.
     numbers = [*captured, *(value for value in windows if value is not None)]
     history, marked = set[str](), set[str]()
     for node in graph.nodes:

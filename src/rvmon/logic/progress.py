@@ -44,8 +44,9 @@ def step(
 
     Args:
         residual: the residual before the position.
-        ages: of each clock at this position, ticks.
-        read: the value of a literal at this position; the literal itself as an atom keeps it open.
+        ages: the age of each clock at this position, ticks.
+        read: returns the value of a literal at this position, or the literal itself as an atom to
+            keep it open.
         limit: the greatest number of clauses; `None` for no limit.
 
     Raises:
@@ -92,7 +93,8 @@ class _Step:
 
     def instance(self, node: mtl.Core) -> Residual:
         """The residual of `node` instantiated at this position."""
-        # No `functools.cache`: it would keep each step in a circle until garbage is collected.
+        # No `functools.cache` here: its reference cycle would keep each step in memory until the
+        # garbage collector runs.
         found = self.made.get(node)
         if found is None:
             found = self.made[node] = self._instance(node)
@@ -117,8 +119,8 @@ class _Step:
             case mtl.Next():
                 return frozenset([frozenset([(node, NO_CLOCK)])])
             case mtl.Until() | mtl.Release():
-                # All that is instantiated at one position shares one clock, whatever its bounds:
-                # clocks count positions of birth, not operators.
+                # All formulas instantiated at one position share one clock, whatever their bounds:
+                # a clock stands for the position, not for an operator.
                 return self.window(node, len(self.ages), phase(node, 0))
             case mtl.Since() | mtl.Previous():
                 raise AssertionError("a past operator above a future one is left to the network")
@@ -139,7 +141,7 @@ def opened(node: mtl.Until | mtl.Release, clock: int) -> Atom:
 def after(residual: Residual, ages: Sequence[int]) -> Residual:
     """The residual after time has passed without a position: closed windows are decided.
 
-    `ages` are those of its clocks now, ticks.
+    `ages` are the present ages of its clocks, ticks.
     """
     settled: dict[Atom, Residual] = {}
     for clause in residual:
@@ -159,7 +161,7 @@ def value(residual: Residual) -> int:
 
 
 def holds_at_end(residual: Residual, ages: Sequence[int]) -> bool:
-    """Whether the rule for the end of a trace makes true what is left by `after`; ages as there."""
+    """Whether a result of `after` is true by the rule for the end of a trace; ages as there."""
     return any(all(_counts_at_end(atom, ages) for atom in clause) for clause in residual)
 
 
@@ -175,9 +177,8 @@ class Duals:
     """Builds residuals under the assumption that every proposition is known, and negates them.
 
     Literals of the result have the senses TRUE and FALSE only (KNOWN_FALSE is FALSE if everything
-    is known), and their propositions are no Boolean combinations. A past operator above a future
-    one is replaced by true in either polarity, so a result that has one is only implied by the
-    original.
+    is known), and their propositions are not Boolean combinations. A past operator above a future
+    one is replaced by true in either polarity; such a result is only implied by the original.
     """
 
     def __init__(self) -> None:

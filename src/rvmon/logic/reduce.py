@@ -16,11 +16,11 @@ from rvmon.logic.automaton import PASSED, Automaton, Location, end_clauses, layo
 from rvmon.logic.residual import Residual
 
 Label = Callable[[Residual], Hashable]
-"""The reported part of a residual: locations that differ in it are not merged."""
+"""Gives the part of a residual that is reported: locations that differ in it are not merged."""
 
 Edge = tuple[int, tuple[int, ...]]
 Row = tuple[tuple[Edge | None, ...], int, int]
-"""Per class of letters the edge (`None`: unreachable); then the time value and the end value."""
+"""The edge per class of letters (`None`: unreachable), then the time value and the end value."""
 
 Regions = tuple[int, ...]
 
@@ -34,21 +34,23 @@ class _DraftLocation(Struct):
 
 
 def reduce(automaton: Automaton, label: Label) -> Automaton:
-    """Minimise an automaton; it decides the same attempts at the same instants.
+    """Minimise an automaton; the result decides the same attempts at the same instants.
 
-    Locations that are merged share their label, so that explanations stay right.
+    Only locations with equal labels are merged, so that explanations stay right.
     """
     draft = _Draft(automaton)
-    # Until neither helps: merged targets make rows equal, and rows joined make locations equal.
+    # Repeat both, as each enables the other: merged targets make rows equal, and joined regions
+    # make locations equal.
     while draft.merge(label) or draft.drop_cuts():
         pass
     return draft.tables()
 
 
 def refined(keys: Sequence[Hashable], moves: Callable[[int, list[int]], Hashable]) -> list[int]:
-    """The block of each place: those of one block have one key, and move to the same blocks.
+    """The block of each place in the coarsest partition that respects keys and moves.
 
-    `moves` gives, of a place, the blocks of its successors.
+    All places of a block have the same key and move to the same blocks. `moves` returns the blocks
+    of the successors of a place.
 
     Source: partition refinement after Moore 1956.
     """
@@ -196,6 +198,6 @@ def _merged_row(row: Row, other: Row) -> Row | None:
     for mine, its in zip(row[0], other[0], strict=True):
         if mine != its and None not in (mine, its):
             return None
-        # Where no run can be, any edge will do: that lets regions merge which differ only there.
+        # No run takes an unreachable entry, so any edge will do, which lets more regions merge.
         edges.append(its if mine is None else mine)
     return (tuple(edges), *row[1:])

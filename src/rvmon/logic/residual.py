@@ -29,8 +29,8 @@ _MOST_PAIRS = 1 << 10
 """The most pairs of clauses that `both` reduces under a limit, whatever the limit."""
 
 _KEPT = 1 << 12
-"""The number of results of `both` and of `_reduced` in their caches: building an automaton asks for
-most of them again, in each region and at each letter."""
+"""The size of the caches of `both` and `_reduced`: building an automaton repeats most of these
+operations in each region and at each letter."""
 
 
 class TooManyClausesError(Exception):
@@ -80,7 +80,7 @@ def both(left: Residual, right: Residual, limit: int | None = None) -> Residual:
         return left
     if left == HOLDS:
         return right
-    # Before the product is made: it alone may take all memory, however short it would be reduced.
+    # Check before the product is made: it may take all memory, even if its reduced form is short.
     if limit is not None and len(left) * len(right) > max(limit, _MOST_PAIRS):
         raise TooManyClausesError
     made = _reduced(frozenset(_conjunction(clause | other) for clause in left for other in right))
@@ -102,7 +102,8 @@ def _reduced(clauses: Residual) -> Residual:
     """The residual of clauses without implied atoms: clauses that imply another one are dropped."""
     if len(clauses) < 2:
         return clauses
-    # Shortest first: mostly the shorter clause is the implied one, and a longer one goes at once.
+    # The shortest first: mostly the shorter clause is the implied one, so that a longer one is
+    # dropped at once.
     ordered = sorted(clauses, key=len)
     if not ordered[0]:
         return HOLDS
@@ -115,7 +116,7 @@ def _reduced(clauses: Residual) -> Residual:
         # The subset tests are cheap and settle most pairs; `_clause_implies` is quadratic in the
         # atoms.
         if not any(families[one] <= own and _clause_implies(clause, one) for one in kept):
-            # `_follows` lets a short clause imply a longer one, so kept ones are looked at again.
+            # By `_follows` a short clause can imply a longer one, so the kept ones are rechecked.
             kept = [
                 one for one in kept if not (own <= families[one] and _clause_implies(one, clause))
             ]
@@ -124,7 +125,7 @@ def _reduced(clauses: Residual) -> Residual:
 
 
 def _family(atom: Atom) -> Atom | Core:
-    """What an atom has in common with those that may imply it."""
+    """A key that an atom shares with all atoms that may imply it."""
     node = atom[0]
     return node.opened or node if isinstance(node, Until | Release) else atom
 
@@ -142,7 +143,8 @@ def substitute(
         TooManyClausesError: an intermediate result may have more than `limit` clauses.
     """
     found: set[Clause] = set()
-    # Sets iterate in any order; whether an intermediate result exceeds the limit must not vary.
+    # Sets have no fixed order, but whether an intermediate result exceeds the limit must not vary
+    # between runs.
     clauses = (
         residual if limit is None else sorted(residual, key=lambda c: sorted(map(_by_number, c)))
     )
@@ -161,7 +163,7 @@ def decided(residual: Residual, true: Clause, false: Clause) -> Residual:
     """The residual in which some of its atoms are true and others false."""
     left = frozenset(filter(false.isdisjoint, residual))
     if all(map(true.isdisjoint, left)):
-        return left  # a part of what is reduced is so, too
+        return left  # a subset of a reduced residual is reduced
     return _reduced(frozenset(clause.difference(true) for clause in left))
 
 

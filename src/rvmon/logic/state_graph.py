@@ -1,7 +1,7 @@
 """The state formulas of requirements as one graph with shared nodes.
 
-Here, too: which nodes depend on captured values, and on which events the instances of a `for each`
-depend.
+Also finds the nodes that depend on captured values, and the events that concern single instances
+of a `for each`.
 """
 
 from __future__ import annotations
@@ -45,16 +45,16 @@ class Graph(Struct, frozen=True, eq=False):
     nodes: tuple[sf.State, ...]  # the state formulas, operands first
     index: Mapping[sf.State, int]  # the place of each state formula
     operands: tuple[tuple[int, ...], ...]  # per node, the places of its operands
-    # per node, the places of the nodes of which it is an operand
+    # per node, the places of the nodes that have it as an operand
     parents: tuple[tuple[int, ...], ...]
     # per signal and event, the places of the leaves that read it
     by_name: Mapping[str, tuple[int, ...]]
-    stateful: tuple[int, ...]  # places of the nodes with memory, or that change by time alone
+    stateful: tuple[int, ...]  # places of the nodes that have memory or change by time alone
     remembers_captured: bool  # whether a node with memory depends on captured values
 
 
 def begun_by(state: sf.State) -> str | None:
-    """The name of the captured instant at which a window begins; `None` if there is none."""
+    """The name of the captured instant at which a window starts; `None` if there is none."""
     if state.amount is None:
         return None
     begun = [part.passed for part in _members(state) if part.passed and part.passed.begins]
@@ -62,7 +62,7 @@ def begun_by(state: sf.State) -> str | None:
 
 
 def begins_with_attempt(state: sf.State) -> bool:
-    """Whether a window begins at a captured instant and reads no other captured value.
+    """Whether a window starts at a captured instant and reads no other captured value.
 
     Such a window needs no memory from before its attempt.
     """
@@ -101,7 +101,7 @@ def leaf_texts(
     for place, state in enumerate(graph.nodes):
         above = [graph.nodes[parent].op for parent in graph.parents[place]]
         if above and all(op is sf.StateOp.COMPARED for op in above):
-            continue  # the comparison above it shows the value
+            continue  # the comparison above the leaf shows its value
         leaf = state.leaf or state.compared
         if isinstance(leaf, sf.Shown) and not _is_captured(leaf):
             own = found.setdefault(_text_of(leaf), {})
@@ -129,7 +129,7 @@ def _text_of(leaf: sf.Shown) -> str:
 def lasting(
     graph: Graph, roots: Iterable[sf.State], determined: Collection[sf.State]
 ) -> frozenset[int]:
-    """The nodes that matter once every signal is born, and what is `determined` is TRUE."""
+    """The nodes that still matter once every signal is born and all of `determined` is TRUE."""
     settled: list[int | None] = []
     for state, operands in zip(graph.nodes, graph.operands, strict=True):
         known = (
@@ -204,8 +204,8 @@ def graph_of(roots: Iterable[sf.State]) -> Graph:
         elif varies.intersection(operands[place]):
             varies.add(place)
         if state.op in (sf.StateOp.PREVIOUS, sf.StateOp.SINCE, sf.StateOp.AMOUNT, sf.StateOp.DOUBT):
-            # Memory that reads captured values is another for each attempt, unless it begins with
-            # it.
+            # Memory that reads captured values differs between attempts. Each attempt needs its
+            # own from the past, unless the memory starts with the attempt.
             remembers |= place in varies and not begins_with_attempt(state)
             stateful.append(place)
         elif isinstance(state.leaf, sf.Elapsed) or state.op is sf.StateOp.PASSED:
@@ -217,7 +217,10 @@ def graph_of(roots: Iterable[sf.State]) -> Graph:
 
 
 class Reach(Struct, frozen=True):
-    """What depends on the instances of a `for each` requirement; a key is an instance's value."""
+    """How the instances of a `for each` requirement depend on the input.
+
+    The key of an instance is its value of the `for each` field.
+    """
 
     # the nodes that depend on the key, or that read the event of the `for each`
     own: frozenset[int]
@@ -254,7 +257,7 @@ def reach_of(graph: Graph, each: ForEach, trigger: sf.State | None, *, looks_bac
 
 
 def keys_of(graph: Graph, each: ForEach, asked: Iterable[sf.State]) -> dict[str, rv.FieldValue]:
-    """By event, the field that selects the instance it concerns; other events concern them all.
+    """By event, the field that selects the instance it concerns; other events concern all.
 
     `asked` are the state formulas whose values are used; a bare leaf among them must be exact.
 
@@ -272,8 +275,8 @@ def keys_of(graph: Graph, each: ForEach, asked: Iterable[sf.State]) -> dict[str,
         }
         if name in found or len({*fields.values()}) != 1:
             continue
-        # A leaf over the event that is not compared itself is harmless where all above it conjoin
-        # it with one that is.
+        # A leaf over the event that is not compared with the key is harmless if each node above it
+        # conjoins it with one that is.
         parents = {one for place in leaves.keys() - fields for one in graph.parents[place]}
         alone = roots.intersection(leaves.keys() - fields) or any(
             graph.nodes[parent].op is not sf.StateOp.AND
@@ -293,7 +296,7 @@ def varying(graph: Graph) -> frozenset[int]:
 
 
 def above(graph: Graph, leaves: Iterable[int]) -> frozenset[int]:
-    """Some nodes with all that depend on them."""
+    """The given nodes and all nodes that depend on them."""
     found = set(leaves)
     for place, operands in enumerate(graph.operands):
         if not found.isdisjoint(operands):

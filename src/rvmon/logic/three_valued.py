@@ -40,9 +40,10 @@ class Reader(Reading[Four]):
         self._literals: dict[tuple[int, int], tuple[rv.Formula, sf.State]] = {}
 
     def literal(self, formula: rv.Formula, unborn: int) -> sf.State:
-        """The state formula with each unborn proposition, not the whole, replaced by `unborn`.
+        """The state formula with each unborn proposition replaced by `unborn`.
 
-        A proposition is an atom or a past operator with its operands.
+        A proposition is an atom or a past operator with its operands. It is each proposition that
+        is replaced, not the value of the whole formula.
         """
         key = id(formula), unborn
         if key not in self._literals:  # rewriting `<->` duplicates its operands
@@ -53,7 +54,7 @@ class Reader(Reading[Four]):
         factory = self.factory
         match formula:
             case rv.Unary(op=rv.UnaryOp.NOT, operand=operand):
-                # Under a negation unborn counts in favour by the other value.
+                # Under a negation the opposite value counts in favour.
                 return factory.negation(self.literal(operand, sf.TRUE - unborn))
             case rv.Binary(op=rv.BinaryOp.AND | rv.BinaryOp.OR as op, left=left, right=right):
                 join = factory.state_all if op is rv.BinaryOp.AND else factory.state_any
@@ -126,7 +127,7 @@ class Reader(Reading[Four]):
         return self.factory.leaf(sf.Unborn(signals)) if signals else self.factory.state_false
 
     def _unborn_until(self, value: sf.State, asked: Iterable[sf.State]) -> Four:
-        """A value that is unborn while some of what is `asked` (each "is unborn") is true."""
+        """A value that is unborn while any of `asked` is true, each of which says "is unborn"."""
         factory = self.factory
         unborn = self._some_unborn(asked)
         if unborn is factory.state_false:
@@ -205,7 +206,8 @@ class Reader(Reading[Four]):
     def _measured(self, args: Sequence[Four], joined: sf.State, unborn: sf.State) -> sf.State:
         """A conjunction, FALSE where an operand is unborn, with its robustness preserved.
 
-        `joined` is the conjunction with unborn replaced by TRUE; `unborn` that one is unborn.
+        `joined` is the conjunction with unborn replaced by TRUE; `unborn` is TRUE where some
+        operand is unborn.
         """
         factory = self.factory
         lost = factory.state_all([joined, factory.negation(joined)])
@@ -237,10 +239,10 @@ class Reader(Reading[Four]):
             value = self._or_lost(value, left, right, low, high)
         if not right.born_late:
             return self._always_born(value)
-        # Once born, always born: the present position tells. Else each position of the window is
-        # asked.
+        # If the operand stays born once it is, the present position tells. Otherwise each position
+        # of the window has to be tested.
         if right.stays_born and low == 0:
-            # `sure`: an outage before the first sample leaves it open whether it is born.
+            # `sure` is needed because an outage before the first sample may hide the birth.
             unborn = factory.state_all([right.unborn, factory.sure(factory.negation(value))])
         else:
             born = factory.since(factory.state_true, factory.negation(right.unborn), low, high)
@@ -251,10 +253,10 @@ class Reader(Reading[Four]):
     def _or_lost(
         self, value: sf.State, left: Four, right: Four, low: int, high: int | None
     ) -> sf.State:
-        """`value`, but unknown where the right side is never known in the window though born.
+        """`value`, but unknown where the right side is born yet nowhere known in the window.
 
-        There a false left side alone does not make it false: what was lost may have been unborn,
-        and unborn positions are skipped.
+        There a false left side does not make `since` false: the lost positions may have been
+        unborn, and unborn positions are skipped.
         """
         factory = self.factory
         if left.read(sf.TRUE) is factory.state_true:
@@ -270,7 +272,7 @@ class Reader(Reading[Four]):
         return factory.state_any([value, self._at_most_unknown(lost)])
 
     def _at_most_unknown(self, state: sf.State) -> sf.State:
-        """UNKNOWN where `state` is not FALSE. It is not measured: its truth spans outages."""
+        """UNKNOWN where `state` is not FALSE, without its robustness, which would span outages."""
         factory = self.factory
         if self.measured:
             state = factory.negation(factory.sure(factory.negation(state)))

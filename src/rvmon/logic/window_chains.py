@@ -24,8 +24,8 @@ class Chain(Struct, frozen=True):
     # place of the leaf that releases the invariant; `None` if this is no invariant
     left: int | None
     places: tuple[int, ...]  # places of the windows
-    # place of a leaf that is a disjunct of the invariant's body, `None` if there is none. Where
-    # nothing is unknown it is true wherever `left` is
+    # place of a leaf that is a disjunct of the invariant's body, `None` if there is none. It is
+    # true wherever `left` is, unless something is unknown
     excused: int | None
 
 
@@ -122,7 +122,7 @@ def chain_of(plan: NetworkPlan, gap: int | None) -> Chain | None:
 
 
 def _ends(plan: NetworkPlan, left: int, place: int) -> bool:
-    """Whether a leaf denies the same proposition as the left one, so that they agree if known."""
+    """Whether both leaves deny the same proposition, so that they agree where it is known."""
     one, other = plan.nodes[left], plan.nodes[place]
     if not (isinstance(one, Leaf) and isinstance(other, Leaf)):
         return False
